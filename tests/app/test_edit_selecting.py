@@ -9,6 +9,7 @@ from sandbox.editor.edits.parts import place_part
 from sandbox.editor.items import Item
 from sandbox.editor.storage.part_files import catalogue
 from tests.app.conftest import small_level
+from tests.support.zoo import zoo
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
 ROPE, PAIR = Item("body", "rope"), Item("body", "pair")
@@ -281,3 +282,30 @@ def test_all_of_many_materials_can_be_chosen_to_select_by(edit):
     driver.key(pygame.K_RETURN)
     assert driver.editor.document.selection == {Item("body", "rope 29")}
     assert not driver.app.ui.has_sheet
+
+
+@pytest.mark.parametrize("kind", ["rope", "bridge", "girder"])
+def test_an_end_of_a_rope_a_bridge_or_a_girder_is_dragged_alone(edit, kind):
+    level = small_level()
+    zoo_body = next(body for body in zoo().bodies if body.type == kind)
+    moved = zoo_body.model_copy(update={"id": "span", "start": (0.0, 0.0), "end": (4.0, 0.0), "pose": None, "cut": ()})
+    driver = edit(
+        level.model_copy(update={"bodies": (moved,), "checks": (), "materials": zoo().materials, "welds": ()})
+    )
+    driver.editor.select(frozenset([Item("body", "span")]))
+    driver.frames(1)
+    driver.drag((4, 0), (4.5, 0.5), (5, 1))
+    span = driver.editor.document.level.bodies[0]
+    assert span.end == pytest.approx((5.0, 1.0), abs=0.01) and span.start == (0.0, 0.0)
+    driver.key(pygame.K_z, CTRL)
+    assert driver.editor.document.level.bodies[0].end == (4.0, 0.0)
+
+
+def test_an_end_that_is_dragged_leaves_its_joint_and_joins_what_it_comes_onto(driver):
+    driver.click_at(1, 0)
+    rope = body(driver)
+    driver.drag(rope.end, (2.0, 1.0), (1.0, 2.0))
+    level = driver.editor.document.level
+    assert level.welds and body(driver).start == rope.start
+    driver.drag((1.0, 2.0), (3.0, -1.0), (4.0, -1.0))
+    assert driver.editor.document.level.welds == () and body(driver).end == pytest.approx((4.0, -1.0), abs=0.01)

@@ -142,9 +142,7 @@ def turning_in_vain(level: Level, scene: Scene) -> Rule:
                 f"{called(level, item)} has a rolling resistance of {particle.rolling:g}: with more than "
                 f"{MOST_ROLLING:g} heaps do not come to rest; lower it, or let it not roll"
             )
-            many = (
-                f"{{count}} discs have a rolling resistance above {MOST_ROLLING:g}: no heap comes to rest; lower it"
-            )
+            many = f"{{count}} discs have a rolling resistance above {MOST_ROLLING:g}: no heap comes to rest; lower it"
             yield Finding("warning", text, frozenset([item]), place_of(scene, slot), many=many)
         if particle.spin != 0.0 and held[slot]:
             text = f"{called(level, item)} is held and does not turn; its spin of {particle.spin:g} rad/s is lost"

@@ -10,6 +10,7 @@ from sandbox.app.base.sentences import capitalised, sentence
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Point
 from sandbox.app.edit.canvas.corners import CornerMoving, Corners
+from sandbox.app.edit.canvas.ends import BodyEnds, EndMoving
 from sandbox.app.edit.canvas.gestures import Boxing, Gesture, Lassoing, Moving, Transforming, pick_mode
 from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.edit.canvas.overlay import draw_outline
@@ -54,6 +55,8 @@ class SelectTool:
             return "Drag corners, or dots between them for new ones; drag the piece to move it"
         if self.entered is not None:
             return f"In group {self.entered}: click its members one by one; Escape leaves it"
+        if self._ends() is not None and self._gesture is None:
+            return "Drag an end to move it alone; drag the middle to move the whole; Shift adds, Ctrl takes away"
         around = "Drag around things" if self._lasso else "Click or drag a box"
         return f"{around} to select; Shift adds, Ctrl takes away; double click enters a group"
 
@@ -146,7 +149,8 @@ class SelectTool:
         name = handles.at(screen.camera.to_pixels(point)) if handles is not None else None
         self._pressed, self._clicked, self._gesture, self._double = point, None, None, clicks == 2
         self._chosen = None
-        if self._take_corner(screen.camera.to_pixels(point)):
+        pixel = screen.camera.to_pixels(point)
+        if self._take_corner(pixel) or self._take_end(pixel):
             return
         if handles is not None and name is not None:
             self._gesture = Transforming(screen, handles, name, point, not screen.scales_apart)
@@ -178,6 +182,17 @@ class SelectTool:
             self._gesture = CornerMoving(self._screen, corners, number, is_new=False)
         elif middle is not None:
             self._gesture = CornerMoving(self._screen, corners, middle, is_new=True)
+        return self._gesture is not None
+
+    def _ends(self) -> BodyEnds | None:
+        return BodyEnds.of(self._screen.document, self._screen.camera, self._screen.scale)
+
+    def _take_end(self, pixel: Point) -> bool:
+        """Begin to drag an end of the body that is selected, where a press is on one."""
+        ends = self._ends()
+        name = None if ends is None else ends.at(pixel)
+        if ends is not None and name is not None:
+            self._gesture = EndMoving(self._screen, ends, name)
         return self._gesture is not None
 
     def move(self, point: Point, modifiers: int) -> None:
@@ -232,8 +247,11 @@ class SelectTool:
         handles, corners = self.handles(), self._corners()
         if handles is not None:
             handles.draw(surface)
+        ends = self._ends()
         if corners is not None:
             corners.draw(surface, self.corner)
+        if ends is not None:
+            ends.draw(surface)
 
 
 class DrawTool:
