@@ -16,13 +16,14 @@ Ends = tuple[NDArray[np.float64], ...]
 Mode = Literal["replace", "add", "subtract", "toggle"]
 
 
-def particle_at(scene: Scene, point: Point, within: float) -> int | None:
-    """Slot of the particle at point [m], by its disc, at most `within` [m] beside it; None = none.
+def particle_at(scene: Scene, point: Point, within: float, skip: Selection = frozenset()) -> int | None:
+    """Slot of the particle at point [m], by its disc, at most `within` [m] beside it, not of `skip`; None = none.
 
     Where discs overlap the one whose centre is nearest; of those in the same place the one drawn last.
     """
     dx, dy = scene.position[:, 0] - point[0], scene.position[:, 1] - point[1]
     near = np.flatnonzero((np.abs(dx) <= scene.radius + within) & (np.abs(dy) <= scene.radius + within))
+    near = near[~scene.chosen(skip)[scene.particle_item[near]]]
     distance = np.sqrt(dx[near] ** 2 + dy[near] ** 2)
     gap = np.maximum(distance - scene.radius[near], 0.0)
     reached = gap <= within
@@ -32,15 +33,18 @@ def particle_at(scene: Scene, point: Point, within: float) -> int | None:
     return int(near[np.lexsort((-near, distance, gap))[0]])
 
 
-def spring_at(scene: Scene, point: Point, within: float) -> int | None:
-    """Slot of the spring nearest to point [m], at most `within` [m] away; of equals the one drawn last; None = none."""
-    return _nearest_segment(_ends(scene), point, within)
+def spring_at(scene: Scene, point: Point, within: float, skip: Selection = frozenset()) -> int | None:
+    """Slot of the spring nearest to point [m], at most `within` [m] away and not of `skip`; None = none.
+
+    Of equals the one drawn last.
+    """
+    return _nearest_segment(_ends(scene), scene.chosen(skip)[scene.spring_item], point, within)
 
 
-def edge_at(scene: Scene, point: Point, within: float) -> int | None:
-    """Index of the edge of terrain nearest to point [m], at most `within` [m] away; None = none."""
+def edge_at(scene: Scene, point: Point, within: float, skip: Selection = frozenset()) -> int | None:
+    """Index of the edge of terrain nearest to point [m], at most `within` [m] away and not of `skip`; None = none."""
     a, b = scene.corner[scene.edge[:, 0]], scene.corner[scene.edge[:, 1]]
-    return _nearest_segment((a[:, 0], a[:, 1], b[:, 0], b[:, 1]), point, within)
+    return _nearest_segment((a[:, 0], a[:, 1], b[:, 0], b[:, 1]), scene.chosen(skip)[scene.edge_item], point, within)
 
 
 def corner_at(scene: Scene, item: Item, point: Point, within: float) -> int | None:
@@ -51,7 +55,7 @@ def corner_at(scene: Scene, item: Item, point: Point, within: float) -> int | No
     return int(distance.argmin()) if len(mine) and float(distance.min()) <= within else None
 
 
-def _nearest_segment(ends: Ends, point: Point, within: float) -> int | None:
+def _nearest_segment(ends: Ends, left_out: NDArray[np.bool_], point: Point, within: float) -> int | None:
     ax, ay, bx, by = ends
     x, y = point
     near = np.flatnonzero(
@@ -59,6 +63,7 @@ def _nearest_segment(ends: Ends, point: Point, within: float) -> int | None:
         & (np.maximum(ax, bx) >= x - within)
         & (np.minimum(ay, by) <= y + within)
         & (np.maximum(ay, by) >= y - within)
+        & ~left_out
     )
     start = np.stack([ax[near], ay[near]], axis=1)
     along = np.stack([bx[near], by[near]], axis=1) - start
@@ -74,24 +79,28 @@ def _nearest_segment(ends: Ends, point: Point, within: float) -> int | None:
     return int(near[np.lexsort((-near, distance[reached]))[0]])
 
 
-def item_at(scene: Scene, point: Point, within: float) -> Item | None:
+def item_at(scene: Scene, point: Point, within: float, skip: Selection = frozenset()) -> Item | None:
     """The item at point [m]: particles count before springs, then edges of terrain, insides of bodies and of terrain.
 
-    within [m]: how far beside a particle, spring or edge still counts. A point is inside a body that has springs to its
-    left and right, above and below; of several the one drawn last.
+    within [m]: how far beside a particle, spring or edge still counts. skip: items that do not count. A point is inside
+    a body that has springs to its left and right, above and below; of several the one drawn last.
     """
-    particle = particle_at(scene, point, within)
+    particle = particle_at(scene, point, within, skip)
     if particle is not None:
         return scene.items[int(scene.particle_item[particle])]
-    spring = spring_at(scene, point, within)
+    spring = spring_at(scene, point, within, skip)
     if spring is not None:
         return scene.items[int(scene.spring_item[spring])]
-    edge = edge_at(scene, point, within)
+    edge = edge_at(scene, point, within, skip)
     if edge is not None:
         return scene.items[int(scene.edge_item[edge])]
-    around = [index for index in _items_around(scene, point) if scene.items[index].kind == "body"]
-    around = around or ground_around(scene, point)
-    return scene.items[max(around)] if around else None
+    left_out = scene.chosen(skip)
+    bodies = [index for index in _items_around(scene, point) if scene.items[index].kind == "body"]
+    for around in (bodies, ground_around(scene, point)):
+        found = [index for index in around if not left_out[index]]
+        if found:
+            return scene.items[max(found)]
+    return None
 
 
 def ground_around(scene: Scene, point: Point) -> list[int]:
@@ -135,8 +144,8 @@ def _beside(
     return set(np.unique(owner[at <= v]).tolist()), set(np.unique(owner[at >= v]).tolist())
 
 
-def items_in_box(scene: Scene, box: Box) -> Selection:
-    """Items of which everything lies in a box: two opposite corners x, y, x, y [m] in any order."""
+def items_in_box(scene: Scene, box: Box, skip: Selection = frozenset()) -> Selection:
+    """Items, but for `skip`, of which everything lies in a box: two opposite corners x, y, x, y [m] in any order."""
     left, right = sorted((box[0], box[2]))
     bottom, top = sorted((box[1], box[3]))
 
@@ -144,15 +153,18 @@ def items_in_box(scene: Scene, box: Box) -> Selection:
         x, y = points[:, 0], points[:, 1]
         return np.asarray((x >= left) & (x <= right) & (y >= bottom) & (y <= top))
 
-    return _enclosed(scene, inside(scene.position), inside(scene.corner))
+    return _enclosed(scene, inside(scene.position), inside(scene.corner)) - skip
 
 
-def items_in_lasso(scene: Scene, polygon: Sequence[Point]) -> Selection:
-    """Items of which everything lies inside a closed line through points [m]; where it crosses itself, by turns."""
+def items_in_lasso(scene: Scene, polygon: Sequence[Point], skip: Selection = frozenset()) -> Selection:
+    """Items, but for `skip`, of which everything lies inside a closed line through points [m].
+
+    Where it crosses itself, by turns.
+    """
     if len(polygon) < 3:
         return frozenset()
     corners = np.array(polygon, dtype=np.float64)
-    return _enclosed(scene, _inside(corners, scene.position), _inside(corners, scene.corner))
+    return _enclosed(scene, _inside(corners, scene.position), _inside(corners, scene.corner)) - skip
 
 
 def _inside(corners: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:

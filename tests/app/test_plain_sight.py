@@ -10,7 +10,7 @@ from sandbox.level.reading.files import load_level, shipped_levels
 
 PARTS = {part.path.stem: part.level for part in catalogue() if not part.is_own}
 LEVELS = [path.stem for path in shipped_levels()]
-PAGES = ("properties", "materials", "parts", "level", "checks", "history", "findings")
+PAGES = ("properties", "objects", "materials", "parts", "level", "checks", "history", "findings")
 
 
 def walk(driver):

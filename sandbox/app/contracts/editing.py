@@ -19,6 +19,7 @@ from sandbox.editor.panel.field_info import Pick
 from sandbox.editor.scene import Scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.snap import Snap
+from sandbox.editor.visibility import Visibility
 
 
 class PointerTool(Protocol):
@@ -102,6 +103,15 @@ class Editing(Protocol):
         ...
 
     @property
+    def visibility(self) -> Visibility:
+        """What of the level is hidden or locked."""
+        ...
+
+    def set_visibility(self, visibility: Visibility) -> None:
+        """Hide or lock other items; what is hidden is not selected."""
+        ...
+
+    @property
     def level_file(self) -> LevelFile:
         """Where the level is saved."""
         ...
@@ -182,6 +192,14 @@ class Editing(Protocol):
 
     def show_box(self, box: Box | None) -> None:
         """Draw the box [m] of what a panel shows on the sheet; None = none."""
+        ...
+
+    def light_up(self, items: Selection) -> None:
+        """Draw items brighter on the sheet, as a panel points at them."""
+        ...
+
+    def reveal(self, items: Selection) -> None:
+        """Bring items into view where they are not."""
         ...
 
     def cancel(self) -> None:

@@ -67,7 +67,7 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
         "copy_level": clipboard.copy_level,
         "duplicate": lambda: _duplicate(screen),
         "delete": lambda: _delete_or_back(screen),
-        "select_all": lambda: screen.select(frozenset(screen.scene.items)),
+        "select_all": lambda: screen.select(frozenset(screen.scene.items) - screen.visibility.closed),
         "select_material": lambda: _ask_material(screen),
         "mirror": lambda: _ask_mirror(screen),
         "array": lambda: _ask_array(screen),
@@ -338,7 +338,7 @@ def _finish(screen: Editing) -> None:
 
 def _visit(screen: Editing, by: int) -> None:
     """Select the next item of the file, or the one before."""
-    items = screen.scene.items
+    items = [item for item in screen.scene.items if item not in screen.visibility.closed]
     if not items:
         return
     chosen = [index for index, item in enumerate(items) if item in screen.document.selection]

@@ -46,6 +46,7 @@ from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.selecting import LASSO
 from sandbox.editor.tools.snap import Snap, snap
+from sandbox.editor.visibility import Visibility
 
 # Sizes in layout units.
 SIDE_WIDTH = 292.0
@@ -85,6 +86,9 @@ class EditScreen:
         self.cursor: Point | None = None
         self.pointer: Pixel | None = None
         self._scenes: deque[Scene] = deque(maxlen=SCENES_KEPT)
+        # What is hidden and locked, of items that were deleted too: they may come back.
+        self._visibility = self._visible_now = Visibility()
+        self._visible_in: object = None
         self._box: tuple[Scene, Selection, Box | None] | None = None
         self._apart: tuple[Document, bool] | None = None
         self._seen: Document | None = None
@@ -113,6 +117,20 @@ class EditScreen:
             known = next((scene for scene in scenes if scene.level is level), None)
             scenes.append(known or make_scene(level, scenes[-1] if scenes else None))
         return scenes[-1]
+
+    @property
+    def visibility(self) -> Visibility:
+        """What of the level is hidden or locked."""
+        level = self.document.level
+        if self._visible_in is not level:
+            self._visible_in, self._visible_now = level, self._visibility.among(frozenset(self.scene.items))
+        return self._visible_now
+
+    def set_visibility(self, visibility: Visibility) -> None:
+        """Hide or lock other items; what is hidden is not selected."""
+        self._visibility, self._visible_in = visibility, None
+        if self.document.selection & visibility.hidden:
+            self.select(self.document.selection - visibility.hidden)
 
     @property
     def selection_box(self) -> Box | None:
@@ -195,6 +213,16 @@ class EditScreen:
     def show_box(self, box: Box | None) -> None:
         """Draw the box [m] of what a panel shows on the sheet; None = none."""
         self.view.shown_box = box
+
+    def light_up(self, items: Selection) -> None:
+        """Draw items brighter on the sheet, as a panel points at them."""
+        self.view.pointed = items
+
+    def reveal(self, items: Selection) -> None:
+        """Bring items into view where they are not."""
+        box = self.scene.bounds(items)
+        if box is not None:
+            self.camera.reveal(box)
 
     # Layout.
 
@@ -358,7 +386,7 @@ class EditScreen:
         """Where the pointer is taken to be."""
         if not self.grid_snaps(modifiers):
             return snap(self.scene, point, 0.0)
-        return snap(self.scene, point, self.reach, self.grid, anchor, skip)
+        return snap(self.scene, point, self.reach, self.grid, anchor, skip | self.visibility.hidden)
 
     # Pointer and keys.
 

@@ -17,18 +17,24 @@ LINE_HEIGHT = 17.0
 PADDING = 6.0
 INSET = 10.0
 SWATCH = 11.0
+INDENT = 14.0
 TEXT_SIZE, DETAIL_SIZE = 12.5, 11.0
 MENU_ROWS = 12
 
 
 @dataclass(frozen=True)
 class Row:
-    """A row: text, lines in grey below it, a spot of colour before it, the colour of the text."""
+    """A row: text, lines in grey below it, a spot of colour before it, the colour of the text.
+
+    aside: words in grey at the right, in the line of the text, which is cut to leave them room; indent: steps.
+    """
 
     text: str
     detail: str = ""
     swatch: Colour | None = None
     colour: Colour = TEXT
+    aside: str = ""
+    indent: int = 0
 
 
 # Shortest thumb, and how far from the right a press takes it [layout units].
@@ -38,7 +44,8 @@ SHORTEST_THUMB, THUMB_REACH = 20.0, 12.0
 class RowList(Painted):
     """Rows to choose from; choose(index) is called by a click, Enter or Space; only what is seen is painted.
 
-    at_once: arrow keys choose as they go. most_lines: of a row's text, and of what is below it, which wrap.
+    empty: what it says without rows. at_once: arrow keys choose as they go. most_lines: of a row's text, and of what is
+    below it, which wrap.
     """
 
     def __init__(
@@ -56,7 +63,8 @@ class RowList(Painted):
         super().__init__(ui, rect, container)
         self.rows: Sequence[Row] = ()
         self.chosen: int | None = None
-        self._choose, self._empty, self._at_once = choose, empty, at_once
+        self.also: frozenset[int] = frozenset()
+        self._choose, self.empty, self._at_once = choose, empty, at_once
         self._most_lines, self._background = most_lines, background
         # Of each row: its lines, and those below in grey.
         self._lines: list[tuple[list[str], list[str]]] = []
@@ -68,8 +76,11 @@ class RowList(Painted):
         ui.add(self)
         self.repaint()
 
-    def show_rows(self, rows: Sequence[Row], chosen: int | None, reveal: bool = False) -> None:
-        """Show rows, one of them as chosen; reveal: scroll to it where it has changed."""
+    def show_rows(
+        self, rows: Sequence[Row], chosen: int | None, reveal: bool = False, also: frozenset[int] = frozenset()
+    ) -> None:
+        """Show rows, one of them as chosen; reveal: scroll to it where it has changed; also: others that are chosen."""
+        self.also = also
         if rows != self.rows:
             self.rows = rows
             self._lay_out()
@@ -84,13 +95,19 @@ class RowList(Painted):
         font, inset = ui.font(TEXT_SIZE), ui.px(INSET)
         self._lines, self._tops = [], [0]
         for row in self.rows:
-            left = inset + (ui.px(SWATCH + 8) if row.swatch is not None else 0)
+            left = inset + (ui.px(SWATCH + 8) if row.swatch is not None else 0) + row.indent * ui.px(INDENT)
             widest = self.rect.width - left - inset
-            lines = wrapped(row.text, font, widest, self._most_lines)
+            aside = ui.font(DETAIL_SIZE).size(row.aside)[0] + ui.px(8) if row.aside else 0
+            lines = wrapped(row.text, font, max(widest - aside, widest // 3), self._most_lines)
             details = wrapped(row.detail, ui.font(DETAIL_SIZE), widest, self._most_lines) if row.detail else []
             self._lines.append((lines, details))
             count = len(lines) + len(details)
             self._tops.append(self._tops[-1] + count * ui.px(LINE_HEIGHT) + 2 * ui.px(PADDING))
+
+    @property
+    def pointed(self) -> int | None:
+        """The row under the pointer."""
+        return self._pointed if self._pointed is not None and self._pointed < len(self.rows) else None
 
     # Where things are.
 
@@ -193,7 +210,7 @@ class RowList(Painted):
         surface = pygame.Surface(size, pygame.SRCALPHA)
         pygame.draw.rect(surface, self._background, surface.get_rect(), border_radius=ui.px(6))
         if not self.rows:
-            for number, line in enumerate(wrapped(self._empty, ui.font(12), size[0] - 2 * ui.px(INSET), 6)):
+            for number, line in enumerate(wrapped(self.empty, ui.font(12), size[0] - 2 * ui.px(INSET), 6)):
                 at = (ui.px(INSET), ui.px(PADDING + 2) + number * ui.px(LINE_HEIGHT))
                 surface.blit(ui.font(12).render(line, True, MUTED), at)
         first = max(bisect_right(self._tops, self._offset) - 1, 0)
@@ -212,18 +229,22 @@ class RowList(Painted):
         ui, row = self.ui, self.rows[index]
         place = pygame.Rect(0, top, surface.get_width(), self._tops[index + 1] - self._tops[index])
         inner = place.inflate(-ui.px(6), -ui.px(2))
-        if index == self.chosen:
+        is_chosen = index == self.chosen or index in self.also
+        if is_chosen:
             pygame.draw.rect(surface, CHOSEN, inner, border_radius=ui.px(5))
         elif index == self._pointed:
             pygame.draw.rect(surface, mixed(self._background, TEXT, 0.08), inner, border_radius=ui.px(5))
-        if index == self._cursor and index != self.chosen:
+        if index == self._cursor and not is_chosen:
             pygame.draw.rect(surface, ACCENT, inner, 1, border_radius=ui.px(5))
-        left, line, y = ui.px(INSET), ui.px(LINE_HEIGHT), top + ui.px(PADDING)
+        left, line, y = ui.px(INSET) + row.indent * ui.px(INDENT), ui.px(LINE_HEIGHT), top + ui.px(PADDING)
         if row.swatch is not None:
             swatch = ui.px(SWATCH)
             at = pygame.Rect(left, y + (line - swatch) // 2, swatch, swatch)
             pygame.draw.rect(surface, row.swatch, at, border_radius=ui.px(3))
             left += swatch + ui.px(8)
+        if row.aside:
+            picture = ui.font(DETAIL_SIZE).render(row.aside, True, MUTED)
+            surface.blit(picture, (place.right - ui.px(INSET) - picture.get_width(), y + ui.px(1)))
         for texts, size, colour in zip(self._lines[index], (TEXT_SIZE, DETAIL_SIZE), (row.colour, MUTED), strict=True):
             for text in texts:
                 surface.blit(ui.font(size).render(text, True, colour), (left, y))

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.fields import set_field
 from sandbox.editor.edits.names import free_ids
 from sandbox.editor.items import (
     Definition,
@@ -17,6 +18,7 @@ from sandbox.editor.items import (
     with_same,
 )
 from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import shown
 from sandbox.level.format.quantities import replaced
 
 Place = Literal["front", "back", "forward", "backward"]
@@ -65,6 +67,52 @@ def reorder(document: Document, to: Place) -> Document:
         terrain=tuple(level.terrain[index] for index in _order([piece.id in terrain for piece in level.terrain], to)),
     )
     return Document(level, kept_springs(selection, order))
+
+
+def rename_group(document: Document, old: str, new: str) -> Document:
+    """Give a group another name. Raises EditError where another one has it, or no group can."""
+    level = document.level
+    if new != old and new in taken_groups(level):
+        raise EditError(f"there is a group {shown(new)} already")
+    members = frozenset(item for item, name in groups_of(level).items() if name == old)
+    return set_field(document, members, "group", new)
+
+
+def shift(document: Document, later: bool) -> Document:
+    """Put what is selected past the next thing of its kind in the file, or before the one ahead of it.
+
+    A group counts as one thing, unless some of its members alone are selected. What comes later is drawn over the rest.
+    """
+    groups = groups_of(document.level)
+    homes = {groups.get(item) for item in document.selection}
+    within = next(iter(homes)) if len(homes) == 1 else None
+    inside = {item for item, name in groups.items() if name == within} if within is not None else set()
+    is_within = bool(inside - document.selection)
+    for kind in sorted({item.kind for item in document.selection}):
+        items = [item for item in items_of(document.level) if item.kind == kind and (not is_within or item in inside)]
+        units: dict[object, list[Item]] = {}
+        for item in items:
+            units.setdefault(item if is_within else groups.get(item, item), []).append(item)
+        order = list(units.values()) if later else list(units.values())[::-1]
+        taken = [place for place, unit in enumerate(order) if document.selection.intersection(unit)]
+        past = order[taken[-1] + 1 : taken[-1] + 2]
+        if past:
+            document = _moved_beside(document, past[0][-1 if later else 0], later)
+    return document
+
+
+def _moved_beside(document: Document, other: Item, after: bool) -> Document:
+    """What is selected of the kind of another item, beside that in the file, before or after it, in its own order."""
+    level, selection = document.level, document.selection
+    items = [item for item in items_of(level) if item.kind == other.kind]
+    moved = [index for index, item in enumerate(items) if item in selection]
+    stay = [index for index, item in enumerate(items) if item not in selection]
+    place = stay.index(items.index(other)) + after
+    order = [*stay[:place], *moved, *stay[place:]]
+    field = {"body": "bodies", "particle": "particles", "spring": "springs", "terrain": "terrain"}[other.kind]
+    parts = getattr(level, field)
+    level = with_same(level, **{field: tuple(parts[index] for index in order)})
+    return Document(level, kept_springs(selection, order) if other.kind == "spring" else selection)
 
 
 def _grouped(document: Document, name: str | None) -> Document:

@@ -36,7 +36,7 @@ from sandbox.app.draw.renderer import (
 )
 from sandbox.app.edit.canvas.edited_terrain import Ground, paint_ground, paint_walls
 from sandbox.app.edit.canvas.flesh import Flesh
-from sandbox.editor.items import Item, Selection
+from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.format.limits import BODY_RADIUS
 
@@ -73,17 +73,25 @@ class Part:
 
 
 class SelectionMasks(NamedTuple):
-    """Which particles (n,), springs (m,) and items (k,) of a scene are selected."""
+    """Which particles (n,), springs (m,) and items (k,) of a scene are selected; hidden: which of each are not drawn.
+
+    A spring is hidden with either of its ends, too.
+    """
 
     particles: Mask
     springs: Mask
     items: Mask
+    hidden_particles: Mask
+    hidden_springs: Mask
+    hidden_items: Mask
 
     @classmethod
-    def of(cls, scene: Scene, selection: Selection) -> "SelectionMasks":
+    def of(cls, scene: Scene, selection: Selection, hidden: Selection = frozenset()) -> "SelectionMasks":
         """Find them, which takes time in large selections."""
-        chosen = scene.chosen(selection)
-        return cls(chosen[scene.particle_item], chosen[scene.spring_item], chosen)
+        chosen, away = scene.chosen(selection), scene.chosen(hidden)
+        particles, springs = away[scene.particle_item], away[scene.spring_item]
+        springs = springs | particles[scene.particle_a] | particles[scene.particle_b] if hidden else springs
+        return cls(chosen[scene.particle_item], chosen[scene.spring_item], chosen, particles, springs, away)
 
 
 class ScenePainter:
@@ -141,19 +149,19 @@ class ScenePainter:
         layer.set_clip(camera.viewport)
         layer.fill(BACKGROUND)
         draw_grid(layer, camera, self.scale)
-        particles, springs, items = chosen
+        particles, springs, items = chosen[:3]
         canvas = Canvas(layer, self.compiled)
         if scene.level.walls is not None:
             paint_walls(canvas, camera, scene.level.walls.box, self.scale)
-        paint_ground(canvas, camera, Ground(scene, ~items), self.scale)
+        paint_ground(canvas, camera, Ground(scene, ~(items | chosen.hidden_items)), self.scale)
         if not hidden:
             paint_ground(canvas, camera, Ground(scene, items, ACCENT), self.scale)
         away = springs | hanging_springs(scene, particles) if hidden else springs
         # What moves is drawn elsewhere.
-        has_flesh = self._flesh.paint(
-            layer, camera, scene, ~(particles & hidden), ~(away & hidden), self.scale, self.compiled
-        )
-        yield from self._slices(layer, camera, Part(scene, ~particles, ~away, is_fine=has_flesh), plain)
+        shown = ~((particles & hidden) | chosen.hidden_particles), ~((away & hidden) | chosen.hidden_springs)
+        has_flesh = self._flesh.paint(layer, camera, scene, *shown, self.scale, self.compiled)
+        others = Part(scene, shown[0] & ~particles, shown[1] & ~away, is_fine=has_flesh)
+        yield from self._slices(layer, camera, others, plain)
         if not hidden:
             yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
 
@@ -167,15 +175,16 @@ class ScenePainter:
 
     def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: SelectionMasks) -> None:
         """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""
-        particles, springs, items = chosen
+        particles, springs, items = chosen[:3]
         self.paint_ground(surface, camera, Ground(moved, items, ACCENT))
         nobody = np.zeros(len(particles), dtype=np.bool_)
-        self.paint(surface, camera, Part(moved, nobody, hanging_springs(moved, particles) & ~springs))
+        hanging = hanging_springs(moved, particles) & ~(springs | chosen.hidden_springs)
+        self.paint(surface, camera, Part(moved, nobody, hanging))
         self.paint(surface, camera, Part(moved, particles, springs, ACCENT))
 
-    def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, item: Item) -> None:
+    def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, pointed: Selection) -> None:
         """Draw what a click would select, brighter; of large bodies only the springs."""
-        particles, springs, items = SelectionMasks.of(scene, frozenset({item}))
+        particles, springs, items = SelectionMasks.of(scene, pointed)[:3]
         self.paint_ground(surface, camera, Ground(scene, items, HOVERED))
         if np.count_nonzero(springs) > PLAIN_FROM:
             particles = np.zeros(len(particles), dtype=np.bool_)

@@ -181,8 +181,9 @@ class Boxing(_Matrix):
 
     def end(self) -> None:
         """Select."""
-        found = self._taken(items_in_box(self._screen.scene, (*self._start, *self._end)))
-        self._screen.select(combined(self._screen.document.selection, found, pick_mode(self._modifiers, False)))
+        screen = self._screen
+        found = self._taken(items_in_box(screen.scene, (*self._start, *self._end), screen.visibility.closed))
+        screen.select(combined(screen.document.selection, found, pick_mode(self._modifiers, False)))
 
     def draw(self, surface: pygame.Surface) -> None:
         """The box."""
@@ -212,8 +213,9 @@ class Lassoing(_Matrix):
 
     def end(self) -> None:
         """Select."""
-        found = self._taken(items_in_lasso(self._screen.scene, self._line))
-        self._screen.select(combined(self._screen.document.selection, found, pick_mode(self._modifiers, False)))
+        screen = self._screen
+        found = self._taken(items_in_lasso(screen.scene, self._line, screen.visibility.closed))
+        screen.select(combined(screen.document.selection, found, pick_mode(self._modifiers, False)))
 
     def draw(self, surface: pygame.Surface) -> None:
         """The line, and its way back."""

@@ -8,6 +8,7 @@ import pygame
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
+from sandbox.app.edit.canvas.canvas import SelectionMasks
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.actuators import SceneActuators, scene_actuators
 from sandbox.editor.scene import Scene
@@ -42,17 +43,17 @@ class DriveMarks:
         # The layout of now: one that was left would be kept, and all that it showed.
         return self._screen.ui
 
-    def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene) -> None:
-        """Draw the marks where the scene's particles are."""
+    def draw(self, surface: pygame.Surface, camera: Camera, scene: Scene, masks: SelectionMasks) -> None:
+        """Draw the marks where the scene's particles are, but for those of what is hidden."""
         level = scene.level
         if self._of is None or self._of[0] is not level.bodies or self._of[1] is not level.springs:
             self._of, self._actuators = (level.bodies, level.springs), scene_actuators(scene)
         muscles, hydraulics, motors = self._actuators
-        for spring in muscles[:MOST]:
+        for spring in [spring for spring in muscles if not masks.hidden_springs[spring]][:MOST]:
             self._draw_muscle(surface, *self._ends(camera, scene, spring))
-        for spring, hydraulic in hydraulics[:MOST]:
+        for spring, hydraulic in [each for each in hydraulics if not masks.hidden_springs[each[0]]][:MOST]:
             self._draw_hydraulic(surface, *self._ends(camera, scene, spring), hydraulic)
-        for hub, radius, motor in motors:
+        for hub, radius, motor in [each for each in motors if not masks.hidden_particles[each[0]]]:
             self._draw_motor(surface, _pixel(camera, scene, hub), radius * camera.zoom, motor)
 
     def _ends(self, camera: Camera, scene: Scene, spring: int) -> tuple[Point, Point]:

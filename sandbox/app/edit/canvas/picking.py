@@ -60,9 +60,9 @@ class PickTool:
         """The name of what is at a point."""
         screen = self._screen
         if self._kind == "particle":
-            self._snap = snap(screen.scene, point, screen.reach)
+            self._snap = snap(screen.scene, point, screen.reach, skip=screen.visibility.hidden)
             return self._snap.name
-        self.hovered = item_at(screen.scene, point, screen.reach)
+        self.hovered = item_at(screen.scene, point, screen.reach, screen.visibility.hidden)
         return str(self.hovered.key) if self.hovered is not None and self.hovered.kind == "body" else None
 
     def down(self, point: Point, modifiers: int, clicks: int) -> None:

@@ -80,7 +80,7 @@ class SelectTool:
             if all(groups.get(item) == self.entered for item in items):
                 return items
         self._entered = None
-        return with_groups(level, items)
+        return with_groups(level, items) - self._screen.visibility.closed
 
     @property
     def measure(self) -> str:
@@ -155,7 +155,7 @@ class SelectTool:
         if handles is not None and name is not None:
             self._gesture = Transforming(screen, handles, name, point, not screen.scales_apart)
             return
-        item = item_at(screen.scene, point, screen.reach)
+        item = item_at(screen.scene, point, screen.reach, screen.visibility.closed)
         self._clicked = item
         if item is None:
             return
@@ -170,7 +170,9 @@ class SelectTool:
 
     def _inside_ground(self, item: Item, point: Point) -> bool:
         """Whether a point is amid ground, where a click selects it, but a drag begins a box: ground is large."""
-        return item.kind == "terrain" and edge_at(self._screen.scene, point, self._screen.reach) is None
+        screen = self._screen
+        on_edge = edge_at(screen.scene, point, screen.reach, screen.visibility.closed) is not None
+        return item.kind == "terrain" and not on_edge
 
     def _take_corner(self, pixel: Point) -> bool:
         """Begin to drag a corner of the piece that is selected, or a new one, where a press is on one."""
@@ -223,7 +225,9 @@ class SelectTool:
 
     def hover(self, point: Point | None, modifiers: int) -> None:
         """Find the item under the pointer."""
-        self.hovered = None if point is None else item_at(self._screen.scene, point, self._screen.reach)
+        screen = self._screen
+        closed = screen.visibility.closed
+        self.hovered = None if point is None else item_at(screen.scene, point, screen.reach, closed)
 
     def cancel(self) -> bool:
         """Give the drag up, or else leave the group, or else give the selection up."""

@@ -28,12 +28,13 @@ class View:
         self._screen = screen
         self._painter = ScenePainter(screen.scale)
         self._marks = DriveMarks(screen)
-        self._chosen: tuple[Scene, Selection, SelectionMasks] | None = None
+        self._chosen: tuple[Scene, Selection, Selection, SelectionMasks] | None = None
         self._ghost: Scene | None = None
         self._hanging: tuple[Scene, object, Scene] | None = None
         self._spot: tuple[Point, float] | None = None
-        # The box [m] of what a panel shows.
+        # The box [m] of what a panel shows, and the items that are pointed at in it.
         self.shown_box: Box | None = None
+        self.pointed: Selection = frozenset()
 
     def point_out(self, place: Point) -> None:
         """Circle a place [m] for a moment."""
@@ -61,14 +62,16 @@ class View:
     def _draw_scene(self, surface: pygame.Surface) -> None:
         screen = self._screen
         scene, selection, matrix = screen.scene, screen.document.selection, screen.pointer_tool.matrix
-        if self._chosen is None or self._chosen[0] is not scene or self._chosen[1] is not selection:
-            self._chosen = (scene, selection, SelectionMasks.of(scene, selection))
-        chosen = self._chosen[2]
+        hidden = screen.visibility.hidden
+        now = (scene, selection, hidden)
+        if self._chosen is None or any(old is not new for old, new in zip(self._chosen, now, strict=False)):
+            self._chosen = (scene, selection, hidden, SelectionMasks.of(scene, selection, hidden))
+        chosen = self._chosen[3]
         self._painter.draw(surface, screen.camera, scene, chosen, matrix is not None)
         if matrix is not None:
             scene = moved_by(scene, chosen, matrix)
             self._painter.paint_moved(surface, screen.camera, scene, chosen)
-        self._marks.draw(surface, screen.camera, scene)
+        self._marks.draw(surface, screen.camera, scene, chosen)
 
     def _draw_forecast(self, surface: pygame.Surface) -> None:
         scene, position = self._screen.scene, self._screen.hanging
@@ -79,6 +82,8 @@ class View:
         # What stays where it is would only lie over itself.
         moved = np.abs(position - scene.position).max(axis=1) * self._screen.camera.zoom > MOVED
         springs = moved[scene.particle_a] | moved[scene.particle_b]
+        away = SelectionMasks.of(scene, frozenset(), self._screen.visibility.hidden)
+        moved, springs = moved & ~away.hidden_particles, springs & ~away.hidden_springs
         self._painter.paint(surface, self._screen.camera, Part(self._hanging[2], moved, springs, ghost=True))
 
     def _draw_ghost(self, surface: pygame.Surface) -> None:
@@ -108,8 +113,9 @@ class View:
     def _draw_marks(self, surface: pygame.Surface) -> None:
         screen, tool = self._screen, self._screen.pointer_tool
         under = tool.hovered if isinstance(tool, SelectTool) and tool.matrix is None else None
-        if under is not None and under not in screen.document.selection:
-            self._painter.paint_hovered(surface, screen.camera, screen.scene, under)
+        pointed = self.pointed if under is None else frozenset({under})
+        if pointed and not pointed <= screen.document.selection and pointed <= frozenset(screen.scene.items):
+            self._painter.paint_hovered(surface, screen.camera, screen.scene, pointed)
         if self.shown_box is not None:
             draw_box(surface, screen.camera, self.shown_box)
         tool.draw(surface)

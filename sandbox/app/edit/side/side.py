@@ -13,6 +13,7 @@ from sandbox.app.edit.side.checks import ChecksPage
 from sandbox.app.edit.side.findings import FindingsPage
 from sandbox.app.edit.side.history import HistoryPage
 from sandbox.app.edit.side.materials import MaterialsPage
+from sandbox.app.edit.side.objects import ObjectsPage
 from sandbox.app.edit.side.properties import PropertiesPage
 from sandbox.app.edit.side.settings import SettingsPage
 from sandbox.app.widgets.ui import Ui
@@ -40,6 +41,7 @@ class SidePage(Protocol):
 
 PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], SidePage]]] = {
     "properties": ("Properties", "What is selected", PropertiesPage),
+    "objects": ("Objects", "Everything in the level: find, hide, lock, rename, order", ObjectsPage),
     "materials": ("Materials", "What springs are made of", MaterialsPage),
     "parts": ("Parts", "Ready parts, and your own, to put on the sheet", CataloguePage),
     "level": ("Level", "Name, maker, view, time and solver", SettingsPage),

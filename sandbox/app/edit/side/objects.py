@@ -1,0 +1,173 @@
+"""ObjectsPage: everything in the level as a list, to find, select, hide, lock, rename and order."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import pygame
+
+from sandbox.app.base.sentences import sentence
+from sandbox.app.contracts.editing import Editing
+from sandbox.app.draw.colours import DISABLED, TEXT, material_colours
+from sandbox.app.edit.side.form import GAP, ROW
+from sandbox.app.widgets.dialogs import ask
+from sandbox.app.widgets.rows import Row, RowList
+from sandbox.editor.document import EditError
+from sandbox.editor.edits.fields import rename, set_field
+from sandbox.editor.edits.grouping import rename_group, shift
+from sandbox.editor.items import Item, Selection
+from sandbox.editor.objects import ObjectLine, object_lines
+
+HINT = "Find by name, kind or material"
+EMPTY = "Nothing is on the sheet yet. Draw something, or put a ready part there from the page Parts."
+NOT_FOUND = "Nothing has these words."
+# More lines are not listed; words find the others.
+LISTED = 2_000
+# Of one thing, which words on it take away again what the button gives.
+HIDE, SHOW, LOCK, OPEN = "Hide", "Show", "Lock", "Unlock"
+
+
+class ObjectsPage:
+    """A line to search in, the list, and buttons for what is selected."""
+
+    def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
+        self._screen, self._ui = screen, screen.ui
+        ui, gap, row = screen.ui, screen.ui.px(GAP), screen.ui.px(ROW)
+        width = place.width - ui.px(6)
+        self.search = ui.field(pygame.Rect(place.topleft, (width, row)), "", lambda _: True, container, 80, hint=HINT)
+        top, bottom = place.top + row + gap, place.bottom - row - 2 * gap
+        self.list = RowList(
+            ui, pygame.Rect(place.left, top, width, bottom - top), self._choose, container, empty=EMPTY, at_once=False
+        )
+        actions: tuple[tuple[str, Callable[[], None], str], ...] = (
+            (HIDE, self._hide, "Do not draw what is selected while you edit; it is played as before"),
+            (LOCK, self._lock, "A click on the sheet does not select it; this list does"),
+            ("Up", partial(self._move, False), "Earlier in the file: drawn under the one above it"),
+            ("Down", partial(self._move, True), "Later in the file: drawn over the one below it"),
+            ("Rename", self._ask_name, "Give it another name, wherever it is named"),
+        )
+        wide = (width - (len(actions) - 1) * gap) // len(actions)
+        self.buttons = {}
+        for number, (text, do, tip) in enumerate(actions):
+            at = pygame.Rect(place.left + number * (wide + gap), bottom + gap, wide, row)
+            self.buttons[text] = ui.button(at, text, do, container, style="@segment", tip=tip)
+        self.lines: list[ObjectLine] = []
+        self._shown: tuple[object, object] = (None, None)
+        self._wanted = ""
+        self._last = 0
+
+    def refresh(self) -> None:
+        """Show what there is now."""
+        screen = self._screen
+        document, visibility, wanted = screen.document, screen.visibility, self.search.entry.get_text()
+        if any(old is not new for old, new in zip(self._shown, (document, visibility), strict=True)) or (
+            wanted != self._wanted
+        ):
+            self._shown, self._wanted = (document, visibility), wanted
+            self._show(wanted)
+        pointed = self.list.pointed
+        screen.light_up(frozenset() if pointed is None or pointed >= len(self.lines) else self.lines[pointed].items)
+
+    def _show(self, wanted: str) -> None:
+        screen, level = self._screen, self._screen.document.level
+        self.lines = object_lines(level, wanted)
+        colours = material_colours(screen.scene.materials)
+        rows = [self._row(line, colours) for line in self.lines[:LISTED]]
+        if len(self.lines) > LISTED:
+            rows.append(Row(f"{len(self.lines) - LISTED:,} more: find them by words", colour=DISABLED))
+        selected = self._selected
+        chosen = frozenset(index for index, line in enumerate(self.lines[:LISTED]) if line.items <= selected)
+        first = self._last if self._last in chosen else min(chosen, default=None)
+        self.list.empty = NOT_FOUND if wanted.strip() else EMPTY
+        self.list.show_rows(rows, first, reveal=True, also=chosen)
+        for button in self.buttons.values():
+            (button.enable if selected else button.disable)()
+        hidden, locked = selected & screen.visibility.hidden, selected & screen.visibility.locked
+        self.buttons[HIDE].set_text(SHOW if hidden else HIDE)
+        self.buttons[LOCK].set_text(OPEN if locked else LOCK)
+        if len({line.items for line in self._chosen_lines}) != 1:
+            self.buttons["Rename"].disable()
+
+    def _row(self, line: ObjectLine, colours: dict[str, Any]) -> Row:
+        visibility = self._screen.visibility
+        states = [word for word, items in (("hidden", visibility.hidden), ("locked", visibility.locked))
+                  if line.items <= items]  # fmt: skip
+        colour = DISABLED if "hidden" in states else TEXT
+        swatch = None if line.material is None else colours.get(line.material)
+        return Row(line.name, "", swatch, colour, ", ".join([line.kind, *states]), int(line.group is not None))
+
+    @property
+    def _selected(self) -> Selection:
+        return self._screen.document.selection
+
+    @property
+    def _chosen_lines(self) -> list[ObjectLine]:
+        """The lines of what is selected, a group's in place of those of all its members."""
+        chosen = [line for line in self.lines if line.items <= self._selected]
+        whole = {line.name for line in chosen if len(line.items) > 1}
+        return [line for line in chosen if line.group not in whole]
+
+    def _choose(self, index: int) -> None:
+        """Select a line alone; with Ctrl it too or no longer, with Shift all up to it."""
+        if index >= len(self.lines):
+            return
+        modifiers, items = pygame.key.get_mods(), self.lines[index].items
+        if modifiers & pygame.KMOD_SHIFT:
+            low, high = sorted((min(self._last, len(self.lines) - 1), index))
+            self._screen.select(frozenset().union(*(line.items for line in self.lines[low : high + 1])))
+            return
+        self._last = index
+        is_more = modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META)
+        if is_more:
+            items = self._selected - items if items <= self._selected else self._selected | items
+        self._screen.select(items)
+        self._screen.reveal(items)
+
+    def _hide(self) -> None:
+        visibility = self._screen.visibility
+        self._screen.set_visibility(visibility.hide(self._selected, on=not self._selected & visibility.hidden))
+
+    def _lock(self) -> None:
+        visibility = self._screen.visibility
+        self._screen.set_visibility(visibility.lock(self._selected, on=not self._selected & visibility.locked))
+
+    def _move(self, down: bool) -> None:
+        """Put what is selected one place further up or down."""
+        before = self._screen.document.level
+        if self._screen.edit("Order", partial(shift, later=down)) and self._screen.document.level is before:
+            self._screen.say("Nothing of its kind is below it." if down else "Nothing of its kind is above it.")
+
+    def _ask_name(self) -> None:
+        (line,) = self._chosen_lines
+        only: Item | None = next(iter(line.items)) if len(line.items) == 1 and line.kind[:5] != "group" else None
+
+        def answer(name: str) -> str | None:
+            screen = self._screen
+            try:
+                if only is None:
+                    document = rename_group(screen.document, line.name, name)
+                elif only.kind == "spring":
+                    document = set_field(screen.document, line.items, "name", name)
+                else:
+                    document = rename(screen.document, only, name)
+            except EditError as error:
+                return sentence(error)
+            if only is not None and only.kind != "spring":
+                screen.set_visibility(screen.visibility.renamed(only, Item(only.kind, name)))
+            screen.apply(f"Rename {line.name}", document)
+            return None
+
+        ask(
+            self._ui,
+            f"Rename {line.name}",
+            "Checks, joints and springs that name it go along.",
+            line.name,
+            "Rename",
+            answer,
+        )
+
+    def close(self) -> None:
+        """Take the page away."""
+        self._screen.light_up(frozenset())
+        for widget in (self.search.entry, self.list, *self.buttons.values()):
+            self._ui.remove(widget)

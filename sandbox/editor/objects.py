@@ -1,0 +1,78 @@
+"""Objects: what a level has, as lines of a list, groups with their members below them; and finding some by words."""
+
+from typing import NamedTuple
+
+from sandbox.editor.items import Definition, Item, Selection, definitions, items_of
+from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.kinds.body_def import BodyDef
+
+
+class ObjectLine(NamedTuple):
+    """A line: what it is called, what kind of thing it is, its items, and its material; group: that it is in.
+
+    The line of a group has all of its members as items.
+    """
+
+    name: str
+    kind: str
+    items: Selection
+    material: str | None = None
+    group: str | None = None
+
+
+def object_lines(level: Level, wanted: str = "") -> list[ObjectLine]:
+    """Everything in a level, in file order; a group stands where its first member does, and its members below it.
+
+    wanted: words, in any case, that a line has in its name, its kind, its material or its group; a group whose own line
+    has them stays whole.
+    """
+    groups: dict[str, list[ObjectLine]] = {}
+    order: list[ObjectLine | str] = []
+    for item, part in zip(items_of(level), definitions(level), strict=True):
+        line = ObjectLine(name_of(level, item), _kind(part), frozenset([item]), _material(part), part.group)
+        if part.group is None:
+            order.append(line)
+            continue
+        if part.group not in groups:
+            groups[part.group] = []
+            order.append(part.group)
+        groups[part.group].append(line)
+    words = wanted.casefold().split()
+    found: list[ObjectLine] = []
+    for entry in order:
+        if isinstance(entry, ObjectLine):
+            found += [entry] if _has(entry, words) else []
+            continue
+        members = groups[entry]
+        head = ObjectLine(entry, f"group of {len(members)}", frozenset().union(*(line.items for line in members)))
+        shown = members if _has(head, words) else [line for line in members if _has(line, words)]
+        found += [head, *shown] if shown else []
+    return found
+
+
+def name_of(level: Level, item: Item) -> str:
+    """What a list calls an item: its id; a loose spring its name, or its ends."""
+    if item.kind != "spring":
+        return str(item.key)
+    spring = level.springs[int(item.key)]
+    return spring.name or f"{spring.a} to {spring.b}"
+
+
+def _kind(part: Definition) -> str:
+    if isinstance(part, BodyDef):
+        return part.type
+    if isinstance(part, ParticleDef):
+        return "pinned particle" if part.pinned else "particle"
+    if isinstance(part, TerrainDef):
+        return "terrain" if part.polygon is not None else "line of terrain"
+    driven = "muscle" if part.drive is not None else "hydraulic" if part.hydraulic is not None else "spring"
+    return driven
+
+
+def _material(part: Definition) -> str | None:
+    return part.material if isinstance(part, BodyDef | SpringDef) else None
+
+
+def _has(line: ObjectLine, words: list[str]) -> bool:
+    text = f"{line.name} {line.kind} {line.material or ''} {line.group or ''}".casefold()
+    return all(word in text for word in words)
