@@ -103,6 +103,17 @@ def item_at(scene: Scene, point: Point, within: float, skip: Selection = frozens
     return None
 
 
+def items_at(scene: Scene, point: Point, within: float, skip: Selection, most: int) -> list[Item]:
+    """The items at point [m], as of `item_at`, the one that counts first before those below it; no more than `most`."""
+    found: list[Item] = []
+    while len(found) < most:
+        item = item_at(scene, point, within, skip.union(found))
+        if item is None:
+            break
+        found.append(item)
+    return found
+
+
 def ground_around(scene: Scene, point: Point) -> list[int]:
     """Indices of the solid pieces of terrain that a point [m] lies in."""
     a, b = scene.corner[scene.edge[:, 0]], scene.corner[scene.edge[:, 1]]

@@ -197,6 +197,9 @@ class CompareScreen(PlayScreen):
 
     _picked_beside = False
 
+    def open_menu(self, pixel: Pixel) -> None:
+        """Nothing: a run has no menu."""
+
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Make what is dropped larger, or zoom both."""
         super().turn_wheel(self._in_first(pixel), steps)

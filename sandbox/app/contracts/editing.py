@@ -263,6 +263,10 @@ class Editing(Protocol):
         """Show the catalogue of parts at the side, and give the part of a file the keyboard; None = that in hand."""
         ...
 
+    def turn_to(self, page: str) -> None:
+        """Show a page of the panel at the side, and give it the keyboard."""
+        ...
+
     def turn_page(self, by: int) -> None:
         """Show another page of the panel at the side."""
         ...

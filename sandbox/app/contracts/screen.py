@@ -60,6 +60,10 @@ class Screen(Protocol):
         """React to the pointer; clicks: 2 for the second press of a double click."""
         ...
 
+    def open_menu(self, pixel: Pixel) -> None:
+        """React to the right button over the world."""
+        ...
+
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """React to the wheel over the world."""
         ...

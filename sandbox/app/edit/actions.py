@@ -32,8 +32,8 @@ COPY_LIMIT = 1_000
 
 # Actions that have no button in the bar.
 MENU = (
-    "copy", "cut", "paste", "copy_level", "keep_part", "wave_in_order", "select_all", "select_material", "forward",
-    "backward", "recent", "open_file", "save_as", "revert", "settings",
+    "copy", "cut", "paste", "copy_level", "keep_part", "wave_in_order", "select_all", "select_material", "find", "hide",
+    "lock", "forward", "backward", "recent", "open_file", "save_as", "revert", "settings",
 )  # fmt: skip
 
 NO_JOINTS = "Nothing that is selected is joined to anything."
@@ -86,6 +86,9 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
         "rest": screen.begin_at_rest,
         "wave_in_order": lambda: _ask_wave(screen),
         "numbers": screen.focus_numbers,
+        "find": lambda: screen.turn_to("objects"),
+        "hide": lambda: _hide(screen),
+        "lock": lambda: _lock(screen),
         "next_item": lambda: _visit(screen, 1),
         "previous_item": lambda: _visit(screen, -1),
         "press": screen.press_cursor,
@@ -117,6 +120,25 @@ def _has_selection(screen: Editing) -> bool:
     if not screen.document.selection:
         screen.say("Nothing is selected.")
     return bool(screen.document.selection)
+
+
+def _hide(screen: Editing) -> None:
+    """Hide what is selected, or show all that is hidden."""
+    selection, visibility = screen.document.selection, screen.visibility
+    if not (selection or visibility.hidden):
+        screen.say("Nothing is selected, and nothing is hidden.")
+        return
+    screen.set_visibility(visibility.hide(selection or visibility.hidden, on=bool(selection)))
+
+
+def _lock(screen: Editing) -> None:
+    """Lock what is selected, or unlock all that is locked."""
+    selection, visibility = screen.document.selection, screen.visibility
+    if not (selection or visibility.locked):
+        screen.say("Nothing is selected, and nothing is locked.")
+        return
+    screen.set_visibility(visibility.lock(selection or visibility.locked, on=bool(selection)))
+    screen.select(frozenset())
 
 
 def _edit_selection(screen: Editing, label: str, function: Callable[[Document], Document], otherwise: str = "") -> None:

@@ -27,6 +27,7 @@ from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.canvas.rulers import RULER, Rulers
 from sandbox.app.edit.canvas.view import View
 from sandbox.app.edit.clipboard import Clipboard
+from sandbox.app.edit.context_menu import open_context_menu
 from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
 from sandbox.app.edit.side.side import Side
 from sandbox.app.edit.watch import Watch
@@ -298,10 +299,14 @@ class EditScreen:
 
     def show_parts(self, path: Path | None = None) -> None:
         """Show the catalogue of parts at the side, and give the part of a file the keyboard; None = that in hand."""
+        self.turn_to("parts", path)
+
+    def turn_to(self, page: str, path: Path | None = None) -> None:
+        """Show a page of the panel at the side, and give it the keyboard; path: of a part."""
         if self.side is None:
             self.toggle_side()
         assert self.side is not None
-        self.side.choose("parts")
+        self.side.choose(page)
         self.side.focus(path)
 
     def turn_page(self, by: int) -> None:
@@ -418,6 +423,11 @@ class EditScreen:
 
     def release_key(self, key: int) -> None:
         """Nothing was held."""
+
+    def open_menu(self, pixel: Pixel) -> None:
+        """Offer what can be done at a pixel."""
+        self.settle()
+        open_context_menu(self, pixel)
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Zoom about the pointer."""

@@ -356,6 +356,9 @@ class PlayScreen:
         if not self.stage.resize(steps):
             self.camera.zoom_at(self.stage.cursor, steps)
 
+    def open_menu(self, pixel: Pixel) -> None:
+        """Nothing: a run has no menu."""
+
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Make what is dropped larger, or zoom."""
         if not self.stage.resize(steps):

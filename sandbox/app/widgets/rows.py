@@ -311,10 +311,35 @@ class Picker(Lit, Pressable):
 
 
 def open_menu(
-    ui: Ui, below: pygame.Rect, rows: Sequence[Row], chosen: int | None, take: Callable[[int], None]
+    ui: Ui, below: pygame.Rect, rows: Sequence[Row], chosen: int | None, take: Callable[[int], object]
 ) -> RowList:
     """Open a menu of rows below a place [pixels], or above it; Escape or a click beside end it."""
+    height = _menu_height(ui, rows[:MENU_ROWS])
+    down, up = ui.size[1] - below.bottom, below.top
+    if height > down and up > down:
+        height = min(height, up)
+        place = pygame.Rect(below.left, below.top - height, below.width, height)
+    else:
+        place = pygame.Rect(below.left, below.bottom, below.width, min(height, down))
+    return _menu(ui, place, rows, chosen, take)
 
+
+def open_menu_at(
+    ui: Ui, pixel: tuple[float, float], width: int, rows: Sequence[Row], take: Callable[[int], object]
+) -> RowList:
+    """Open a menu of rows at a place [pixels], or as near to it as the window lets it stand whole; as `open_menu`."""
+    height = min(_menu_height(ui, rows), ui.size[1])
+    left, top = min(round(pixel[0]), ui.size[0] - width), min(round(pixel[1]), ui.size[1] - height)
+    return _menu(ui, pygame.Rect(max(left, 0), top, width, height), rows, None, take)
+
+
+def _menu_height(ui: Ui, rows: Sequence[Row]) -> int:
+    return sum((2 if row.detail else 1) * ui.px(LINE_HEIGHT) + 2 * ui.px(PADDING) for row in rows)
+
+
+def _menu(
+    ui: Ui, place: pygame.Rect, rows: Sequence[Row], chosen: int | None, take: Callable[[int], object]
+) -> RowList:
     def close() -> None:
         ui.close_sheet(sheet)
 
@@ -323,13 +348,6 @@ def open_menu(
         take(index)
 
     sheet = ui.open_sheet(close, "@clear")
-    height = sum((2 if row.detail else 1) * ui.px(LINE_HEIGHT) + 2 * ui.px(PADDING) for row in rows[:MENU_ROWS])
-    down, up = ui.size[1] - below.bottom, below.top
-    if height > down and up > down:
-        height = min(height, up)
-        place = pygame.Rect(below.left, below.top - height, below.width, height)
-    else:
-        place = pygame.Rect(below.left, below.bottom, below.width, min(height, down))
     _Beside(ui, pygame.Rect((0, 0), ui.size), close, sheet)
     menu = RowList(ui, place, choose, sheet, at_once=False, background=MENU)
     menu.show_rows(rows, chosen, reveal=True)

@@ -176,6 +176,8 @@ class Input:
         elif event.button == 1:
             self._pressed = True
             screen.point("down", pixel, pygame.key.get_mods(), self._clicks(pixel))
+        elif event.button == 3 and not self._pressed:
+            screen.open_menu(pixel)
 
     def _clicks(self, pixel: Pixel) -> int:
         """Which press of a double click this is, 1 or 2."""

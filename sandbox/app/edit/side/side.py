@@ -74,7 +74,8 @@ class Side:
     def _choose_tab(self, tab: str) -> None:
         """Show a page that was clicked; Enter takes the part that is marked on that of parts."""
         self.choose(tab)
-        self.focus()
+        if tab == "parts":
+            self.focus()
 
     def choose(self, tab: str) -> None:
         """Show another page."""
@@ -90,9 +91,11 @@ class Side:
         self._ui.focus_on(self._tab_button(self.tab))
 
     def focus(self, path: Path | None = None) -> None:
-        """Give the page of parts the keyboard, and show the part of a file on it."""
+        """Give the page of parts the keyboard, and show the part of a file on it; that of objects its search."""
         if isinstance(self.page, CataloguePage):
             self.page.focus(path)
+        elif isinstance(self.page, ObjectsPage):
+            self._ui.focus_on(self.page.search.entry)
 
     def _tab_button(self, tab: str) -> UIButton:
         return next(row.buttons[tab] for row in self._rows if tab in row.buttons)
