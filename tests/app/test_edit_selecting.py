@@ -309,3 +309,13 @@ def test_an_end_that_is_dragged_leaves_its_joint_and_joins_what_it_comes_onto(dr
     assert level.welds and body(driver).start == rope.start
     driver.drag((1.0, 2.0), (3.0, -1.0), (4.0, -1.0))
     assert driver.editor.document.level.welds == () and body(driver).end == pytest.approx((4.0, -1.0), abs=0.01)
+
+
+def test_a_drag_with_ctrl_leaves_what_is_selected_and_puts_a_copy_elsewhere(driver):
+    driver.click_at(0.5, 2)
+    before = body(driver, "pair")
+    driver.drag((0.5, 2), (1, 2.5), (2.5, 3), mods=CTRL)
+    copy = driver.editor.document.level.bodies[-1]
+    assert body(driver, "pair") == before and copy.id == "pair 2"
+    assert np.allclose(np.subtract(copy.start, before.start), (2, 1)) and selected(driver) == {Item("body", "pair 2")}
+    assert driver.editor.history.labels[-1] == "Duplicate"

@@ -135,6 +135,7 @@ SHORTCUTS = (
     Shortcut("unjoin", ("Ctrl+U",), "Take joints apart", "Arrange", "edit"),
     Shortcut("menu", ("F10",), "More: what has no button", "Edit", "edit"),
     Shortcut("", ("Shift+click",), "Add; Ctrl+click: take away", "Select", "edit"),
+    Shortcut("", ("Ctrl+drag",), "Of what is selected: drag a copy away", "Select", "edit"),
     Shortcut("", ("Double click",), "Enter a group: one of its members", "Select", "edit"),
     Shortcut("select_all", ("Ctrl+A",), "Select everything", "Select", "edit"),
     Shortcut("select_material", ("Ctrl+M",), "Select all of a material", "Select", "edit"),

@@ -13,6 +13,7 @@ from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.handles import Handles, Scaling, Turn
 from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.copying import duplicate
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.edits.placing import weld
 from sandbox.editor.items import Selection
@@ -121,6 +122,38 @@ class Moving(_Matrix):
     def draw(self, surface: pygame.Surface) -> None:
         """What it snaps to."""
         self._screen.draw_snap(surface, self._snap)
+
+
+class Copying(Moving):
+    """Drags a copy of the selection away; the selection itself stays where it is."""
+
+    def __init__(self, screen: Editing, start: Point) -> None:
+        super().__init__(screen, start)
+        self._copy: tuple[Point, Document | None] = ((0.0, 0.0), None)
+
+    @property
+    def measure(self) -> str:
+        """The way so far."""
+        return f"copy {super().measure}"
+
+    def to(self, point: Point, modifiers: int) -> None:
+        """As of a move."""
+        super().to(point, modifiers)
+        self.matrix = None
+
+    def ghost(self) -> Document | None:
+        """The document with the copy."""
+        if self._copy[0] != self._by:
+            try:
+                self._copy = self._by, duplicate(self._screen.document, *self._by)
+            except EditError:
+                self._copy = self._by, None
+        return self._copy[1]
+
+    def end(self) -> None:
+        """Put the copy there."""
+        if self._by != (0.0, 0.0):
+            self._screen.edit("Duplicate", lambda document: duplicate(document, *self._by))
 
 
 class Transforming(_Matrix):

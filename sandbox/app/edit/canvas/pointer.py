@@ -11,20 +11,21 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Point
 from sandbox.app.edit.canvas.corners import CornerMoving, Corners
 from sandbox.app.edit.canvas.ends import BodyEnds, EndMoving
-from sandbox.app.edit.canvas.gestures import Boxing, Gesture, Lassoing, Moving, Transforming, pick_mode
+from sandbox.app.edit.canvas.gestures import Boxing, Copying, Gesture, Lassoing, Moving, Transforming, pick_mode
 from sandbox.app.edit.canvas.handles import Handles
 from sandbox.app.edit.canvas.overlay import draw_outline
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.grouping import groups_of, taken_groups, with_groups
 from sandbox.editor.edits.terrain import corners_of, delete_corner, move_corner, piece_of
 from sandbox.editor.items import Item, Selection, keys
-from sandbox.editor.pick import combined, edge_at, item_at
+from sandbox.editor.pick import Mode, combined, edge_at, item_at
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
 from sandbox.level.document.model import Level
 
 # A drag shorter than this is a click [layout units].
 CLICK_REACH = 4.0
+CTRL = pygame.KMOD_CTRL | pygame.KMOD_META
 
 
 class SelectTool:
@@ -43,6 +44,8 @@ class SelectTool:
         self._pressed: Point | None = None
         self._clicked: Item | None = None
         self._double = False
+        # How a click that ends without a drag joins what was pressed to the selection.
+        self._leaves: Mode | None = None
         self._chosen: tuple[Item, int] | None = None
         self.hovered: Item | None = None
 
@@ -58,7 +61,7 @@ class SelectTool:
         if self._ends() is not None and self._gesture is None:
             return "Drag an end to move it alone; drag the middle to move the whole; Shift adds, Ctrl takes away"
         around = "Drag around things" if self._lasso else "Click or drag a box"
-        return f"{around} to select; Shift adds, Ctrl takes away; double click enters a group"
+        return f"{around} to select; Shift adds, Ctrl takes away or drags a copy; double click enters a group"
 
     @property
     def entered(self) -> str | None:
@@ -148,7 +151,7 @@ class SelectTool:
         handles = self.handles()
         name = handles.at(screen.camera.to_pixels(point)) if handles is not None else None
         self._pressed, self._clicked, self._gesture, self._double = point, None, None, clicks == 2
-        self._chosen = None
+        self._chosen, self._leaves = None, None
         pixel = screen.camera.to_pixels(point)
         if self._take_corner(pixel) or self._take_end(pixel):
             return
@@ -164,7 +167,11 @@ class SelectTool:
             self._entered = groups_of(screen.document.level).get(item)
             screen.select(frozenset({item}))
             return
-        joins = modifiers & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL | pygame.KMOD_META)
+        joins = modifiers & (pygame.KMOD_SHIFT | CTRL)
+        # With Ctrl what is selected is taken away by a click, and copied by a drag.
+        if modifiers & CTRL and item in selection:
+            self._leaves = pick_mode(modifiers, True)
+            return
         if joins or (item not in selection and not self._inside_ground(item, point)):
             screen.select(combined(selection, self._taken(frozenset({item})), pick_mode(modifiers, True)))
 
@@ -205,13 +212,13 @@ class SelectTool:
         if self._gesture is None:
             if math.dist(point, self._pressed) * screen.camera.zoom <= CLICK_REACH * screen.scale:
                 return
-            self._gesture = self._begun(self._pressed)
+            self._gesture = self._begun(self._pressed, modifiers)
         self._gesture.to(point, modifiers)
 
-    def _begun(self, start: Point) -> Gesture:
+    def _begun(self, start: Point, modifiers: int) -> Gesture:
         screen = self._screen
         if self._clicked is not None and self._clicked in screen.document.selection:
-            return Moving(screen, start)
+            return Copying(screen, start) if modifiers & CTRL else Moving(screen, start)
         return Lassoing(screen, start, self._taken) if self._lasso else Boxing(screen, start, self._taken)
 
     def up(self, point: Point, modifiers: int) -> None:
@@ -220,6 +227,9 @@ class SelectTool:
         if gesture is not None:
             gesture.end()
             self._chosen = gesture.chosen if isinstance(gesture, CornerMoving) else None
+        elif pressed is not None and self._leaves is not None and self._clicked is not None:
+            taken = self._taken(frozenset({self._clicked}))
+            self._screen.select(combined(self._screen.document.selection, taken, self._leaves))
         elif pressed is not None and not self._double and pick_mode(modifiers, True) == "replace":
             self._screen.select(self._taken(frozenset() if self._clicked is None else frozenset({self._clicked})))
 
