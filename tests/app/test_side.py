@@ -376,7 +376,7 @@ def test_ctrl_and_tab_turn_the_pages_also_while_typing(driver):
     driver.app.ui.focus_on(entry(driver, "particle_mass").entry)
     driver.type("7")
     driver.key(pygame.K_TAB, pygame.KMOD_CTRL)
-    assert driver.editor.side.tab == "materials" and body(driver).particle_mass == 7.0
+    assert driver.editor.side.tab == "objects" and body(driver).particle_mass == 7.0
     driver.key(pygame.K_TAB, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_TAB, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
     assert driver.editor.side.tab == "findings"

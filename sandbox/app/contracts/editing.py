@@ -19,6 +19,7 @@ from sandbox.editor.panel.field_info import Pick
 from sandbox.editor.scene import Scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.snap import Snap
+from sandbox.editor.trail import Trail
 from sandbox.editor.visibility import Visibility
 
 
@@ -282,4 +283,18 @@ class Editing(Protocol):
 
     def toggle_forecast(self) -> None:
         """Show where everything will hang, or no more."""
+        ...
+
+    @property
+    def trails(self) -> list[tuple[Trail, bool]]:
+        """The trails that are shown, that of the last run (True) first."""
+        ...
+
+    @property
+    def shows_trail(self) -> bool:
+        """Whether it is shown where things will go."""
+        ...
+
+    def toggle_trail(self) -> None:
+        """Show where what is selected will go, or no more."""
         ...

@@ -83,6 +83,7 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
         "backward": lambda: _reorder(screen, "backward"),
         "snap": lambda: _toggle_snap(screen),
         "forecast": screen.toggle_forecast,
+        "trail": screen.toggle_trail,
         "rest": screen.begin_at_rest,
         "wave_in_order": lambda: _ask_wave(screen),
         "numbers": screen.focus_numbers,

@@ -25,11 +25,25 @@ LEFT = (
         ("duplicate", "duplicate"), ("delete", "delete"), ("mirror", "mirror"), ("array", "array"), ("parts", "group"),
         ("align", "align"), ("order", "order"),
     ),
-    (("snap", "snap"), ("forecast", "forecast"), ("rest", "rest")),
+    (("snap", "snap"), ("forecast", "forecast"), ("trail", "trail"), ("rest", "rest")),
 )  # fmt: skip
 RIGHT = (("menu", "menu"), ("fit", "fit"), ("panel", "panel"))
 # What goes into the menu where the window is too narrow, first what is missed least.
-LEAVING = ("order", "align", "array", "fit", "open", "new", "mirror", "parts", "snap", "rest", "duplicate", "delete")
+LEAVING = (
+    "order",
+    "align",
+    "array",
+    "fit",
+    "open",
+    "new",
+    "mirror",
+    "parts",
+    "snap",
+    "rest",
+    "trail",
+    "duplicate",
+    "delete",
+)
 # Buttons are no smaller than this; more of them go into the menu, or into a second column.
 LEAST_PITCH = 33.0
 LEAST_TOOL_PITCH = 26.0
@@ -132,6 +146,7 @@ class Bar:
         show("save", not history.is_saved or screen.level_file.path is None)
         show("snap", on=screen.snapping)
         show("forecast", on=screen.shows_forecast)
+        show("trail", on=screen.shows_trail)
         show("panel", on=screen.show_side)
         name = screen.document.level.name + ("" if history.is_saved else " *")
         if self.title is not None:

@@ -371,6 +371,9 @@ class DocumentActions:
     def back(self) -> None:
         """Back from playing to the document as it was."""
         if self.editor is not None:
+            play = self.app.play
+            if play is not None:
+                self.editor.watch.remember(play.playback.session)
             self.app.show_screen(self.editor)
 
 

@@ -1,5 +1,7 @@
 """Icons of the editor's bar: what is done with files and with the selection."""
 
+from itertools import pairwise
+
 from sandbox.app.widgets.icons import ICONS
 from sandbox.editor.tools.icons import Icon, IconPen
 
@@ -81,6 +83,16 @@ def _rest(pen: IconPen) -> None:
     pen.line((6, 21), (18, 21), width=1.8)
 
 
+def _trail(pen: IconPen) -> None:
+    points = [(3.5 + 2.4 * k, 5 + 14 * ((k - 2.6) / 4.4) ** 2 if k > 2.6 else 5 + 10 * ((2.6 - k) / 2.6) ** 2)
+              for k in range(8)]  # fmt: skip
+    for a, b in pairwise(points[:-1]):
+        pen.line(a, b, width=1.8)
+    for k in (0, 3, 5):
+        pen.disc(*points[k], 2)
+    pen.disc(*points[-1], 3.2)
+
+
 def _menu(pen: IconPen) -> None:
     for y in (6, 12, 18):
         pen.line((4, y), (20, y), width=2.2)
@@ -90,5 +102,6 @@ EDIT_ICONS: dict[str, Icon] = {
     **ICONS,
     "new": _new,
     "open": _open, "duplicate": _duplicate, "delete": _delete, "mirror": _mirror, "array": _array, "group": _group,
-    "align": _align, "order": _order, "snap": _snap, "forecast": _forecast, "rest": _rest, "menu": _menu,
+    "align": _align, "order": _order, "snap": _snap, "forecast": _forecast, "trail": _trail, "rest": _rest,
+    "menu": _menu,
 }  # fmt: skip

@@ -47,6 +47,7 @@ from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.selecting import LASSO
 from sandbox.editor.tools.snap import Snap, snap
+from sandbox.editor.trail import Trail
 from sandbox.editor.visibility import Visibility
 
 # Sizes in layout units.
@@ -202,6 +203,21 @@ class EditScreen:
     def toggle_forecast(self) -> None:
         """Show where everything will hang, or no more."""
         self.watch.toggle_forecast()
+
+    @property
+    def trails(self) -> list[tuple[Trail, bool]]:
+        """The trails that are shown, that of the last run (True) first."""
+        shown = ((self.watch.last_trail, True), (self.watch.trail, False))
+        return [(trail, is_last) for trail, is_last in shown if trail is not None and self.watch.trails]
+
+    @property
+    def shows_trail(self) -> bool:
+        """Whether it is shown where things will go."""
+        return self.watch.trails
+
+    def toggle_trail(self) -> None:
+        """Show where what is selected will go, or no more."""
+        self.watch.toggle_trail()
 
     def show(self, place: Point) -> None:
         """Bring a place [m] into view, and mark it for a moment."""

@@ -1,4 +1,4 @@
-"""Watch: looks for faults and works out where everything will hang, a little in every frame."""
+"""Watch: looks for faults, and works out where everything will hang and go, a little in every frame."""
 
 import time
 from collections.abc import Iterator
@@ -10,7 +10,9 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.editor.edits.bake import begin_at_rest
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.lint.lint import Finding, findings
+from sandbox.editor.trail import Trail
 from sandbox.level.document.model import Level
+from sandbox.session.session import Session
 
 # Time [s] that each of the two may take of a frame, and how long the level has to stay as it is before they begin.
 SLICE = 0.004
@@ -25,6 +27,10 @@ class Watch:
         self.findings: list[Finding] = []
         self.forecasts = False
         self.forecast: Forecast | None = None
+        # Whether trails are shown, that of the next seconds, and that of the run before.
+        self.trails = False
+        self.trail: Trail | None = None
+        self.last_trail: Trail | None = None
         self._level: Level | None = None
         self._since = 0.0
         self._lint: Iterator[Finding | None] | None = None
@@ -68,19 +74,33 @@ class Watch:
         self.forecast = None
         self._level = None
 
+    def toggle_trail(self) -> None:
+        """Show where what is selected will go in the next seconds and went in the last run, or no longer."""
+        self.trails = not self.trails
+        self.trail = self.last_trail = None
+        self._level = None
+        if self.trails and not self._screen.document.selection:
+            self._screen.say("Select something to see where it will go.")
+
+    def remember(self, run: Session) -> None:
+        """Show where things went in a run of the level, beside where they will go."""
+        if self.trails:
+            self.last_trail = Trail(run.level, run.retold(0))
+
     @property
     def moves(self) -> bool:
         """Whether it is at work, or about to be."""
         level, forecast = self._screen.document.level, self.forecast
         is_waiting = level is not self._level or self._since < PATIENCE
-        return is_waiting or self._lint is not None or (forecast is not None and not self._is_told)
+        is_drawing = any(trail is not None and not trail.is_done for trail in (self.trail, self.last_trail))
+        return is_waiting or self._lint is not None or is_drawing or (forecast is not None and not self._is_told)
 
     def update(self, frame_time: float, ready: bool = True) -> None:
         """Go on with both for a moment; ready: kernels are there, or a forecast would take many frames at a time."""
         level = self._screen.document.level
         if level is not self._level:
             self._level, self._since = level, 0.0
-            self._lint = self.forecast = None
+            self._lint = self.forecast = self.trail = None
         before, self._since = self._since, self._since + frame_time
         if self._since < PATIENCE:
             return
@@ -88,13 +108,22 @@ class Watch:
             self._lint, self._found = findings(level, self._screen.scene), []
             self._is_told = False
             self.forecast = Forecast(level) if self.forecasts and self._screen.scene.items else None
+            self.trail = Trail(level) if self.trails and self._screen.scene.items else None
         self._look()
+        if ready:
+            self._follow()
         if ready and self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
             self._is_told = True
             if self._is_wanted:
                 self._take_forecast()
             else:
                 self._screen.say(f"{self.forecast.text}.")
+
+    def _follow(self) -> None:
+        """Go on with the trails."""
+        for trail in (self.trail, self.last_trail):
+            if trail is not None and not trail.is_done and trail.advance(SLICE) and trail.fault:
+                self._screen.say(f"{trail.fault}.")
 
     def _look(self) -> None:
         if self._lint is None:

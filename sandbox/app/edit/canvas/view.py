@@ -13,6 +13,7 @@ from sandbox.app.edit.canvas.edited_terrain import Ground
 from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_box, draw_cursor, draw_label, draw_spot
 from sandbox.app.edit.canvas.pointer import SelectTool
+from sandbox.app.edit.canvas.trails import draw_trails
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.scene import Scene, make_scene
@@ -56,6 +57,8 @@ class View:
         """Draw everything inside the rulers."""
         self._draw_scene(surface)
         self._draw_forecast(surface)
+        screen = self._screen
+        draw_trails(surface, screen.ui, screen.camera, screen.trails, screen.document.selection)
         self._draw_ghost(surface)
         self._draw_marks(surface)
 
