@@ -57,7 +57,9 @@ def test_the_trail_of_a_run_goes_where_that_run_went_and_changes_nothing_of_it()
     (line,) = lines_of(trail, frozenset([STONE]), 8)
     assert len(line) - 1 == 2 * trail.per_second
     assert np.allclose(line, line[0]) and session.snapshot() is not before
-    assert session.tick == 240 and np.array_equal(session.world.position, before.position[: len(session.world.position)])
+    assert session.tick == 240 and np.array_equal(
+        session.world.position, before.position[: len(session.world.position)]
+    )
 
 
 def test_keys_that_a_check_holds_are_held_for_the_trail():
@@ -66,7 +68,9 @@ def test_keys_that_a_check_holds_are_held_for_the_trail():
             "hold": [{"key": "d", "during": [0.0, 1.0]}]}  # fmt: skip
     arm = frozenset([Item("body", "arm")])
     still = lines_of(done(Trail(level)), arm, 8)[0]
-    moved = lines_of(done(Trail(parse_level(json.dumps({**level_data(level), "checks": [held]}).encode(), "a test"))), arm, 8)[0]
+    moved = lines_of(
+        done(Trail(parse_level(json.dumps({**level_data(level), "checks": [held]}).encode(), "a test"))), arm, 8
+    )[0]
     assert np.abs(still - moved).max() > 0.5
 
 

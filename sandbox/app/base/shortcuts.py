@@ -152,6 +152,7 @@ SHORTCUTS = (
     Shortcut("snap", ("X",), "Snapping on or off", "Select", "edit"),
     Shortcut("forecast", ("U",), "Show where everything will hang", "View", "edit"),
     Shortcut("trail", ("Shift+T",), "Trail: where the selected things will go", "View", "edit"),
+    Shortcut("try_range", ("Ctrl+R",), "Try a range: one number, several values", "View", "edit"),
     Shortcut("rest", ("Shift+U",), "Begin at rest: the forecast is the pose", "Edit", "edit"),
     Shortcut("wave_in_order", ("Ctrl+Shift+W",), "Phase wave through muscles, in order", "Arrange", "edit"),
     Shortcut("new", ("Ctrl+N",), "New level", "Files", "edit"),

@@ -16,6 +16,7 @@ from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding
 from sandbox.editor.panel.field_info import Pick
+from sandbox.editor.range_trial import RangeTrial
 from sandbox.editor.scene import Scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.snap import Snap
@@ -288,6 +289,19 @@ class Editing(Protocol):
     @property
     def trails(self) -> list[tuple[Trail, bool]]:
         """The trails that are shown, that of the last run (True) first."""
+        ...
+
+    @property
+    def range_trial(self) -> RangeTrial | None:
+        """The values of a number that are tried."""
+        ...
+
+    def try_range(self, trial: RangeTrial | None) -> None:
+        """Try values of a number; None = no longer."""
+        ...
+
+    def show_attempt(self, index: int | None) -> None:
+        """Draw the way of one of the values that are tried in full colour."""
         ...
 
     @property

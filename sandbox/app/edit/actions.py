@@ -33,7 +33,7 @@ COPY_LIMIT = 1_000
 # Actions that have no button in the bar.
 MENU = (
     "copy", "cut", "paste", "copy_level", "keep_part", "wave_in_order", "select_all", "select_material", "find", "hide",
-    "lock", "forward", "backward", "recent", "open_file", "save_as", "revert", "settings",
+    "lock", "try_range", "forward", "backward", "recent", "open_file", "save_as", "revert", "settings",
 )  # fmt: skip
 
 NO_JOINTS = "Nothing that is selected is joined to anything."
@@ -48,59 +48,70 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
     tools: dict[str, Callable[[], object]] = {
         tool.action: partial(screen.choose_tool, name) for name, tool in TOOLS.items()
     }
-    return tools | {
-        "tool_part": lambda: _show_parts(screen),
-        "keep_part": lambda: ask_to_keep_part(screen),
-        "play": documents.play,
-        "undo": lambda: _step(screen, -1),
-        "redo": lambda: _step(screen, 1),
-        "new": documents.new,
-        "open": app.open_gallery,
-        "open_file": app.files.ask_to_open,
-        "recent": lambda: app.open_gallery("mine"),
-        "save": documents.save,
-        "save_as": documents.save_as,
-        "revert": documents.revert,
-        "copy": clipboard.copy,
-        "cut": clipboard.cut,
-        "paste": clipboard.paste,
-        "copy_level": clipboard.copy_level,
-        "duplicate": lambda: _duplicate(screen),
-        "delete": lambda: _delete_or_back(screen),
-        "select_all": lambda: screen.select(frozenset(screen.scene.items) - screen.visibility.closed),
-        "select_material": lambda: _ask_material(screen),
-        "mirror": lambda: _ask_mirror(screen),
-        "array": lambda: _ask_array(screen),
-        "parts": lambda: _ask_parts(screen),
-        "menu": lambda: _show_menu(screen, app),
-        "group": lambda: _edit_selection(screen, "Group", group),
-        "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup, "Nothing that is selected is in a group."),
-        "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
-        "unjoin": lambda: _edit_selection(screen, "Take joints apart", _unjoined, NO_JOINTS),
-        "align": lambda: _ask_align(screen),
-        "order": lambda: _ask_order(screen),
-        "forward": lambda: _reorder(screen, "forward"),
-        "backward": lambda: _reorder(screen, "backward"),
+    return (
+        tools
+        | _viewing(screen)
+        | {
+            "tool_part": lambda: _show_parts(screen),
+            "keep_part": lambda: ask_to_keep_part(screen),
+            "play": documents.play,
+            "undo": lambda: _step(screen, -1),
+            "redo": lambda: _step(screen, 1),
+            "new": documents.new,
+            "open": app.open_gallery,
+            "open_file": app.files.ask_to_open,
+            "recent": lambda: app.open_gallery("mine"),
+            "save": documents.save,
+            "save_as": documents.save_as,
+            "revert": documents.revert,
+            "copy": clipboard.copy,
+            "cut": clipboard.cut,
+            "paste": clipboard.paste,
+            "copy_level": clipboard.copy_level,
+            "duplicate": lambda: _duplicate(screen),
+            "delete": lambda: _delete_or_back(screen),
+            "select_all": lambda: screen.select(frozenset(screen.scene.items) - screen.visibility.closed),
+            "select_material": lambda: _ask_material(screen),
+            "mirror": lambda: _ask_mirror(screen),
+            "array": lambda: _ask_array(screen),
+            "parts": lambda: _ask_parts(screen),
+            "menu": lambda: _show_menu(screen, app),
+            "group": lambda: _edit_selection(screen, "Group", group),
+            "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup, "Nothing that is selected is in a group."),
+            "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
+            "unjoin": lambda: _edit_selection(screen, "Take joints apart", _unjoined, NO_JOINTS),
+            "align": lambda: _ask_align(screen),
+            "order": lambda: _ask_order(screen),
+            "forward": lambda: _reorder(screen, "forward"),
+            "backward": lambda: _reorder(screen, "backward"),
+            "wave_in_order": lambda: _ask_wave(screen),
+            "numbers": screen.focus_numbers,
+            "next_item": lambda: _visit(screen, 1),
+            "previous_item": lambda: _visit(screen, -1),
+            "press": screen.press_cursor,
+            "finish": lambda: _finish(screen),
+            "cancel": screen.cancel,
+        }
+    )
+
+
+def _viewing(screen: Editing) -> dict[str, Callable[[], object]]:
+    """The actions that change what is seen, and nothing of the level but where it begins."""
+    return {
         "snap": lambda: _toggle_snap(screen),
         "forecast": screen.toggle_forecast,
         "trail": screen.toggle_trail,
+        "try_range": lambda: screen.turn_to("range"),
         "rest": screen.begin_at_rest,
-        "wave_in_order": lambda: _ask_wave(screen),
-        "numbers": screen.focus_numbers,
-        "find": lambda: screen.turn_to("objects"),
-        "hide": lambda: _hide(screen),
-        "lock": lambda: _lock(screen),
-        "next_item": lambda: _visit(screen, 1),
-        "previous_item": lambda: _visit(screen, -1),
-        "press": screen.press_cursor,
-        "finish": lambda: _finish(screen),
-        "cancel": screen.cancel,
-        "zoom_in": lambda: _adjust_or_zoom(screen, 1),
-        "zoom_out": lambda: _adjust_or_zoom(screen, -1),
         "fit": screen.fit,
         "panel": screen.toggle_side,
         "next_page": lambda: screen.turn_page(1),
         "previous_page": lambda: screen.turn_page(-1),
+        "zoom_in": lambda: _adjust_or_zoom(screen, 1),
+        "zoom_out": lambda: _adjust_or_zoom(screen, -1),
+        "find": lambda: screen.turn_to("objects"),
+        "hide": lambda: _hide(screen),
+        "lock": lambda: _lock(screen),
     }
 
 

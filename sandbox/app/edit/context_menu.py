@@ -19,12 +19,13 @@ MOST_UNDER = 6
 # Actions of the menu over something, and of that over the bare sheet, in their order.
 OVER_THINGS = (
     "cut", "copy", "paste", "duplicate", "delete", "group", "ungroup", "mirror", "array", "forward", "backward", "hide",
-    "lock", "keep_part",
+    "lock", "trail", "try_range", "keep_part",
 )  # fmt: skip
 OVER_NOTHING = ("paste", "select_all", "find", "hide", "lock", "fit")
 SHORT = {
     "paste": "Paste here", "group": "Group", "ungroup": "Ungroup", "forward": "One forward", "backward": "One backward",
     "array": "Several copies...", "mirror": "Mirror...", "keep_part": "Keep as a part...", "fit": "Fit to view",
+    "trail": "Trail: where it will go", "try_range": "Try a range of a number...", "hide": "Hide", "lock": "Lock",
 }  # fmt: skip
 
 
@@ -73,6 +74,7 @@ def _actions(screen: Editing, pixel: Pixel, names: tuple[str, ...]) -> list[_Ent
         if name in idle:
             continue
         entry = by_name[name]
-        row = Row(SHORT.get(name, entry.label), aside=entry.keys[0] if entry.keys else "")
+        label = SHORT.get(name, entry.label) if names is OVER_THINGS or name not in ("hide", "lock") else entry.label
+        row = Row(label, aside=entry.keys[0] if entry.keys else "")
         entries.append(_Entry(row, lambda name=name: act(name)))  # type: ignore[misc]
     return entries

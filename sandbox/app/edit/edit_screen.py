@@ -42,6 +42,7 @@ from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding
 from sandbox.editor.panel.field_info import Pick
+from sandbox.editor.range_trial import RangeTrial
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.palette import TOOLS
@@ -209,6 +210,20 @@ class EditScreen:
         """The trails that are shown, that of the last run (True) first."""
         shown = ((self.watch.last_trail, True), (self.watch.trail, False))
         return [(trail, is_last) for trail, is_last in shown if trail is not None and self.watch.trails]
+
+    @property
+    def range_trial(self) -> RangeTrial | None:
+        """The values of a number that are tried."""
+        return self.watch.range_trial
+
+    def try_range(self, trial: RangeTrial | None) -> None:
+        """Try values of a number; None = no longer."""
+        self.watch.range_trial = trial
+        self.view.chosen_attempt = None
+
+    def show_attempt(self, index: int | None) -> None:
+        """Draw the way of one of the values that are tried in full colour."""
+        self.view.chosen_attempt = index
 
     @property
     def shows_trail(self) -> bool:

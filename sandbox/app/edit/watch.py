@@ -10,6 +10,7 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.editor.edits.bake import begin_at_rest
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.lint.lint import Finding, findings
+from sandbox.editor.range_trial import RangeTrial
 from sandbox.editor.trail import Trail
 from sandbox.level.document.model import Level
 from sandbox.session.session import Session
@@ -17,6 +18,8 @@ from sandbox.session.session import Session
 # Time [s] that each of the two may take of a frame, and how long the level has to stay as it is before they begin.
 SLICE = 0.004
 PATIENCE = 0.25
+# Time [s] of a frame for values that are tried, for which the person waits.
+TRYING = 0.012
 
 
 class Watch:
@@ -31,6 +34,8 @@ class Watch:
         self.trails = False
         self.trail: Trail | None = None
         self.last_trail: Trail | None = None
+        # Values of a number that are tried.
+        self.range_trial: RangeTrial | None = None
         self._level: Level | None = None
         self._since = 0.0
         self._lint: Iterator[Finding | None] | None = None
@@ -92,7 +97,10 @@ class Watch:
         """Whether it is at work, or about to be."""
         level, forecast = self._screen.document.level, self.forecast
         is_waiting = level is not self._level or self._since < PATIENCE
-        is_drawing = any(trail is not None and not trail.is_done for trail in (self.trail, self.last_trail))
+        is_trying = self.range_trial is not None and not self.range_trial.is_done
+        is_drawing = is_trying or any(
+            trail is not None and not trail.is_done for trail in (self.trail, self.last_trail)
+        )
         return is_waiting or self._lint is not None or is_drawing or (forecast is not None and not self._is_told)
 
     def update(self, frame_time: float, ready: bool = True) -> None:
@@ -101,6 +109,8 @@ class Watch:
         if level is not self._level:
             self._level, self._since = level, 0.0
             self._lint = self.forecast = self.trail = None
+        if ready and self.range_trial is not None and not self.range_trial.is_done:
+            self.range_trial.advance(TRYING)
         before, self._since = self._since, self._since + frame_time
         if self._since < PATIENCE:
             return

@@ -7,9 +7,10 @@ import pygame
 from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import ACCENT, BACKGROUND, MUTED, TEXT, Colour, mixed
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, MUTED, TEXT, WARNING, Colour, mixed
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.items import Selection
+from sandbox.editor.range_trial import RangeTrial
 from sandbox.editor.trail import Trail, lines_of
 
 Floats = NDArray[np.float64]
@@ -30,6 +31,25 @@ def draw_trails(
         colour = mixed(BACKGROUND, MUTED, 0.8) if is_last else ACCENT
         for line in lines_of(trail, selection, MOST):
             draw_way(surface, ui, camera, line, trail.per_second, colour)
+
+
+def attempt_colour(number: int, count: int) -> Colour:
+    """The colour of one of several values that are tried, from the first to the last."""
+    return mixed(ACCENT, WARNING, number / max(count - 1, 1))
+
+
+def draw_attempts(surface: pygame.Surface, ui: Ui, camera: Camera, trial: RangeTrial, chosen: int | None) -> None:
+    """Draw the way of what was selected for each value that was tried, that of the chosen one over the others."""
+    count, selection = len(trial.attempts), trial.document.selection
+    order = sorted(range(count), key=lambda number: number == chosen)
+    for number in order:
+        trail = trial.attempts[number].trail
+        colour = attempt_colour(number, count)
+        if chosen is not None and number != chosen:
+            colour = mixed(BACKGROUND, colour, 0.45)
+        if trail is not None:
+            for line in lines_of(trail, selection, MOST):
+                draw_way(surface, ui, camera, line, trail.per_second, colour)
 
 
 def draw_way(surface: pygame.Surface, ui: Ui, camera: Camera, line: Floats, per_second: float, colour: Colour) -> None:

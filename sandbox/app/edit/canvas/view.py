@@ -13,7 +13,7 @@ from sandbox.app.edit.canvas.edited_terrain import Ground
 from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_box, draw_cursor, draw_label, draw_spot
 from sandbox.app.edit.canvas.pointer import SelectTool
-from sandbox.app.edit.canvas.trails import draw_trails
+from sandbox.app.edit.canvas.trails import draw_attempts, draw_trails
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.scene import Scene, make_scene
@@ -36,6 +36,8 @@ class View:
         # The box [m] of what a panel shows, and the items that are pointed at in it.
         self.shown_box: Box | None = None
         self.pointed: Selection = frozenset()
+        # Of the values that are tried the one whose way stands out.
+        self.chosen_attempt: int | None = None
 
     def point_out(self, place: Point) -> None:
         """Circle a place [m] for a moment."""
@@ -58,7 +60,10 @@ class View:
         self._draw_scene(surface)
         self._draw_forecast(surface)
         screen = self._screen
-        draw_trails(surface, screen.ui, screen.camera, screen.trails, screen.document.selection)
+        if screen.range_trial is None:
+            draw_trails(surface, screen.ui, screen.camera, screen.trails, screen.document.selection)
+        else:
+            draw_attempts(surface, screen.ui, screen.camera, screen.range_trial, self.chosen_attempt)
         self._draw_ghost(surface)
         self._draw_marks(surface)
 

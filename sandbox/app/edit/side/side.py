@@ -15,6 +15,7 @@ from sandbox.app.edit.side.history import HistoryPage
 from sandbox.app.edit.side.materials import MaterialsPage
 from sandbox.app.edit.side.objects import ObjectsPage
 from sandbox.app.edit.side.properties import PropertiesPage
+from sandbox.app.edit.side.range_page import RangePage
 from sandbox.app.edit.side.settings import SettingsPage
 from sandbox.app.widgets.ui import Ui
 
@@ -49,6 +50,8 @@ PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], SidePage]
     "history": ("History", "Every step so far", HistoryPage),
     "findings": ("Findings", "What you may have overlooked", FindingsPage),
 }
+# Pages without a tab: an action shows them.
+UNLISTED: dict[str, Callable[[Editing, pygame.Rect, Any], SidePage]] = {"range": RangePage}
 COLUMNS = 4
 
 
@@ -80,6 +83,9 @@ class Side:
     def choose(self, tab: str) -> None:
         """Show another page."""
         if tab != self.tab:
+            if self.tab in UNLISTED:
+                # What it shows on the sheet goes with it.
+                self._screen.try_range(None)
             self.page.close()
             self.tab = tab
             self.page = self._made()
@@ -87,7 +93,8 @@ class Side:
     def turn(self, by: int) -> None:
         """Show the page that many tabs further, and give its tab the keyboard."""
         names = list(PAGES)
-        self.choose(names[(names.index(self.tab) + by) % len(names)])
+        here = names.index(self.tab) if self.tab in names else 0
+        self.choose(names[(here + by) % len(names)])
         self._ui.focus_on(self._tab_button(self.tab))
 
     def focus(self, path: Path | None = None) -> None:
@@ -103,7 +110,8 @@ class Side:
     def _made(self) -> SidePage:
         for row in self._rows:
             row.show(self.tab if self.tab in row.buttons else "")
-        page = PAGES[self.tab][2](self._screen, self._place, self.back)
+        make = UNLISTED[self.tab] if self.tab in UNLISTED else PAGES[self.tab][2]
+        page = make(self._screen, self._place, self.back)
         page.refresh()
         return page
 
