@@ -12,7 +12,9 @@ PARTS = {"particles": [{"id": "ball", "position": [5, 1]}]}
 
 @pytest.fixture
 def driver(edit):
-    return edit(small_level(**PARTS))
+    driver = edit(small_level(**PARTS))
+    driver.editor.folds["More"] = False
+    return driver
 
 
 def use(driver, widget, by_keyboard):

@@ -86,8 +86,40 @@ def test_the_tab_of_the_page_stays_lit_when_it_is_clicked_again(driver):
     assert pygame.image.tobytes(button.image, "RGB") == lit
 
 
-def test_the_panel_says_what_to_do_while_nothing_is_selected(driver):
+def test_while_nothing_is_selected_the_panel_shows_the_level(driver):
+    assert entry(driver, "name").text == "Small"
+    driver.fill(entry(driver, "tick_rate"), "120")
+    assert level(driver).settings.tick_rate == 120
+    choose(driver, ROPE)
+    assert "tick_rate" not in form(driver).fields and "segments" in form(driver).fields
+
+
+def test_rare_fields_are_folded_until_wanted_and_the_panel_keeps_that(driver):
+    choose(driver, ROPE)
+    assert "cut" not in form(driver).fields
+    heading = form(driver)._named["fold More"]
+    reveal(driver, heading)
+    press(driver, heading)
+    assert "cut" in form(driver).fields
+    open_tab(driver, "history")
+    open_tab(driver, "properties")
+    assert "cut" in form(driver).fields
+    driver.app.ui.focus_on(form(driver)._named["fold Springs"])
+    driver.key(pygame.K_RETURN)
+    assert "material" not in form(driver).pickers and "cut" in form(driver).fields
+
+
+def test_words_find_fields_that_are_folded_away_and_selecting_shows_all_again(driver):
+    choose(driver, ROPE)
+    driver.app.ui.focus_on(driver.editor.side.page.search.entry)
+    driver.type("cut")
+    driver.frames(2)
+    assert set(form(driver).fields) >= {"cut"} and "segments" not in form(driver).fields
+    driver.type("qq")
+    driver.frames(2)
     assert form(driver).fields == {}
+    choose(driver, Item("body", "pair"))
+    assert "segments" in form(driver).fields
 
 
 def test_what_is_selected_is_shown_and_a_typed_value_is_one_step(driver):
@@ -172,6 +204,7 @@ def test_saving_and_leaving_count_what_is_being_typed(driver, documents):
 def test_a_box_is_ticked_by_mouse_and_by_key(driver):
     choose(driver, ROPE)
     boxes = form(driver).boxes["pin"]
+    reveal(driver, boxes["end"])
     assert boxes["start"].state and not boxes["end"].state
     press(driver, boxes["end"])
     assert body(driver).pin == ("start", "end")
@@ -179,6 +212,7 @@ def test_a_box_is_ticked_by_mouse_and_by_key(driver):
     driver.key(pygame.K_SPACE)
     assert body(driver).pin == ("end",)
     choose(driver, Item("particle", "ball"))
+    reveal(driver, form(driver).boxes["pinned"]["yes"])
     press(driver, form(driver).boxes["pinned"]["yes"])
     assert level(driver).particles[0].pinned
 
@@ -325,10 +359,11 @@ def test_the_scroll_bar_moves_by_mouse_and_by_keys(driver):
 
 
 def test_tab_goes_through_the_fields_and_keeps_them_in_sight(driver):
+    driver.editor.folds["More"] = False
     choose(driver, ROPE)
     driver.app.ui.focus_on(entry(driver, "id").entry)
     seen = []
-    for _ in range(30):
+    for _ in range(40):
         driver.key(pygame.K_TAB)
         focus = driver.app.ui.focus
         seen.append(focus)
@@ -582,6 +617,7 @@ def test_nothing_is_made_anew_while_nothing_changes(driver):
 def test_a_list_too_long_for_a_line_is_counted(edit):
     particles = [[k * 0.5, 0] for k in range(400)]
     driver = edit(small_level(bodies=[{"type": "mesh", "id": "dust", "particles": particles}]))
+    driver.editor.folds["More"] = False
     choose(driver, Item("body", "dust"))
     button = next(widget for widget in form(driver)._widgets if getattr(widget, "text", "") == "400 of them")
     press(driver, button)

@@ -81,6 +81,8 @@ class Editing(Protocol):
     # The keyboard cursor [m], and the mouse [pixels], where they are over the level.
     cursor: Point | None
     pointer: Pixel | None
+    # Whether sections of the panel are folded away, by their titles, where the person said so.
+    folds: dict[str, bool]
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:

@@ -84,6 +84,7 @@ class EditScreen:
         self.view = View(self)
         self.tool = "select"
         self.snapping = True
+        self.folds: dict[str, bool] = {}
         # What is picked on the sheet now, in place of what the tool does.
         self._picking: PickTool | None = None
         self.cursor: Point | None = None

@@ -28,24 +28,17 @@ from sandbox.level.kinds.jelly import SHAPES, BoxShape, CircleShape, JellyDef, P
 _OUTLINES = ("polyline", "polygon")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
-    "Mass": ("mass", "particle_mass", "end_mass", "hub_mass", "masses", "gravity_scale"),
-    "Springs": ("material", "firmness", "rest_length", "cut"),
-    "Start": ("pin", "pinned", "velocity", "velocities", "pose", "spin"),
-    "Shape": ("area", "inflation", "bending"),
+    "Springs": ("material", "firmness", "rest_length"),
     "Drive": ("drive", "hydraulic", "motor"),
-    "Contact": (
-        "particle_radius",
-        "friction",
-        "restitution",
-        "collides",
-        "collision_group",
-        "rolls",
-        "rolling",
-        "touches_mount",
-    ),
     "Look": ("look",),
-    "Other": ("group", "extras"),
+    "Contact": ("particle_radius", "friction", "restitution", "collides", "collision_group", "rolls", "rolling"),
+    "Mass": ("mass", "particle_mass", "end_mass", "hub_mass"),
+    "Start": ("pin", "pinned", "velocity", "spin"),
+    "Shape": ("area", "inflation", "bending"),
+    "More": ("masses", "gravity_scale", "cut", "velocities", "pose", "touches_mount", "group", "extras"),
 }
+# What few people look for.
+_RARE = ("More",)
 
 
 def properties(document: Document) -> tuple[Section, ...]:
@@ -71,7 +64,7 @@ def properties(document: Document) -> tuple[Section, ...]:
     by_section: dict[str, list[Property]] = {"": [], **{title: [] for title in _SECTIONS}}
     for each in made:
         by_section[_section_of(each.field)].append(each)
-    rest = (Section(title, tuple(by_section[title])) for title in _SECTIONS if by_section[title])
+    rest = (Section(title, tuple(by_section[title]), title in _RARE) for title in _SECTIONS if by_section[title])
     return (Section(_summary(kinds, parts), tuple(by_section[""])), *rest)
 
 

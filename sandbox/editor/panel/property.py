@@ -107,10 +107,28 @@ class Property:
 
 @dataclass(frozen=True)
 class Section:
-    """Properties that belong together."""
+    """Properties that belong together; is_rare: they are folded away until somebody wants them."""
 
     title: str
     properties: tuple[Property, ...]
+    is_rare: bool = False
+
+
+def found_sections(sections: Iterable[Section], wanted: str) -> tuple[Section, ...]:
+    """The sections with those properties alone that have some words, in any case, in their title or their tooltip.
+
+    A word of a section's title finds all of it.
+    """
+    words = wanted.casefold().split()
+    found = []
+    for section in sections:
+        chosen = [
+            each for each in section.properties
+            if all(word in f"{section.title} {each.about.title} {each.about.tooltip}".casefold() for word in words)
+        ]  # fmt: skip
+        if chosen:
+            found.append(Section(section.title, tuple(chosen)))
+    return tuple(found)
 
 
 def _text(about: FieldInfo, value: Any) -> str:

@@ -17,6 +17,7 @@ from sandbox.app.play.drive_keys import code_of
 from sandbox.app.widgets.boxes import CheckBox, KeyBox, Scrub
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.fold import FoldHeading
 from sandbox.app.widgets.painted import TextBlock, wrapped
 from sandbox.app.widgets.rows import Picker, Row
 from sandbox.app.widgets.scroll import ScrollArea
@@ -95,13 +96,16 @@ class Form:
         self._widgets: list[Any] = []
         self._named: dict[str, Any] = {}
         self._structure: object = None
+        self._sections: Sequence[Section] = ()
         self._is_stale = False
         self._y = 0.0
 
     def show(self, sections: Sequence[Section]) -> None:
         """Show properties."""
-        structure = [(s.title, [self._structure_of(p) for p in s.properties]) for s in sections]
-        self.properties = {each.field: each for section in sections for each in section.properties}
+        self._sections = sections
+        shown = [section for section in sections if not self.is_folded(section)]
+        structure = [(s.title, [self._structure_of(p) for p in s.properties] if s in shown else None) for s in sections]
+        self.properties = {each.field: each for section in shown for each in section.properties}
         if structure != self._structure:
             self._structure = structure
             self._remake(sections)
@@ -115,6 +119,17 @@ class Form:
             self._is_stale = False
             for each in list(self.properties.values()):
                 self._show_value(each)
+
+    def is_folded(self, section: Section) -> bool:
+        """Whether a section shows its heading alone."""
+        return self._screen.folds.get(section.title, section.is_rare)
+
+    def _fold(self, section: Section) -> None:
+        """Fold a section away, or open it; the editor goes on so."""
+        self._ui.blur()
+        self._screen.folds[section.title] = not self.is_folded(section)
+        self.show(self._sections)
+        self._ui.focus_on(self._named[f"fold {section.title}"])
 
     @property
     def end(self) -> float:
@@ -170,19 +185,29 @@ class Form:
             place = ui.rect(0, self._y + 4, self._inside, 120)
             self._keep(TextBlock(ui, place, self._empty, self.area.content, 12.5))
         for number, section in enumerate(sections):
-            style = "@title" if number == 0 else "@heading"
             self._y += SECTION_GAP if number else 0.0
-            # What several selected things are may take two lines.
-            widest = ui.px(self._inside)
-            lines = [section.title.upper()] if number else wrapped(section.title, ui.font(15, True), widest, 2)
-            for line in lines:
-                self._keep(ui.label(self._rect(0, self._inside, HEADING - 4), line, self.area.content, style))
-                self._y += HEADING
+            self._add_heading(section, is_first=number == 0)
+            if self.is_folded(section):
+                continue
             for each in section.properties:
                 self._add(each)
         self.area.set_height(ui.px(self.end + self._below))
         if focused in self._named:
             ui.focus_on(self._named[focused])
+
+    def _add_heading(self, section: Section, is_first: bool) -> None:
+        """The name of what is shown, or a heading that folds what is below it."""
+        ui = self._ui
+        if not is_first:
+            fold, place = partial(self._fold, section), self._rect(0, self._inside, HEADING - 4)
+            heading = FoldHeading(ui, place, section.title, self.is_folded(section), fold, self.area.content)
+            self._keep(heading, f"fold {section.title}")
+            self._y += HEADING
+            return
+        # What several selected things are may take two lines.
+        for line in wrapped(section.title, ui.font(15, True), ui.px(self._inside), 2):
+            self._keep(ui.label(self._rect(0, self._inside, HEADING - 4), line, self.area.content, "@title"))
+            self._y += HEADING
 
     def _keep(self, widget: Any, name: str = "") -> Any:
         self._widgets.append(widget)
