@@ -28,7 +28,7 @@ class PropertiesPage:
         self.search = ui.field(line, "", lambda _: True, container, 80, hint=FIND)
         below = pygame.Rect(place.left, place.top + row + gap, place.width, place.height - row - gap)
         self._area = ScrollArea(ui, below, container)
-        self.form = Form(screen, self._area, empty=NOT_FOUND)
+        self.form = Form(screen, self._area, above=6.0, empty=NOT_FOUND)
         self._shown: Document | None = None
         self._wanted = ""
 
