@@ -14,7 +14,7 @@ from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.icons import Icon
-from sandbox.editor.tools.palette import TOOLS
+from sandbox.editor.tools.palette import TOOL_GROUPS, TOOLS
 
 # Groups of actions from the left, and those at the right end, with their pictures.
 LEFT = (
@@ -51,6 +51,10 @@ TOOL_COLUMN = 34.0
 NEEDS_SELECTION = ("duplicate", "delete", "mirror", "array", "parts", "align", "order")
 MARGIN = 14.0
 PALETTE_WIDTH = 52.0
+# Tools have names in windows that are wide enough, and high enough for them and the headings of their groups.
+ROOM_FOR_TOOL_NAMES = 1200.0
+NAMED_WIDTH, HEADING = 116.0, 19.0
+LEAST_NAMED_PITCH, NAMED_PITCH = 21.0, 27.0
 GROUP_GAP = 14.0
 
 
@@ -61,14 +65,17 @@ class _Buttons:
         self._ui, self._press, self._back, self._size = ui, press, back, size
         self.by_action: dict[str, Any] = {}
         self._icons: dict[str, Icon] = {}
+        self._names: dict[str, tuple[str, float]] = {}
         self._shown: dict[str, Colour] = {}
 
-    def add(self, action: str, icon: Icon, x: float, y: float) -> None:
-        """A button of an action at a place [layout units]."""
+    def add(self, action: str, icon: Icon, x: float, y: float, name: str = "", width: float = 0.0) -> None:
+        """A button of an action at a place [layout units]; with a name beside its icon it is as wide as is said."""
         ui = self._ui
         self._icons[action] = icon
+        if name:
+            self._names[action] = (name, width)
         self.by_action[action] = ui.button(
-            ui.rect(x, y, self._size, self._size),
+            ui.rect(x, y, width or self._size, self._size),
             "",
             lambda: self._press(action),
             self._back,
@@ -98,7 +105,16 @@ class _Buttons:
         (button.select if on else button.unselect)()
 
     def _icon(self, action: str, colour: Colour) -> pygame.Surface:
-        return painted_icon(self._icons[action], self._ui.px(ICON * self._size / BUTTON), colour)
+        ui = self._ui
+        if action not in self._names:
+            return painted_icon(self._icons[action], ui.px(ICON * self._size / BUTTON), colour)
+        (name, width), size = self._names[action], ui.px(self._size)
+        picture = pygame.Surface((ui.px(width), size), pygame.SRCALPHA)
+        icon = painted_icon(self._icons[action], ui.px(min(self._size - 5.0, ICON)), colour)
+        picture.blit(icon, icon.get_rect(center=(ui.px(16.0), size // 2)))
+        words = ui.font(12.0).render(name, True, colour)
+        picture.blit(words, words.get_rect(midleft=(ui.px(32.0), size // 2)))
+        return picture
 
 
 class Bar:
@@ -158,18 +174,44 @@ def palette_columns(height: float) -> int:
     return min(3, max(1, -(-len(TOOLS) // max(1, int((height - 8) // LEAST_TOOL_PITCH)))))
 
 
-def palette_width(height: float) -> float:
-    """Width [layout units] of a palette of that height."""
+def _has_names(width: float, height: float) -> bool:
+    """Whether a palette of that height in a window of that width [layout units] has room for the names of tools."""
+    return width >= ROOM_FOR_TOOL_NAMES and height - len(TOOL_GROUPS) * HEADING >= LEAST_NAMED_PITCH * len(TOOLS)
+
+
+def palette_width(width: float, height: float) -> float:
+    """Width [layout units] of a palette of that height in a window of that width."""
+    if _has_names(width, height):
+        return NAMED_WIDTH
     columns = palette_columns(height)
     return PALETTE_WIDTH if columns == 1 else 8.0 + columns * TOOL_COLUMN
 
 
 class Palette:
-    """The tools, at the left edge below the bar; lower windows have more columns of them."""
+    """The tools, at the left edge below the bar: in groups with names where there is room, else icons in columns."""
 
     def __init__(self, ui: Ui, press: Callable[[str], None], top: float, height: float) -> None:
-        width, columns = palette_width(height), palette_columns(height)
+        width = palette_width(ui.units[0], height)
         self.back = ui.panel(ui.rect(0, top, width, height))
+        if _has_names(ui.units[0], height):
+            self._add_named(ui, press, height)
+        else:
+            self._add_icons(ui, press, width, height)
+        self.tools = {name: self._buttons.by_action[tool.action] for name, tool in TOOLS.items()}
+
+    def _add_named(self, ui: Ui, press: Callable[[str], None], height: float) -> None:
+        pitch = min(NAMED_PITCH, (height - 8.0 - len(TOOL_GROUPS) * HEADING) / len(TOOLS))
+        self._buttons = _Buttons(ui, press, self.back, pitch - 1.0)
+        y = 4.0
+        for group, tools in TOOL_GROUPS.items():
+            ui.label(ui.rect(10.0, y + 3.0, NAMED_WIDTH - 12.0, HEADING - 4.0), group, self.back, "@muted")
+            y += HEADING
+            for tool in tools:
+                self._buttons.add(tool.action, tool.icon, 6.0, y, tool.title.capitalize(), NAMED_WIDTH - 12.0)
+                y += pitch
+
+    def _add_icons(self, ui: Ui, press: Callable[[str], None], width: float, height: float) -> None:
+        columns = palette_columns(height)
         rows = -(-len(TOOLS) // columns)
         pitch = min(BUTTON + GAP, (height - 8) / rows)
         across = (width - 8.0) / columns
@@ -179,7 +221,6 @@ class Palette:
             column, row = divmod(index, rows)
             x = 4.0 + column * across + (across - size) / 2
             self._buttons.add(tool.action, tool.icon, x, 6 + row * pitch)
-        self.tools = {name: self._buttons.by_action[tool.action] for name, tool in TOOLS.items()}
 
     def show(self, tool: str) -> None:
         """Mark the tool in use."""

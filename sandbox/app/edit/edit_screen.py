@@ -271,7 +271,8 @@ class EditScreen:
 
     @property
     def _palette_width(self) -> float:
-        return palette_width(self.ui.units[1] - BAR_HEIGHT - STATUS_HEIGHT)
+        width, height = self.ui.units
+        return palette_width(width, height - BAR_HEIGHT - STATUS_HEIGHT)
 
     @property
     def notices_place(self) -> NoticesPlace | None:

@@ -165,9 +165,11 @@ class JellyEditing(BodyEditing[JellyDef]):
     """A jelly whose sides lie along the axes can be stretched, unless it is round."""
 
     tools: ClassVar = (
-        EditorTool("box", "J", "Jelly: a box", _draw_box, BoxDrawing, word="jelly"),
-        EditorTool("circle", "O", "Jelly: a disc", _draw_circle, CircleDrawing),
-        EditorTool("polygon", "Y", "Jelly: freehand or corner by corner", _draw_polygon, PolygonDrawing),
+        EditorTool("box", "J", "Jelly: a box", _draw_box, BoxDrawing, word="jelly box"),
+        EditorTool("circle", "O", "Jelly: a disc", _draw_circle, CircleDrawing, word="jelly disc"),
+        EditorTool(
+            "polygon", "Y", "Jelly: freehand or corner by corner", _draw_polygon, PolygonDrawing, word="jelly shape"
+        ),
     )
     formless = frozenset({"particle_mass", "area"})
 

@@ -10,5 +10,12 @@ from sandbox.editor.tools.drawing_terrain import GROUND, LINE, WALLS
 from sandbox.editor.tools.drawing_wave import WAVE
 from sandbox.editor.tools.selecting import LASSO, SELECT
 
-_ALL = (SELECT, LASSO, PARTICLE, SPRING, *BODY_TOOLS, HANGERS, CHASSIS, AXLE, PART, PIN, WAVE, GROUND, LINE, WALLS)
-TOOLS = {tool.name: tool for tool in _ALL}
+# The tools by the groups that a person sees, in their order.
+TOOL_GROUPS = {
+    "Select": (SELECT, LASSO),
+    "Points": (PARTICLE, SPRING, PIN),
+    "Bodies": BODY_TOOLS,
+    "Machines": (PART, CHASSIS, AXLE, HANGERS, WAVE),
+    "Ground": (GROUND, LINE, WALLS),
+}
+TOOLS = {tool.name: tool for tools in TOOL_GROUPS.values() for tool in tools}
