@@ -223,3 +223,20 @@ def test_what_is_driven_is_marked_and_a_motor_by_the_way_it_turns(edit):
     ]
     for pictures in (wheels, springs):
         assert not any(np.array_equal(a, b) for a, b in itertools.combinations(pictures, 2))
+
+
+def test_the_sheet_can_show_the_level_as_it_is_played_without_its_lattice(edit):
+    box = {"type": "jelly", "id": "box", "position": [2, 1], "shape": {"box": [2, 2]}, "spacing": 0.5}
+    driver = edit(small_level(bodies=[box]))
+    driver.rest()
+    with_lattice = seen(driver, 2, 1)
+    driver.key(pygame.K_l, pygame.KMOD_SHIFT)
+    driver.rest()
+    without = seen(driver, 2, 1)
+    # One skin in place of dots and lines: far fewer sudden steps from pixel to pixel.
+    steps = [np.count_nonzero(np.abs(np.diff(picture.astype(int), axis=0)).sum(axis=2) > 90) for picture in
+             (with_lattice, without)]  # fmt: skip
+    assert steps[1] < steps[0] / 2
+    driver.key(pygame.K_l, pygame.KMOD_SHIFT)
+    driver.rest()
+    assert np.array_equal(seen(driver, 2, 1), with_lattice)

@@ -7,7 +7,7 @@ import platform
 
 import pytest
 
-from sandbox.editor.storage import level_file
+from sandbox.editor.storage import data_folder
 from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.editor.storage.level_file import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
 from sandbox.level.reading.files import LevelError, read_level, write_level
@@ -190,7 +190,7 @@ def test_a_save_that_cannot_be_is_one_line_and_the_work_stays_in_the_autosave(
     before = path.read_bytes()
     with monkeypatch.context() as patched:
         if trouble == "no space":
-            patched.setattr(level_file.os, "fsync", full)
+            patched.setattr(os, "fsync", full)
             words = "cannot be written: no space left on device"
         elif trouble == "read-only folder":
             patched.setattr("builtins.open", read_only)
@@ -220,7 +220,7 @@ def test_a_save_in_place_brings_a_warning_and_a_copy(opened, path, data, monkeyp
     def refused(*_):
         raise PermissionError(errno.EPERM, "Operation not permitted")
 
-    monkeypatch.setattr(level_file.os, "replace", refused)
+    monkeypatch.setattr(os, "replace", refused)
     warning = opened.save(named("new"))
     assert warning.endswith(f"the level as it was is in {path}.bak")
     assert read_level(path) == named("new") and read_level(f"{path}.bak") == named("old")
@@ -247,6 +247,6 @@ def test_names_that_no_system_takes_are_refused_in_a_line(data, tmp_path, name):
 
 
 def test_the_data_folder_is_the_person_s_own(monkeypatch, tmp_path):
-    monkeypatch.setattr(level_file.platformdirs, "user_data_dir", lambda name, appauthor: str(tmp_path / name))
-    assert level_file.data_folder() == tmp_path / "spring-sandbox"
+    monkeypatch.setattr(data_folder.platformdirs, "user_data_dir", lambda name, appauthor: str(tmp_path / name))
+    assert data_folder.data_folder() == tmp_path / "spring-sandbox"
     assert LevelFile().folder == tmp_path / "spring-sandbox"

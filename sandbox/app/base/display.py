@@ -3,6 +3,7 @@
 import math
 import os
 import sys
+from collections.abc import Sequence
 
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 # Real pixels on Windows instead of a picture that the system stretches.
@@ -18,6 +19,8 @@ WINDOW_SIZE = (1280, 720)
 SMALLEST_WINDOW = (640, 440)
 # What everything is laid out for at least [layout units]: in less, pages have no room for their buttons.
 FEWEST_UNITS = (480, 360)
+# So much of a window's bar has to be on a desktop [pixels].
+BAR_IN_SIGHT = 80
 INVISIBLE_DRIVERS = ("dummy", "offscreen", "evdev")
 SCALE_RANGE = (0.5, 4.0)
 # Desktops higher than this [pixels] have small pixels, unless told otherwise.
@@ -39,14 +42,25 @@ def has_display() -> bool:
 
 
 class Display:
-    """The window; surface: its real pixels; pixel_ratio: real pixels per unit of a mouse position (x, y)."""
+    """The window; surface: its real pixels; pixel_ratio: real pixels per unit of a mouse position (x, y).
+
+    kept: left, top, width and height that it had the last time, where it opens again if a desktop is there.
+    """
 
     scale: float
+    # The place that was asked for, if one was.
+    _asked: tuple[int, int] | None = None
 
-    def __init__(self, scale: float | None = None) -> None:
+    def __init__(self, scale: float | None = None, kept: Sequence[int] | None = None) -> None:
         desktop = self._begin(scale)
         size = [min(round(side * self.scale), most) for side, most in zip(WINDOW_SIZE, desktop, strict=True)]
-        self.window = pygame.Window("Spring Sandbox", size, resizable=True, allow_high_dpi=True)
+        place: int | tuple[int, int] = pygame.WINDOWPOS_UNDEFINED
+        if kept is not None:
+            limits = zip(kept[2:], SMALLEST_WINDOW, desktop, strict=True)
+            size = [min(max(side, least), most) for side, least, most in limits]
+            place = (kept[0], kept[1]) if _is_on_a_desktop(kept) else place
+        self._asked = place if isinstance(place, tuple) else None
+        self.window = pygame.Window("Spring Sandbox", size, place, resizable=True, allow_high_dpi=True)
         self.window.minimum_size = SMALLEST_WINDOW
         self._finish()
         # A window in points of two pixels says so itself.
@@ -71,6 +85,7 @@ class Display:
         self.window.set_icon(pygame.image.load(shipped_folder("assets") / "icon.png"))
         self.surface = self.window.get_surface()
         self._shown_size = self.size
+        self._first = self.window.position
         self.fullscreen = False
         # Whether nobody sees it, because it is minimised: then nothing is drawn.
         self.hidden = False
@@ -86,6 +101,23 @@ class Display:
         """Size in real pixels."""
         width, height = self.surface.get_size()
         return width, height
+
+    def settle(self) -> None:
+        """Take note of where the window came to stand."""
+        self._first = self.window.position
+
+    @property
+    def kept(self) -> list[int] | None:
+        """Left, top, width and height to open the window with again; None while it fills the screen or is minimised.
+
+        A window manager may put a window beside the place that was asked for, by the width of its frame, and would do
+        so at each start: what is kept is what to ask for.
+        """
+        if self.fullscreen or self.hidden:
+            return None
+        (x, y), (left, top) = self.window.position, self._first
+        asked = self._asked or (left, top)
+        return [asked[0] + x - left, asked[1] + y - top, *self.window.size]
 
     def refresh(self) -> bool:
         """Take up a new window size; True where it changed."""
@@ -109,6 +141,15 @@ class Display:
         """Close the window."""
         self.window.destroy()
         pygame.display.quit()
+
+
+def _is_on_a_desktop(kept: Sequence[int]) -> bool:
+    """Whether the bar of a window would be where it can be taken; desktops are taken to lie side by side."""
+    sizes = pygame.display.get_desktop_sizes()
+    widest = sum(width for width, _ in sizes)
+    highest = max(height for _, height in sizes)
+    left, top, width, _ = kept
+    return 0 <= top <= highest - BAR_IN_SIGHT and -width + BAR_IN_SIGHT <= left <= widest - BAR_IN_SIGHT
 
 
 def fitting_layout(size: tuple[int, int], scale: float) -> tuple[tuple[int, int], float]:

@@ -151,6 +151,7 @@ SHORTCUTS = (
     Shortcut("", ("Alt",), "Hold: nothing snaps", "Select", "edit"),
     Shortcut("snap", ("X",), "Snapping on or off", "Select", "edit"),
     Shortcut("forecast", ("U",), "Show where everything will hang", "View", "edit"),
+    Shortcut("lattice", ("Shift+L",), "Lattice on or off: springs and particles", "View", "edit"),
     Shortcut("trail", ("Shift+T",), "Trail: where the selected things will go", "View", "edit"),
     Shortcut("try_range", ("Ctrl+R",), "Try a range: one number, several values", "View", "edit"),
     Shortcut("rest", ("Shift+U",), "Begin at rest: the forecast is the pose", "Edit", "edit"),

@@ -83,6 +83,8 @@ class Editing(Protocol):
     pointer: Pixel | None
     # Whether sections of the panel are folded away, by their titles, where the person said so.
     folds: dict[str, bool]
+    # Whether springs and particles are drawn over what they look like.
+    shows_lattice: bool
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:

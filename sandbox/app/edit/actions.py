@@ -33,7 +33,7 @@ COPY_LIMIT = 1_000
 # Actions that have no button in the bar.
 MENU = (
     "copy", "cut", "paste", "copy_level", "keep_part", "wave_in_order", "select_all", "select_material", "find", "hide",
-    "lock", "try_range", "forward", "backward", "recent", "open_file", "save_as", "revert", "settings",
+    "lock", "lattice", "try_range", "forward", "backward", "recent", "open_file", "save_as", "revert", "settings",
 )  # fmt: skip
 
 NO_JOINTS = "Nothing that is selected is joined to anything."
@@ -99,6 +99,7 @@ def _viewing(screen: Editing) -> dict[str, Callable[[], object]]:
     """The actions that change what is seen, and nothing of the level but where it begins."""
     return {
         "snap": lambda: _toggle_snap(screen),
+        "lattice": lambda: _toggle_lattice(screen),
         "forecast": screen.toggle_forecast,
         "trail": screen.toggle_trail,
         "try_range": lambda: screen.turn_to("range"),
@@ -347,6 +348,11 @@ def _count(text: str) -> int:
 def _toggle_snap(screen: Editing) -> None:
     screen.snapping = not screen.snapping
     screen.say("Snapping is on." if screen.snapping else "Snapping is off.")
+
+
+def _toggle_lattice(screen: Editing) -> None:
+    screen.shows_lattice = not screen.shows_lattice
+    screen.say("Springs and particles are shown." if screen.shows_lattice else "The level is shown as it is played.")
 
 
 def _adjust_or_zoom(screen: Editing, by: int) -> None:

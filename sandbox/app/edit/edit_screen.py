@@ -85,6 +85,7 @@ class EditScreen:
         self.tool = "select"
         self.snapping = True
         self.folds: dict[str, bool] = {}
+        self.shows_lattice = True
         # What is picked on the sheet now, in place of what the tool does.
         self._picking: PickTool | None = None
         self.cursor: Point | None = None

@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 from filelock import FileLock, Timeout
 
-from sandbox.editor.storage.level_file import data_folder
+from sandbox.editor.storage.data_folder import data_folder
 from sandbox.editor.storage.preferences import preference, set_preference
 
 # Under what toys are remembered; so many places are kept, of the levels that were toys last.

@@ -15,8 +15,8 @@ from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITe
 
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.widgets.button import Button
-from sandbox.app.widgets.entry import Entry
 from sandbox.app.widgets.fields import Choice, Field
+from sandbox.app.widgets.hinted_entry import HintedEntry
 from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.painted import ENTER_KEYS, Painted
 
@@ -123,7 +123,7 @@ class Ui(WindowLayout):
         *, hint: str = "",
     ) -> Field:  # fmt: skip
         """A line to type into; hint: what it says while it is empty."""
-        entry = Entry(rect, self.manager, container=container, initial_text=text, placeholder_text=hint or None)
+        entry = HintedEntry(rect, self.manager, container=container, initial_text=text, placeholder_text=hint or None)
         entry.set_text_length_limit(limit)
         self._fields[entry] = Field(entry, commit, text)
         self._add_focusable(entry)

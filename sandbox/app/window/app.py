@@ -46,6 +46,7 @@ from sandbox.app.window.files import FileActions
 from sandbox.app.window.help import show_help
 from sandbox.app.window.input import Input
 from sandbox.app.window.progress import RunProgress
+from sandbox.app.window.window_place import keep_window
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import load_level, read_level
 
@@ -486,6 +487,7 @@ def run_app(
     """
     # What is imported stays: whoever looks for garbage passes it over, which takes a tenth of a second less.
     gc.freeze()
+    display.settle()
     app = App(display, profile, Chosen(**given))
     app.says_states = says_states
     show_progress()
@@ -518,5 +520,6 @@ def run_app(
                 before = max(before, time.perf_counter() - 1.0 / FRAME_RATE)
             profile.rested()
     finally:
+        keep_window(display.kept)
         # Whatever ended the loop, a recording gets its last line.
         app.close()

@@ -98,7 +98,9 @@ def open_app(
     """
     began = time.perf_counter()
     times = Profile()
-    display = Display(scale)
+    from sandbox.app.window.window_place import kept_window
+
+    display = Display(scale, kept_window())
     words = _StartPicture(display, times)
     try:
         wanted = _wait(display, words, times, _Work(find))

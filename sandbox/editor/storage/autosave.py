@@ -16,7 +16,8 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from sandbox.editor.storage.level_file import StorageError, data_folder
+from sandbox.editor.storage.data_folder import data_folder
+from sandbox.editor.storage.level_file import StorageError
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file

@@ -8,9 +8,9 @@ import os
 import platform
 from pathlib import Path
 
-import platformdirs
 from filelock import FileLock, Timeout
 
+from sandbox.editor.storage.data_folder import data_folder
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file
@@ -18,7 +18,6 @@ from sandbox.level.reading.files import parse_level, read_bytes, write_level
 from sandbox.level.reading.salvage import salvage
 
 # Name of the person's data folder; autosaves, locks and recent levels of another name would not be found again.
-_APPLICATION = "spring-sandbox"
 
 
 class StorageError(Exception):
@@ -35,11 +34,6 @@ class FileExists(StorageError):
 
 class ChangedOnDisk(StorageError):
     """Another program has written the level's file; it is replaced only where the person says so."""
-
-
-def data_folder() -> Path:
-    """The folder of the person's own data: autosaves, locks, backups, recent levels."""
-    return Path(platformdirs.user_data_dir(_APPLICATION, appauthor=False))
 
 
 class LevelFile:

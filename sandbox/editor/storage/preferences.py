@@ -9,7 +9,7 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from sandbox.editor.storage.level_file import data_folder
+from sandbox.editor.storage.data_folder import data_folder
 from sandbox.level.format.writing import write_file
 
 # Version of the file; a later one may hold names that are not known here, which are kept.

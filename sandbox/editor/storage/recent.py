@@ -7,7 +7,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from sandbox.editor.storage.level_file import data_folder
+from sandbox.editor.storage.data_folder import data_folder
 from sandbox.level.format.writing import write_file
 
 # How many are remembered; the list is shown whole.

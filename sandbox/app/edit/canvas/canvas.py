@@ -35,7 +35,7 @@ from sandbox.app.draw.renderer import (
     THINNEST_SPRING,
 )
 from sandbox.app.edit.canvas.edited_terrain import Ground, paint_ground, paint_walls
-from sandbox.app.edit.canvas.flesh import Flesh
+from sandbox.app.edit.canvas.flesh import ALPHA, Flesh
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.format.limits import BODY_RADIUS
@@ -44,6 +44,7 @@ from sandbox.level.format.limits import BODY_RADIUS
 SNAP_STEP = 16.0
 # More particles and springs than this are drawn plainly while they change, and smoothly afterwards.
 PLAIN_FROM = 6_000
+OPAQUE = 255
 # What is only a preview is this much paler.
 GHOST_SHARE = 0.45
 HIGHLIGHT_WIDTH = 2.4
@@ -100,6 +101,8 @@ class ScenePainter:
     def __init__(self, scale: float) -> None:
         self.scale = scale
         self.compiled = True
+        # Whether springs and particles are drawn over what they look like.
+        self.lattice = True
         self._flesh, self._ghost_flesh = Flesh(), Flesh()
         self._layer: pygame.Surface | None = None
         self._scene: Scene | None = None
@@ -118,7 +121,10 @@ class ScenePainter:
         hidden: the selection is left out, because it is drawn elsewhere while it moves. Of a large scene the first
         picture is plain; a smooth one is made in the frames that follow, and takes its place.
         """
-        key = (camera.centre, camera.zoom, camera.viewport, self.scale, id(chosen.particles), hidden, self.compiled)
+        key = (
+            camera.centre, camera.zoom, camera.viewport, self.scale, id(chosen.particles), hidden, self.compiled,
+            self.lattice,
+        )  # fmt: skip
         if self._layer is None or scene is not self._scene or key != self._key:
             self._key, self._scene, self._chosen = key, scene, chosen
             is_large = len(scene.particle_a) + len(scene.position) > PLAIN_FROM
@@ -159,9 +165,11 @@ class ScenePainter:
         away = springs | hanging_springs(scene, particles) if hidden else springs
         # What moves is drawn elsewhere.
         shown = ~((particles & hidden) | chosen.hidden_particles), ~((away & hidden) | chosen.hidden_springs)
-        has_flesh = self._flesh.paint(layer, camera, scene, *shown, self.scale, self.compiled)
-        others = Part(scene, shown[0] & ~particles, shown[1] & ~away, is_fine=has_flesh)
-        yield from self._slices(layer, camera, others, plain)
+        alpha = ALPHA if self.lattice else OPAQUE
+        has_flesh = self._flesh.paint(layer, camera, scene, *shown, self.scale, self.compiled, alpha)
+        if self.lattice or not has_flesh:
+            others = Part(scene, shown[0] & ~particles, shown[1] & ~away, is_fine=has_flesh)
+            yield from self._slices(layer, camera, others, plain)
         if not hidden:
             yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
 

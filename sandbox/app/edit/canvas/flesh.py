@@ -50,7 +50,7 @@ class Flesh:
 
     def paint(
         self, layer: pygame.Surface, camera: Camera, scene: Scene, particles: Mask, springs: Mask, scale: float,
-        compiled: bool,
+        compiled: bool, alpha: int = ALPHA,
     ) -> bool:  # fmt: skip
         """Draw those particles (n,) and springs (m,) of a scene on a layer; whether that would not take too long."""
         if not 0 < len(scene.position) + len(scene.particle_a) <= MOST:
@@ -69,7 +69,7 @@ class Flesh:
         ensemble = Ensemble(self._cast[1], state, particles, springs)
         ensemble.soft.trace(self._painter, frame)
         ensemble.draw(self._painter, frame, False)
-        picture.set_alpha(ALPHA)
+        picture.set_alpha(alpha)
         layer.blit(picture, (0, 0))
         return True
 

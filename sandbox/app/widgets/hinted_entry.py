@@ -1,4 +1,4 @@
-"""Entry: a line to type into whose hint is paler than what is typed."""
+"""HintedEntry: a line to type into whose hint is paler than what is typed."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from pygame_gui.elements import UITextEntryLine
 from sandbox.app.draw.colours import MUTED
 
 
-class Entry(UITextEntryLine):
+class HintedEntry(UITextEntryLine):
     """As of pygame_gui, which gives both the same colour."""
 
     def _tint(self, is_focused: bool) -> None:
