@@ -8,6 +8,7 @@ import pytest
 
 from sandbox.app.edit import documents as documents_module
 from sandbox.app.edit.documents import OFFERED
+from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.level.document.canonical import level_text
@@ -367,3 +368,21 @@ def test_a_level_that_nobody_has_named_is_called_as_its_file_and_others_keep_the
         assert driver.editor.history.is_saved
     driver.editor.step_to(1)
     assert driver.editor.document.level.name == "Untitled"
+
+
+def test_arrow_keys_go_through_a_question_and_a_folder_alone_is_no_name(driver, documents):
+    driver.editor.edit("Name", lambda document: set_level_field(document, "name", "Other"))
+    driver.key(pygame.K_n, pygame.KMOD_CTRL)
+    assert driver.app.ui.focus.text == "Save"
+    driver.key(pygame.K_DOWN)
+    assert driver.app.ui.focus.text == "Discard the changes"
+    driver.key(pygame.K_RETURN)
+    assert not driver.app.ui.has_sheet and driver.editor.document.level.name == "Untitled"
+    driver.key(pygame.K_s, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
+    before = sorted(documents.parent.glob("*.json"))
+    for typed in (f"{documents.parent}/", f"{documents.parent}/nowhere/x"):
+        driver.key(pygame.K_a, pygame.KMOD_CTRL)
+        driver.type(typed)
+        driver.key(pygame.K_RETURN)
+        assert driver.app.ui.has_sheet
+    assert sorted(documents.parent.glob("*.json")) == before

@@ -319,3 +319,41 @@ def test_a_drag_with_ctrl_leaves_what_is_selected_and_puts_a_copy_elsewhere(driv
     assert body(driver, "pair") == before and copy.id == "pair 2"
     assert np.allclose(np.subtract(copy.start, before.start), (2, 1)) and selected(driver) == {Item("body", "pair 2")}
     assert driver.editor.history.labels[-1] == "Duplicate"
+
+
+def test_a_mirrored_copy_leaves_the_first_and_stands_beside_it(driver):
+    driver.click_at(0.5, 2)
+    driver.key(pygame.K_m)
+    driver.choose("A copy to the right")
+    first, copy = body(driver, "pair"), driver.editor.document.level.bodies[-1]
+    assert first.start == (0.0, 2.0) and copy.start == (2.0, 2.0) and copy.end == (1.0, 2.0)
+    assert driver.editor.history.labels[-1] == "Mirrored copy"
+
+
+def test_an_array_fills_rows_and_columns_in_one_step(driver):
+    driver.click_at(0.5, 2)
+    driver.key(pygame.K_d, CTRL | SHIFT)
+    driver.choose("In rows and columns")
+    for text in ("3", "2", "2", "1.5"):
+        driver.app.ui.focus.set_text("")
+        driver.type(text)
+        driver.key(pygame.K_TAB)
+    driver.choose("Make")
+    starts = {body.start for body in driver.editor.document.level.bodies if body.id.startswith("pair")}
+    assert starts == {(2.0 * x, 2.0 + 1.5 * y) for x in range(3) for y in range(2)}
+    driver.key(pygame.K_z, CTRL)
+    assert len(driver.editor.document.level.bodies) == 2
+
+
+def test_a_step_of_the_grid_that_was_set_holds_at_every_zoom(driver):
+    driver.key(pygame.K_x, SHIFT)
+    driver.type("0.3")
+    driver.key(pygame.K_RETURN)
+    driver.editor.camera.zoom_at(None, 5)
+    driver.click_at(0.5, 2)
+    driver.key(pygame.K_RIGHT)
+    assert np.allclose(body(driver, "pair").start, (0.3, 2.0))
+    driver.key(pygame.K_x, SHIFT)
+    driver.type("-1")
+    driver.key(pygame.K_RETURN)
+    assert driver.app.ui.has_sheet and driver.editor.grid == 0.3

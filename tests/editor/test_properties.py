@@ -21,6 +21,7 @@ from sandbox.level.document.model import Level, ParticleDef, Settings, SpringDef
 from sandbox.level.kinds.bodies import KINDS, expansion
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.reading.files import parse_level
+from tests.support.zoo import zoo
 
 LEVEL = {
     "format": "spring-sandbox/level",
@@ -142,12 +143,14 @@ def test_what_differs_is_mixed_and_what_is_the_same_is_shown(level):
 def test_several_kinds_have_the_fields_that_they_share(level):
     shared = set(fields(chosen(level, "rope", "deck")))
     assert {"start", "end", "segments", "particle_mass", "pin", "material", "group"} <= shared
-    assert not {"rest_length", "height", "end_mass"} & shared
+    assert "height" not in shared and {"rest_length", "end_mass"} <= shared
     # Ends that are held are not the rim that is.
     assert "pin" not in fields(chosen(level, "rope", "web"))
     everything = set(fields(Document(level, frozenset(items_of(level)))))
     firmness = {"firmness", "firmness.sag", "firmness.hz", "firmness.ratio"}
-    assert everything == {"group", "extras", "drive", "motor", "hydraulic", "bending", *firmness}
+    assert everything >= {"group", "extras", "drive", "motor", "hydraulic", "bending", "material", "mass", *firmness}
+    # Of a form that all of them have nothing is left.
+    assert not everything & {"start", "end", "segments", "position", "height", "radius", "id", "pin", "shape"}
 
 
 def test_one_axis_of_many_is_set_and_the_other_stays(level):
@@ -509,3 +512,18 @@ def test_a_muscles_period_is_shown_in_seconds_beside_ticks_and_its_phase_is_of_a
     seconds = shown["drive.period.seconds"]
     assert seconds.texts == ("0.5",) and seconds.about.unit == "s" and not seconds.editable
     assert shown["drive.phase"].about.title == "Phase, of a period"
+
+
+def test_what_only_some_of_a_mixed_selection_have_is_there_for_those():
+    level = zoo()
+    rope = next(body for body in level.bodies if body.type == "rope")
+    particle = level.particles[0]
+    both = Document(level, frozenset([Item("body", rope.id), Item("particle", particle.id)]))
+    found = {each.field: each for section in properties(both) for each in section.properties}
+    assert found["material"].value == rope.material and found["mass"].value == particle.mass
+    heavier = found["mass"].set(both, 7.0).level
+    assert heavier.particles[0].mass == 7.0 and heavier.bodies == level.bodies
+    other = next(name for name in level.materials if name != rope.material)
+    changed = found["material"].set(both, other).level
+    assert next(body for body in changed.bodies if body.id == rope.id).material == other
+    assert changed.particles == level.particles

@@ -150,6 +150,7 @@ SHORTCUTS = (
     Shortcut("", ("Arrows",), "Nudge by the grid; Shift: ten", "Select", "edit"),
     Shortcut("", ("Alt",), "Hold: nothing snaps", "Select", "edit"),
     Shortcut("snap", ("X",), "Snapping on or off", "Select", "edit"),
+    Shortcut("grid", ("Shift+X",), "Step of the grid", "Select", "edit"),
     Shortcut("forecast", ("U",), "Show where everything will hang", "View", "edit"),
     Shortcut("lattice", ("Shift+L",), "Lattice on or off: springs and particles", "View", "edit"),
     Shortcut("trail", ("Shift+T",), "Trail: where the selected things will go", "View", "edit"),

@@ -188,6 +188,15 @@ class Editing(Protocol):
         """Distance [m] of the points that the pointer snaps to."""
         ...
 
+    def set_grid(self, step: float | None) -> None:
+        """Give the grid a distance [m]; None = as fine as the zoom lets one see."""
+        ...
+
+    @property
+    def grid_step(self) -> float | None:
+        """The distance of the grid [m] that the person has set; None: it goes by the zoom."""
+        ...
+
     def choose_tool(self, name: str) -> None:
         """Take another tool up."""
         ...

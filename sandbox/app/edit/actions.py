@@ -13,7 +13,7 @@ from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.part_keeping import ask_to_keep_part
-from sandbox.app.widgets.dialogs import choose, choose_row, fill_in
+from sandbox.app.widgets.dialogs import ask, choose, choose_row, fill_in
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
 from sandbox.editor.edits.copying import array_circle, array_line, duplicate
@@ -29,11 +29,14 @@ from sandbox.editor.tools.palette import TOOLS
 # A copy is put this many steps of the grid to the right of and below what it is of.
 COPY_STEPS = 2
 COPY_LIMIT = 1_000
+# A step of the grid that a person may set [m].
+SMALLEST_GRID, LARGEST_GRID = 0.001, 1_000.0
 
 # Actions that have no button in the bar.
 MENU = (
     "copy", "cut", "paste", "copy_level", "keep_part", "wave_in_order", "select_all", "select_material", "find", "hide",
-    "lock", "lattice", "try_range", "forward", "backward", "recent", "open_file", "save_as", "revert", "settings",
+    "lock", "grid", "lattice", "try_range", "forward", "backward", "recent", "open_file", "save_as", "revert",
+    "settings",
 )  # fmt: skip
 
 NO_JOINTS = "Nothing that is selected is joined to anything."
@@ -99,6 +102,7 @@ def _viewing(screen: Editing) -> dict[str, Callable[[], object]]:
     """The actions that change what is seen, and nothing of the level but where it begins."""
     return {
         "snap": lambda: _toggle_snap(screen),
+        "grid": lambda: _ask_grid_step(screen),
         "lattice": lambda: _toggle_lattice(screen),
         "forecast": screen.toggle_forecast,
         "trail": screen.toggle_trail,
@@ -199,13 +203,24 @@ def _ask_mirror(screen: Editing) -> None:
     box = _box(screen)
     if box is None:
         return
-    centre = ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2)
+    left, bottom, right, top = box
+    x, y = (left + right) / 2, (bottom + top) / 2
 
-    def do(axis: Literal["x", "y"]) -> None:
-        screen.edit("Mirror", lambda document: mirror(document, axis, centre))
+    def do(axis: Literal["x", "y"], centre: tuple[float, float], copies: bool = False) -> None:
+        def mirrored(document: Document) -> Document:
+            return mirror(duplicate(document, 0.0, 0.0) if copies else document, axis, centre)
 
-    choices = [("Left and right", lambda: do("x")), ("Up and down", lambda: do("y"))]
-    choose(screen.ui, "Mirror", "What changes sides?", choices)
+        screen.edit("Mirrored copy" if copies else "Mirror", mirrored)
+
+    choices: list[tuple[str, Callable[[], object]]] = [
+        ("Left and right", lambda: do("x", (x, y))),
+        ("Up and down", lambda: do("y", (x, y))),
+        ("Left and right about x = 0", lambda: do("x", (0.0, y))),
+        ("A copy to the right", lambda: do("x", (right, y), copies=True)),
+        ("A copy to the left", lambda: do("x", (left, y), copies=True)),
+        ("A copy about x = 0", lambda: do("x", (0.0, y), copies=True)),
+    ]
+    choose(screen.ui, "Mirror", "What changes sides?", choices, columns=2)
 
 
 def _ask_order(screen: Editing) -> None:
@@ -270,7 +285,11 @@ def _unjoined(document: Document) -> Document:
 
 def _ask_array(screen: Editing) -> None:
     if _has_selection(screen):
-        choices = [("Along a line", lambda: _ask_line(screen)), ("Along a circle", lambda: _ask_circle(screen))]
+        choices = [
+            ("Along a line", lambda: _ask_line(screen)),
+            ("In rows and columns", lambda: _ask_grid(screen)),
+            ("Along a circle", lambda: _ask_circle(screen)),
+        ]
         choose(screen.ui, "Array", "Put several copies of the selection", choices)
 
 
@@ -288,6 +307,28 @@ def _ask_line(screen: Editing) -> None:
         return None if screen.edit("Array", lambda document: array_line(document, count, dx, dy)) else "Not possible."
 
     fill_in(screen.ui, "Array along a line", "The selection is the first of them.", fields, "Make", make)
+
+
+def _ask_grid(screen: Editing) -> None:
+    box = screen.selection_box
+    assert box is not None
+    across, up = box[2] - box[0] + 2 * screen.grid, box[3] - box[1] + 2 * screen.grid
+    fields = [
+        ("Columns", "3"), ("Step to the right [m]", f"{across:.4g}"), ("Rows", "3"), ("Step upward [m]", f"{up:.4g}"),
+    ]  # fmt: skip
+
+    def make(texts: list[str]) -> str | None:
+        try:
+            columns, dx, rows, dy = _count(texts[0]), _number(texts[1]), _count(texts[2]), _number(texts[3])
+        except ValueError as error:
+            return str(error)
+
+        def filled(document: Document) -> Document:
+            return array_line(array_line(document, columns, dx, 0.0), rows, 0.0, dy)
+
+        return None if screen.edit("Array", filled) else "Not possible."
+
+    fill_in(screen.ui, "Rows and columns", "The selection is the first of them.", fields, "Make", make)
 
 
 def _ask_circle(screen: Editing) -> None:
@@ -348,6 +389,26 @@ def _count(text: str) -> int:
 def _toggle_snap(screen: Editing) -> None:
     screen.snapping = not screen.snapping
     screen.say("Snapping is on." if screen.snapping else "Snapping is off.")
+
+
+def _ask_grid_step(screen: Editing) -> None:
+    """Ask for the distance of the points that the pointer snaps to."""
+
+    def take(typed: str) -> str | None:
+        if not typed:
+            screen.set_grid(None)
+            return None
+        try:
+            step = _number(typed)
+        except ValueError as error:
+            return str(error)
+        if not SMALLEST_GRID <= step <= LARGEST_GRID:
+            return f"A step lies between {SMALLEST_GRID:g} and {LARGEST_GRID:g} m."
+        screen.set_grid(step)
+        return None
+
+    hint = "In metres, such as 0.25. Empty: as fine as the zoom lets one see."
+    ask(screen.ui, "Step of the grid", hint, f"{screen.grid:g}", "Take it", take)
 
 
 def _toggle_lattice(screen: Editing) -> None:

@@ -155,9 +155,10 @@ class DocumentActions:
             warning = write(replace)
         except (FileExists, ChangedOnDisk) as error:
             title = "Replace the file?" if isinstance(error, FileExists) else "The file has changed"
+            # Enter, pressed unawares, loses nothing.
             choices = [
+                ("Save under another name", lambda: self._ask_name(then)),
                 ("Replace it", lambda: self._write(write, then, True)),
-                ("Save as …", lambda: self._ask_name(then)),
             ]
             choose(self.app.ui, title, f"{error}.", choices)
             return
@@ -194,6 +195,11 @@ class DocumentActions:
         def answer(typed: str) -> str | None:
             if not typed.strip("./\\ ") or len(typed) > NAME_LIMIT or "\0" in typed:
                 return f"Type a name of 1 to {NAME_LIMIT} characters."
+            wanted = folder / os.path.expanduser(typed)
+            if typed.endswith(("/", os.sep)) or os.path.isdir(wanted):
+                return "This is a folder; type a name for the level behind it."
+            if wanted.parent != folder and not os.path.isdir(wanted.parent):
+                return f"There is no folder {one_line(str(wanted.parent))}."
             return None
 
         def write(typed: str) -> None:

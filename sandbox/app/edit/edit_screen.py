@@ -86,6 +86,7 @@ class EditScreen:
         self.snapping = True
         self.folds: dict[str, bool] = {}
         self.shows_lattice = True
+        self.grid_step: float | None = None
         # What is picked on the sheet now, in place of what the tool does.
         self._picking: PickTool | None = None
         self.cursor: Point | None = None
@@ -415,7 +416,12 @@ class EditScreen:
     @property
     def grid(self) -> float:
         """Distance [m] of the points that the pointer snaps to."""
-        return grid_spacing(self.camera.zoom, SNAP_STEP * self.scale)
+        return self.grid_step or grid_spacing(self.camera.zoom, SNAP_STEP * self.scale)
+
+    def set_grid(self, step: float | None) -> None:
+        """Give the grid a distance [m]; None = as fine as the zoom lets one see."""
+        self.grid_step = step
+        self.say(f"The grid has a step of {step:g} m." if step else "The grid goes by the zoom.")
 
     def grid_snaps(self, modifiers: int) -> bool:
         """Whether anything draws the pointer now."""

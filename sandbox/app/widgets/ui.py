@@ -53,6 +53,9 @@ class Sheet:
     widgets: list[UIElement] = default(default_factory=list)
 
 
+ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
+
+
 class Ui(WindowLayout):
     """Widgets on a window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
 
@@ -369,10 +372,26 @@ class Ui(WindowLayout):
         if isinstance(self._focus, UIButton) and event.key in (*ENTER_KEYS, pygame.K_SPACE):
             self._actions[self._focus]()
             return True
+        if isinstance(self._focus, UIButton) and self._sheets and event.key in ARROWS:
+            self._step_to_button(*ARROWS[event.key])
+            return True
         if isinstance(self._focus, UIDropDownMenu) and event.key in (pygame.K_UP, pygame.K_DOWN):
             self._turn_menu(self._focus, -1 if event.key == pygame.K_UP else 1)
             return True
         return False
+
+    def _step_to_button(self, dx: int, dy: int) -> None:
+        """Give the keyboard to the nearest button of a page that way, if there is one."""
+        assert self._focus is not None
+        here = self._focus.rect
+        ways = []
+        for button in self.buttons():
+            x, y = button.rect.centerx - here.centerx, button.rect.centery - here.centery
+            along, across = x * dx + y * dy, abs(x * dy) + abs(y * dx)
+            if along > 0:
+                ways.append((along + 2 * across, button))
+        if ways:
+            self._set_focus(min(ways, key=lambda way: way[0])[1])
 
     def _escape(self, typed_into: Field | None) -> bool:
         open_menus = [menu for menu in self._choosers if menu.current_state is menu.menu_states["expanded"]]

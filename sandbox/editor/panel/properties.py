@@ -42,16 +42,22 @@ _RARE = ("More",)
 
 
 def properties(document: Document) -> tuple[Section, ...]:
-    """What can be changed of the selected items: the fields that all of them have; () where nothing is selected.
+    """What can be changed of the selected items; () where nothing is selected.
 
-    What some of them can be given, such as a motor, is there for those.
+    Fields of their forms are those that all of them have. What some have, such as a mass, is there for those.
     """
     level, selection = document.level, document.selection
     parts = chosen_definitions(level, selection)
     if not parts:
         return ()
     kinds = dict.fromkeys(map(type, parts))
-    made = [made for name, about in _common(kinds, len(parts)).items() for made in _made(selection, parts, name, about)]
+    common = _common(kinds, len(parts))
+    made = [made for name, about in common.items() for made in _made(selection, parts, name, about)]
+    if len(kinds) > 1:
+        items = chosen_items(level, selection)
+        for name, about in _of_some(kinds, common).items():
+            some = {item: part for item, part in items.items() if name in part.__dict__}
+            made += _made(frozenset(some), list(some.values()), name, about)
     objects = _objects(kinds)
     if objects:
         items = chosen_items(level, selection)
@@ -95,6 +101,18 @@ def _common(kinds: Iterable[Any], number: int) -> dict[str, FieldInfo]:
         if len(same) == len(others):
             found[name] = first[name]
     return found
+
+
+def _of_some(kinds: Iterable[Any], common: dict[str, FieldInfo]) -> dict[str, FieldInfo]:
+    """The fields, of how things are and not of their form, that only some of the kinds have, and those alike."""
+    found: dict[str, FieldInfo] = {}
+    unlike = set(common)
+    for kind in kinds:
+        for name, about in abouts(kind).items():
+            if not _section_of(name) or about.kind == "part" or (name in found and not _alike(found[name], about)):
+                unlike.add(name)
+            found.setdefault(name, about)
+    return {name: about for name, about in found.items() if name not in unlike}
 
 
 def _objects(kinds: Iterable[Any]) -> dict[str, FieldInfo]:

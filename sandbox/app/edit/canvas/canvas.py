@@ -45,6 +45,8 @@ SNAP_STEP = 16.0
 # More particles and springs than this are drawn plainly while they change, and smoothly afterwards.
 PLAIN_FROM = 6_000
 OPAQUE = 255
+# Lines of a grid that a person has set are drawn where they are this far apart [pixels at scale 1].
+CLOSEST_LINES = 6.0
 # What is only a preview is this much paler.
 GHOST_SHARE = 0.45
 HIGHLIGHT_WIDTH = 2.4
@@ -103,6 +105,8 @@ class ScenePainter:
         self.compiled = True
         # Whether springs and particles are drawn over what they look like.
         self.lattice = True
+        # The distance [m] of grid lines; None: it goes by the zoom.
+        self.grid_step: float | None = None
         self._flesh, self._ghost_flesh = Flesh(), Flesh()
         self._layer: pygame.Surface | None = None
         self._scene: Scene | None = None
@@ -123,7 +127,7 @@ class ScenePainter:
         """
         key = (
             camera.centre, camera.zoom, camera.viewport, self.scale, id(chosen.particles), hidden, self.compiled,
-            self.lattice,
+            self.lattice, self.grid_step,
         )  # fmt: skip
         if self._layer is None or scene is not self._scene or key != self._key:
             self._key, self._scene, self._chosen = key, scene, chosen
@@ -154,7 +158,7 @@ class ScenePainter:
         # The clip holds while a slice is drawn, and nobody else draws on the layer.
         layer.set_clip(camera.viewport)
         layer.fill(BACKGROUND)
-        draw_grid(layer, camera, self.scale)
+        draw_grid(layer, camera, self.scale, self.grid_step)
         particles, springs, items = chosen[:3]
         canvas = Canvas(layer, self.compiled)
         if scene.level.walls is not None:
@@ -286,13 +290,18 @@ class ScenePainter:
             canvas.discs(centres, np.maximum(size + extra, 0.5), np.full(len(centres), packed(ring)))
 
 
-def draw_grid(surface: pygame.Surface, camera: Camera, scale: float) -> None:
-    """Draw the lines that the pointer snaps to, and brighter ones that the rulers name."""
+def draw_grid(surface: pygame.Surface, camera: Camera, scale: float, step: float | None) -> None:
+    """Draw the lines that the pointer snaps to, and brighter ones that the rulers name.
+
+    step [m]: of the former; None, or what would be a grey field: by the zoom.
+    """
     left, top, width, height = camera.viewport
     thick = max(1, round(scale))
     (x0, y1), (x1, y0) = camera.to_world((left, top)), camera.to_world((left + width, top + height))
     for wanted, colour in ((SNAP_STEP, GRID_FINE), (GRID_STEP, GRID)):
         spacing = grid_spacing(camera.zoom, wanted * scale)
+        if step is not None and colour is GRID_FINE and step * camera.zoom >= CLOSEST_LINES * scale:
+            spacing = step
         for low, high, vertical in ((x0, x1, True), (y0, y1, False)):
             for index in range(int(np.ceil(low / spacing)), int(np.floor(high / spacing)) + 1):
                 at = camera.to_pixels((index * spacing, index * spacing))

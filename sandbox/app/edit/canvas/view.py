@@ -51,7 +51,7 @@ class View:
     def update(self, frame_time: float, ready: bool) -> None:
         """Let frame_time [s] pass; ready: whether the kernels are there."""
         self._painter.compiled, self._painter.scale = ready, self._screen.scale
-        self._painter.lattice = self._screen.shows_lattice
+        self._painter.lattice, self._painter.grid_step = self._screen.shows_lattice, self._screen.grid_step
         if self._spot is not None:
             place, age = self._spot
             self._spot = (place, age + frame_time) if age < SPOT_SECONDS else None
