@@ -57,15 +57,15 @@ class Forecast:
     def text(self) -> str:
         """One line for the person."""
         if self.at_rest is None:
-            return "The forecast is being worked out"
+            return "Calculating the forecast"
         if not self.at_rest:
             return self._trouble
         if len(self.falling) == 1:
             subject = called(self._level, *self.falling)
-            return f"Shown is where it hangs at rest; {subject} falls away, because nothing holds it"
+            return f"This is where it comes to rest; {subject} falls away, because nothing holds it"
         if self.falling:
-            return f"Shown is where it hangs at rest; {len(self.falling)} items fall away, because nothing holds them"
-        return "Shown is where it hangs at rest"
+            return f"This is where it comes to rest; {len(self.falling)} items fall away, because nothing holds them"
+        return "This is where it comes to rest"
 
     def advance(self, seconds: float) -> bool:
         """Work for about that long, at least one step; whether it is done. Building and one tick are not divided."""

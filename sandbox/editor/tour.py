@@ -106,13 +106,13 @@ STEPS = (
     ),
     Step(
         "Across",
-        "Drag from left to right, as far as the bridge is to reach. Its start is held already.",
+        "Drag from left to right, as far as the bridge should reach. Its start is pinned already.",
         lambda situation: "canvas" if situation.tool == "rope" else "tool_rope",
         lambda situation: _slack_rope(situation) is not None,
     ),
     Step(
         "A pin",
-        "Take the pin tool (P), and click the end of the rope that is still loose.",
+        "Take the pin tool (P), and click the loose end of the rope.",
         _to_hold,
         _is_held,
     ),

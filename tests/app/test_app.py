@@ -469,7 +469,7 @@ def test_particles_that_are_no_longer_finite_are_left_out_and_counted(driver):
     driver.playback.current = driver.playback.previous = driver.playback.session.snapshot()
     driver.frames()
     assert driver.stage.renderer.non_finite == 1
-    assert any("no longer finite" in text for text, _ in driver.app.screen.status(Figures()))
+    assert any("left the world" in text for text, _ in driver.app.screen.status(Figures()))
 
 
 def test_the_app_closes_after_the_given_time_and_prints_where_the_time_went(capsys, documents):

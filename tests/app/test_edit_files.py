@@ -128,7 +128,7 @@ def test_revert_reads_the_file_again_and_can_be_undone(driver):
     edited = driver.editor.document.level
     driver.key(pygame.K_r, CTRL | SHIFT)
     assert driver.editor.document.level == small_level() and driver.editor.history.is_saved
-    assert any(text.endswith("was read again. Undo (Ctrl+Z) has what was changed.") for text in driver.notices)
+    assert any(text.endswith("was read again. Undo (Ctrl+Z) brings your changes back.") for text in driver.notices)
     driver.key(pygame.K_z, CTRL)
     assert driver.editor.document.level is edited
 
@@ -171,7 +171,7 @@ def test_a_faulty_level_opens_as_far_as_it_is_valid_only_on_agreement(edit, tmp_
     driver.post(pygame.DROPFILE, file=str(path))
     driver.frames(2)
     assert driver.app.ui.has_sheet and not driver.editor.document.level.bodies
-    driver.choose("Open what is valid")
+    driver.choose("Open the valid rest")
     assert [body.id for body in driver.editor.document.level.bodies] == ["rope"]
     assert driver.editor.level_file.path is None and path.read_bytes() == before
 

@@ -88,7 +88,7 @@ def test_the_settled_pose_is_kept_and_undo_takes_it_back(driver):
     held = driver.world.position[driver.world.particle_slot("rope.4")].copy()
     assert held[1] < -0.2
     driver.key(pygame.K_k, CTRL)
-    driver.choose("Pose: where everything is now")
+    driver.choose("Pose: the present positions")
     driver.key(pygame.K_e)
     slot = driver.editor.scene.slot("rope.4")
     assert driver.editor.scene.position[slot] == pytest.approx(held, abs=1e-3)
@@ -111,7 +111,7 @@ def test_coefficients_cuts_and_pins_are_kept_together(driver):
     assert level.bodies[0].cut == (1,)
     assert len(driver.editor.history.labels) == 2
     driver.key(pygame.K_k, CTRL)
-    driver.choose("Pose: where everything is now")
+    driver.choose("Pose: the present positions")
     driver.key(pygame.K_e)
     assert driver.editor.scene.pinned[driver.editor.scene.slot("pair.1")]
     assert driver.editor.history.index == len(driver.editor.history.labels) - 1

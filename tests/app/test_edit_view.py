@@ -146,8 +146,8 @@ def test_every_action_of_the_editor_is_in_the_table_and_the_other_way_round(driv
 
 
 @pytest.mark.parametrize(("key", "mod", "said"), [
-    (pygame.K_g, pygame.KMOD_CTRL | pygame.KMOD_SHIFT, "Nothing that is selected is in a group."),
-    (pygame.K_u, pygame.KMOD_CTRL, "Nothing that is selected is joined to anything."),
+    (pygame.K_g, pygame.KMOD_CTRL | pygame.KMOD_SHIFT, "Nothing in the selection is in a group."),
+    (pygame.K_u, pygame.KMOD_CTRL, "Nothing in the selection is joined to anything."),
     (pygame.K_PAGEDOWN, 0, "It is at the back already."),
 ])  # fmt: skip
 def test_what_changes_nothing_says_why(driver, key, mod, said):

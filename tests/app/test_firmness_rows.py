@@ -57,7 +57,10 @@ def test_typed_numbers_are_taken_and_those_out_of_reach_become_the_nearest(jelly
     jelly.fill(rows.ratio, "0.1")
     jelly.frames(2)
     assert texts(jelly)[1:] == ["3", "0.156"]
-    assert "body: 3 Hz at ratio 0.1 is out of reach; it has the nearest now, 3 Hz at ratio 0.156." in jelly.notices
+    assert (
+        "body: 3 Hz at ratio 0.1 is not possible here. It has the nearest value now: 3 Hz at ratio 0.156."
+        in jelly.notices
+    )
     jelly.fill(rows.sag, "90")
     jelly.frames(2)
     assert any(text.startswith("Sag: 90 is outside 0 to 40") for text in jelly.notices)
@@ -112,7 +115,7 @@ def test_the_editor_s_panel_takes_the_nearest_and_says_so(edit):
     driver.fill(form.fields["firmness.hz"][0], "10")
     driver.frames(2)
     assert driver.editor.document.level.bodies[0].firmness == FirmnessDef(hz=10.0, ratio=0.479)
-    assert any("it has the nearest now, 10 Hz at ratio 0.479" in notice for notice in driver.notices)
+    assert any("It has the nearest value now: 10 Hz at ratio 0.479" in notice for notice in driver.notices)
 
 
 def test_the_menus_follow_bodies_that_join_a_run_and_are_taken_back(jelly):

@@ -40,7 +40,7 @@ def test_the_camera_goes_along_with_what_the_level_says(open_app):
     driver.key(pygame.K_f, SHIFT)
     stands = driver.stage.camera.centre
     driver.frames(30)
-    assert driver.stage.camera.centre == stands and "The camera stands." in driver.notices
+    assert driver.stage.camera.centre == stands and "The camera stands still." in driver.notices
 
 
 def test_a_key_lets_it_go_along_with_what_is_pointed_at(open_app):

@@ -57,7 +57,7 @@ def test_what_is_held_keeps_its_hand_when_another_strength_is_chosen(driver):
     pygame.key.set_mods(0)
     driver.key(pygame.K_t)
     assert driver.world.is_held(0) and driver.world.hand_strength[0] == 100.0
-    assert any("next hold" in notice for notice in driver.notices)
+    assert any("hold keeps its strength" in notice for notice in driver.notices)
 
 
 @pytest.mark.parametrize("strength", list(STRENGTHS))
@@ -100,7 +100,7 @@ def test_the_line_says_what_it_pulls_and_changes_colour_at_its_limit(driver, mon
     strained = Pull(pull.cursor, pull.particle, pull.limit, pull.limit, True)
     monkeypatch.setattr(Stage, "pulls", lambda stage: [strained])
     driver.frames()
-    assert text_of(strained) == ["400 N of 400 N", "pinned: it can only bend"]
+    assert text_of(strained) == ["400 N of 400 N", "pinned: the body can only bend"]
     assert colour_at(driver, 0.0) == packed(WARNING)
 
 

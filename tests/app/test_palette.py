@@ -167,7 +167,7 @@ def test_push_wind_and_delete_by_mouse(player):
 
 def test_a_level_without_contacts_says_what_holds(open_app, driver):
     driver.key(pygame.K_4)
-    assert any("Nothing touches anything" in notice for notice in driver.notices)
+    assert any("Things pass through each other" in notice for notice in driver.notices)
 
 
 def test_what_was_dropped_is_kept_in_the_document_and_undone_there(edit):

@@ -47,7 +47,7 @@ def test_escape_while_an_undo_plays_the_run_again_leaves_all_as_it_was(driver, m
     before = state_hash(session.world), session.tick, session.gestures, session.can_undo, session.can_redo
     drawn = _cancel_while_it_is_played_again(driver, monkeypatch, _press_escape(driver))
     driver.key(pygame.K_z, CTRL)
-    assert len(drawn) == 1 and "Cancelled: the run is as it was." in driver.notices
+    assert len(drawn) == 1 and "Cancelled. The run did not change." in driver.notices
     assert (state_hash(session.world), session.tick, session.gestures, session.can_undo, session.can_redo) == before
     # What was cancelled can be done again.
     driver.key(pygame.K_z, CTRL)

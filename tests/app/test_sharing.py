@@ -196,12 +196,14 @@ def _close_while_it_is_written(driver):
     driver.app.quit()
     driver.app.quit()
     driver.frames(2)
-    assert driver.app.running and [button.text for button in driver.app.ui.buttons()].count("Drop it and close") == 1
+    assert (
+        driver.app.running and [button.text for button in driver.app.ui.buttons()].count("Close without the file") == 1
+    )
 
 
 def test_a_window_that_is_closed_while_a_file_is_written_finishes_it_first_if_asked_to(driver, folder):
     _close_while_it_is_written(driver)
-    driver.choose("Finish it, then close")
+    driver.choose("Finish writing, then close")
     assert driver.app.running
     finish(driver)
     assert files(folder) == ["small.gif"] and not driver.app.running
@@ -209,7 +211,7 @@ def test_a_window_that_is_closed_while_a_file_is_written_finishes_it_first_if_as
 
 def test_a_window_that_is_closed_while_a_file_is_written_drops_it_if_asked_to(driver, folder):
     _close_while_it_is_written(driver)
-    driver.choose("Drop it and close")
+    driver.choose("Close without the file")
     assert not driver.app.running
     driver.app.sharing.close()
     assert files(folder) == []
@@ -217,7 +219,7 @@ def test_a_window_that_is_closed_while_a_file_is_written_drops_it_if_asked_to(dr
 
 def test_a_window_that_is_closed_while_a_file_is_written_stays_if_asked_to(driver, folder):
     _close_while_it_is_written(driver)
-    driver.choose("Finish it, then close")
+    driver.choose("Finish writing, then close")
     # Closed once more, and thought better of.
     driver.app.quit()
     driver.frames(2)
@@ -230,7 +232,7 @@ def test_a_window_that_is_closed_while_a_file_is_written_stays_if_asked_to(drive
 
 def test_a_window_stays_open_where_the_file_cannot_be_finished(driver, folder, monkeypatch):
     _close_while_it_is_written(driver)
-    driver.choose("Finish it, then close")
+    driver.choose("Finish writing, then close")
     (folder / "small.gif").write_bytes(b"another's")
     finish(driver)
     assert driver.app.running and "small.gif cannot be written" in driver.app.sharing.note

@@ -65,5 +65,5 @@ def test_a_key_does_it_and_springs_that_were_set_stay(open_app):
 def test_terrain_is_always_touched(open_app):
     driver = open_app(load_level("jelly_pile"))
     driver.key(pygame.K_t, pygame.KMOD_SHIFT)
-    assert driver.notices[-1] == "This level has terrain or walls, which things touch."
+    assert driver.notices[-1] == "This level has terrain or walls, so contacts stay on."
     assert driver.world.has_contacts

@@ -288,7 +288,7 @@ def test_where_no_window_can_stay_on_top_it_says_so_and_arrow_keys_shake_a_plain
     monkeypatch.setattr(pygame.display, "get_driver", lambda: "wayland")
     one = desk()
     assert not one.toy.window.floats and not one.toy.window.window.borderless
-    assert one.toy.window.refusal.startswith("Wayland lets no window stay on top")
+    assert one.toy.window.refusal.startswith("Wayland does not let windows stay on top")
     one.frames(30)
     one.post(pygame.KEYDOWN, key=pygame.K_RIGHT, mod=0, unicode="", scancode=0)
     one.frames(3)

@@ -114,7 +114,7 @@ def test_an_end_on_the_start_is_refused_with_a_hint_and_the_gesture_goes_on(tool
     drawing = TOOLS[tool].drawing(reach=REACH)
     click(drawing, empty, (1.0, 2.0))
     assert click(drawing, empty, (1.0, 2.0)) is None
-    assert "move it away" in drawing.hint
+    assert "in one place" in drawing.hint
     assert click(drawing, empty, (4.0, 3.0)) is not None
 
 

@@ -80,7 +80,7 @@ def test_what_is_out_of_reach_becomes_the_nearest_and_a_line_says_so():
     row = fields(start)["firmness.hz"]
     moved = row.set(start, 10.0)
     assert firmness(moved) == FirmnessDef(hz=10.0, ratio=0.479)
-    remark = '"body": 10 Hz at ratio 0.3 is out of reach; it has the nearest now, 10 Hz at ratio 0.479'
+    remark = '"body": 10 Hz at ratio 0.3 is not possible here. It has the nearest value now: 10 Hz at ratio 0.479'
     assert row.remark(start, 10.0) == remark
     assert row.remark(start, 4.0) == ""
 

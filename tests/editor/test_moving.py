@@ -205,7 +205,7 @@ def test_a_level_bridge_or_girder_or_rope_can_be_stretched():
         (lambda d: move(d, 1e6, 0.0), '"rope" would lie beyond the limit 1000000'),
         (lambda d: move(d, math.nan, 0.0), "finite"),
         (lambda d: rotate(d, math.inf, (0.0, 0.0)), "finite"),
-        (lambda d: scale(d, -1.0, 1.0, (0.0, 0.0)), "above 0; to turn something over, mirror it"),
+        (lambda d: scale(d, -1.0, 1.0, (0.0, 0.0)), "above 0; use Mirror to turn something over"),
         (lambda d: scale(d, 1e9, 1e9, (0.0, 0.0)), "above the limit"),
         (lambda d: mirror(d, "x", (1e6, 0.0)), "above the limit"),
     ],

@@ -206,7 +206,7 @@ def test_lists_are_typed_with_and_without_brackets(level):
         ("rope", "pinned", "start", 'Held particles: "start" is not a list such as 0, 4, 5'),
         ("rope", "pinned", "[" * 3000, None),
         ("mesh", "particles", "[0, 0], 7", None),
-        ("rope", "id", "deck", '"deck" is taken; all bodies, loose particles and terrain need ids of their own'),
+        ("rope", "id", "deck", '"deck" is taken; each body, particle and piece of terrain needs its own name'),
         ("rope", "id", "a.b", None),
         ("wheel", "thickness", "2", '"wheel": thickness: 2.0 is not below the radius, 2.0'),
         ("box", "firmness.sag", "-1", '"box": firmness.sag: -0.01 is below the limit 0'),

@@ -139,7 +139,7 @@ def test_a_change_by_another_program_is_noticed_and_not_written_over_unless_told
     write_level(named("theirs"), path)
     assert opened.changed_on_disk()
     assert refusal(ChangedOnDisk, opened.save, named("mine")) == (
-        f"{path} was changed by another program since it was opened; save under another name, or replace what is there"
+        f"{path} was changed by another program after you opened it; save under another name, or replace it"
     )
     assert read_level(path) == named("theirs")
     opened.save(named("mine"), replace=True)

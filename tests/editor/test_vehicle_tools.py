@@ -110,7 +110,7 @@ def test_options_leave_out_motor_and_keys_and_ask_for_touch(chassis):
 def test_an_axle_in_empty_space_says_what_to_do(empty):
     drawing = tool("axle")
     ghost, document = None, None
-    with pytest.raises(Exception, match="begin on a body"):
+    with pytest.raises(Exception, match="start on a body"):
         ghost, document = drag(drawing, empty, (5.0, 5.0), (5.0, 4.0))
     assert ghost is None and document is None
 

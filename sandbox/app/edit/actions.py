@@ -39,7 +39,7 @@ MENU = (
     "settings",
 )  # fmt: skip
 
-NO_JOINTS = "Nothing that is selected is joined to anything."
+NO_JOINTS = "Nothing in the selection is joined to anything."
 
 Edge = Literal["left", "right", "top", "bottom", "centre_x", "centre_y"]
 Place = Literal["front", "forward", "backward", "back"]
@@ -80,7 +80,7 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
             "parts": lambda: _ask_parts(screen),
             "menu": lambda: _show_menu(screen, app),
             "group": lambda: _edit_selection(screen, "Group", group),
-            "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup, "Nothing that is selected is in a group."),
+            "ungroup": lambda: _edit_selection(screen, "Ungroup", ungroup, "Nothing in the selection is in a group."),
             "break_apart": lambda: _edit_selection(screen, "Break apart", break_apart),
             "unjoin": lambda: _edit_selection(screen, "Take joints apart", _unjoined, NO_JOINTS),
             "align": lambda: _ask_align(screen),
@@ -220,7 +220,7 @@ def _ask_mirror(screen: Editing) -> None:
         ("A copy to the left", lambda: do("x", (left, y), copies=True)),
         ("A copy about x = 0", lambda: do("x", (0.0, y), copies=True)),
     ]
-    choose(screen.ui, "Mirror", "What changes sides?", choices, columns=2)
+    choose(screen.ui, "Mirror", "Which way should it be mirrored?", choices, columns=2)
 
 
 def _ask_order(screen: Editing) -> None:
@@ -229,7 +229,7 @@ def _ask_order(screen: Editing) -> None:
     places: tuple[tuple[str, Place], ...] = (
         ("To the front", "front"), ("Forward", "forward"), ("Backward", "backward"), ("To the back", "back"),
     )  # fmt: skip
-    text = "What comes later in the file is drawn over what comes earlier."
+    text = "Things later in the file are drawn in front of earlier ones."
     choose(screen.ui, "Order", text, [(label, partial(_reorder, screen, to)) for label, to in places])
 
 
@@ -248,7 +248,7 @@ def _ask_align(screen: Editing) -> None:
         ("Even gaps across", lambda: screen.edit("Distribute", lambda document: distribute(document, "x"))),
         ("Even gaps upward", lambda: screen.edit("Distribute", lambda document: distribute(document, "y"))),
     ]
-    choose(screen.ui, "Align", "Bring the selected parts into line.", choices, columns=2)
+    choose(screen.ui, "Align", "Line up what is selected.", choices, columns=2)
 
 
 def _ask_parts(screen: Editing) -> None:
@@ -256,8 +256,8 @@ def _ask_parts(screen: Editing) -> None:
     labels = ("Group", "Ungroup", "Break bodies apart", "Take joints apart")
     choices = [(label, screen.actions[name]) for label, name in zip(labels, names, strict=True)]
     text = (
-        "A click selects a whole group, a double click one of its members. "
-        "A body that is broken apart becomes loose particles and springs."
+        "A click selects the whole group. A double click selects one member. "
+        "Breaking a body apart turns it into loose particles and springs."
     )
     choose(screen.ui, "Parts", text, choices)
 
@@ -269,7 +269,7 @@ def _ask_material(screen: Editing) -> None:
         screen.select(items_of_material(screen.document.level, list(colours)[index]))
 
     rows = [Row(name, swatch=colour) for name, colour in colours.items()]
-    choose_row(screen.ui, "Select everything of which material?", rows, take)
+    choose_row(screen.ui, "Select everything made of one material", rows, take)
 
 
 def _unjoined(document: Document) -> Document:
@@ -297,7 +297,11 @@ def _ask_line(screen: Editing) -> None:
     box = screen.selection_box
     assert box is not None
     apart = box[2] - box[0] + 2 * screen.grid
-    fields = [("How many in all", "5"), ("Step to the right [m]", f"{apart:.4g}"), ("Step upward [m]", "0")]
+    fields = [
+        ("Number of copies, with the first", "5"),
+        ("Step to the right [m]", f"{apart:.4g}"),
+        ("Step upward [m]", "0"),
+    ]
 
     def make(texts: list[str]) -> str | None:
         try:
@@ -306,7 +310,7 @@ def _ask_line(screen: Editing) -> None:
             return str(error)
         return None if screen.edit("Array", lambda document: array_line(document, count, dx, dy)) else "Not possible."
 
-    fill_in(screen.ui, "Array along a line", "The selection is the first of them.", fields, "Make", make)
+    fill_in(screen.ui, "Array along a line", "The selection counts as the first copy.", fields, "Make", make)
 
 
 def _ask_grid(screen: Editing) -> None:
@@ -328,7 +332,7 @@ def _ask_grid(screen: Editing) -> None:
 
         return None if screen.edit("Array", filled) else "Not possible."
 
-    fill_in(screen.ui, "Rows and columns", "The selection is the first of them.", fields, "Make", make)
+    fill_in(screen.ui, "Rows and columns", "The selection counts as the first copy.", fields, "Make", make)
 
 
 def _ask_circle(screen: Editing) -> None:
@@ -336,7 +340,7 @@ def _ask_circle(screen: Editing) -> None:
     assert box is not None
     x, y = (box[0] + box[2]) / 2, box[1] - (box[3] - box[1]) - 1.0
     fields = [
-        ("How many in all", "6"),
+        ("Number of copies, with the first", "6"),
         ("Middle x [m]", f"{x:.4g}"),
         ("Middle y [m]", f"{y:.4g}"),
         ("Angle from one to the next [degrees]", "60"),
@@ -351,7 +355,7 @@ def _ask_circle(screen: Editing) -> None:
         done = screen.edit("Array", lambda document: array_circle(document, count, centre, angle))
         return None if done else "Not possible."
 
-    fill_in(screen.ui, "Array along a circle", "The selection is the first of them.", fields, "Make", make)
+    fill_in(screen.ui, "Array along a circle", "The selection counts as the first copy.", fields, "Make", make)
 
 
 def _ask_wave(screen: Editing) -> None:
@@ -407,7 +411,7 @@ def _ask_grid_step(screen: Editing) -> None:
         screen.set_grid(step)
         return None
 
-    hint = "In metres, such as 0.25. Empty: as fine as the zoom lets one see."
+    hint = "In metres, such as 0.25. Leave it empty to let the grid follow the zoom."
     ask(screen.ui, "Step of the grid", hint, f"{screen.grid:g}", "Take it", take)
 
 

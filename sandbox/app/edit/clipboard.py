@@ -72,7 +72,7 @@ class Clipboard:
         try:
             pygame.scrap.put_text(text)
         except pygame.error:
-            self._screen.say("The system's clipboard cannot be used: what is copied stays in this window.")
+            self._screen.say("The system's clipboard is not available. You can paste in this window only.")
 
     def _get(self) -> str:
         try:

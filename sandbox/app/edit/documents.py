@@ -92,7 +92,7 @@ class DocumentActions:
             return
         self._show(level, level_file, "Open")
         if level_file.path is None:
-            self.app.say(f"A copy of {_called(path)}: it is saved under a new name.")
+            self.app.say(f"A copy of {_called(path)}: save it under a new name.")
 
     def _offer_salvage(self, path: Path, faults: list[str]) -> None:
         title = f"{_called(path)} cannot be opened"
@@ -106,11 +106,11 @@ class DocumentActions:
         found = level
 
         def open_valid() -> None:
-            self._show(found, level_file, f"Open what is valid of {_called(path)}")
-            self.app.say(f"{_called(path)} stays as it is; what was valid of it is saved under a new name.")
+            self._show(found, level_file, f"Open the valid rest of {_called(path)}")
+            self.app.say(f"{_called(path)} does not change. Save the valid rest under a new name.")
 
         # Reading stops at the first kind of fault; what is left out is more, and the person has to agree to all of it.
-        show_lines(self.app.ui, title, left_out or faults, ("Open what is valid", open_valid))
+        show_lines(self.app.ui, title, left_out or faults, ("Open the valid rest", open_valid))
 
     def _show(self, level: Level, level_file: LevelFile, label: str) -> None:
         if self.editor is not None:
@@ -197,7 +197,7 @@ class DocumentActions:
                 return f"Type a name of 1 to {NAME_LIMIT} characters."
             wanted = folder / os.path.expanduser(typed)
             if typed.endswith(("/", os.sep)) or os.path.isdir(wanted):
-                return "This is a folder; type a name for the level behind it."
+                return "This is a folder. Add a file name."
             if wanted.parent != folder and not os.path.isdir(wanted.parent):
                 return f"There is no folder {one_line(str(wanted.parent))}."
             return None
@@ -220,7 +220,7 @@ class DocumentActions:
         ask(
             self.app.ui,
             "Save the level as",
-            f"In {one_line(str(folder))}, or a whole path.",
+            f"In {one_line(str(folder))} - or type a full path.",
             suggestion,
             "Save",
             answer,
@@ -244,7 +244,7 @@ class DocumentActions:
         editor.history.mark_saved()
         self.give_up()
         self._told_of_change = False
-        again = "" if level == before else " Undo (Ctrl+Z) has what was changed."
+        again = "" if level == before else " Undo (Ctrl+Z) brings your changes back."
         self.app.say(f"{_called(editor.level_file.path)} was read again.{again}")
 
     def if_saved(self, then: Callable[[], object]) -> None:
@@ -258,7 +258,7 @@ class DocumentActions:
             return
         title = f"Save “{editor.document.level.name}”?"
         choices = [("Save", lambda: self._save(then)), ("Discard the changes", then)]
-        choose(self.app.ui, title, "It has changes that are not saved.", choices, is_question=True)
+        choose(self.app.ui, title, "It has unsaved changes.", choices, is_question=True)
 
     def give_up(self) -> None:
         """Keep nothing in the autosave: the person has saved, or does not want it."""
@@ -294,8 +294,8 @@ class DocumentActions:
             return
         self._told_of_change = True
         path = editor.level_file.path
-        choices = [("Read it again", self.revert), ("Keep what is here", lambda: None)]
-        text = "Another program has changed it. Reading it again is a step that can be undone."
+        choices = [("Read it again", self.revert), ("Keep my version", lambda: None)]
+        text = "Another program changed this file. You can read it again, and undo that."
         choose(self.app.ui, f"{_called(path) if path else 'The file'} has changed", text, choices)
 
     def offer_recovery(self) -> None:
@@ -314,7 +314,7 @@ class DocumentActions:
         ]
         more = f" {len(found) - OFFERED} more come at the next start." if len(found) > OFFERED else ""
         choices.append(("Discard all of these" if len(offered) > 1 else "Discard it", discard))
-        text = f"The editor was not closed properly, and what was not saved has been kept.{more}"
+        text = f"The editor did not close properly last time. Your unsaved work was kept.{more}"
         choose(self.app.ui, "Recover your work?", text, choices, is_question=True)
 
     def _recover(self, orphan: Orphan) -> None:
@@ -324,7 +324,7 @@ class DocumentActions:
             show_lines(self.app.ui, "Not recovered", [str(error)])
             return
         if level is None:
-            show_lines(self.app.ui, "Not recovered", [orphan.fault or "Nothing of it is valid."])
+            show_lines(self.app.ui, "Not recovered", [orphan.fault or "Nothing in it is valid."])
             return
         recovered = level
 

@@ -421,7 +421,7 @@ class EditScreen:
     def set_grid(self, step: float | None) -> None:
         """Give the grid a distance [m]; None = as fine as the zoom lets one see."""
         self.grid_step = step
-        self.say(f"The grid has a step of {step:g} m." if step else "The grid goes by the zoom.")
+        self.say(f"The grid has a step of {step:g} m." if step else "The grid follows the zoom.")
 
     def grid_snaps(self, modifiers: int) -> bool:
         """Whether anything draws the pointer now."""

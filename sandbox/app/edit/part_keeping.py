@@ -16,7 +16,7 @@ def ask_to_keep_part(screen: Editing) -> None:
     """Ask for the name of a part, and write it."""
     document = screen.document
     if not document.selection:
-        screen.say("Select what the part is made of, then keep it.")
+        screen.say("Select what the part consists of first.")
         return
     names = {getattr(part, "group", None) for part in chosen_definitions(document.level, document.selection)}
     one = names.pop() if len(names) == 1 else None
@@ -33,8 +33,8 @@ def ask_to_keep_part(screen: Editing) -> None:
         return None
 
     def show(typed: str) -> None:
-        screen.say(f"{typed} is in the catalogue now, under Your own.")
+        screen.say(f"{typed} is in the catalogue now, under Your own parts.")
         screen.show_parts(kept[-1])
 
-    hint = "What is selected joins the catalogue, for all of your levels."
+    hint = "The selection becomes a part that you can use in all your levels."
     ask(screen.ui, "Keep as a part", hint, capitalised(suggestion), "Keep", answer, then=show)

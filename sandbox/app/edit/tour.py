@@ -65,7 +65,7 @@ class Guide:
     def skip(self) -> None:
         """End the tour, or want none; F1 has it again."""
         if self._offers:
-            self._app.say("The tour stays on the page of F1.")
+            self._app.say("You can start the tour again from the help page (F1).")
         self.tour, self._offers = None, False
         self._take_away()
 

@@ -54,7 +54,7 @@ class Watch:
             self.toggle_forecast()
         self._take_forecast()
         if self._is_wanted:
-            self._screen.say("Working out where it hangs; then it begins so.")
+            self._screen.say("Calculating the rest position; the level will begin there.")
 
     def _take_forecast(self) -> None:
         """Make the forecast the pose, where it is known and wanted."""
@@ -68,7 +68,7 @@ class Watch:
             position, falling, before = forecast.position, forecast.falling, screen.document.level
             if screen.edit("Begin at rest", lambda document: begin_at_rest(document, position, falling)):
                 same = screen.document.level is before
-                screen.say("It hangs at rest already." if same else "It begins at rest now; undo takes it back.")
+                screen.say("It is at rest already." if same else "It begins at rest now. Undo takes this back.")
         if not self._was_shown:
             self.toggle_forecast()
 

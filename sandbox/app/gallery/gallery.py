@@ -50,8 +50,8 @@ FILL_BUDGET = 0.02
 TITLES = {"levels": "Levels", "mine": "My levels", "recordings": "Replays"}
 # The level that a lesson plays twice.
 COMPARED = "jelly_cube"
-NO_LEVELS = "No levels of yours yet. Draw one in the editor (New, or E in any level) and save it with Ctrl+S."
-NO_REPLAYS = "No replays yet. Record a run with Ctrl+R, or save what you did with Ctrl+S."
+NO_LEVELS = "You have no levels yet. Draw one in the editor (New, or press E in any level) and save it with Ctrl+S."
+NO_REPLAYS = "No recordings yet. Record a run with Ctrl+R, or save what you did with Ctrl+S."
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
 

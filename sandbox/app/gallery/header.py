@@ -20,7 +20,7 @@ GAP = 8.0
 PAGES_WIDTH, SEARCH_WIDTH = 260.0, 240.0
 # Narrower windows have two rows and no line of sections.
 ROOM_FOR_ONE_ROW = 980.0
-NEW_TIP = "Draw a level of your own, from an empty sheet"
+NEW_TIP = "Draw your own level on an empty sheet"
 PAGES = (("levels", "Levels"), ("mine", "My levels"), ("recordings", "Replays"))
 SEARCH = "Type to search"
 

@@ -77,9 +77,9 @@ class GraphDock:
         right = width - EDGE
         buttons = (
             ("×", ROW, lambda: self._app.act("graphs"), tip_of("graphs", "play")),
-            ("PNG", FILE_WIDTH, self.save_picture, "A picture of what is shown"),
-            ("CSV", FILE_WIDTH, self.save_table, "A table of what is shown"),
-            (f"{self.span:g} s", SPAN_WIDTH, self._next_span, "How much time is seen: 5, 10, 30 or 60 s"),
+            ("PNG", FILE_WIDTH, self.save_picture, "Save the graph as a picture"),
+            ("CSV", FILE_WIDTH, self.save_table, "Save the graph as a table"),
+            (f"{self.span:g} s", SPAN_WIDTH, self._next_span, "Time span of the graph: 5, 10, 30 or 60 s"),
         )
         for text, wide, do, tip in buttons:
             right -= wide
@@ -121,7 +121,7 @@ class GraphDock:
     def pick(self, particle: int | None) -> None:
         """Follow a particle, or no longer; shows the graph of speeds where none of particles is seen."""
         if particle is None:
-            self._app.say("Point at a particle first, or move the cursor to one by N.")
+            self._app.say("Point at a particle first, or press N to move the cursor to one.")
             return
         if particle in self.picked:
             self.picked.remove(particle)
@@ -218,7 +218,7 @@ class GraphDock:
         """Keep what is shown as a table, CSV."""
         lines, unit = self.lines(), MEASURES[self.shown].unit
         if not lines:
-            self._app.say("There is nothing to keep yet.")
+            self._app.say("There is nothing to save yet.")
             return
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")

@@ -87,12 +87,12 @@ def _times(moment: Moment) -> dict[str, float]:
     return {name: value for name, value in found.items() if value is not None}
 
 
-PICK = "Point at a particle and press O; up to four are followed, and O again lets one go."
+PICK = "Point at a particle and press O to follow it (four at most); press O again to stop."
 MEASURES: dict[str, Measure] = {
     "energy": Measure("Energy", "J", _energies, "", ("total", "motion")),
     "strain": Measure("Strain", "%", _strains, "There is no spring here.", ("most stretched",)),
     "speed": Measure("Speed", "m/s", _speeds, PICK, from_zero=True),
     "place": Measure("Place", "m", _places, PICK),
-    "torque": Measure("Torque", "N m", _torques, "This level has no motor that pushes."),
-    "time": Measure("Step time", "ms", _times, "No tick was made yet.", from_zero=True),
+    "torque": Measure("Torque", "N m", _torques, "This level has no motor that is running."),
+    "time": Measure("Step time", "ms", _times, "The run has not started yet.", from_zero=True),
 }  # fmt: skip

@@ -27,7 +27,7 @@ class Track:
         return int(self._ticks[self._count - 1]) if self._count else -1
 
     def forget_from(self, tick: int) -> None:
-        """Forget a tick and what follows: it went on otherwise."""
+        """Forget a tick and what follows: the run was changed there."""
         self._count = int(np.searchsorted(self._ticks[: self._count], tick))
 
     def add(self, tick: int, values: Mapping[str, float]) -> None:

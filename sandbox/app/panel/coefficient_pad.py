@@ -435,7 +435,7 @@ def _zone_labels(zones: CoefficientZones, scale: CoefficientScale) -> list[tuple
         of = f"1/(n+1), n = {zones.most_springs}" if zones.holds else "1/(n+1) of a single pass"
         found.append((of, ACCENT, scale.place_of(reach) - 0.2, 0.84))
     if not zones.holds:
-        return [*found, ("nothing is proven here", MUTED, 0.32, 0.94)]
+        return [*found, ("not proven here", MUTED, 0.32, 0.94)]
     found.append(("proven stable", MUTED, 0.22, 0.94))
     if zones.estimated is not None and zones.estimated[0] < 0.95:
         found.append(("explodes", DANGER, 0.5, 0.5 * (1.0 - scale.place_of(float(zones.estimated[0])))))

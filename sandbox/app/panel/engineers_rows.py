@@ -75,7 +75,7 @@ class EngineersRows:
             return False
         ratio = _typed_or_none(self.ratio.text)
         if ratio is None:
-            self._say("The springs had different damping ratios; all are now 1.")
+            self._say("The springs had different damping ratios. All of them are 1 now.")
         return self._set_frequency(frequency, 1.0 if ratio is None else ratio)
 
     def _type_ratio(self, text: str) -> bool:

@@ -26,7 +26,7 @@ from sandbox.session.commands import SetFirmness
 ALL_BODIES = "All bodies"
 # Where only a run tells how far a body sags: ticks of it in a frame, and particles of the largest body that has one.
 TICKS_A_FRAME, LARGEST_RUN = 12, 400
-TOO_STIFF = "Too stiff for a single pass: it melts or explodes."
+TOO_STIFF = "Too stiff for the single pass: it melts or explodes."
 
 
 class FirmnessRows:
@@ -152,7 +152,7 @@ class FirmnessRows:
         if not readings:
             return "The springs of a body differ in Cs or Cd."
         if not sags:
-            return "How far it sags is being measured ..."
+            return "Measuring how far it sags ..."
         sag = sag_words(min(sags), max(sags))
         motions = {motion_words(reading.motion) for reading in readings}
         return f"{sag}; {motions.pop()}." if whole and len(motions) == 1 else f"{sag}."
@@ -240,6 +240,6 @@ class FirmnessRows:
                 self._say(f"{name}: {error}.")
                 continue
             if given != wanted:
-                self._say(f"{name}: {wanted} is out of reach; it has the nearest now, {given}.")
+                self._say(f"{name}: {wanted} is not possible here. It has the nearest value now: {given}.")
             self.playback.submit(SetFirmness(slot, **asdict(given)), gesture)
         return True

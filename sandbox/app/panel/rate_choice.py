@@ -35,10 +35,10 @@ def ask_for_pace(app: Application, playback: Playback, rate: int) -> None:
             app.say(sentence(error))
             return
         app.start(Playback(level))
-        app.say(f"From the beginning at {rate} ticks a second; E edits the level with them.")
+        app.say(f"The run starts over at {rate} ticks a second; E edits the level with them.")
 
     choices = [
         ("Keep the behaviour per second", partial(begin, True)), ("Keep Cs and Cd as they are", partial(begin, False)),
     ]  # fmt: skip
-    about = "The run begins anew. A spring with the same Cs and Cd is stiffer with more ticks a second."
+    about = "The run starts over. With more ticks a second, the same Cs and Cd make a stiffer spring."
     choose(app.ui, f"{rate} ticks a second", about, choices)

@@ -11,9 +11,9 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import SetSolver
 
 SOLVER_TIPS = {
-    "single_pass": "The article's loop: each spring once a tick; soft things hold, stiff ones explode",
-    "iterative": "Each spring several times a tick: firmer, the more iterations there are",
-    "direct": "All springs at once: stiff things stay stiff, and nothing explodes",
+    "single_pass": "The article's loop: solves each spring once a tick; stiff things may explode",
+    "iterative": "Solves each spring several times a tick; more iterations make things firmer",
+    "direct": "Solves all springs at once; stiff things stay stiff and nothing explodes",
 }
 SOLVER_LABELS = {"single_pass": "Single pass", "iterative": "Iterative", "direct": "Direct"}
 
@@ -31,19 +31,19 @@ class SolverRows:
         ui.label(rows.row(18, 2), "Solver", back, "@muted")
         self.solver = ui.choice(rows.row(ROW, 8), options, self._choose_solver, back)
         ui.label(rows.row(18, 2), "Substeps", back, "@muted")
-        several = "things stay as stiff per second and hold better"
+        several = "things stay as stiff and hold better"
         counts = [(str(count), str(count), f"A tick in {count}: {several}" if count > 1 else "A tick in one")
                   for count in SUBSTEPS]  # fmt: skip
-        counts.insert(0, (AUTO, "Auto", "Every tick takes as many as it needs, 1 to 8"))
+        counts.insert(0, (AUTO, "Auto", "Each tick uses as many as it needs, 1 to 8"))
         self.substeps = ui.choice(rows.row(ROW - 2, 6), counts, self._choose_substeps, back)
         self.iterations, self.warm_start, self.rate = rows.beside(
-            ("Iterations", "Rounds of the iterative solver: fewer are softer", self._type_iterations),
+            ("Iterations", "Rounds of the iterative solver; fewer make things softer", self._type_iterations),
             (
                 "Warm start",
-                "Part of the last pull that the iterative solver begins with, 0 to 1",
+                "How much of the last tick's impulses the iterative solver starts with, 0 to 1",
                 self._type_warm_start,
             ),
-            ("Ticks/s", "Ticks a second; the run begins anew with another number of them", self._type_rate),
+            ("Ticks/s", "Ticks a second; the run starts over when you change it", self._type_rate),
         )
 
     def refresh(self) -> None:
@@ -84,5 +84,5 @@ class SolverRows:
     def _submit(self, command: SetSolver) -> bool:
         self.playback.submit(command)
         if self.playback.session.world.settings.solver != "iterative":
-            self._say("It counts in the iterative solver alone.")
+            self._say("Only the iterative solver uses it.")
         return True

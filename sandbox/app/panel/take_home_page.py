@@ -29,7 +29,7 @@ def show_take_home(
     """Cover the window by what a body (None: the first) takes home, for one of TARGETS, until it is closed."""
     names = body_names(world)
     if not names:
-        say("No spring does anything here: there is nothing to take home.")
+        say("This level has no springs to take home.")
         return
     body = body if body in names else names[0]
     try:
@@ -47,7 +47,7 @@ def show_take_home(
         show_take_home(ui, world, say, new_body or body, new_target or target)
 
     def copy() -> None:
-        say("It is on the clipboard." if copy_text(text) else "The system has no clipboard here.")
+        say("It is on the clipboard." if copy_text(text) else "The clipboard is not available here.")
 
     sheet = ui.open_sheet(close, is_page=True, again=lambda there: show_take_home(there, world, say, body, target))
     box = ui.panel(ui.rect((ui.units[0] - width) / 2, (ui.units[1] - height) / 2, width, height), sheet, "@dialog")

@@ -47,10 +47,10 @@ def level_touching(playback: Playback, touching: Touching) -> Level:
 def begin_touching(app: Application, playback: Playback, touching: Touching, of_document: bool) -> None:
     """Begin a run anew with things that touch so, or say why that cannot be."""
     if of_document:
-        app.say("This run is of the level in the editor: change that there, on the page Level.")
+        app.say("This run belongs to the editor. Change it there, on the page Level.")
         return
     if touching.fixed and not touching.is_on:
-        app.say("This level has terrain or walls, which things touch.")
+        app.say("This level has terrain or walls, so contacts stay on.")
         return
     try:
         level = level_touching(playback, touching)

@@ -17,7 +17,7 @@ from sandbox.session.commands import SetGravity
 from sandbox.tools.drag import STRENGTHS
 
 LABEL = 46.0
-GRAVITY_TIP = "Acceleration of what falls; -9.81 downwards is that of the Earth, 0 floats"
+GRAVITY_TIP = "How fast things fall; -9.81 is the Earth's gravity, at 0 they float"
 
 
 class WorldRows:
@@ -40,13 +40,17 @@ class WorldRows:
             ("Gravity y [m/s\u00b2]", GRAVITY_TIP, lambda text: self._type_gravity(text, 1)),
         )
         ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Touch", back, "@muted")
-        options = [("off", "Off", "Things pass through each other; the run begins anew"),
-                   ("on", "On", "Things touch each other; the run begins anew")]  # fmt: skip
+        options = [("off", "Off", "Things pass through each other; the run starts over"),
+                   ("on", "On", "Things touch each other; the run starts over")]  # fmt: skip
         place = rows.row(ROW - 2, 6, MARGIN + LABEL, INSIDE - LABEL)
         self.touch = ui.choice(place, options, self._choose_touch, back)
         self.friction, self.bounce = rows.beside(
-            ("Friction", "Of all that says nothing else: 0 slides, 1 grips; the run begins anew", self._type_friction),
-            ("Bounce", "Part of its speed that it keeps, 0 to 1; the run begins anew", self._type_bounce),
+            (
+                "Friction",
+                "Friction of everything without its own: 0 slides, 1 grips; the run starts over",
+                self._type_friction,
+            ),
+            ("Bounce", "How much speed a bounce keeps, 0 to 1; the run starts over", self._type_bounce),
         )
         ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Hand", back, "@muted")
         options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]

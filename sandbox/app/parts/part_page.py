@@ -26,8 +26,8 @@ HEADING, LINE = 28.0, 22.0
 BUTTON = 34.0
 # Wall time [s] of a frame that cards are filled in.
 FILL_BUDGET = 0.008
-NOTHING_OWN = "In the editor, select something and keep it as a part: Ctrl+K. Then it is here, too."
-HINT = "Click a part, then the world: a click drops it, a drag throws it."
+NOTHING_OWN = "Select something in the editor and press Ctrl+K. It then appears here as a part."
+HINT = "Click a part, then click to drop it, or drag to throw it."
 
 
 Take = Callable[[Level, bool], object]

@@ -12,7 +12,7 @@ from sandbox.physics.world import World
 Keeper = Callable[[Document, World], Document]
 KEEPERS: tuple[tuple[str, Keeper], ...] = (
     ("Cs and Cd of the materials", keep_coefficients),
-    ("Pose: where everything is now", keep_pose),
+    ("Pose: the present positions", keep_pose),
     ("Pins", keep_pins),
     # Late, as the springs have other numbers then.
     ("Cuts", keep_cuts),
@@ -25,7 +25,7 @@ def ask_to_keep(app: Application) -> None:
     """Ask what of the run the document takes over; each is a step of its history."""
     play, editor = app.play, app.documents.editor
     if play is None or editor is None or not play.of_document:
-        app.say("Only a level that is open in the editor can keep something: press E first.")
+        app.say("Open the level in the editor first: press E.")
         return
     world = play.playback.session.world
 
@@ -38,7 +38,7 @@ def ask_to_keep(app: Application) -> None:
         before = editor.document.level
         if editor.edit(label, kept):
             same = editor.document.level is before
-            app.say("The document has all of that already." if same else f"{label}. Undo takes it back in the editor.")
+            app.say("The level has all of that already." if same else f"{label}. Undo takes it back in the editor.")
 
     choices: list[tuple[str, Callable[[], object]]] = [
         (name, lambda name=name, keeper=keeper: keep(f"Keep {name[0].lower()}{name[1:]}", (keeper,)))  # type: ignore[misc]
@@ -46,4 +46,4 @@ def ask_to_keep(app: Application) -> None:
     ]
     everything = tuple(keeper for _, keeper in KEEPERS)
     choices.append(("All of it", lambda: keep("Keep all of the run", everything)))
-    choose(app.ui, "Keep in the document", "What of this run shall the level begin with?", choices)
+    choose(app.ui, "Keep in the level", "What should the level take over from this run?", choices)

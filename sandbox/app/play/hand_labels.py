@@ -30,7 +30,7 @@ def text_of(pull: Pull) -> list[str]:
     if not pull.at_limit:
         return [newtons(pull.force)]
     lines = [f"{newtons(pull.force)} of {newtons(pull.limit)}"]
-    return [*lines, "pinned: it can only bend"] if pull.pinned else lines
+    return [*lines, "pinned: the body can only bend"] if pull.pinned else lines
 
 
 def draw_labels(surface: pygame.Surface, ui: Ui, camera: Camera, current: Snapshot, pulls: list[Pull]) -> None:

@@ -132,7 +132,7 @@ def rows_of(overlays: Overlays, solver: str) -> list[tuple[str, Draw]]:
     if "lattice" in shown:
         rows += [
             ("strain: squeezed, at rest, stretched", _strain),
-            ("it has yielded", _yielded),
+            ("yielded (bent for good)", _yielded),
             ("broke here", _broke),
         ]
     if "particles" in shown:

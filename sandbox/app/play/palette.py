@@ -109,7 +109,7 @@ class PartsPalette:
         for number, name in enumerate(shown):
             column, row = divmod(number, rows)
             place = ui.rect(EDGE + column * (BUTTON + GAP), EDGE + row * LEAST_STEP, BUTTON, BUTTON)
-            tip = "More: what has no room here" if name == MORE else tip_of(_action_of(name), "play")
+            tip = "More buttons" if name == MORE else tip_of(_action_of(name), "play")
             do = self._show_menu if name == MORE else functools.partial(press, _action_of(name))
             self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="@quiet")
 

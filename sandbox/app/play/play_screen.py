@@ -250,7 +250,7 @@ class PlayScreen:
     def _ask_rate(self, typed: str) -> None:
         """Ask how to begin anew at another tick rate."""
         if self.of_document:
-            self._app.say("This run is of the level in the editor: change its ticks a second there, on the page Level.")
+            self._app.say("This run belongs to the editor. Change its ticks a second there, on the page Level.")
         else:
             ask_for_pace(self._app, self.playback, int(typed))
 
@@ -350,7 +350,9 @@ class PlayScreen:
 
     def _say_what_touches(self) -> None:
         if not self.has_contacts:
-            self._app.say("Nothing touches anything in this level. Shift+T lets things touch, from the beginning.")
+            self._app.say(
+                "Things pass through each other in this level. Shift+T switches contacts on; the run starts over."
+            )
 
     def _zoom(self, steps: int) -> None:
         if not self.stage.resize(steps):
@@ -369,7 +371,7 @@ class PlayScreen:
         self.stage.drag.strength = name
         set_preference(HAND, name)
         if self.stage.drag.holds:
-            self._app.say(f"What is held now stays in a hand of its old strength; the next hold is {name}.")
+            self._app.say(f"The present hold keeps its strength; the next one is {name}.")
 
     def _next_strength(self) -> None:
         names = list(STRENGTHS)
@@ -571,7 +573,7 @@ class PlayScreen:
         if playback.session.recording is not None:
             parts.append((f"recording {playback.session.recording.name}", DANGER))
         if playback.replay is not None:
-            parts.append((playback.outcome or f"replay, {playback.replay.ticks:,} ticks", TEXT))
+            parts.append((playback.outcome or f"recording, {playback.replay.ticks:,} ticks", TEXT))
         parts.append((f"tick {playback.session.tick:,}", MUTED))
         counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
         world = playback.session.world

@@ -131,13 +131,13 @@ class Stage:
         """Let the camera go along with what is held, pointed at, picked or driven, or stand; what is to be said."""
         if self.following.particle is not None:
             self.following.begin(None)
-            return "The camera stands."
+            return "The camera stands still."
         held = [hold.particle for hold in self.drag.holds.values()]
         found = [*held[-1:], self.pointed, picked, driven_particle(self.playback.session.world)]
         self.following.begin(next((particle for particle in found if particle is not None), None))
         if self.following.particle is None:
-            return "Point at something, or hold it, and press Shift+F: the camera goes along."
-        return "The camera goes along. Shift+F lets it stand."
+            return "Point at something, or hold it, and press Shift+F: the camera follows it."
+        return "The camera follows. Shift+F stops it."
 
     def replace_playback(self, playback: Playback) -> None:
         """Show another run of the same level, with the same camera and tool."""

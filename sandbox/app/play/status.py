@@ -184,7 +184,7 @@ def draw_work(surface: pygame.Surface, ui: Ui, share: float, text: str, pointer:
     """A bar that a button cancels; where that is. pointer: where the mouse is [pixels]."""
     card = draw_bar(surface, ui, share, text, 142)
     middle = card.bottom - ui.px(40)
-    hint = ui.font(12).render("Escape leaves all as it was.", True, MUTED)
+    hint = ui.font(12).render("Escape cancels.", True, MUTED)
     surface.blit(hint, hint.get_rect(midleft=(card.left + ui.px(28), middle)))
     button = pygame.Rect(0, 0, ui.px(96), ui.px(32))
     button.midright = (card.right - ui.px(28), middle)
@@ -208,7 +208,7 @@ def status_parts(
     parts: list[tuple[str, Colour]] = []
     if non_finite:
         verb = "particle is" if non_finite == 1 else "particles are"
-        parts.append((f"{non_finite:,} {verb} no longer finite and not drawn: undo or reset", DANGER))
+        parts.append((f"{non_finite:,} {verb} left the world and are not drawn: undo or reset", DANGER))
     if behind:
         parts.append(("slower than real time", WARNING))
     parts += [
@@ -226,7 +226,7 @@ def motor_parts(readings: list[MotorReading], carries: bool) -> list[tuple[str, 
         return []
     parts: list[tuple[str, Colour]] = []
     if not carries:
-        parts.append(("a single pass cannot carry wheels under a load: take another solver", WARNING))
+        parts.append(("the single pass cannot carry loaded wheels: choose another solver", WARNING))
     if len(readings) > NAMED_MOTORS:
         full = sum(reading.at_limit for reading in readings)
         told = f"{full} at their limit" if full else "none at its limit"
@@ -236,5 +236,5 @@ def motor_parts(readings: list[MotorReading], carries: bool) -> list[tuple[str, 
             text = f"motor {reading.name}: {number(abs(reading.torque))} of {number(reading.limit)} N m"
             parts.append((text, WARNING if reading.at_limit else MUTED))
         else:
-            parts.append((f"motor {reading.name}: it pushes against nothing", WARNING))
+            parts.append((f"motor {reading.name}: it turns freely", WARNING))
     return parts

@@ -192,11 +192,11 @@ class TimeBar:
         playback = self._playback()
         branches = playback.session.branches
         if not branches:
-            self._app.say("Nothing was changed in the past yet. Go back, touch something: what followed is kept.")
+            self._app.say("There is no earlier version yet. Go back in time and change something: the old run is kept.")
             return
         rate = playback.session.world.settings.tick_rate
         choices = [(_told(branch, rate), partial(playback.return_to, branch)) for branch in reversed(branches)]
-        choose(self._app.ui, "How it went on before", "", choices)
+        choose(self._app.ui, "Earlier versions of this run", "", choices)
 
 
 def _told(branch: Branch, rate: float) -> str:

@@ -141,7 +141,7 @@ class Toolbar:
             self._add(action)
         if self.left_out:
             self._pictures["more"] = "more"
-            self._add("more", self._show_menu, "More: what has no room here")
+            self._add("more", self._show_menu, "More buttons")
         self.tools = {name: self.buttons.get(f"tool_{name}") for name in ("drag", "pin", "cut")}
 
     def _show_menu(self) -> None:

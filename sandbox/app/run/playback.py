@@ -31,7 +31,7 @@ TICK_BUDGET = 0.05
 # Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
 FRAMES_TO_JOIN = 2
 # What is said where playing a run again was given up.
-GIVEN_UP = "Cancelled: the run is as it was."
+GIVEN_UP = "Cancelled. The run did not change."
 
 
 class Listener(Protocol):
@@ -114,7 +114,7 @@ class Playback:
         if self.watching:
             self.take_over()
         if is_past and not self._submitted:
-            self.messages.append("The run goes on from here. What followed is kept: Shift+Y returns to it.")
+            self.messages.append("The run goes on from here. Shift+Y goes back to the old one.")
         if self.clock.speed < 0.0:
             self.clock.speed, self.clock.accumulator = 1.0, 0.0
         self.travel.target = None
@@ -163,7 +163,7 @@ class Playback:
         """Stop following the replay: from here the person plays."""
         self._taken_over = True
         self.verdict = f"You took over at tick {self.session.tick}"
-        self.messages.append(f"{self.verdict}: the recording is not followed any further.")
+        self.messages.append(f"{self.verdict}: the run no longer follows the recording.")
 
     def seek(self, tick: int) -> None:
         """Go to a tick, as near as there is one; a replay that has not been there yet goes on from its stored
@@ -376,7 +376,7 @@ class Playback:
         return True
 
     def _end_watching(self, outcome: str) -> None:
-        self.verdict = f"End of the replay: {outcome}"
+        self.verdict = f"End of the recording: {outcome}"
         self.clock.paused = True
         self.messages.append(self.verdict)
 

@@ -57,7 +57,7 @@ class Travel:
         commands = [Mark(entry.tick, "command", entry.command.type.replace("_", " ")) for entry in session.gestures]
         breaks = [Mark(tick, "break", "break") for tick in session.breaks]
         bookmarks = [Mark(tick, "bookmark", "bookmark") for tick in self.bookmarks]
-        branches = [Mark(branch.tick, "branch", "it went on otherwise") for branch in session.branches]
+        branches = [Mark(branch.tick, "branch", "the run was changed there") for branch in session.branches]
         return sorted([*commands, *breaks, *bookmarks, *branches], key=lambda mark: mark.tick)
 
     def mark_beside(self, tick: int, by: int) -> Mark | None:

@@ -64,15 +64,15 @@ SCALES = (0.5, 4.0)
 SETTINGS: tuple[Setting, ...] = (
     OneOf("theme", "Theme", "Look", (("system", "As the system"), ("light", "Light"), ("dark", "Dark")),
           "Some levels set their own"),
-    Amount("scale", "Size of widgets", "Look", *SCALES, 0.125, tip="Ctrl++ and Ctrl+- as well"),
+    Amount("scale", "Size of widgets", "Look", *SCALES, 0.125, tip="Ctrl++ and Ctrl+- do the same"),
     OneOf("effects", "Shadows and effects", "Look", (("auto", "Automatic"), ("on", "On"), ("off", "Off")),
-          "Automatic: left out while frames come late"),
+          "Automatic: switched off while drawing is slow"),
     OneOf("motion", "Motion", "Look", (("full", "Full"), ("less", "Reduced")),
           "Reduced: pictures of the gallery stand still, no dust and no sparks"),
-    OneOf("sound", "Sound", "Sound", (("on", "On"), ("off", "Off")), "M and the button in the bar as well"),
+    OneOf("sound", "Sound", "Sound", (("on", "On"), ("off", "Off")), "The M key and the button in the bar do the same"),
     Amount("volume", "Volume", "Sound", 0.0, 1.0, 0.1, 0.6),
     OneOf("hints", "Hints", "Help", (("show", "Show"), ("hide", "Hide")),
-          "What a level says of itself when it begins; F2 shows it again"),
+          "Show the level's description when it starts; F2 shows it again"),
 )  # fmt: skip
 
 
@@ -89,7 +89,7 @@ class Chosen:
         self.faults: list[str] = []
         aside = set_aside_broken()
         if aside is not None:
-            self.faults.append(f"Your settings cannot be read. The usual ones hold; the file is kept as {aside}.")
+            self.faults.append(f"Your settings cannot be read, so the defaults apply. The file is kept as {aside}.")
         read = preferences()
         self._values = {setting.name: self._taken(setting, read) for setting in SETTINGS}
         self._values |= {name: value for name, value in given.items() if value is not None}
@@ -124,5 +124,5 @@ class Chosen:
             isinstance(keys, list) and all(isinstance(key, str) for key in keys) for keys in read.values()
         ):
             return {name: tuple(keys) for name, keys in read.items()}
-        self.faults.append("preferences.json: keys: not a list of keys for each action; the usual ones hold.")
+        self.faults.append("preferences.json: keys: not a list of keys for each action; the defaults apply.")
         return {}

@@ -20,7 +20,7 @@ LABEL_SHARE = 0.42
 ROOM_BESIDE = 520.0
 BUTTON, TIP_TEXT = 34.0, 11.0
 PAGES = (("general", "General", ""), ("play", "Keys in play", ""), ("edit", "Keys in editor", ""))
-KEYS_NOTE = "Click a row, then press the new keys. Delete clears it, Escape leaves it as it is."
+KEYS_NOTE = "Click a row, then press the new keys. Delete clears it, Escape cancels."
 
 
 class SettingsSheet:
@@ -79,11 +79,11 @@ class SettingsSheet:
     def _reset(self) -> None:
         """Go back to the usual values of what this page shows."""
         if self._page == "general":
-            self._note.show_text("The usual values hold again.")
+            self._note.show_text("The defaults apply again.")
             for setting in SETTINGS:
                 self._chosen.choose(setting.name, None)
         else:
-            self._note.show_text("The usual keys hold again.")
+            self._note.show_text("The default keys apply again.")
             names = {entry.name for entry in _changeable(self._page)}
             self._chosen.choose_keys({name: keys for name, keys in self._chosen.keys.items() if name not in names})
         self._show_anew()

@@ -133,7 +133,7 @@ class ShareForm:
         )  # fmt: skip
         self.sizes = ui.choice(self._row("Size", TOP - 4 + step), SIZE_NAMES, self._choose_size, self._box)
         self.named = ui.choice(
-            self._row("The level's name in it", TOP - 4 + 2 * step), NAMED,
+            self._row("Show the level's name", TOP - 4 + 2 * step), NAMED,
             lambda value: sharing.choose(named=value == "yes"), self._box,
         )  # fmt: skip
         if not sharing.level_name:
@@ -180,7 +180,7 @@ class ShareForm:
         self.bar = ProgressBar(ui, ui.rect(self._right, TOP + 30, self._side, 10), self._box)
         self._build_note(TOP + 54)
         self._add_button("Cancel", sharing.cancel, 0)
-        self._add_button("Play on", self._leave, 1, tip="It is written while you play")
+        self._add_button("Play on", self._leave, 1, tip="You can play on while it is written")
 
     def _build_outcome(self) -> None:
         sharing, ui = self._sharing, self._ui

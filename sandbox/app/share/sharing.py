@@ -116,7 +116,7 @@ class Sharing:
         self._say_where()
         if film.seconds < SHORTEST_FILM:
             self.wanted = replace(self.wanted, kind="png")
-            self.note = "Nothing has moved yet: there is this picture alone. Let it play for some seconds first."
+            self.note = "Nothing has moved yet, so there is only this picture. Let it play for a few seconds first."
         self._suggest_name()
 
     def leave(self) -> None:
@@ -126,7 +126,7 @@ class Sharing:
         if self._slices is None:
             self._let_go()
         else:
-            self._app.say("It is written while you play on. Share (F12) shows how far it is, and can cancel it.")
+            self._app.say("You can play on while it is written. Share (F12) shows the progress and can cancel it.")
 
     def choose(self, **changes: object) -> None:
         """Change what is wanted."""
@@ -219,7 +219,10 @@ class Sharing:
         if self._app.ui.has_question:
             return
         self._then = None
-        choices: list[Choice] = [("Finish it, then close", partial(self._finish, then)), ("Drop it and close", then)]
+        choices: list[Choice] = [
+            ("Finish writing, then close", partial(self._finish, then)),
+            ("Close without the file", then),
+        ]
         title = f"{self._export.path.name} is still being written"
         choose(self._app.ui, title, f"{100.0 * self.done:.0f} % of it is done.", choices, is_question=True)
 

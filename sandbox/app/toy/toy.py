@@ -35,7 +35,7 @@ CLOSE_AT, CLOSE_RADIUS, CLOSE_ARM = 16.0, 10.0, 3.6
 # How far an arrow key moves the frame [m], and how long words are shown [s].
 NUDGE, READABLE = 0.35, 6.0
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
-HINT = "Drag the box itself to shake it"
+HINT = "Drag the window to shake it"
 # A particle is taken hold of that is no farther from the pointer than this [layout units]; elsewhere is the window.
 REACH = 16.0
 

@@ -15,7 +15,7 @@ from sandbox.app.toy.desk import Desk
 SIDE, MOST_OBLONG, FROM_CORNER = 300, 2.5, 48
 # Systems that leave place and stacking of windows to themselves, and what is said there.
 SEDATE = {"wayland": "Wayland"}
-REFUSED = "lets no window stay on top or know its place: the toy is a plain small window; the arrow keys shake it."
+REFUSED = "does not let windows stay on top: the toy is a plain small window; the arrow keys shake it."
 
 
 class ToyWindow(Display):
@@ -41,7 +41,7 @@ class ToyWindow(Display):
                     borderless=True, always_on_top=True, utility=True,
                 )  # fmt: skip
             except (pygame.error, TypeError) as error:
-                self.floats, self.refusal = False, f"No window can stay on top here ({error}): the toy is a plain one."
+                self.floats, self.refusal = False, f"Windows cannot stay on top here ({error}): the toy is a plain one."
         else:
             self.refusal = f"{SEDATE[driver]} {REFUSED}"
         if not self.floats:

@@ -190,7 +190,7 @@ class App:
     def _show_hint(self) -> None:
         """Say once more what the level of the run is about."""
         if self.play is not None:
-            self._describe(self.play.playback.level.description or "This level says nothing of itself.")
+            self._describe(self.play.playback.level.description or "This level has no description.")
 
     def follow(self, playback: Playback, can_cancel: bool = True) -> None:
         """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
@@ -271,7 +271,7 @@ class App:
             self.take_back(play.welcome)
             self.start(back, source)
         elif play.of_document:
-            self.say("Save the level and open it from its file to play it twice: this run belongs to the editor.")
+            self.say("This run belongs to the editor. Save the level and open its file to compare two settings.")
         else:
             pair = CompareScreen(self, TwinPlayback(level), TwinPlayback(level), source)
             pair.single = play.playback

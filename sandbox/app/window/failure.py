@@ -41,11 +41,11 @@ class FrameGuard:
         path = _kept(self.report)
         where = f" A report is in {path}." if path is not None else ""
         if len(self._times) >= MOST:
-            raise SystemExit(f"The program met one fault after another and ends. Your work is kept.{where}") from error
+            raise SystemExit(f"Too many things failed, so the program closes. Your work is kept.{where}") from error
         # What the frame was at may be half done.
         self._app.rebuild()
         text = (
-            f"The program met a fault of its own ({one_line(f'{type(error).__name__}: {error}')[:120]}). "
+            f"Something in the program failed ({one_line(f'{type(error).__name__}: {error}')[:120]}). "
             f"Your work is kept.{where}"
         )
         choices = [
@@ -55,7 +55,7 @@ class FrameGuard:
 
     def _copy(self) -> None:
         copied = copy_text(self.report)
-        self._app.say("The report is on the clipboard." if copied else "The system has no clipboard here.")
+        self._app.say("The report is on the clipboard." if copied else "The clipboard is not available here.")
 
 
 def _report(error: Exception) -> str:

@@ -30,7 +30,7 @@ class FileActions:
     # Opening.
 
     def open_path(self, path: str | Path) -> bool:
-        """Open a level or a replay, whichever the file is; True where it could be."""
+        """Open a level or a recording, whichever the file is; True where it could be."""
         if Path(path).suffix.lower() == TABLE:
             return self.open_sweep(Path(path))
         try:
@@ -59,7 +59,7 @@ class FileActions:
         """Show a table of `sandbox sweep` behind the pad, if it is of the level that runs."""
         try:
             if self.app.play is None:
-                raise SweepError(f"{path}: play the level that it is of, then open it again")
+                raise SweepError(f"{path}: open its level first, then open it again")
             self.app.play.show_sweep(path)
         except (SweepError, UnicodeDecodeError) as error:
             self._refuse(path, [str(error)])
@@ -87,7 +87,7 @@ class FileActions:
     def ask_to_open(self) -> None:
         """Ask for the path of a level or replay, or a shipped level's name."""
         hint = "A path, or the name of a shipped level. Files can be dropped on the window too."
-        ask(self.app.ui, "Open a level or a replay", hint, "", "Open", self._fault_of, then=self._open_typed)
+        ask(self.app.ui, "Open a level or a recording", hint, "", "Open", self._fault_of, then=self._open_typed)
 
     def _fault_of(self, typed: str) -> str | None:
         """Why nothing can be opened by that name; a file's own faults are shown when it is opened."""
@@ -135,7 +135,7 @@ class FileActions:
             self.app.say(_recording(path))
 
     def save_run(self) -> None:
-        """Save the run so far as a replay, under a name that is asked for."""
+        """Save the run so far as a recording, under a name that is asked for."""
         play = self.app.play
         if play is None:
             return
@@ -172,7 +172,7 @@ class FileActions:
         suggestion = path.name.removesuffix(SUFFIX)
         ask(
             self.app.ui,
-            "Name the replay",
+            "Name the recording",
             f"In {path.parent}. Escape keeps the name.",
             suggestion,
             "Save",

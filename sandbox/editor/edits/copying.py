@@ -39,7 +39,7 @@ def paste(document: Document, text: str, at: Point | None = None) -> Document:
     except LevelError as error:
         raise EditError(error.faults[0]) from None
     if not (found.bodies or found.particles or found.terrain):
-        raise EditError("what was copied is a level with nothing in it")
+        raise EditError("the copied level is empty")
     box = make_scene(found).bounds()
     if at is not None and box is not None:
         found = shifted(found, at[0] - (box[0] + box[2]) / 2.0, at[1] - (box[1] + box[3]) / 2.0)
@@ -70,7 +70,7 @@ def fragment(document: Document) -> Level:
     bodies, particles = chosen_bodies(level, selection), chosen_particles(level, selection)
     terrain = chosen_terrain(level, selection)
     if not (bodies or particles or terrain):
-        raise EditError("select something to copy; of springs, what they join too")
+        raise EditError("select something to copy; for springs, select their ends too")
     owners = keys(selection, "body") | keys(selection, "particle")
     inside = tuple(spring for spring in level.springs if _inside(owners, spring.a, spring.b))
     used = _used([*bodies, *inside])
@@ -105,7 +105,7 @@ def shifted(level: Level, dx: float, dy: float) -> Level:
 def _repeated(document: Document, count: int) -> Level:
     """The fragment to repeat. Raises EditError before anything is made that would be too much."""
     if count < 2:
-        raise EditError("a row or circle has two or more")
+        raise EditError("a row or circle needs two or more")
     first = fragment(document)
     total = [_size(level, part) for level in (document.level, first) for part in (0, 1)]
     for now, more, noun, limit in (

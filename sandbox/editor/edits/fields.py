@@ -36,10 +36,10 @@ def set_field(document: Document, items: Iterable[Item], field: str, value: Any)
     chosen = frozenset(items)
     if field == "id":
         if len(chosen) != 1:
-            raise EditError("an id is of one thing alone; select one")
+            raise EditError("several things cannot share a name; select one")
         return rename(document, next(iter(chosen)), value)
     if field == "type":
-        raise EditError("the kind of a body stays; draw another one")
+        raise EditError("a body cannot change its kind; draw another one")
     value = with_tuples(value) if field != "extras" else value
     read: dict[type, Any] = {}
 
@@ -97,7 +97,7 @@ def rename(document: Document, item: Item, new_id: str) -> Document:
         return document
     new = validated(replaced(part, id=new_id))
     if new_id in taken_ids(level):
-        raise EditError(f"{shown(new_id)} is taken; all bodies, loose particles and terrain need ids of their own")
+        raise EditError(f"{shown(new_id)} is taken; each body, particle and piece of terrain needs its own name")
 
     def with_id(_: Definition) -> Definition:
         return new

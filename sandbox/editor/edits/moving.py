@@ -58,7 +58,7 @@ def scale(document: Document, sx: float, sy: float, centre: Point) -> Document:
     """Make the selection sx times as wide and sy times as high about a centre [m]. Raises EditError where it bends."""
     _finite("a scale", sx, sy, *centre)
     if min(sx, sy) <= 0.0:
-        raise EditError("a scale is a number above 0; to turn something over, mirror it")
+        raise EditError("a scale is a number above 0; use Mirror to turn something over")
     return _mapped(document, Motion(centre, sx=sx, sy=sy))
 
 

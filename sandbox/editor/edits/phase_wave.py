@@ -32,7 +32,7 @@ def wave_along(document: Document, start: Point, end: Point, waves: float = 1.0)
     way = np.subtract(end, start)
     squared = float(way @ way)
     if squared == 0.0:
-        raise EditError("the way has no length; drag farther")
+        raise EditError("drag farther")
     scene = make_scene(document.level)
 
     def share(item: Item) -> float:

@@ -32,8 +32,8 @@ class TrussOptions(LineOptions):
     height: float | None = size_option("height", "Height; empty = square or equilateral cells.")
     particle_mass: float = mass_option(1.0)
     material: str = material_option("steel")
-    pin_start: bool = flag_option(True, "pin start", "Hold the start, unless it joins a particle.")
-    pin_end: bool = flag_option(True, "pin end", "Hold the end, unless it joins a particle.")
+    pin_start: bool = flag_option(True, "pin start", "Pin the start, unless it joins a particle.")
+    pin_end: bool = flag_option(True, "pin end", "Pin the end, unless it joins a particle.")
 
 
 class BridgeDrawing(LineDrawing[TrussOptions]):

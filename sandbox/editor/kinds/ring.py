@@ -35,8 +35,8 @@ class RingOptions(BodyOptions):
     segments: int | None = count_option("parts", "Number of parts; empty = about 0.25 m each.", 3)
     inflation: float | None = option(
         1.2,
-        OptionInfo("number", "inflation", "Area that it wants, times its own; empty = it holds nothing.", "", 0.0,
-              INFLATION_LIMIT, optional=True),
+        OptionInfo("number", "inflation", "Air inside: the area it tries to have, times its own; empty = no air.", "",
+              0.0, INFLATION_LIMIT, optional=True),
     )  # fmt: skip
     particle_mass: float = mass_option(0.1)
     material: str = material_option("rubber")

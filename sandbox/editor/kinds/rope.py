@@ -35,14 +35,14 @@ class RopeOptions(LineOptions):
     slack: float = option(
         0.0,
         OptionInfo(
-            "number", "slack", "How much longer it is than the way from end to end, 0.1 = 10 %.", "", *SLACK_RANGE
+            "number", "slack", "How much longer it is than the distance of its ends, 0.1 = 10 %.", "", *SLACK_RANGE
         ),
     )
     particle_mass: float = mass_option(1.0)
-    end_mass: float | None = mass_option(None, "end mass", "Mass of the last particle; empty = as the others.")
+    end_mass: float | None = mass_option(None, "end mass", "Mass of the last particle; empty = the same as the others.")
     material: str = material_option("steel")
-    pin_start: bool = flag_option(True, "pin start", "Hold the start, unless it joins a particle.")
-    pin_end: bool = flag_option(False, "pin end", "Hold the end, unless it joins a particle.")
+    pin_start: bool = flag_option(True, "pin start", "Pin the start, unless it joins a particle.")
+    pin_end: bool = flag_option(False, "pin end", "Pin the end, unless it joins a particle.")
 
 
 class RopeDrawing(LineDrawing[RopeOptions]):

@@ -26,7 +26,7 @@ class WebOptions(BodyOptions):
     rings: int | None = count_option("rings", "Number of rings; empty = about 0.25 m apart.", 1)
     particle_mass: float = mass_option(0.1)
     material: str = material_option("rubber")
-    pin_rim: bool = flag_option(True, "pin rim", "Hold the outermost ring.")
+    pin_rim: bool = flag_option(True, "pin rim", "Pin the outermost ring.")
 
 
 class WebDrawing(RoundDrawing[WebOptions]):

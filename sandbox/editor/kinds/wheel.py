@@ -46,8 +46,8 @@ AnyRimOptions = TypeVar("AnyRimOptions", bound=RimOptions)
 class WheelOptions(RimOptions):
     """A wheel by itself."""
 
-    hub_mass: float | None = mass_option(None, "hub mass", "Mass of the hub; empty = as the others.")
-    pin_hub: bool = flag_option(False, "pin hub", "Hold the hub, unless it joins a particle.")
+    hub_mass: float | None = mass_option(None, "hub mass", "Mass of the hub; empty = the same as the others.")
+    pin_hub: bool = flag_option(False, "pin hub", "Pin the hub, unless it joins a particle.")
 
 
 class RimDrawing(RoundDrawing[AnyRimOptions], Generic[AnyRimOptions]):

@@ -58,12 +58,12 @@ def _time_properties(check: CheckDef, index: int) -> list[Property]:
     present = next((name for name in _WINDOWS if getattr(check, name) is not None), "after")
     momentary = METRICS[check.metric].momentary
     choices = tuple(_WHEN) if momentary else ("after",)
-    tip = "Whether it has to hold once, at one moment of a time, or at every moment of it."
+    tip = "When it must be true: at one time, at some moment of a span, or all the time."
     about = FieldInfo("choice", "When", choices=choices, labels=tuple(_WHEN[name] for name in choices), tooltip=tip)
     made = [Property("when", about, present, partial(_set_when, index))] if momentary else []
     if present == "after":
         return [*made, Property("after", abouts(CheckDef)["after"], check.after, partial(_set, index, "after"))]
-    tip = "From when to when it is measured, since the level's beginning."
+    tip = "The span of time, from the start of the level."
     span = FieldInfo("point", "From, to", "s", low=0.0, tooltip=tip)
     return [*made, Property("span", span, window_of(check), partial(_set_span, index), ("From", "To"))]
 
@@ -72,7 +72,7 @@ def _hold_properties(document: Document, check: CheckDef, index: int) -> list[Pr
     keys = sorted(driving_keys(document.level))
     if not keys and not check.hold:
         return []
-    tip = "Holds a key that drives something, from one time to another; without one nobody presses a key in this run."
+    tip = "Hold a key during the run, from one time to another. Otherwise no key is pressed."
     about = FieldInfo("part", "Hold a key", tooltip=tip)
     made = [Property("hold", about, False, lambda document, _: _add_hold(document, index))]
     for number, hold in enumerate(check.hold):
@@ -189,7 +189,7 @@ def _add_hold(document: Document, index: int) -> Document:
     held = {hold.key for hold in check.hold}
     keys = sorted(driving_keys(document.level))
     if not keys:
-        raise EditError("nothing in the level is driven by a key")
+        raise EditError("no key drives anything in this level")
     key = next((key for key in keys if key not in held), keys[0])
     return _changed(document, index, hold=(*check.hold, HoldDef(key=key, during=(0.0, window_of(check)[1]))))
 

@@ -37,7 +37,7 @@ def extras_properties(about: FieldInfo, values: Sequence[Values], change: Change
 
 def _row(name: str, value: Any, change: ChangeExtras) -> Property:
     kind = _kind_of(value)
-    about = FieldInfo(kind or "text", name, tooltip="Data of your own; the program keeps it and does not use it.")
+    about = FieldInfo(kind or "text", name, tooltip="Your own data; the program keeps it and does not use it.")
 
     def write(document: Document, new: Any) -> Document:
         return change(document, lambda old: {**old, name: _as_in_a_file(new)})

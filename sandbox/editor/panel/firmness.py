@@ -39,10 +39,12 @@ def firmness_properties(level: Level, parts: Mapping[Item, Definition]) -> list[
     readings = [_reading(level, body) for body in bodies.values()]
     sag, hz, ratio = (same(reading[place] for reading in readings) for place in range(3))
     word = same(_word(body.firmness) for body in bodies.values())
-    tip = "How soft it is as a whole, whatever its grid, size and mass: as Cs and Cd of its material make it, or so."
+    tip = (
+        "How soft the whole body is, for any grid, size and mass: set it here, or let Cs and Cd of its material decide."
+    )
     choices = (OF_MATERIAL, *WORDS, NUMBERS)
     about, inside = FieldInfo("choice", "Firmness", tooltip=tip, choices=choices), abouts(FirmnessDef)
-    sag_tip = "Part of its height by which it sags under its weight where it stands. 0 to 40 %."
+    sag_tip = "How far it sags under its own weight, in % of its height. 0 to 40 %."
     sag_about = FieldInfo("number", "Sag", "%", 0.0, PERCENT * SAG_LIMIT, tooltip=sag_tip)
     hz_about = FieldInfo("number", "Wobble", "Hz", *FREQUENCY_RANGE, tooltip=inside["hz"].tooltip)
     ratio_about = FieldInfo(
@@ -116,7 +118,7 @@ def _by_frequency(hz: float, reach: FirmnessRange, present: FirmnessDef | None) 
 
 def _by_ratio(ratio: float, reach: FirmnessRange, present: FirmnessDef | None) -> Firmness:
     if present is None:
-        raise EditError("its material gives it a frequency; choose a firmness first")
+        raise EditError("its material decides that now; choose a firmness first")
     hz = reach.reading(*reach.coefficients(present.asked))[1] if present.hz is None else present.hz
     return Firmness(hz=significant(min(hz, FREQUENCY_RANGE[1]), DIGITS), ratio=ratio)
 
@@ -154,5 +156,5 @@ def _remark(level: Level, bodies: Mapping[Item, BodyDef], asked: Asked) -> str:
         except EditError:
             return ""
         if given != wanted:
-            return f"{shown(body.id)}: {wanted} is out of reach; it has the nearest now, {given}"
+            return f"{shown(body.id)}: {wanted} is not possible here. It has the nearest value now: {given}"
     return ""

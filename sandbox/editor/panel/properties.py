@@ -196,7 +196,7 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
     """What a single item is that its fields do not say."""
     facts = []
     if isinstance(part, SpringDef):
-        facts.append(("number", "Number", f":{item.key}", "What commands and recordings call the spring."))
+        facts.append(("number", "Number", f":{item.key}", "The spring's name in commands and recordings."))
     elif not isinstance(part, ParticleDef | TerrainDef):
         particles, springs = expansion(part).count
         facts.append(
@@ -204,12 +204,12 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
                 "size",
                 "Made of",
                 f"{_counted(particles, 'particle')}, {_counted(springs, 'spring')}",
-                "What it expands to.",
+                "Particles and springs it consists of.",
             )
         )
     joints = [f"{a} = {b}" for a, b in level.welds if item.key in (owner_of(a), owner_of(b))]
     if joints and item.kind != "spring":
-        facts.append(("welds", "Joined", ", ".join(joints), "Particles that are one with another's."))
+        facts.append(("welds", "Joined", ", ".join(joints), "Particles joined to those of others."))
     return [Property(name, FieldInfo("text", title, tooltip=tip), text) for name, title, text, tip in facts]
 
 
@@ -222,7 +222,7 @@ def _counted(number: int, noun: str) -> str:
 
 def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> list[Property]:
     """Whether it is a line or solid, and its corners."""
-    kind = FieldInfo("choice", "Kind", tooltip="A line with two sides, or solid inside.", choices=FORMS)
+    kind = FieldInfo("choice", "Kind", tooltip="An open line, or solid ground.", choices=FORMS)
 
     def choose(document: Document, wanted: Form) -> Document:
         return outlined(document, selection, lambda piece: with_corners(piece, corners_of(piece), wanted))
@@ -243,7 +243,7 @@ def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> l
 
 def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Property]:
     kind = same(_shape_kind(shape) for shape in shapes)
-    about = FieldInfo("choice", "Shape", tooltip="The outline that is filled.", choices=tuple(SHAPES))
+    about = FieldInfo("choice", "Shape", tooltip="The outline of the jelly.", choices=tuple(SHAPES))
 
     def choose(document: Document, wanted: str) -> Document:
         return change_field(document, selection, "shape", partial(_as_shape, wanted))

@@ -73,7 +73,7 @@ class LevelFile:
     def salvaged(
         cls, path: str | os.PathLike[str], folder: Path | None = None
     ) -> tuple["LevelFile", Level | None, list[str]]:
-        """Open what is valid of a level, as a copy, so that its file stays as it is; a line for each part left out.
+        """Open the valid rest of a level, as a copy, so that its file stays as it is; a line for each part left out.
 
         Raises LevelError where the file itself cannot be read.
         """
@@ -98,8 +98,8 @@ class LevelFile:
         assert self.path is not None
         if not replace and self._differs():
             raise ChangedOnDisk(
-                f"{_shown(self.path)} was changed by another program since it was opened; "
-                "save under another name, or replace what is there"
+                f"{_shown(self.path)} was changed by another program after you opened it; "
+                "save under another name, or replace it"
             )
         warning = self._write(level, self.path)
         self._remember()

@@ -42,8 +42,8 @@ class AxleOptions(RimOptions):
     torque: float | None = option(
         None,
         OptionInfo(
-            "number", "torque", "Largest torque; empty = what the vehicle's weight asks for.", "N m", 0.0, TORQUE_LIMIT,
-            optional=True,
+            "number", "torque", "Largest torque; empty = enough for the weight of the vehicle.", "N m", 0.0,
+            TORQUE_LIMIT, optional=True,
         ),
     )  # fmt: skip
     touches: bool = flag_option(False, "touches body", "The wheel touches what it is mounted on, or passes through it.")
@@ -122,13 +122,13 @@ class AxleDrawing(RimDrawing[AxleOptions]):
         slots = slots[~is_wheel[scene.particle_item[slots]]]
         slots = slots[np.argsort(distance[slots], kind="stable")]
         if not len(slots):
-            raise EditError("begin on a body: there is none near the axle")
+            raise EditError("start on a body: there is none near the axle")
         slots = slots[scene.particle_item[slots] == scene.particle_item[slots[0]]]
         way = apart[slots] / distance[slots, None]
         across = np.abs(way[:, 0] * way[0, 1] - way[:, 1] * way[0, 0])
         second = np.flatnonzero(across >= APART)
         if not len(second):
-            raise EditError("begin nearer to the body: nothing of it would hold the axle across")
+            raise EditError("start nearer to the body, so that it can hold the axle")
         chosen = list(dict.fromkeys([0, int(second[0]), *range(len(slots))]))[:STRUTS]
         return [Snap(_place(scene, slot), "particle", scene.names(slot)) for slot in slots[chosen].tolist()]
 

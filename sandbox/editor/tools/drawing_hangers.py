@@ -33,7 +33,9 @@ WHERE = "on a rope, a bridge or a girder"
 class HangersOptions(Options):
     """How many, and of what."""
 
-    count: int | None = count_option("hangers", "How many; empty = one at every particle of the coarser one.", 1)
+    count: int | None = count_option(
+        "hangers", "Number of hangers; empty = one for each particle of the coarser side.", 1
+    )
     material: str = material_option()
 
 
@@ -98,7 +100,7 @@ class HangersDrawing(Drawing[HangersOptions]):
             _row(scene, point, verb) for point, verb in zip(points, ("begin", "end"), strict=True)
         )
         if upper[0] == lower[0]:
-            raise EditError("end on the other rope: a hanger is between two")
+            raise EditError("finish on the other rope: hangers join two of them")
         ranges = [
             _between(upper, first, _nearest(scene, upper, lower[last])),
             _between(lower, _nearest(scene, lower, upper[first]), last),

@@ -53,7 +53,7 @@ def mass_option(default: float | None, label: str = "mass", text: str = "Mass of
 
 def sag_option(default: float | None) -> Any:
     """A sag [%] by which a body is as soft as a whole; None: as soft as its material makes it."""
-    text = "Part of its height by which it sags under its weight; empty = as its material has it."
+    text = "How far it sags under its weight, in % of its height; empty = as its material makes it."
     return option(default, OptionInfo("number", "sag", text, "%", 0.0, 100.0 * SAG_LIMIT, optional=True))
 
 

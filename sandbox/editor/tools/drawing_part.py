@@ -17,7 +17,7 @@ class PartOptions(Options):
     """Which part, None = none yet, and which way round."""
 
     part: Level | None = field(default=None)
-    mirrored: bool = flag_option(False, "mirrored", "Left for right: a car that looks the other way.")
+    mirrored: bool = flag_option(False, "mirrored", "Mirrored, so that a car faces the other way.")
 
 
 class PartDrawing(Drawing[PartOptions]):

@@ -22,7 +22,7 @@ class ParticleOptions(Options):
 
     mass: float = mass_option(1.0, text="Mass.")
     radius: float = option(0.05, OptionInfo("number", "radius", "Radius, as drawn and where it touches.", "m"))
-    pinned: bool = flag_option(False, "pinned", "Hold it where it is.")
+    pinned: bool = flag_option(False, "pinned", "Pin it where it is.")
 
 
 class ParticleDrawing(Drawing[ParticleOptions]):
@@ -54,7 +54,7 @@ class SpringOptions(Options):
     """A loose spring, and the particles that it gets where it ends at none."""
 
     material: str = material_option()
-    mass: float = mass_option(1.0, text="Mass of the particle that an end in empty space gets.")
+    mass: float = mass_option(1.0, text="Mass of the new particle at an end in empty space.")
 
 
 class SpringDrawing(Drawing[SpringOptions]):

@@ -27,7 +27,7 @@ class SurfaceOptions(Options):
     """Terrain or walls; None: friction and restitution of the level's contacts."""
 
     friction: float | None = _surface("friction", "Friction of its surface; empty = the level's.", FRICTION_LIMIT)
-    restitution: float | None = _surface("bounce", "Share of its speed that bounces; empty = the level's.", 1.0)
+    restitution: float | None = _surface("bounce", "How much speed a bounce keeps; empty = the level's.", 1.0)
 
 
 class GroundDrawing(OutlineDrawing[SurfaceOptions]):
@@ -81,7 +81,7 @@ class WallsDrawing(Drawing[SurfaceOptions]):
     """Four walls around a box, in place of those that the level has."""
 
     defaults = SurfaceOptions()
-    start_hint = "Drag from corner to corner of the room, or click both; the Level page takes walls away"
+    start_hint = "Drag from corner to corner of the room, or click both; the page Level removes walls"
     end_hint = "Click or release at the opposite corner"
 
     def joins(self, index: int) -> bool:
@@ -129,4 +129,4 @@ def _draw_walls(pen: IconPen) -> None:
 
 GROUND = EditorTool("ground", "D", "Solid ground", _draw_ground, GroundDrawing, "Terrain")
 LINE = EditorTool("line", "C", "A line with two sides", _draw_line, TerrainLineDrawing, "Terrain")
-WALLS = EditorTool("walls", "Shift+D", "Walls all round", _draw_walls, WallsDrawing, "Terrain")
+WALLS = EditorTool("walls", "Shift+D", "Walls around the level", _draw_walls, WallsDrawing, "Terrain")

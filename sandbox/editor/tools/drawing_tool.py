@@ -209,7 +209,7 @@ class Drawing(Generic[AnyOptions]):
         if self._sound(points):
             self.points, self._complete = points, True
         else:
-            self._fault = "The end is where the start is; move it away"
+            self._fault = "Start and end are in one place; move one away"
 
     @staticmethod
     def _apart(a: Snap, b: Snap) -> float:

@@ -23,7 +23,7 @@ class WaveDrawing(Drawing[WaveOptions]):
     """Phases from places along a drag, of the selected muscles or of all."""
 
     defaults = WaveOptions()
-    start_hint = "Drag along muscles, the way their wave is to run; selected ones alone, or all"
+    start_hint = "Drag along the muscles in the direction of the wave; it takes the selected ones, or all"
     end_hint = "Release where the wave ends"
 
     def __init__(self, options: WaveOptions | None = None, reach: float = 0.0) -> None:

@@ -16,9 +16,9 @@ from sandbox.editor.pick import item_at
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap, snap
 
 _HINTS = {
-    "particle": "Click the particle that is meant; Escape leaves it as it is",
-    "body": "Click the body that is meant; Escape leaves it as it is",
-    "box": "Drag the box from corner to corner; Escape leaves it as it is",
+    "particle": "Click the particle you mean; Escape cancels",
+    "body": "Click the body you mean; Escape cancels",
+    "box": "Drag the box from corner to corner; Escape cancels",
 }
 
 

@@ -53,15 +53,15 @@ class SelectTool:
     def hint(self) -> str:
         """The keys that join and take away, or what a piece of terrain lets do with its corners."""
         if self.corner is not None:
-            return "Drag the corner or nudge it by the arrows; Delete takes it out; dots between corners make new ones"
+            return "Drag the corner or use the arrow keys; Delete removes it; drag a dot between corners to add one"
         if self.piece is not None and self._gesture is None:
-            return "Drag corners, or dots between them for new ones; drag the piece to move it"
+            return "Drag a corner, or a dot between corners to add one; drag the piece to move it"
         if self.entered is not None:
-            return f"In group {self.entered}: click its members one by one; Escape leaves it"
+            return f"In group {self.entered}: click its members one by one; Escape closes it"
         if self._ends() is not None and self._gesture is None:
-            return "Drag an end to move it alone; drag the middle to move the whole; Shift adds, Ctrl takes away"
+            return "Drag an end to move that end; drag the middle to move the whole body; Shift adds, Ctrl removes"
         around = "Drag around things" if self._lasso else "Click or drag a box"
-        return f"{around} to select; Shift adds, Ctrl takes away or drags a copy; double click enters a group"
+        return f"{around} to select; Shift adds, Ctrl removes or drags a copy; double click opens a group"
 
     @property
     def entered(self) -> str | None:
@@ -335,7 +335,9 @@ class DrawTool:
                 # It may be larger than what is seen.
                 self._screen.camera.reveal(box)
             if document.level.has_contacts and not touched:
-                self._screen.say("Things touch each other now; Contacts on the page Level says how.")
+                self._screen.say(
+                    "Things touch each other now. Set friction and bounce under Contacts on the page Level."
+                )
 
     def hover(self, point: Point | None, modifiers: int) -> None:
         """Show what a click would do."""

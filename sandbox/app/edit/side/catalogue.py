@@ -72,11 +72,11 @@ class CataloguePage:
         self.keep = ui.button(wide, "Keep as a part …", self._keep, container, style="@segment", tip=tip)
         self.rename = ui.button(
             pygame.Rect(x, top, small, height), "Rename", self._ask_name, container, style="@segment",
-            tip="Give a part of your own another name",
+            tip="Rename one of your parts",
         )  # fmt: skip
         self.delete = ui.button(
             pygame.Rect(x + small + gap, top, small, height), "Delete", self._ask_delete, container,
-            style="@segment", tip="Delete a part of your own; levels that have it keep it",
+            style="@segment", tip="Delete one of your parts; levels that use it keep their copy",
         )  # fmt: skip
 
     # What there is.
@@ -162,7 +162,7 @@ class CataloguePage:
 
     def _describe(self) -> None:
         part = self._chosen
-        text, colour = "Click a part, then the sheet; or drag it there. Escape ends it.", MUTED
+        text, colour = "Click a part, then the sheet, or drag it there. Escape cancels.", MUTED
         if part is not None and part.fault:
             text, colour = part.fault, DANGER
         elif part is not None and part.level is not None:
@@ -246,7 +246,7 @@ class CataloguePage:
             self._look_for(path)
             return None
 
-        ask(self._ui, "Rename the part", "Its file gets that name too.", part.name, "Rename", answer)
+        ask(self._ui, "Rename the part", "Its file gets the same name.", part.name, "Rename", answer)
 
     def _ask_delete(self) -> None:
         part = self._chosen
@@ -263,7 +263,7 @@ class CataloguePage:
             self._looked = 0
             self._screen.say(f"The part {part.name} is deleted.")
 
-        choose(self._ui, f"Delete the part “{part.name}”?", "Levels that have it keep it.", [("Delete it", do)])
+        choose(self._ui, f"Delete the part “{part.name}”?", "Levels that use it keep their copy.", [("Delete it", do)])
 
     def _look_for(self, path: Path) -> None:
         """Show the files as they are now, that of a path as chosen."""

@@ -20,7 +20,7 @@ from sandbox.session.check_run import checks_as_they_end
 
 # Part of the page that the list takes.
 LIST_PART = 0.38
-NOTHING = "No checks yet. A check says what has to hold after some seconds of the level's run."
+NOTHING = "No checks yet. A check runs the level and says whether the car is past x = 12 after 8 s, for example."
 
 
 class Trial:

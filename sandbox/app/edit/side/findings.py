@@ -12,9 +12,9 @@ from sandbox.editor.items import items_of
 from sandbox.editor.lint.finding import SEVERITIES, Finding, Remedy
 
 COLOURS: dict[str, Colour] = {"error": DANGER, "warning": WARNING, "hint": ACCENT}
-NOTHING = "Nothing to complain about."
+NOTHING = "No problems found."
 LINES = 6
-NO_REMEDY = "Choose one to see it"
+NO_REMEDY = "Choose a finding to see it"
 
 
 class FindingsPage:
@@ -27,7 +27,7 @@ class FindingsPage:
         upper = pygame.Rect(place.topleft, (place.width - ui.px(6), place.height - below))
         self.list = RowList(ui, upper, self._show, container, empty=NOTHING, at_once=False, most_lines=LINES)
         row = pygame.Rect(place.left, place.bottom - ui.px(ROW + 4), upper.width, ui.px(ROW))
-        self.mend = ui.button(row, "", self._mend, container, style="@segment", tip="Mend what is chosen above")
+        self.mend = ui.button(row, "", self._mend, container, style="@segment", tip="Fix the finding chosen above")
         self._offer(None)
         self.findings: list[Finding] = []
         self._shown: object = None

@@ -495,4 +495,4 @@ class Form:
 
         title = self.properties[name].about.title
         choices = [("Copy as text", put), ("Paste in its place", take)]
-        choose(self._ui, title, "This list is too long to be typed on a line.", choices)
+        choose(self._ui, title, "This list is too long for one line.", choices)

@@ -57,10 +57,10 @@ class MaterialsPage:
         self._widgets: list[Any] = []
         self._y = 0.0
         buttons = (
-            HeadButton("Assign to selection", "Assign", self._assign, "Make the selection of this material"),
+            HeadButton("Assign to selection", "Assign", self._assign, "Give this material to the selection"),
             HeadButton("Select users", "Select", self._select, "Select everything of this material"),
             HeadButton("Add", "Add", self._add, "Add a material like this one"),
-            HeadButton("Delete", "Delete", self._delete, "Delete this material, where nothing uses it"),
+            HeadButton("Delete", "Delete", self._delete, "Delete this material if nothing uses it"),
         )
         self._head = ListHead(self._ui, place, LIST_PART, 2, buttons, self._choose, container)
         self.list, self.buttons, self.area = self._head.list, self._head.buttons, self._head.area
@@ -83,8 +83,10 @@ class MaterialsPage:
             if name in SHORT:
                 self._add_coefficient(name, about)
         if isinstance(material, NissenMaterial):
-            self._add_field("frequency", "Frequency [Hz]", self._type_frequency, "How fast such a spring swings.")
-            self._add_field("ratio", "Damping ratio", self._type_ratio, "1: it comes to rest without swinging.")
+            self._add_field(
+                "frequency", "Frequency [Hz]", self._type_frequency, "How fast a spring of this material swings."
+            )
+            self._add_field("ratio", "Damping ratio", self._type_ratio, "At 1 it comes to rest without swinging.")
         heading = ui.label(ui.rect(0, self._y + 6, self._inside, ROW - 4), "BREAKS AND YIELDS", content, "@heading")
         self._widgets.append(heading)
         self._y += ROW + 4
@@ -275,7 +277,7 @@ class MaterialsPage:
             return False
         ratio = self._now(material)[1]
         if not math.isfinite(ratio):
-            self._screen.say("There was no damping ratio to keep: it is 1 now.")
+            self._screen.say("There was no damping ratio, so it is 1 now.")
             ratio = 1.0
         return self._put_frequency(frequency, ratio)
 

@@ -20,7 +20,7 @@ from sandbox.editor.objects import ObjectLine, object_lines
 
 HINT = "Find by name, kind or material"
 EMPTY = "Nothing is on the sheet yet. Draw something, or put a ready part there from the page Parts."
-NOT_FOUND = "Nothing has these words."
+NOT_FOUND = "Nothing matches these words."
 # More lines are not listed; words find the others.
 LISTED = 2_000
 # Of one thing, which words on it take away again what the button gives.
@@ -40,11 +40,11 @@ class ObjectsPage:
             ui, pygame.Rect(place.left, top, width, bottom - top), self._choose, container, empty=EMPTY, at_once=False
         )
         actions: tuple[tuple[str, Callable[[], None], str], ...] = (
-            (HIDE, self._hide, "Do not draw what is selected while you edit; it is played as before"),
-            (LOCK, self._lock, "A click on the sheet does not select it; this list does"),
-            ("Up", partial(self._move, False), "Earlier in the file: drawn under the one above it"),
-            ("Down", partial(self._move, True), "Later in the file: drawn over the one below it"),
-            ("Rename", self._ask_name, "Give it another name, wherever it is named"),
+            (HIDE, self._hide, "Hide the selection while you edit; it still plays"),
+            (LOCK, self._lock, "Clicks on the sheet do not select it; this list does"),
+            ("Up", partial(self._move, False), "Move it up: it is drawn behind the one above"),
+            ("Down", partial(self._move, True), "Move it down: it is drawn in front of the one below"),
+            ("Rename", self._ask_name, "Rename it everywhere"),
         )
         wide = (width - (len(actions) - 1) * gap) // len(actions)
         self.buttons = {}
@@ -160,7 +160,7 @@ class ObjectsPage:
         ask(
             self._ui,
             f"Rename {line.name}",
-            "Checks, joints and springs that name it go along.",
+            "Checks, joints and springs that name it are updated.",
             line.name,
             "Rename",
             answer,

@@ -104,7 +104,7 @@ class OptionsRow:
     def _add_more(self, count: int) -> None:
         left = self.back.rect.width / self._ui.scale - MORE_WIDTH - GAP
         place = self._ui.rect(left, (OPTIONS_HEIGHT - HEIGHT) / 2, MORE_WIDTH, HEIGHT)
-        tip = f"What else there is: part {self._page + 1} of {count} is shown"
+        tip = f"Shows more fields: part {self._page + 1} of {count} is shown"
         self.more = self._ui.button(place, "More", self._turn_page, self.back, style="@segment", tip=tip)
         self._made.append(self.more)
 
@@ -152,8 +152,8 @@ class OptionsRow:
         """Place and size of the selection."""
         items = []
         for name, label, tip in (
-            ("x", "x", "Middle of the selection [m]"),
-            ("y", "y", "Middle of the selection [m]"),
+            ("x", "x", "Centre of the selection [m]"),
+            ("y", "y", "Centre of the selection [m]"),
             ("width", "width", "Width of the selection [m]"),
             ("height", "height", "Height of the selection [m]"),
             ("turn", "turn by", "Angle to turn the selection by [degrees], counter-clockwise"),

@@ -15,7 +15,7 @@ from sandbox.editor.panel.property import Section, found_sections
 
 OF_LEVEL = "Nothing is selected: the level"
 FIND = "Find a field"
-NOT_FOUND = "No field has these words."
+NOT_FOUND = "No field matches these words."
 
 
 class PropertiesPage:

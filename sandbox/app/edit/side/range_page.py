@@ -17,7 +17,7 @@ from sandbox.editor.panel.typed import number_text, read_integer, read_number
 from sandbox.editor.range_trial import Attempt, Number, RangeTrial, between, numbers
 from sandbox.editor.trail import lines_of
 
-CHOOSE = "Choose the number to try. Each value is run for some seconds, and with the level's checks."
+CHOOSE = "Choose the number to try. The level runs once for each value, with its checks."
 NO_NUMBERS = "There is no number to try here."
 LABEL = 92.0
 HEAD = 44.0
@@ -87,7 +87,7 @@ class RangePage:
         top += row + 2 * gap
         bottom = place.bottom - row - ui.px(6)
         list_place = pygame.Rect(place.left, top, width, bottom - gap - top)
-        empty = "A way is drawn on the sheet for each value, of what is selected."
+        empty = "For each value the sheet shows where the selection goes."
         self.list = RowList(ui, list_place, self._choose, self._container, empty=empty, most_lines=2)
         self._widgets.append(self.list)
         self._add_button("Take this value", pygame.Rect(place.left, bottom, half, row), self._take, "")

@@ -42,17 +42,17 @@ class SettingsPage:
     def _add_buttons(self) -> None:
         gap, tall, wide = self._ui.px(GAP), self._ui.px(ROW), self._foot.rect.width
         row = pygame.Rect(0, gap, wide, tall)
-        tip = "Another tick rate, with Cs and Cd worked out so that springs move per second as they do now"
+        tip = "Change the tick rate and adapt Cs and Cd, so that springs move as they do now"
         self.pace = self._ui.button(
             row, "Tick rate, at the same pace…", self._ask_rate, self._foot, style="@segment", tip=tip
         )
         row = pygame.Rect(0, row.bottom + gap, (wide - gap) // 2, tall)
-        tip = "Let the level open with what the canvas shows now"
+        tip = "The level opens with what you see now"
         self.from_camera = self._ui.button(
             row, "View from here", self._take_view, self._foot, style="@segment", tip=tip
         )
         row = row.move(row.width + gap, 0)
-        tip = "Let the level open with everything in sight"
+        tip = "The level opens with everything in view"
         self.no_view = self._ui.button(row, "View: everything", self._drop_view, self._foot, style="@segment", tip=tip)
 
     def refresh(self) -> None:

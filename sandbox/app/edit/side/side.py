@@ -42,13 +42,13 @@ class SidePage(Protocol):
 
 PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], SidePage]]] = {
     "properties": ("Properties", "What is selected", PropertiesPage),
-    "objects": ("Objects", "Everything in the level: find, hide, lock, rename, order", ObjectsPage),
-    "materials": ("Materials", "What springs are made of", MaterialsPage),
-    "parts": ("Parts", "Ready parts, and your own, to put on the sheet", CataloguePage),
-    "level": ("Level", "Name, maker, view, time and solver", SettingsPage),
-    "checks": ("Checks", "What must hold of the level's run", ChecksPage),
-    "history": ("History", "Every step so far", HistoryPage),
-    "findings": ("Findings", "What you may have overlooked", FindingsPage),
+    "objects": ("Objects", "Everything in the level: find, hide, lock, rename, reorder", ObjectsPage),
+    "materials": ("Materials", "Cs, Cd and looks of the materials", MaterialsPage),
+    "parts": ("Parts", "Ready parts and your own, to put on the sheet", CataloguePage),
+    "level": ("Level", "Name, author, view, time and solver", SettingsPage),
+    "checks": ("Checks", "What must be true when the level runs", ChecksPage),
+    "history": ("History", "All steps; click one to go back to it", HistoryPage),
+    "findings": ("Findings", "Problems that you may have overlooked", FindingsPage),
 }
 # Pages without a tab: an action shows them.
 UNLISTED: dict[str, Callable[[Editing, pygame.Rect, Any], SidePage]] = {"range": RangePage}
