@@ -369,7 +369,7 @@ def test_an_editor_tool_is_one_file_and_its_place_in_the_palette(package):
     put(package / "editor/tools/drawing_triangle.py", TRIANGLE)
     palette = package / "editor/tools/palette.py"
     put(palette, "from sandbox.editor.tools.drawing_triangle import TRIANGLE\n", before="import LASSO")
-    palette.write_text(palette.read_text(encoding="utf-8").replace(" PIN, WAVE", " TRIANGLE, PIN, WAVE"))
+    palette.write_text(palette.read_text(encoding="utf-8").replace(" PIN),", " TRIANGLE, PIN),"))
     script = """
 driver.app.documents.new()
 driver.frames(2)
