@@ -1,4 +1,4 @@
-"""Acceptance checks: what a level promises of its own run, and how measured values are held against it."""
+"""Acceptance checks: what a level promises about its own run, and how values are compared with the bounds."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from sandbox.level.format.quantities import Coordinate, Description, Key, Name, Seconds
+from sandbox.level.format.quantities import Coordinate, Description, Key, Name, Seconds, empty, unit
 
 Metric = Literal[
     "max_strain",
@@ -100,42 +100,54 @@ SUBJECTS = ("particle", "other", "body", "box")
 
 
 class HoldDef(Description):
-    """A key that is held while a check runs."""
+    """A key that a check holds while the level runs."""
 
-    key: Key = Field(description="A key that drives a motor or a hydraulic.")
-    during: tuple[Seconds, Seconds] = Field(description="From when to when it is held.")
+    key: Key = Field(description="Key of a motor or a hydraulic.")
+    during: tuple[Seconds, Seconds] = Field(description="From when to when the check holds it.")
 
 
 class CheckDef(Description):
-    """A metric of the level's run and the bounds that it must keep, at a time, always or eventually."""
+    """A metric of the level's run and the bounds that it must keep: at one time, always or eventually."""
 
-    name: Name = Field(description="What the check is about.")
-    metric: Metric = Field(description="What is measured, see [Checks](#checks).")
-    particle: Name | None = Field(default=None, description="The particle that is measured.")
-    other: Name | None = Field(default=None, description="The particle that `distance` is measured to.")
+    name: Name = Field(description="What the check promises.")
+    metric: Metric = Field(description="What it measures: a name of [Metrics](#metrics).")
+    particle: Name | None = Field(
+        default=None, description="Particle that it measures.", json_schema_extra=empty("none")
+    )
+    other: Name | None = Field(
+        default=None, description="Particle to which it measures the `distance`.", json_schema_extra=empty("none")
+    )
     body: Name | None = Field(
         default=None,
-        description="The body that is measured, of x, y and speed its centre of mass; null = the whole level.",
+        description="Body that it measures; for x, y and speed the centre of mass.",
+        json_schema_extra=empty("the whole level"),
     )
     box: Box | None = Field(
         default=None,
-        description="What it must be inside of: left, bottom, right, top.",
-        json_schema_extra={"unit": "m"},
+        description="Box of the metric `inside`: left, bottom, right, top.",
+        json_schema_extra=unit("m") | empty("none"),
     )
-    after: Seconds = Field(default=5.0, description="How long the level runs by itself first.")
+    after: Seconds = Field(default=5.0, description="When it measures, from the start of the run.")
     always: tuple[Seconds, Seconds] | None = Field(
-        default=None, description="In place of `after`: it must hold at every tick from the first time to the second."
+        default=None,
+        description="In place of `after`: it must hold at every tick from the first time to the second.",
+        json_schema_extra=empty("once"),
     )
     eventually: tuple[Seconds, Seconds] | None = Field(
-        default=None, description="In place of `after`: it must hold at one tick from the first time to the second."
+        default=None,
+        description="In place of `after`: it must hold at one tick at least from the first time to the second.",
+        json_schema_extra=empty("once"),
     )
-    at_most: float | None = Field(default=None, description="Upper bound, in the metric's unit.")
+    at_most: float | None = Field(
+        default=None, description="Upper bound, in the metric's unit.", json_schema_extra=empty("no bound")
+    )
     at_least: float | None = Field(
         default=None,
-        description="Lower bound, in the metric's unit; of `inside` 0, of `settled` 1 where none is.",
+        description="Lower bound, in the metric's unit. A check of `inside` or `settled` without bounds has 0 or 1.",
+        json_schema_extra=empty("no bound"),
     )
     hold: tuple[HoldDef, ...] = Field(
-        default=(), max_length=HOLD_LIMIT, description="Keys that are held while it runs; without them none is pressed."
+        default=(), max_length=HOLD_LIMIT, description="Keys that it holds while the level runs. It presses no others."
     )
 
 

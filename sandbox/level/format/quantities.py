@@ -36,6 +36,11 @@ def unit(name: str) -> dict[str, Any]:
     return {"unit": name}
 
 
+def empty(words: str) -> dict[str, Any]:
+    """What a field that may be null adds to the schema: what null means, in a few words that fit into a text field."""
+    return {"empty": words}
+
+
 class Description(BaseModel):
     """Base of all models: strict types, frozen, no unknown keys, finite numbers."""
 
@@ -107,7 +112,7 @@ GravityScale = Annotated[
     Field(
         ge=-GRAVITY_SCALE_LIMIT,
         le=GRAVITY_SCALE_LIMIT,
-        description="How many times gravity pulls at its particles; 0 = floats, below 0 = rises.",
+        description="Factor of gravity for its particles: 0 floats, a negative value rises.",
     ),
 ]
 Tension = Annotated[float, Field(gt=0.0, le=STRAIN_LIMIT)]
@@ -126,17 +131,23 @@ Seconds = Annotated[float, Field(ge=0.0, le=SECONDS_LIMIT, json_schema_extra=uni
 Index = Annotated[int, Field(ge=0)]
 # A default of {} would be copied, item by item of a level, deeply; what makes a new one has no place in the schema.
 Extras = Annotated[
-    dict[str, Any], Field(description="Data of other tools; kept and ignored.", json_schema_extra={"default": {}})
+    dict[str, Any],
+    Field(description="Data of other tools. The program keeps it and ignores it.", json_schema_extra={"default": {}}),
 ]
-Group = Annotated[Name | None, Field(description="Group that it is selected and moved with in the editor.")]
+Group = Annotated[
+    Name | None,
+    Field(
+        description="Group of the editor: its members are selected and moved together.", json_schema_extra=empty("none")
+    ),
+]
 Corners = Annotated[tuple[Point, ...], Field(min_length=2, max_length=CORNER_LIMIT)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 FrictionCoefficient = Annotated[float, Field(ge=0.0, le=FRICTION_LIMIT)]
 Rolling = Annotated[
     Share,
     Field(
-        description="Rolling resistance: the torque against its turning, as a share of what presses it on times its "
-        "radius; of two discs the larger counts."
+        description="Rolling resistance: the torque that slows its turning, divided by its radius times the force that "
+        "presses it on. Of two discs the larger value counts."
     ),
 ]
 
@@ -153,15 +164,19 @@ def _groups(value: Any) -> Any:
 Collides = Annotated[
     bool | tuple[Name, ...],
     BeforeValidator(_groups),
-    Field(description="What it touches where the level has contacts: everything, nothing, or these groups."),
+    Field(description="What it touches if the level has contacts: everything, nothing, or these collision groups."),
 ]
 CollisionGroup = Annotated[
-    Name | None, Field(description="Group that others name in `collides`; null = the group `default`.")
+    Name | None,
+    Field(
+        description="Collision group that it is in; others name it in `collides`.", json_schema_extra=empty("default")
+    ),
 ]
 Friction = Annotated[
-    FrictionCoefficient | None, Field(description="Friction of its surface; null = that of the level's contacts.")
+    FrictionCoefficient | None,
+    Field(description="Friction of its surface.", json_schema_extra=empty("the level's")),
 ]
 Restitution = Annotated[
     Share | None,
-    Field(description="Part of its speed with which it bounces; null = that of the level's contacts."),
+    Field(description="Share of its speed that it keeps when it bounces.", json_schema_extra=empty("the level's")),
 ]

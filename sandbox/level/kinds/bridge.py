@@ -21,10 +21,10 @@ class BridgeDef(BodyDef):
     type: Literal["bridge"] = Field(description="Kind of body.")
     start: Point = Field(description="Place of the top row's first particle, `id.start`.")
     end: Point = Field(description="Place of the top row's last particle, `id.end`.")
-    segments: int = Field(ge=1, description="Number of cells; each row has one particle more.")
-    height: Size = Field(default=1.0, description="How far the bottom row lies straight below the top row.")
+    segments: int = Field(ge=1, description="Number of cells. Each row has one particle more.")
+    height: Size = Field(default=1.0, description="Distance of the bottom row, straight below the top row.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends where both rows are held: "start", "end".')
+    pin: tuple[End, ...] = Field(default=(), max_length=2, description="Ends where both rows stay where they are.")
 
 
 class Bridge(Expansion[BridgeDef]):

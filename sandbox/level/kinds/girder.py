@@ -23,13 +23,13 @@ class GirderDef(BodyDef):
     start: Point = Field(description="Place of the first row's first particle, `id.start`.")
     end: Point = Field(description="Place of the first row's last particle, `id.end`.")
     segments: int = Field(
-        ge=1, description="Number of cells, and of the second row's particles; the first has one more."
+        ge=1, description="Number of cells, and of particles of the second row. The first row has one particle more."
     )
     height: Size = Field(
-        default=1.0, description="How far the second row lies to the right of the way from start to end."
+        default=1.0, description="Distance of the second row, to the right of the way from start to end."
     )
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends that are held: any of "start", "end".')
+    pin: tuple[End, ...] = Field(default=(), max_length=2, description="Ends that stay where they are.")
 
 
 class Girder(Expansion[GirderDef]):

@@ -47,7 +47,7 @@ class PolygonShape(Description):
 
     polygon: tuple[Point, ...] = Field(
         min_length=3,
-        description="Corners in order, relative to the jelly's position; sides may not touch or cross.",
+        description="Corners in order, relative to the jelly's position. Sides may not touch or cross.",
     )
 
 
@@ -75,7 +75,7 @@ class JellyDef(BodyDef):
     angle: Angle = Field(default=0.0, description="Turn about the centre, counter-clockwise.")
     mesh: Literal["grid", "fitted"] = Field(
         default="grid",
-        description='"grid": particles on a square grid; "fitted": evenly on the outline, in even triangles inside.',
+        description='"grid": a square grid. "fitted": particles evenly on the outline, even triangles inside.',
     )
     holes: tuple[Annotated[tuple[Point, ...], Field(min_length=3)], ...] = Field(
         default=(),
@@ -84,12 +84,12 @@ class JellyDef(BodyDef):
         "jelly's position; none touches another or the outline.",
         json_schema_extra=unit("m"),
     )
-    spacing: Spacing = Field(description="Distance of neighbours in the mesh; a box stretches its grid to fit.")
+    spacing: Spacing = Field(description="Distance between neighbours in the mesh. A box stretches its grid to fit.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
     area: bool = Field(
         default=True,
-        description="Whether its triangles keep their areas, with Cs and Cd of its material, so that it comes back "
-        "from being crushed or turned inside out; those of a Hooke material never do.",
+        description="Whether its triangles keep their areas, with Cs and Cd of its material. Then it recovers after it "
+        "was crushed or turned inside out. With a Hooke material they never do.",
     )
 
 

@@ -9,29 +9,29 @@ from pydantic import Field
 
 from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import SPEED_LIMIT
-from sandbox.level.format.quantities import Index, Mass, Point, Velocity, unit
-from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef
+from sandbox.level.format.quantities import Index, Mass, Point, Velocity, empty, unit
+from sandbox.level.kinds.body_def import BENDING, BENDS_FREELY, BendingDef, BodyDef
 from sandbox.level.kinds.expansion import Expansion, Floats
 from sandbox.level.kinds.geometry import Pairs, Points
 
 
 class MeshDef(BodyDef):
-    """Particles and springs one by one, for whatever the other bodies do not offer."""
+    """Particles and springs one by one, for forms that no other kind of body has."""
 
     type: Literal["mesh"] = Field(description="Kind of body.")
     particles: tuple[Point, ...] = Field(min_length=1, description="Place of each particle.")
     masses: tuple[Mass, ...] | None = Field(
-        default=None, description="Mass of each particle; null = 1 each.", json_schema_extra=unit("kg")
+        default=None, description="Mass of each particle.", json_schema_extra=unit("kg") | empty("1 each")
     )
     velocities: tuple[Velocity, ...] | None = Field(
         default=None,
-        description="Start velocity of each particle, added to the body's `velocity`; null = none.",
-        json_schema_extra=unit("m/s"),
+        description="Start velocity of each particle, added to the body's `velocity`.",
+        json_schema_extra=unit("m/s") | empty("none"),
     )
     springs: tuple[tuple[Index, Index], ...] = Field(
-        default=(), description="Pairs of particles, by index, that a spring joins; rest lengths are as placed."
+        default=(), description="Pairs of particles, by index. A spring joins each pair; its rest length is as placed."
     )
-    bending: BendingDef | None = Field(default=None, description=BENDING)
+    bending: BendingDef | None = Field(default=None, description=BENDING, json_schema_extra=BENDS_FREELY)
 
 
 class Mesh(Expansion[MeshDef]):

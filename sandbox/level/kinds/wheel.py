@@ -9,7 +9,7 @@ from pydantic import Field
 
 from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.level_error import Fault, shown
-from sandbox.level.format.quantities import Angle, Mass, Point, Size
+from sandbox.level.format.quantities import Angle, Mass, Point, Size, empty
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion, Floats, round_outline_faults
 from sandbox.level.kinds.geometry import Pairs, Points, ring, spokes
@@ -22,16 +22,20 @@ class WheelDef(BodyDef):
     position: Point = Field(default=(0.0, 0.0), description="Place of the hub, `id.hub`.")
     angle: Angle = Field(default=0.0, description="Direction of the first spoke, counter-clockwise from the right.")
     radius: Size = Field(description="Radius of the outer ring.")
-    thickness: Size = Field(description="How far the inner ring lies inside the outer; below the radius.")
-    segments: int = Field(ge=3, description="Number of spokes, and of the particles of each ring.")
+    thickness: Size = Field(description="Distance from the outer ring to the inner one; less than the radius.")
+    segments: int = Field(ge=3, description="Number of spokes, and of particles in each ring.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    hub_mass: Mass | None = Field(default=None, description="Mass of the hub; null = `particle_mass`.")
-    pin: tuple[Literal["hub"], ...] = Field(default=(), max_length=1, description='"hub": the hub is held.')
-    motor: MotorDef | None = Field(default=None, description="Motor that turns it about its hub; null = none.")
+    hub_mass: Mass | None = Field(
+        default=None, description="Mass of the hub.", json_schema_extra=empty("as the others")
+    )
+    pin: tuple[Literal["hub"], ...] = Field(default=(), max_length=1, description='"hub": the hub stays where it is.')
+    motor: MotorDef | None = Field(
+        default=None, description="Motor that turns it about its hub.", json_schema_extra=empty("none")
+    )
     touches_mount: bool = Field(
         default=True,
-        description="Whether it touches what it is mounted on: all that welds and loose springs join to its hub, "
-        "directly or by way of others.",
+        description="Whether it touches its mount: all bodies that welds and loose springs join to its hub, directly "
+        "or through other bodies.",
     )
 
 
