@@ -35,7 +35,8 @@ _PLURALS = ", ".join(each.plural for each in EXPANSIONS.values())
 INTRO = f"""\
 A level is one JSON file. It describes bodies ({_PLURALS}), loose
 particles and loose springs. The program expands bodies into particles and springs. Lengths are in metres, masses in
-kilograms, times in seconds, angles in radians; y points up.
+kilograms, times in seconds, angles in radians; y points up. The [cookbook](cookbook.md) has a small level for each
+subject.
 """
 
 A_FILE = f"""\

@@ -35,7 +35,7 @@ class Rope(Expansion[RopeDef]):
 
     model = RopeDef
     plural = "ropes"
-    generation = "- Rope: from start to end, evenly, whatever its rest length."
+    generation = "- Rope: from start to end, at equal distances, with any rest length."
 
     @property
     def form_count(self) -> tuple[int, int]:
