@@ -34,11 +34,11 @@ STILL = 0.05
 
 @dataclass(frozen=True)
 class Measured:
-    """What a metric is measured of: fields that it needs, one of which it needs, and those that it may have; its unit.
+    """A metric: the fields that it needs, the fields of which it needs one, the fields that it may have, and its unit.
 
-    label: what people call it. words: a check of it as a sentence; {owner}, {of} and {other} stand for what it is
-    measured of, {bounds} for what it must keep. at_least: the bound that holds where a check names none; momentary:
-    whether it has a value at every tick. usual: the least and the largest value that a new check of it lets pass.
+    label: its name for people. words: a check of it as a sentence; {owner}, {of} and {other} stand for what it
+    measures, {bounds} for the bounds. at_least: the lower bound of a check without bounds. momentary: whether it has
+    a value at every tick. usual: the bounds of a new check.
     """
 
     label: str
@@ -52,7 +52,7 @@ class Measured:
     usual: tuple[float | None, float | None] = (None, 0.0)
 
     def takes(self, field: str) -> bool:
-        """Whether a field means anything to it."""
+        """Whether the metric uses a field."""
         return field in (*self.needs, *self.needs_one, *self.may_have)
 
 
@@ -89,7 +89,7 @@ METRICS: dict[str, Measured] = {
     "energy": Measured("energy", "the energy is {bounds}", "J", usual=(None, 1.0)),
     "non_finite": Measured("places that are no number", "{bounds} particles have no place or speed"),
 }  # fmt: skip
-# What people say of some metrics with bounds that most checks of them have: the least and the largest value.
+# Sentences for usual checks, by metric, lower and upper bound.
 PROMISES = {
     ("non_finite", -math.inf, 0.0): "every place and speed is a number",
     ("broken_springs", -math.inf, 0.0): "no spring{of} breaks",
@@ -153,7 +153,7 @@ class CheckDef(Description):
 
 @dataclass(frozen=True)
 class CheckResult:
-    """A check, the value measured for it, whether it holds, and one line that says so; at [s]: when it was measured."""
+    """A check, the measured value, whether it passed, and one line that says so; at [s]: when it measured."""
 
     check: CheckDef
     value: float
@@ -163,7 +163,7 @@ class CheckResult:
 
 
 def bounds_of(check: CheckDef) -> tuple[float, float]:
-    """Least and largest value that a check lets pass, both included; infinite where there is no bound."""
+    """The least and the largest value that pass, both included; infinite without a bound."""
     low, high = check.at_least, check.at_most
     if low is None and high is None:
         low = METRICS[check.metric].at_least
@@ -171,12 +171,12 @@ def bounds_of(check: CheckDef) -> tuple[float, float]:
 
 
 def window_of(check: CheckDef) -> tuple[float, float]:
-    """From when to when a check is measured [s]; the same twice where it is once."""
+    """Start and end [s] of the time in which a check measures; equal if it measures once."""
     return check.always or check.eventually or (check.after, check.after)
 
 
 def excess(check: CheckDef, value: float) -> float:
-    """How far a value is beyond the bounds of a check; at most 0 where it holds, infinite where it is no number."""
+    """How far a value is beyond the bounds of a check: at most 0 if it passes, infinite if it is not a number."""
     low, high = bounds_of(check)
     beyond = max(low - value if low > -math.inf else -math.inf, value - high if high < math.inf else -math.inf)
     return math.inf if math.isnan(value) else beyond
@@ -198,7 +198,7 @@ def time_text(check: CheckDef) -> str:
 
 
 def held_text(check: CheckDef) -> str:
-    """The keys that a check holds: "D from 1 to 8 s"; empty where it holds none."""
+    """The keys that a check holds: "D from 1 to 8 s"; empty if it holds none."""
     return ", ".join(f"{hold.key.upper()} from {hold.during[0]:g} to {hold.during[1]:g} s" for hold in check.hold)
 
 
@@ -220,7 +220,7 @@ def promise_text(check: CheckDef) -> str:
 
 
 def judge(check: CheckDef, value: float, at: float | None = None) -> CheckResult:
-    """Hold a check against a value measured at a time [s], of a window the one that decides; no number fails."""
+    """The result of a check for a value measured at a time [s]. A value that is not a number fails."""
     passed = excess(check, value) <= 0.0
     when = check.after if at is None else at
     measured = f"is {value:.6g}"

@@ -71,7 +71,7 @@ class Settings(Description):
         json_schema_extra={"enum": [*SUBSTEPS, AUTO]},
     )
     solver: str = Field(
-        # Written into every file all the same, so that a file keeps its meaning.
+        # Every file names its solver, so that it keeps its meaning if the default changes.
         default=DEFAULT_SOLVER,
         description="How the springs of a network are solved together.",
         json_schema_extra={"enum": [*sorted(SOLVERS)]},
@@ -95,7 +95,7 @@ class Settings(Description):
     @field_validator("substeps", mode="before")
     @classmethod
     def _count_or_auto(cls, substeps: Any) -> Any:
-        # Before the type is looked at: of a choice of types, the library would list a fault for each.
+        # This comes before the type check: for a choice of types, the library would list a fault for each.
         if isinstance(substeps, int) and not isinstance(substeps, bool):
             if substeps in SUBSTEPS:
                 return substeps
@@ -220,7 +220,7 @@ class SpringDef(Description):
 
     @property
     def given_length(self) -> float | None:
-        """Rest length [m] that it is given; None = as placed."""
+        """Rest length [m] of the file; None = as placed."""
         if self.rest_length is None and self.hydraulic is not None:
             return self.hydraulic.shortest
         return self.rest_length
@@ -267,7 +267,7 @@ class Level(Description):
     """A level: who made it, how time passes, and what is in it."""
 
     model_config = ConfigDict(serialize_by_alias=True)
-    # What its check has made of it, kept for its world: no field, so neither written nor compared nor copied.
+    # The plan that its check made, for building its world. It is no field: not written, compared or copied.
     __slots__ = ("_plan",)
 
     schema_link: Line | None = Field(
@@ -315,7 +315,7 @@ class Level(Description):
 
     @property
     def has_contacts(self) -> bool:
-        """Whether anything in the level touches anything."""
+        """Whether things in the level touch."""
         return self.contacts is not None or self.walls is not None or bool(self.terrain)
 
     @field_validator("version")
@@ -327,10 +327,10 @@ class Level(Description):
 
 
 def keys_of(model: type[BaseModel]) -> list[str]:
-    """The keys that an object of a model has in a file, in its order."""
+    """The keys of a model's object in a file, in order."""
     return [field.alias or name for name, field in model.model_fields.items()]
 
 
 LEVEL_KEYS = keys_of(Level)
-# Settings that a person may change while a world runs: all but the tick rate, which is that of its whole run.
+# Settings that a person may change while a world runs: all but the tick rate, which belongs to the whole run.
 CHANGEABLE_SETTINGS = tuple(name for name in Settings.model_fields if name != "tick_rate")

@@ -1,6 +1,6 @@
-"""How things look: names of stuffs and colours, and what a level, a body, a material or a particle says of itself.
+"""Models of looks: of a level, a body, a material and a particle, with the names of skins, lines, balls and colours.
 
-None of it reaches the physics: neither worlds, nor hashes, nor the checks of recordings know it.
+Physics, hashes and recordings ignore looks.
 """
 
 from typing import Annotated, Literal
@@ -9,7 +9,7 @@ from pydantic import Field
 
 from sandbox.level.format.quantities import Description, Id, Index, Line, Name, empty
 
-# What surfaces and lines are made of, and balls and terrain. A name that is not listed falls back to automatic.
+# Names of skins, lines, balls and grounds. A name that is not listed counts as automatic.
 SKINS = ("jelly", "rubber", "balloon", "wood", "stone", "brick", "cloth", "plain", "lattice")
 LINES = (
     "steel", "paint", "brass", "rope", "cable", "chain", "deck", "wood", "rubber", "thread", "silk", "coil", "bone",
@@ -17,7 +17,7 @@ LINES = (
 )  # fmt: skip
 BALLS = ("marble", "stripe", "steel", "sand", "bumper", "plain")
 GROUNDS = ("soil", "rock", "metal", "wood", "glass")
-# Toys' colours, given out in this order: neighbours differ in lightness too.
+# Automatic colours, in this order; neighbours differ in lightness too.
 PALETTE = {
     "raspberry": 0xF2557B, "lemon": 0xFFD24A, "sky": 0x4DB3FF, "tangerine": 0xFF9142, "grape": 0x9B7BFF,
     "lime": 0x8EDB6B, "bubblegum": 0xFF9BD2, "lagoon": 0x2FC4B2,

@@ -1,4 +1,4 @@
-"""What a level file says of a body of any kind: BodyDef, the base of their models."""
+"""BodyDef: the fields that all bodies share, and models of objects inside bodies."""
 
 from collections.abc import Iterable
 from typing import Annotated, Literal
@@ -59,7 +59,7 @@ class FirmnessDef(Description):
 
     @property
     def asked(self) -> Firmness:
-        """What is asked of the body."""
+        """The firmness in the words of the physics."""
         return Firmness(self.sag, self.hz, self.ratio)
 
 
@@ -120,7 +120,7 @@ BENDS_FREELY = empty("bends freely")
 
 
 def file_order(names: Iterable[str]) -> list[str]:
-    """Names of fields of a body in the order of a file: type, id, those of its kind, then the others of every body."""
+    """Names of fields of a body in the order of a file: type, id, those of its kind, then the other shared ones."""
     first = ("type", "id")
     last = tuple(name for name in BodyDef.model_fields if name not in first)
     return sorted(names, key=lambda name: 0 if name in first else 2 if name in last else 1)

@@ -38,7 +38,7 @@ class Bridge(Expansion[BridgeDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """Of each cell two chords, a vertical and two diagonals; one vertical more."""
+        """Each cell has two chords, a vertical and two diagonals; there is one more vertical."""
         return 2 * (self.body.segments + 1), 5 * self.body.segments + 1
 
     @cached_property
@@ -61,7 +61,7 @@ class Bridge(Expansion[BridgeDef]):
         return {"start": 0, "end": self.body.segments}
 
     def named_pins(self) -> list[int]:
-        """Both rows at the ends that are held."""
+        """Both rows, at the ends that `pin` names."""
         top = [self.named_particles[end] for end in self.body.pin]
         return top + [particle + self.body.segments + 1 for particle in top]
 

@@ -35,7 +35,7 @@ class MeshDef(BodyDef):
 
 
 class Mesh(Expansion[MeshDef]):
-    """What its lists say."""
+    """The particles and springs of its lists."""
 
     model = MeshDef
     size_path = ()
@@ -44,7 +44,7 @@ class Mesh(Expansion[MeshDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """As many as are listed."""
+        """The lengths of its lists."""
         return len(self.body.particles), len(self.body.springs)
 
     @cached_property
@@ -60,7 +60,7 @@ class Mesh(Expansion[MeshDef]):
 
     @cached_property
     def velocity(self) -> Points:
-        """Start velocity [m/s] (n, 2): the body's and each particle's own."""
+        """Start velocity [m/s] (n, 2): the sum of the body's and each particle's own."""
         velocity = super().velocity
         return velocity if self.body.velocities is None else velocity + np.array(self.body.velocities)
 
@@ -70,7 +70,7 @@ class Mesh(Expansion[MeshDef]):
         return self.body.bending
 
     def faults(self, path: str) -> Iterator[Fault]:
-        """Whether its lists fit each other, and its springs join particles that exist."""
+        """Faults of lists of different lengths, and of springs that join particles that do not exist."""
         body, size = self.body, len(self.body.particles)
         for name, values in (("masses", body.masses), ("velocities", body.velocities)):
             if values is not None and len(values) != size:

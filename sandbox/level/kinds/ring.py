@@ -50,12 +50,12 @@ class Ring(Expansion[RingDef]):
         return self.body.radius * spokes(self.body.angle, self.body.segments), ring(0, self.body.segments)
 
     def polygons(self) -> Pairs:
-        """All of it, unless it holds nothing."""
+        """The whole ring, unless it keeps no area."""
         return NO_POLYGONS if self.body.inflation is None else np.arange(self.body.segments, dtype=np.int64)[None]
 
     @property
     def inflation(self) -> float:
-        """Area that it wants, as a multiple of its own."""
+        """Area that it keeps, as a multiple of the area of its form."""
         return 1.0 if self.body.inflation is None else self.body.inflation
 
     @property

@@ -65,7 +65,7 @@ class Rope(Expansion[RopeDef]):
 
     @cached_property
     def rest_length(self) -> Floats:
-        """Rest length [m] (m,), as placed or as given."""
+        """Rest length [m] (m,): the file's, or as placed."""
         if self.body.rest_length is None:
             return super().rest_length
         return np.full(len(self.pairs), self.body.rest_length)

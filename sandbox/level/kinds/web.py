@@ -41,7 +41,7 @@ class Web(Expansion[WebDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """A thread inward and one onward of every particle but that in the centre."""
+        """Every particle except the centre has a thread inward and a thread along its ring."""
         return 1 + self.body.spokes * self.body.rings, 2 * self.body.spokes * self.body.rings
 
     @cached_property
@@ -61,7 +61,7 @@ class Web(Expansion[WebDef]):
         return {"centre": 0}
 
     def named_pins(self) -> list[int]:
-        """The outermost ring, where it is held."""
+        """The outermost ring, if `pin` names it."""
         count = self.form_count[0]
         return list(range(count - self.body.spokes, count)) if self.body.pin else []
 

@@ -50,7 +50,7 @@ class Wheel(Expansion[WheelDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """Of each cell a spoke, three sides and two diagonals."""
+        """Each cell has a spoke, three sides and two diagonals."""
         return 1 + 2 * self.body.segments, 6 * self.body.segments
 
     @cached_property
@@ -73,7 +73,7 @@ class Wheel(Expansion[WheelDef]):
         return {"hub": 0}
 
     def named_pins(self) -> list[int]:
-        """The hub, where it is held."""
+        """The hub, if `pin` names it."""
         return [0] if self.body.pin else []
 
     @cached_property
@@ -86,11 +86,11 @@ class Wheel(Expansion[WheelDef]):
 
     @property
     def motor(self) -> MotorDef | None:
-        """What turns both rings about the hub."""
+        """The motor that turns both rings about the hub."""
         return self.body.motor
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
-        """Whether its rim has an inner ring, and stays inside the world."""
+        """Faults of a rim without an inner ring, or that leaves the world."""
         body = self.body
         if body.thickness >= body.radius:
             yield f"{path}.thickness", f"{shown(body.thickness)} is not below the radius, {shown(body.radius)}"
