@@ -139,12 +139,12 @@ class CheckDef(Description):
         json_schema_extra=empty("once"),
     )
     at_most: float | None = Field(
-        default=None, description="Upper bound, in the metric's unit.", json_schema_extra=empty("no bound")
+        default=None, description="Upper bound.", json_schema_extra=unit("the metric's") | empty("no bound")
     )
     at_least: float | None = Field(
         default=None,
-        description="Lower bound, in the metric's unit. A check of `inside` or `settled` without bounds has 0 or 1.",
-        json_schema_extra=empty("no bound"),
+        description="Lower bound. Without bounds, a check of `inside` has 0, and one of `settled` 1.",
+        json_schema_extra=unit("the metric's") | empty("no bound"),
     )
     hold: tuple[HoldDef, ...] = Field(
         default=(), max_length=HOLD_LIMIT, description="Keys that it holds while the level runs. It presses no others."
