@@ -8,6 +8,7 @@ from sandbox.editor.lint.lint import findings
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import read_level
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.session.check_run import run_checks
 from sandbox.session.held_keys import HeldKeys
 from sandbox.session.session import Session
@@ -60,6 +61,16 @@ def test_a_recipe_runs_for_two_seconds_without_a_fault(name):
 def test_a_recipe_keeps_its_checks(name):
     results = run_checks(read_level(cookbook.path_of(name)))
     assert [result.text for result in results if not result.passed] == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_is_outside_the_frame_of_a_picture(name):
+    session, (left, bottom, right, top) = cookbook.at_best(name)
+    world = session.world
+    shown = shown_particles(world)
+    low = (world.position - world.radius[:, None])[: len(shown)][shown]
+    high = (world.position + world.radius[:, None])[: len(shown)][shown]
+    assert np.all((low >= (left, bottom)) & (high <= (right, top)))
 
 
 @pytest.mark.parametrize("name", NAMES)

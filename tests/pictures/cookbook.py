@@ -10,6 +10,7 @@ import numpy as np
 import pygame
 from PIL import Image
 
+from sandbox.app.draw.camera import Box
 from sandbox.app.draw.picture import draw_picture, view_of
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import read_level
@@ -34,8 +35,8 @@ class Recipe:
 # The recipes, by the names of their files, in the order of the page.
 SECTIONS: dict[str, dict[str, Recipe]] = {
     "Bodies": {
-        "hanging_rope": Recipe(8.0),
-        "bending": Recipe(0.55),
+        "hanging_rope": Recipe(20.0),
+        "bending": Recipe(0.9),
         "breaking_bridge": Recipe(1.45, "light"),
         "jelly_box": Recipe(0.7),
         "rolling": Recipe(1.2, "light"),
@@ -45,7 +46,7 @@ SECTIONS: dict[str, dict[str, Recipe]] = {
     },
     "Materials": {
         "firmness": Recipe(3.0),
-        "yield": Recipe(3.0, "light"),
+        "yield": Recipe(2.2, "light"),
         "loose_springs": Recipe(0.9),
     },
     "Machines": {
@@ -59,7 +60,7 @@ SECTIONS: dict[str, dict[str, Recipe]] = {
         "friction": Recipe(1.2, "light"),
         "walls": Recipe(1.9),
         "groups": Recipe(0.9),
-        "buoyancy": Recipe(1.15, "light"),
+        "buoyancy": Recipe(0.95, "light"),
         "wind": Recipe(1.5, "light"),
     },
     "Checks, looks and data": {
@@ -123,20 +124,24 @@ def picture_of(name: str) -> Path:
     return FOLDER / f"{name}.webp"
 
 
-def drawn(name: str) -> pygame.Surface:
-    """A level at its best, with the keys held that its checks hold."""
-    session, recipe = Session(read_level(path_of(name))), RECIPES[name]
+def at_best(name: str) -> tuple[Session, Box]:
+    """A run of a level at its best, with the keys held that its checks hold, and the frame [m] of its picture."""
+    session = Session(read_level(path_of(name)))
     level = session.level
     keys = HeldKeys(level, [hold for check in level.checks for hold in check.hold])
-    box = np.array(view_of(level, session.snapshot()))
-    followed = _followed(session)
-    for _ in range(round(recipe.moment * level.settings.tick_rate)):
+    box, followed = np.array(view_of(level, session.snapshot())), _followed(session)
+    for _ in range(round(RECIPES[name].moment * level.settings.tick_rate)):
         keys.press(session)
         session.advance()
-    shift = np.tile(_followed(session) - followed, 2)
-    left, bottom, right, top = (box + shift).tolist()
+    left, bottom, right, top = (box + np.tile(_followed(session) - followed, 2)).tolist()
+    return session, (left, bottom, right, top)
+
+
+def drawn(name: str) -> pygame.Surface:
+    """The picture of a recipe, in its large size."""
+    session, box = at_best(name)
     size = LARGER * SIZE[0], LARGER * SIZE[1]
-    return draw_picture(level, session.snapshot(), size, (left, bottom, right, top), LINE_SCALE, recipe.theme)
+    return draw_picture(session.level, session.snapshot(), size, box, LINE_SCALE, RECIPES[name].theme)
 
 
 def _followed(session: Session) -> np.ndarray:
