@@ -1,4 +1,4 @@
-"""Acceptance checks: what a level promises of its own run, and how measured values are held against it."""
+"""Acceptance checks: what a level promises about its own run, and how values are compared with the bounds."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from sandbox.level.format.quantities import Coordinate, Description, Key, Name, Seconds
+from sandbox.level.format.quantities import Coordinate, Description, Key, Name, Seconds, empty, unit
 
 Metric = Literal[
     "max_strain",
@@ -34,11 +34,11 @@ STILL = 0.05
 
 @dataclass(frozen=True)
 class Measured:
-    """What a metric is measured of: fields that it needs, one of which it needs, and those that it may have; its unit.
+    """A metric: the fields that it needs, the fields of which it needs one, the fields that it may have, and its unit.
 
-    label: what people call it. words: a check of it as a sentence; {owner}, {of} and {other} stand for what it is
-    measured of, {bounds} for what it must keep. at_least: the bound that holds where a check names none; momentary:
-    whether it has a value at every tick. usual: the least and the largest value that a new check of it lets pass.
+    label: its name for people. words: a check of it as a sentence; {owner}, {of} and {other} stand for what it
+    measures, {bounds} for the bounds. at_least: the lower bound of a check without bounds. momentary: whether it has
+    a value at every tick. usual: the bounds of a new check.
     """
 
     label: str
@@ -52,7 +52,7 @@ class Measured:
     usual: tuple[float | None, float | None] = (None, 0.0)
 
     def takes(self, field: str) -> bool:
-        """Whether a field means anything to it."""
+        """Whether the metric uses a field."""
         return field in (*self.needs, *self.needs_one, *self.may_have)
 
 
@@ -89,7 +89,7 @@ METRICS: dict[str, Measured] = {
     "energy": Measured("energy", "the energy is {bounds}", "J", usual=(None, 1.0)),
     "non_finite": Measured("places that are no number", "{bounds} particles have no place or speed"),
 }  # fmt: skip
-# What people say of some metrics with bounds that most checks of them have: the least and the largest value.
+# Sentences for usual checks, by metric, lower and upper bound.
 PROMISES = {
     ("non_finite", -math.inf, 0.0): "every place and speed is a number",
     ("broken_springs", -math.inf, 0.0): "no spring{of} breaks",
@@ -100,48 +100,60 @@ SUBJECTS = ("particle", "other", "body", "box")
 
 
 class HoldDef(Description):
-    """A key that is held while a check runs."""
+    """A key that a check holds while the level runs."""
 
-    key: Key = Field(description="A key that drives a motor or a hydraulic.")
-    during: tuple[Seconds, Seconds] = Field(description="From when to when it is held.")
+    key: Key = Field(description="Key of a motor or a hydraulic.")
+    during: tuple[Seconds, Seconds] = Field(description="From when to when the check holds it.")
 
 
 class CheckDef(Description):
-    """A metric of the level's run and the bounds that it must keep, at a time, always or eventually."""
+    """A metric of the level's run and the bounds that it must keep: at one time, always or eventually."""
 
-    name: Name = Field(description="What the check is about.")
-    metric: Metric = Field(description="What is measured, see [Checks](#checks).")
-    particle: Name | None = Field(default=None, description="The particle that is measured.")
-    other: Name | None = Field(default=None, description="The particle that `distance` is measured to.")
+    name: Name = Field(description="What the check promises.")
+    metric: Metric = Field(description="What it measures: a name of [Metrics](#metrics).")
+    particle: Name | None = Field(
+        default=None, description="Particle that it measures.", json_schema_extra=empty("none")
+    )
+    other: Name | None = Field(
+        default=None, description="Particle to which it measures the `distance`.", json_schema_extra=empty("none")
+    )
     body: Name | None = Field(
         default=None,
-        description="The body that is measured, of x, y and speed its centre of mass; null = the whole level.",
+        description="Body that it measures; for x, y and speed the centre of mass.",
+        json_schema_extra=empty("the whole level"),
     )
     box: Box | None = Field(
         default=None,
-        description="What it must be inside of: left, bottom, right, top.",
-        json_schema_extra={"unit": "m"},
+        description="Box of the metric `inside`: left, bottom, right, top.",
+        json_schema_extra=unit("m") | empty("none"),
     )
-    after: Seconds = Field(default=5.0, description="How long the level runs by itself first.")
+    after: Seconds = Field(default=5.0, description="When it measures, from the start of the run.")
     always: tuple[Seconds, Seconds] | None = Field(
-        default=None, description="In place of `after`: it must hold at every tick from the first time to the second."
+        default=None,
+        description="In place of `after`: it must hold at every tick from the first time to the second.",
+        json_schema_extra=empty("once"),
     )
     eventually: tuple[Seconds, Seconds] | None = Field(
-        default=None, description="In place of `after`: it must hold at one tick from the first time to the second."
+        default=None,
+        description="In place of `after`: it must hold at one tick at least from the first time to the second.",
+        json_schema_extra=empty("once"),
     )
-    at_most: float | None = Field(default=None, description="Upper bound, in the metric's unit.")
+    at_most: float | None = Field(
+        default=None, description="Upper bound.", json_schema_extra=unit("the metric's") | empty("no bound")
+    )
     at_least: float | None = Field(
         default=None,
-        description="Lower bound, in the metric's unit; of `inside` 0, of `settled` 1 where none is.",
+        description="Lower bound. Without bounds, a check of `inside` has 0, and one of `settled` 1.",
+        json_schema_extra=unit("the metric's") | empty("no bound"),
     )
     hold: tuple[HoldDef, ...] = Field(
-        default=(), max_length=HOLD_LIMIT, description="Keys that are held while it runs; without them none is pressed."
+        default=(), max_length=HOLD_LIMIT, description="Keys that it holds while the level runs. It presses no others."
     )
 
 
 @dataclass(frozen=True)
 class CheckResult:
-    """A check, the value measured for it, whether it holds, and one line that says so; at [s]: when it was measured."""
+    """A check, the measured value, whether it passed, and one line that says so; at [s]: when it measured."""
 
     check: CheckDef
     value: float
@@ -151,7 +163,7 @@ class CheckResult:
 
 
 def bounds_of(check: CheckDef) -> tuple[float, float]:
-    """Least and largest value that a check lets pass, both included; infinite where there is no bound."""
+    """The least and the largest value that pass, both included; infinite without a bound."""
     low, high = check.at_least, check.at_most
     if low is None and high is None:
         low = METRICS[check.metric].at_least
@@ -159,12 +171,12 @@ def bounds_of(check: CheckDef) -> tuple[float, float]:
 
 
 def window_of(check: CheckDef) -> tuple[float, float]:
-    """From when to when a check is measured [s]; the same twice where it is once."""
+    """Start and end [s] of the time in which a check measures; equal if it measures once."""
     return check.always or check.eventually or (check.after, check.after)
 
 
 def excess(check: CheckDef, value: float) -> float:
-    """How far a value is beyond the bounds of a check; at most 0 where it holds, infinite where it is no number."""
+    """How far a value is beyond the bounds of a check: at most 0 if it passes, infinite if it is not a number."""
     low, high = bounds_of(check)
     beyond = max(low - value if low > -math.inf else -math.inf, value - high if high < math.inf else -math.inf)
     return math.inf if math.isnan(value) else beyond
@@ -186,7 +198,7 @@ def time_text(check: CheckDef) -> str:
 
 
 def held_text(check: CheckDef) -> str:
-    """The keys that a check holds: "D from 1 to 8 s"; empty where it holds none."""
+    """The keys that a check holds: "D from 1 to 8 s"; empty if it holds none."""
     return ", ".join(f"{hold.key.upper()} from {hold.during[0]:g} to {hold.during[1]:g} s" for hold in check.hold)
 
 
@@ -208,7 +220,7 @@ def promise_text(check: CheckDef) -> str:
 
 
 def judge(check: CheckDef, value: float, at: float | None = None) -> CheckResult:
-    """Hold a check against a value measured at a time [s], of a window the one that decides; no number fails."""
+    """The result of a check for a value measured at a time [s]. A value that is not a number fails."""
     passed = excess(check, value) <= 0.0
     when = check.after if at is None else at
     measured = f"is {value:.6g}"

@@ -115,8 +115,15 @@ def test_units_limits_and_tooltips_come_from_the_schema():
     assert (about.unit, about.low, about.high, about.above) == ("kg", 1e-9, 1e9, False)
     assert about.tooltip == "Mass of each particle. 1e-09 to 1e+09 kg."
     assert abouts(KINDS["wheel"])["radius"].above
-    assert abouts(KINDS["rope"])["rest_length"].empty == "as placed"
     assert abouts(SpringDef)["rest_length"].optional and not abouts(ParticleDef)["mass"].optional
+
+
+def test_an_empty_field_says_what_null_means_as_its_model_declares_it():
+    words = {"rest_length": "as placed", "end_mass": "as the others", "friction": "the level's", "group": "none"}
+    rope = abouts(KINDS["rope"])
+    assert {name: rope[name].empty for name in words} == words
+    assert rope["end_mass"].tooltip == "Mass of the last particle. Empty: as the others. 1e-09 to 1e+09 kg."
+    assert {name for name, about in rope.items() if about.empty} == {name for name in rope if rope[name].optional}
 
 
 def test_angles_are_read_typed_and_stepped_in_degrees(level):

@@ -1,11 +1,11 @@
-"""Draws every picture of README and docs anew, or those of some parts: `python -m tests.pictures [gallery ...]`."""
+"""Draws every picture of README and docs, or those of some pages: `python -m tests.pictures [gallery ...]`."""
 
 import sys
 
-from tests.pictures import gallery, how_to, sharing
+from tests.pictures import cookbook, gallery, how_to, sharing
 from tests.pictures.photographer import own_home
 
-PARTS = {"gallery": gallery.draw, "how_to": how_to.draw, "sharing": sharing.draw}
+PARTS = {"cookbook": cookbook.draw, "gallery": gallery.draw, "how_to": how_to.draw, "sharing": sharing.draw}
 
 
 def main(names: list[str]) -> None:

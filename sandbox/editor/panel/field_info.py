@@ -1,6 +1,5 @@
-"""Abouts: what the schema of the level format says of each field, for people who change it."""
+"""abouts(): what the models of the level format declare of each field, for people who edit it."""
 
-import re
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal, get_args
@@ -8,6 +7,7 @@ from typing import Any, Literal, get_args
 from pydantic import BaseModel
 
 from sandbox.editor.panel.typed import number_text
+from sandbox.level.document.schema import described
 from sandbox.level.format.look import BALLS, LINES, PALETTE, SKINS
 
 Kind = Literal[
@@ -35,14 +35,6 @@ Kind = Literal[
 # What can be picked on the sheet in place of typing it.
 Pick = Literal["", "particle", "body", "box"]
 
-# What a description says of null.
-_EMPTY = re.compile(r"empty = ([^.;]+)")
-# Shorter words where the description's do not fit into a field.
-_SHORTER = {
-    "that of the level's contacts": "the level's",
-    "as placed, of a hydraulic its shortest": "as placed",
-    "the group default": "default",
-}
 _KEYS = ("key", "reverse_key")
 # The unit of angles in a file, and what people read and type.
 _RADIANS, DEGREES = "rad", "°"
@@ -77,10 +69,10 @@ _TITLES = {
 class FieldInfo:
     """A field: kind, title, unit, limits (both included but where `above`), tooltip, choices, whether null is a value.
 
-    empty: what null stands for. A `point` is of two numbers; `flags` are any number of the choices, `pairs` lists of
-    numbers in a list, `outlines` lists of corners in one; a `form` has a table of its own; a `part` is an object, of
-    that model, or null. labels: words for the choices; pick: what is clicked on the sheet for it. What has the unit
-    DEGREES is read and typed in them; its value and limits are in radians.
+    empty: what null means, in words for an empty text field. A `point` is of two numbers; `flags` are any number of the
+    choices, `pairs` lists of numbers in a list, `outlines` lists of corners in one; a `form` has a table of its own; a
+    `part` is an object, of that model, or null. labels: words for the choices; pick: what is clicked on the sheet for
+    it. What has the unit DEGREES is read and typed in them; its value and limits are in radians.
     """
 
     kind: Kind
@@ -100,7 +92,7 @@ class FieldInfo:
 
 @cache
 def abouts(model: type[BaseModel]) -> dict[str, FieldInfo]:
-    """What is known of every field of a model, by name, in its order."""
+    """A description of every field of a model, by name, in the model's order."""
     fields = model.model_json_schema(by_alias=False)["properties"]
     return {name: _about(name, fields[name], _part(field.annotation)) for name, field in model.model_fields.items()}
 
@@ -125,8 +117,6 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> F
     numbers = value.get("prefixItems", [value])[0]
     low = numbers.get("minimum", numbers.get("exclusiveMinimum"))
     kind = "part" if part is not None else _kind(name, value)
-    text = schema.get("description", "").replace("null = ", "empty = ").replace("`", "")
-    empty = _EMPTY.search(text)
     unit = value.get("unit", value.get("items", {}).get("unit", ""))
     about = FieldInfo(
         kind=kind,
@@ -137,10 +127,10 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> F
         above="exclusiveMinimum" in numbers,
         choices=_choices(name, kind, value),
         optional=optional,
-        empty=_SHORTER.get(empty[1], empty[1].replace("_", " ")) if empty and optional else "",
+        empty=schema.get("empty", ""),
         model=part,
     )
-    return FieldInfo(**{**about.__dict__, "tooltip": _tooltip(about, text)})
+    return FieldInfo(**{**about.__dict__, "tooltip": _tooltip(about, described(schema, "Empty").replace("`", ""))})
 
 
 def _choices(name: str, kind: Kind, value: dict[str, Any]) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""build_world(level): definitions expanded in file order into the slots of a World."""
+"""build_world(level): builds a World from a level, in the order of the file."""
 
 from typing import Any
 
@@ -23,10 +23,10 @@ from sandbox.physics.world import World
 def build_world(level: Level) -> World:
     """Build the world that a level describes.
 
-    Particle slots: the particles of the bodies in file order, then the loose particles, of welded ones the first
-    alone; spring slots: the springs of the bodies in file order, then the loose springs; then the slots of the hands.
+    Particle slots: the particles of the bodies in file order, then the loose particles; welded particles share the
+    slot of the first. Spring slots: the springs of the bodies in file order, then the loose springs, then the hands.
     Materials: "default" first, then the level's in file order. Raises LevelError for a level that breaks a limit or
-    refers to nothing.
+    names something that does not exist.
     """
     plan = check_level(level, f'level "{level.name}"')
     materials = {DEFAULT_MATERIAL: NissenMaterial(), **level.materials}
@@ -71,7 +71,7 @@ def _add_particles(world: World, level: Level, plan: Plan, slots: Slots, stays: 
         first = kept[slots[slot]]
         both = mass[first] + mass[slot]
         velocity[first] = (mass[first] * velocity[first] + mass[slot] * velocity[slot]) / both
-        # What pulls at both pulls at the one; equal scales stay what they are, to the bit.
+        # The mean by mass; equal scales stay equal to the bit.
         if scale[first] != scale[slot]:
             scale[first] = (mass[first] * scale[first] + mass[slot] * scale[slot]) / both
         mass[first] = both
@@ -95,7 +95,7 @@ def _add_particles(world: World, level: Level, plan: Plan, slots: Slots, stays: 
 
 
 def _turning(level: Level, particles: int) -> dict[str, NDArray[Any]]:
-    """How every particle turns (n,), by argument of add_particles; the first ones are the bodies'."""
+    """How every particle turns (n,), as arguments of add_particles; particles of bodies come first."""
     own = [(True, ROLLING_RESISTANCE, 0.0, 0.0)] * particles
     loose = [(p.rolls, p.rolling + 0.0, p.angle + 0.0, p.spin + 0.0) for p in level.particles]
     columns = zip(*(own + loose), strict=True) if own or loose else [()] * 4

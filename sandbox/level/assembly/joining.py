@@ -1,4 +1,4 @@
-"""Bodies that join a running world: definitions of the level format, checked as in a file, built and added."""
+"""Adds bodies to a running world: reads definitions of the level format, checks and builds them."""
 
 import functools
 import itertools
@@ -43,10 +43,10 @@ KEPT = 64
 
 
 class Joiners:
-    """Bodies of a definition, checked and built, ready to join a world.
+    """The bodies of a definition, checked and built, before they join a world.
 
-    definition: `body`, and perhaps `others`, `springs`, `welds` and `materials`, as in a level file; springs and welds
-    are between these bodies, which go by their ids in it. Raises LevelError with every fault.
+    definition: `body`, and optionally `others`, `springs`, `welds` and `materials`, as in a level file. Springs and
+    welds join these bodies, by their ids in the definition. Raises LevelError with every fault.
     """
 
     def __init__(self, world: World, definition: Mapping[str, Any]) -> None:
@@ -95,7 +95,7 @@ class Joiners:
                 yield place, f"the level has no group {shown(name)}" + suggestion(name, self._bits)
 
     def groups(self, world: World) -> tuple[Slots, Slots, Slots]:
-        """Group and collides of their particles, and collides of the world's own from now on. Raises LevelError."""
+        """Group and collides of the new particles, and the new collides of the world's own. Raises LevelError."""
         owner, present = self.built.owner[: self.particles], world.collides.copy()
         group, collides = np.zeros((2, self.particles), np.int64)
         bits = self._bits | self._own_bits(world)
@@ -115,12 +115,12 @@ class Joiners:
 
     @property
     def _own_groups(self) -> list[str]:
-        """Groups that these bodies bring along: names that the level does not know."""
+        """Collision groups of these bodies that the level does not have."""
         named = dict.fromkeys(said.get("collision_group") for said in self._said)
         return [name for name in named if name is not None and name not in self._bits]
 
     def _own_bits(self, world: World) -> dict[str, int]:
-        """The bits of those groups, which nothing of the world has yet. Raises LevelError where there are too many."""
+        """Bits for new groups, which nothing in the world has yet. Raises LevelError if there are too many."""
         first = max(int(world.group.max(initial=1)), *self._bits.values()).bit_length()
         found = {name: 1 << number for number, name in enumerate(self._own_groups, first)}
         if any(bit > ALL_GROUPS for bit in found.values()):
@@ -128,7 +128,7 @@ class Joiners:
         return found
 
     def check_room(self, world: World) -> None:
-        """Raise LevelError where the world would become larger than a level may be."""
+        """Raise LevelError if the world would become larger than a level may be."""
         limited = sum(
             int(np.isfinite(driven.force).sum())
             for each in (world, self.built)
@@ -147,7 +147,7 @@ class Joiners:
                 raise LevelError(SOURCE, [("", f"a world holds at most {limit:,} {noun}; this would make {count:,}")])
 
     def join(self, world: World) -> None:
-        """Add them to a world at its present tick. Raises LevelError and changes nothing where there is no room."""
+        """Add the bodies to a world at its present tick. If there is no room, raises LevelError and changes nothing."""
         self.check_room(world)
         group, collides, present = self.groups(world)
         # A muscle is where its wave is by now.
@@ -182,7 +182,7 @@ class Joiners:
         )
 
     def _naming(self, world: World) -> dict[str, str]:
-        """What each body and each loose spring of the definition, by its name there, is called in the world."""
+        """The world's name of each body and loose spring, by its name in the definition."""
         count = sum(len(joined.names) for joined in world.joined)
         springs = world.spring_naming.unused("+:", len(self.level.springs))
         named = {body.id: f"+{number}" for number, body in enumerate(self.level.bodies, count + 1)}
@@ -210,7 +210,7 @@ class Joiners:
 
 
 def _give_group(group: Slots, others: tuple[Slots, Slots], wheel: Mask, mount: Mask, own: int) -> None:
-    """Put a wheel in a group of its own, which its mount does not touch, and whoever touched its named group does."""
+    """Put a wheel into a group of its own. Its mount does not touch that group; all that touched its old group do."""
     named = group[wheel][0]
     for collides, is_mount in zip(others, (mount, False), strict=True):
         touches = (collides & named) != 0
@@ -224,7 +224,7 @@ def _identified(body: Any, number: int) -> Any:
 
 
 def _without_groups(body: Any) -> tuple[dict[str, Any], Any]:
-    """What a body says of groups, which are those of the level that it joins, and the body without that."""
+    """The collision groups that a body names, which belong to the level that it joins, and the body without them."""
     if not isinstance(body, dict):
         return {}, body
     said = {}
@@ -237,14 +237,14 @@ def _without_groups(body: Any) -> tuple[dict[str, Any], Any]:
 
 
 def _contacts(level: Level) -> dict[str, Any] | None:
-    """How things touch in a level; None where nothing does."""
+    """The contacts of a level; None if nothing touches."""
     if not level.has_contacts:
         return None
     return {} if level.contacts is None else level.contacts.model_dump(mode="json")
 
 
 def _known_material(world: World, name: str) -> Material | None:
-    """The material of that name that a world has."""
+    """The material of a world with that name."""
     sources = [world.source, *(joined.source for joined in world.joined)]
     found = next((source.materials[name] for source in sources if name in source.materials), None)
     return NissenMaterial() if found is None and name == DEFAULT_MATERIAL else found
@@ -271,7 +271,7 @@ def _material_faults(world: World, level: Level, given: Mapping[str, Any]) -> It
 
 @functools.lru_cache(maxsize=KEPT)
 def _parsed(text: str) -> Level:
-    """The bodies of a definition as a level of their own. Raises LevelError, which speaks of the definition."""
+    """A level of the bodies of a definition. Raises LevelError, with places in the definition."""
     try:
         return parse_level(text.encode(), SOURCE)
     except LevelError as error:
@@ -280,6 +280,6 @@ def _parsed(text: str) -> Level:
 
 
 def _in_definition(fault: str) -> str:
-    """A fault of a level as one of the definition that it was made of."""
+    """A fault of that level as a fault of the definition."""
     fault = re.sub(r"^bodies\.(\d+)", lambda found: "body" if found[1] == "0" else f"others.{int(found[1]) - 1}", fault)
     return fault.replace("bodies: ", "body: ", 1) if fault.startswith("bodies: ") else fault

@@ -1,4 +1,4 @@
-"""The one way a level is written: defaults left out, keys in the order of the models, kind to line-by-line diffs."""
+"""The canonical text of a level: without defaults, keys in the order of the models, good for line-by-line diffs."""
 
 import json
 import math
@@ -16,7 +16,7 @@ _encoded = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def level_data(level: Level) -> dict[str, Any]:
-    """A level as JSON data in canonical form: defaults left out, but for the solver, whose default may change."""
+    """A level as JSON data in canonical form: without defaults, except the solver, whose default may change."""
     data = level.model_dump(mode="json", exclude_defaults=True)
     settings = data.get("settings", {}) | {"solver": level.settings.solver}
     data["settings"] = {name: settings[name] for name in Settings.model_fields if name in settings}

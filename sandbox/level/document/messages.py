@@ -1,4 +1,4 @@
-"""What the validation library found, in the words of a level maker."""
+"""Turns errors of the validation library into words for level makers."""
 
 import types
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ _SHAPE_FORMS = 'a shape is {"box": [width, height]}, {"circle": radius} or {"pol
 
 
 def worded(errors: list[dict[str, Any]]) -> Iterator[Fault]:
-    """Faults of the errors that the library lists, in its order, each place and text once."""
+    """The errors of the library as faults, in its order, without repetitions."""
     seen = set()
     for error in errors:
         if error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]:
@@ -32,7 +32,7 @@ def worded(errors: list[dict[str, Any]]) -> Iterator[Fault]:
 
 
 def place(location: Location) -> list[Any]:
-    """A location without the names of the chosen alternatives that the library puts in."""
+    """A location of the library without the names of alternatives that it inserts."""
     parts = list(location)
     if parts[:1] in (["bodies"], ["materials"]) and len(parts) > 2:
         del parts[2]
@@ -74,7 +74,7 @@ def _kind_fault(parts: list[Any], kind: str, value: Any) -> Fault:
 
 
 def _models(declared: Any, location: Location) -> Iterator[type[BaseModel]]:
-    """Models of the object that stands at a location inside what a type declares; more where nothing chooses."""
+    """The models that a type allows at a location inside it; several if nothing chooses between them."""
     origin = get_origin(declared)
     if origin is Annotated:
         yield from _models(get_args(declared)[0], location)
@@ -89,7 +89,7 @@ def _models(declared: Any, location: Location) -> Iterator[type[BaseModel]]:
         elif location[0] in declared.model_fields:
             yield from _models(declared.model_fields[location[0]].annotation, location[1:])
     elif origin in (tuple, list, dict) and location:
-        # A key or an index says nothing of its own: every item is declared alike.
+        # All items of a list or an object have the same declaration.
         yield from _models(get_args(declared)[1 if origin is dict else 0], location[1:])
 
 

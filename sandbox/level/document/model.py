@@ -1,4 +1,4 @@
-"""Level: what a level file says, frozen, with no behaviour."""
+"""Level: the content of a level file, frozen, without behaviour."""
 
 from typing import Annotated, Any, Literal
 
@@ -50,6 +50,7 @@ from sandbox.level.format.quantities import (
     Velocity,
     YieldShare,
     YieldStrain,
+    empty,
     unit,
 )
 from sandbox.level.kinds.bodies import AnyBody
@@ -65,35 +66,36 @@ class Settings(Description):
     tick_rate: int = Field(default=60, ge=1, le=10_000, description="Ticks in a second.", json_schema_extra=unit("1/s"))
     substeps: Substeps = Field(
         default=1,
-        description="Parts that a tick is cut into; coefficients are converted: in the direct solver springs keep "
-        "their k and c, else their motion. "
-        '"auto": every tick chooses 1, 2, 4 or 8, by how far the springs turn in it.',
+        description="Number of steps in a tick. The direct solver keeps k and c of each spring, the other two keep its "
+        'motion. "auto": each tick takes 1, 2, 4 or 8, by how far its springs turn.',
         json_schema_extra={"enum": [*SUBSTEPS, AUTO]},
     )
     solver: str = Field(
-        # Written into every file all the same, so that a file keeps its meaning.
+        # Every file names its solver, so that it keeps its meaning if the default changes.
         default=DEFAULT_SOLVER,
         description="How the springs of a network are solved together.",
         json_schema_extra={"enum": [*sorted(SOLVERS)]},
     )
-    iterations: int = Field(default=10, ge=1, le=1_000, description="Rounds of the iterative solver in each substep.")
+    iterations: int = Field(
+        default=10, ge=1, le=1_000, description="Iterations of the iterative solver in each substep."
+    )
     warm_start: float = Field(
         default=0.5,
         ge=0.0,
         le=1.0,
-        description="Part of the last step's pulling impulses that the iterative solver reuses.",
+        description="Share of the last step's pulling impulses that the iterative solver starts from.",
     )
-    wind: Velocity = Field(default=(0.0, 0.0), description="Velocity of the air; it acts by `drag` alone.")
+    wind: Velocity = Field(default=(0.0, 0.0), description="Velocity of the air. It acts only through `drag`.")
     drag: Drag = Field(
         default=0.0,
-        description="Rate at which every free particle takes on the wind's velocity, whatever its mass: what it "
-        "differs by falls to 1/(1 + drag h) in a step of h seconds.",
+        description="Rate at which every free particle takes on the wind's velocity, at any mass. In a step of h "
+        "seconds the difference falls to 1/(1 + drag h) of itself.",
     )
 
     @field_validator("substeps", mode="before")
     @classmethod
     def _count_or_auto(cls, substeps: Any) -> Any:
-        # Before the type is looked at: of a choice of types, the library would list a fault for each.
+        # This comes before the type check: for a choice of types, the library would list a fault for each.
         if isinstance(substeps, int) and not isinstance(substeps, bool):
             if substeps in SUBSTEPS:
                 return substeps
@@ -111,38 +113,47 @@ class Settings(Description):
 
 
 class MaterialDef(Description):
-    """What springs of every law have: limits of strain, (length - rest length) / rest length, at the end of a tick."""
+    """The fields that materials of both laws share: limits of strain, (length - rest length) / rest length."""
 
     tension_limit: Tension | None = Field(
-        default=None, description="Strain beyond which a stretched spring breaks; null = never."
+        default=None, description="Strain beyond which a stretched spring breaks.", json_schema_extra=empty("never")
     )
     compression_limit: Compression | None = Field(
-        default=None, description="Strain beyond which a compressed spring breaks, above 0; null = never."
+        default=None,
+        description="Strain beyond which a compressed spring breaks, as a positive number.",
+        json_schema_extra=empty("never"),
     )
     yield_strain: YieldStrain | None = Field(
-        default=None, description="Strain either way beyond which the rest length follows for good; null = elastic."
+        default=None,
+        description="Strain, stretched or compressed, beyond which a spring bends for good.",
+        json_schema_extra=empty("never"),
     )
     yield_limit: YieldShare = Field(
-        default=0.25, description="Largest change of the rest length by yielding, as a share of it as built."
+        default=0.25,
+        description="Largest change of the rest length by yielding, as a share of the rest length as built.",
     )
-    look: BodyLook | None = Field(default=None, description="How what is made of it looks; null = automatic.")
+    look: BodyLook | None = Field(
+        default=None, description="How its bodies and springs look.", json_schema_extra=empty("automatic")
+    )
 
 
 class NissenMaterial(MaterialDef):
     """The impulse-based spring (Nissen 2019): Cs and Cd per tick, the same behaviour for every mass."""
 
     stiffness: Coefficient = Field(
-        default=0.5, description="Cs: part of its distance error that a spring corrects in a tick."
+        default=0.5, description="Cs: share of its length error that a spring corrects in a tick."
     )
     damping: Coefficient = Field(
-        default=0.9, description="Cd: part of its velocity error that a spring removes in a tick."
+        default=0.9, description="Cd: share of its velocity error that a spring removes in a tick."
     )
 
 
 class HookeMaterial(MaterialDef):
     """The classic spring, F = -k x - c u, for comparison: it explodes where k or c is too large for mass and step."""
 
-    law: Literal["hooke"] = Field(description='"hooke"; without `law` a material is the impulse-based spring.')
+    law: Literal["hooke"] = Field(
+        description="Says that it is a Hooke material. Without `law` a material is the impulse-based spring."
+    )
     k: HookeStiffness = Field(default=500.0, description="Spring constant.")
     c: HookeDamping = Field(default=2.0, description="Damping constant.")
 
@@ -162,11 +173,11 @@ class ParticleDef(Description):
     """A loose particle, which belongs to no body."""
 
     id: Id = Field(description="Name of the particle.")
-    position: Point = Field(default=(0.0, 0.0), description="Place.")
-    velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity; a pinned particle starts at rest.")
+    position: Point = Field(default=(0.0, 0.0), description="Place of its centre.")
+    velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity. A pinned particle starts at rest.")
     mass: Mass = Field(default=1.0, description="Mass.")
     radius: Length = Field(default=0.05, description="Radius of its disc.")
-    pinned: bool = Field(default=False, description="Whether it is held where it is.")
+    pinned: bool = Field(default=False, description="Whether it stays where it is.")
     gravity_scale: GravityScale = 1.0
     friction: Friction = None
     restitution: Restitution = None
@@ -174,52 +185,56 @@ class ParticleDef(Description):
     collision_group: CollisionGroup = None
     rolls: bool = Field(
         default=True,
-        description="Whether friction turns its disc, while no spring and no pin holds it; false = it slides.",
+        description="Whether friction turns its disc while no spring and no pin holds it. If not, it slides.",
     )
     rolling: Rolling = ROLLING_RESISTANCE
-    angle: Angle = Field(default=0.0, description="How far its disc has turned at the start; it is only shown.")
-    spin: TurnRate = Field(default=0.0, description="How fast its disc turns at the start, anticlockwise.")
+    angle: Angle = Field(default=0.0, description="How far its disc has turned at the start. It is only shown.")
+    spin: TurnRate = Field(
+        default=0.0, description="How fast its disc turns at the start; counter-clockwise is positive."
+    )
     group: Group = None
-    look: ParticleLook | None = Field(default=None, description="How it looks; null = automatic.")
+    look: ParticleLook | None = Field(default=None, description="How it looks.", json_schema_extra=empty("automatic"))
     extras: Extras = Field(default_factory=dict)
 
 
 class SpringDef(Description):
-    """A loose spring between two particles of the level; the k-th of the list is named `:k`."""
+    """A loose spring between two particles of the level. `:k` is spring k of the list, counted from 0."""
 
     a: Name = Field(description="One end: `id`, `id.k`, or a name such as `id.start`.")
     b: Name = Field(description="The other end.")
-    name: Name | None = Field(default=None, description="What it is called in the window; null = by its number.")
+    name: Name | None = Field(
+        default=None, description="Its name in the window.", json_schema_extra=empty("its number")
+    )
     rest_length: Length | None = Field(
-        default=None, description="Rest length; null = as placed, of a hydraulic its shortest."
+        default=None,
+        description="Rest length. Left out of a hydraulic, it is the hydraulic's `shortest`.",
+        json_schema_extra=empty("as placed"),
     )
     material: Name = Field(default=DEFAULT_MATERIAL, description="Name of its material.")
-    drive: MuscleDef | None = Field(
-        default=None, description="Wave that its rest length follows: a muscle; null = none."
-    )
+    drive: MuscleDef | None = Field(default=None, description="Makes a muscle of it.", json_schema_extra=empty("none"))
     hydraulic: HydraulicDef | None = Field(
-        default=None, description="Lengths between which it is driven; null = it is no hydraulic."
+        default=None, description="Makes a hydraulic of it.", json_schema_extra=empty("none")
     )
     group: Group = None
     extras: Extras = Field(default_factory=dict)
 
     @property
     def given_length(self) -> float | None:
-        """Rest length [m] that it is given; None = as placed."""
+        """Rest length [m] of the file; None = as placed."""
         if self.rest_length is None and self.hydraulic is not None:
             return self.hydraulic.shortest
         return self.rest_length
 
 
 class ContactsDef(Description):
-    """That things touch each other, and how, unless they say otherwise."""
+    """Lets things touch each other. Bodies, particles, walls and terrain may have other values of their own."""
 
     friction: FrictionCoefficient = Field(default=0.5, description="Friction of a surface.")
-    restitution: Share = Field(default=0.0, description="Part of its speed with which a surface bounces.")
+    restitution: Share = Field(default=0.0, description="Share of its speed that a thing keeps when it bounces.")
 
 
 class WallsDef(Description):
-    """Four walls, solid outside, that nothing leaves."""
+    """Four walls around the level. Nothing leaves them."""
 
     box: tuple[Coordinate, Coordinate, Coordinate, Coordinate] = Field(
         description="Left, bottom, right, top of the room.", json_schema_extra=unit("m")
@@ -231,10 +246,16 @@ class WallsDef(Description):
 class TerrainDef(Description):
     """A piece of terrain, which never moves: a line with two sides, or a solid polygon."""
 
-    id: Id = Field(description="Name of the piece; other pieces, bodies and particles have others.")
-    polyline: Corners | None = Field(default=None, description="Corners of a line; this or `polygon`.")
+    id: Id = Field(description="Name of the piece. No other piece, body or particle has it.")
+    polyline: Corners | None = Field(
+        default=None,
+        description="Corners of a line, in order. A piece has this or `polygon`.",
+        json_schema_extra=empty("none"),
+    )
     polygon: Corners | None = Field(
-        default=None, description="Corners of a solid shape in order; sides may not touch or cross."
+        default=None,
+        description="Corners of a solid shape, in order. Sides may not touch or cross.",
+        json_schema_extra=empty("none"),
     )
     friction: Friction = None
     restitution: Restitution = None
@@ -246,17 +267,18 @@ class Level(Description):
     """A level: who made it, how time passes, and what is in it."""
 
     model_config = ConfigDict(serialize_by_alias=True)
-    # What its check has made of it, kept for its world: no field, so neither written nor compared nor copied.
+    # The plan that its check made, for building its world. It is no field: not written, compared or copied.
     __slots__ = ("_plan",)
 
     schema_link: Line | None = Field(
         default=None,
         alias="$schema",
-        description="Address of the schema, for editors that complete keys; kept and ignored.",
+        description="Address of the schema, for editors that complete keys. The program keeps it and ignores it.",
+        json_schema_extra=empty("none"),
     )
-    format: Literal["spring-sandbox/level"] = Field(description="Says that this is a level.")
+    format: Literal["spring-sandbox/level"] = Field(description="Says that the file is a level.")
     version: int = Field(description="Version of the format.", json_schema_extra={"const": VERSION})
-    name: Name = Field(description="Title, as the gallery shows it.")
+    name: Name = Field(description="Title that the gallery shows.")
     description: Text = Field(default="", description="What it shows and what to try.")
     author: Line = Field(default="", description="Who made it.")
     licence: Line = Field(default="", description='Licence, by its SPDX name: "CC0-1.0".')
@@ -264,33 +286,36 @@ class Level(Description):
     settings: Settings = Field(default=Settings(), description="How time passes.")
     view: tuple[Coordinate, Coordinate, Coordinate, Coordinate] | None = Field(
         default=None,
-        description="What the camera shows at first: left, bottom, right, top; null = everything. No walls.",
-        json_schema_extra=unit("m"),
+        description="What the camera shows at first: left, bottom, right, top. These are no walls.",
+        json_schema_extra=unit("m") | empty("everything"),
     )
     materials: dict[Name, Material] = Field(default={}, max_length=MATERIAL_LIMIT, description="Materials by name.")
     contacts: ContactsDef | None = Field(
         default=None,
-        description="That things touch; null = nothing touches anything, unless there are terrain or walls.",
+        description="Lets things touch. A level with terrain or walls has the default contacts.",
+        json_schema_extra=empty("nothing touches"),
     )
-    walls: WallsDef | None = Field(default=None, description="Walls all round; null = none.")
+    walls: WallsDef | None = Field(
+        default=None, description="Four walls around the level.", json_schema_extra=empty("none")
+    )
     terrain: tuple[TerrainDef, ...] = Field(default=(), description="Lines and solid shapes that never move.")
     bodies: tuple[AnyBody, ...] = Field(default=(), description="Bodies, in the order of their particles and springs.")
     particles: tuple[ParticleDef, ...] = Field(default=(), description="Loose particles, after those of the bodies.")
     springs: tuple[SpringDef, ...] = Field(default=(), description="Loose springs, after those of the bodies.")
     welds: tuple[tuple[Name, Name], ...] = Field(
         default=(),
-        description="Pairs of particles that are one: their masses add, and it stands where the first of them in "
-        "order does. Both names find it.",
+        description="Pairs of particles that become one. Its mass is the sum, its place that of the first in "
+        "generation order, and both names find it.",
     )
     checks: tuple[CheckDef, ...] = Field(
-        default=(), max_length=CHECK_LIMIT, description="What must hold of the level's run."
+        default=(), max_length=CHECK_LIMIT, description="What the level promises about its own run."
     )
-    look: LevelLook | None = Field(default=None, description="How it looks; null = automatic.")
+    look: LevelLook | None = Field(default=None, description="How it looks.", json_schema_extra=empty("automatic"))
     extras: Extras = Field(default_factory=dict)
 
     @property
     def has_contacts(self) -> bool:
-        """Whether anything in the level touches anything."""
+        """Whether things in the level touch."""
         return self.contacts is not None or self.walls is not None or bool(self.terrain)
 
     @field_validator("version")
@@ -302,10 +327,10 @@ class Level(Description):
 
 
 def keys_of(model: type[BaseModel]) -> list[str]:
-    """The keys that an object of a model has in a file, in its order."""
+    """The keys of a model's object in a file, in order."""
     return [field.alias or name for name, field in model.model_fields.items()]
 
 
 LEVEL_KEYS = keys_of(Level)
-# Settings that a person may change while a world runs: all but the tick rate, which is that of its whole run.
+# Settings that a person may change while a world runs: all but the tick rate, which belongs to the whole run.
 CHANGEABLE_SETTINGS = tuple(name for name in Settings.model_fields if name != "tick_rate")

@@ -42,8 +42,18 @@ TITLES = {
 }
 
 
-def schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of a level file; `unit` on a property is its unit. References and counts are beyond it."""
+def described(field: dict[str, Any], null: str) -> str:
+    """The description of a field, given its JSON Schema, and what null means, which readers know as the word `null`."""
+    text: str = field.get("description", "")
+    return f"{text} {null}: {field['empty']}." if "empty" in field else text
+
+
+def definitions() -> dict[str, Any]:
+    """JSON Schema (2020-12) of a level file, as its models declare it.
+
+    `unit` on a property is its unit, and `empty` says what null means. The schema cannot say that a reference leads
+    somewhere, or how large a level may become.
+    """
     result = Level.model_json_schema()
     for name, definition in result["$defs"].items():
         definition["title"] = TITLES[name]
@@ -57,6 +67,15 @@ def schema() -> dict[str, Any]:
     result["$defs"]["TerrainDef"]["allOf"] = [{"oneOf": forms}]
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
     return {**head, **result, "title": "Spring Sandbox level"}
+
+
+def schema() -> dict[str, Any]:
+    """The schema that is shipped: the descriptions say what null means too."""
+    whole = definitions()
+    for model in (whole, *whole["$defs"].values()):
+        for field in model["properties"].values():
+            field["description"] = described(field, "null")
+    return whole
 
 
 def schema_text() -> str:

@@ -1,4 +1,4 @@
-"""What no single field tells of actuators: lengths that do not fit each other, keys that say two things."""
+"""Faults of actuators that involve several fields: lengths that contradict each other, keys with two meanings."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from sandbox.level.plan.actuators import actuators
 
 
 def actuator_faults(level: Level) -> Iterator[Fault]:
-    """Every fault of the muscles, hydraulics and motors that their fields alone do not show."""
+    """Every fault of muscles, hydraulics and motors that involves several fields."""
     for index, spring in enumerate(level.springs):
         if spring.hydraulic is not None:
             yield from _hydraulic(f"springs.{index}", spring, spring.hydraulic)
@@ -41,7 +41,7 @@ def _hydraulic(path: str, spring: SpringDef, hydraulic: HydraulicDef) -> Iterato
 
 
 def _limited(level: Level) -> Iterator[Fault]:
-    """Whether springs of limited force are too many."""
+    """The fault of too many springs with a limited force."""
     drives = [
         (f"bodies.{index}.drive", expansion(body).form_count[1])
         for index, body in enumerate(level.bodies)

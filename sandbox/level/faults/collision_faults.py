@@ -1,4 +1,4 @@
-"""What no single field tells of terrain, walls and collision groups."""
+"""Faults of terrain, walls and collision groups that involve several fields."""
 
 import itertools
 from collections.abc import Iterator

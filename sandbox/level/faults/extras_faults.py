@@ -1,4 +1,4 @@
-"""Limits of what a level keeps for other tools: finite numbers, short texts."""
+"""Limits of extras: finite numbers, short texts."""
 
 import math
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from sandbox.level.format.limits import TEXT_LIMIT
 
 
 def extras_faults(level: Level) -> Iterator[Fault]:
-    """Faults of the extras of a level and of all that is in it."""
+    """Faults of the extras of a level and of everything in it."""
     yield from _kept(["extras"], level.extras)
     for name in ("terrain", "bodies", "particles", "springs"):
         for index, item in enumerate(getattr(level, name)):

@@ -1,4 +1,4 @@
-"""Firmness that a body cannot have: its form is not stiff without pins, or no Cs and Cd give it."""
+"""Faults of firmness: a form that is not stiff without pins, or a firmness that no Cs and Cd give."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, lowest_
 
 
 def firmness_faults(level: Level, plan: Plan) -> Iterator[Fault]:
-    """Faults of the firmness of the bodies of an otherwise sound level."""
+    """Faults of the firmness of bodies; the level has no other faults."""
     for index, (body, made) in enumerate(zip(level.bodies, plan.bodies, strict=True)):
         if body.firmness is None:
             continue

@@ -1,4 +1,4 @@
-"""References to nothing: materials and particles that the level does not have, and checks that say too little."""
+"""Faults of references: names of materials and particles that do not exist, and incomplete checks."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -12,13 +12,13 @@ from sandbox.level.plan.layout import Layout
 
 
 def material_faults(level: Level, path: str, name: str) -> Iterator[Fault]:
-    """Whether the level has the material that something at a place in the file names."""
+    """The fault of a material that does not exist; path: the place that names it."""
     if name != DEFAULT_MATERIAL and name not in level.materials:
         yield f"{path}.material", f"there is no material {shown(name)}" + suggestion(name, level.materials)
 
 
 def look_faults(level: Level) -> Iterator[Fault]:
-    """Whether what the look of the level names exists."""
+    """Faults of names in the look of the level."""
     look = level.look
     if look is None:
         return
@@ -39,7 +39,7 @@ def spring_faults(level: Level, layout: Layout) -> Iterator[Fault]:
 
 
 def weld_reference_faults(level: Level, layout: Layout) -> Iterator[Fault]:
-    """Whether each weld is of two particles that exist."""
+    """Faults of welds: particles that do not exist, or the same one twice."""
     for index, (a, b) in enumerate(level.welds):
         yield from _pair_faults(f"welds.{index}", layout, {"0": a, "1": b})
 
@@ -59,7 +59,7 @@ def check_faults(level: Level, layout: Layout) -> Iterator[Fault]:
 
 
 def _pair_faults(path: str, layout: Layout, references: dict[str, str]) -> Iterator[Fault]:
-    """Whether two references, by the last part of their places, are of two particles."""
+    """Faults of references, by the last keys of their places, that must name different particles."""
     slots = set()
     for end, reference in references.items():
         try:
@@ -99,7 +99,7 @@ _NOUNS = {"particle": "particle", "other": "second particle", "body": "body", "b
 
 
 def _subject_faults(field: str, where: str, given: Any, layout: Layout) -> Iterator[Fault]:
-    """Whether what a check is measured of exists."""
+    """Faults of the names in a check."""
     if field == "box":
         if given[0] >= given[2] or given[1] >= given[3]:
             yield where, "left and bottom come first: left, bottom, right, top"
@@ -116,7 +116,7 @@ def _subject_faults(field: str, where: str, given: Any, layout: Layout) -> Itera
 
 
 def _window_faults(path: str, check: CheckDef) -> Iterator[Fault]:
-    """Whether the times of a check make sense."""
+    """Faults of the times of a check."""
     if check.always is not None and check.eventually is not None:
         yield f"{path}.eventually", "a check holds always or eventually, not both; make two of it"
     for field in ("always", "eventually"):

@@ -1,4 +1,4 @@
-"""What makes a level too large: particles and springs after expansion, corners and area of polygons."""
+"""Faults of size: too many particles and springs after expansion, too many corners, too large polygons."""
 
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import Fault, json_path
@@ -7,7 +7,7 @@ from sandbox.level.plan.plan import Plan
 
 
 def size_fault(level: Level, plan: Plan) -> Fault | None:
-    """The fault of a level that is too large. What is counted stops there, before anything of that size is made."""
+    """The fault of a level that is too large. Counting stops at the limit, before anything of that size exists."""
     particles, springs, corners, work = len(level.particles), len(level.springs), 0, 0
     for index, body in enumerate(plan.bodies):
         body_corners, body_work = body.polygon_work

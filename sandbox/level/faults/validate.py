@@ -1,4 +1,4 @@
-"""check_level: what no single field of a level tells, all of it before anything is built."""
+"""check_level: finds the faults that involve several fields, before anything is built."""
 
 import itertools
 from collections.abc import Iterator
@@ -22,9 +22,9 @@ from sandbox.level.plan.plan import Plan, kept_plan
 
 
 def check_level(level: Level, source: str) -> Plan:
-    """The plan of a sound level: that which it keeps, else a new one.
+    """The plan of a sound level: the one that the level keeps, or a new one.
 
-    Raises LevelError with every fault of a level, named by source, that its fields alone do not show.
+    Raises LevelError with every fault that involves several fields; source names the level in it.
     """
     plan = kept_plan(level)
     if plan is None:
@@ -37,12 +37,12 @@ def check_level(level: Level, source: str) -> Plan:
 
 
 def level_faults(level: Level, plan: Plan) -> Iterator[Fault]:
-    """Every fault of a level that its fields alone do not show, in the order of the file."""
+    """Every fault that involves several fields, in the order of the file."""
     too_large = size_fault(level, plan)
     if too_large is not None:
         yield too_large
         return
-    # What welds make, and forms of bodies, can only be looked at where all else is sound.
+    # Welds and forms of bodies can be checked only if everything else is sound.
     sound = True
     for fault in _all_faults(level, plan):
         sound = False

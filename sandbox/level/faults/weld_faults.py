@@ -1,4 +1,4 @@
-"""What welds make impossible: springs without length, masses beyond the limit."""
+"""Faults of welds: springs without length, masses beyond the limit."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from sandbox.level.plan.plan import Plan
 
 
 def weld_faults(level: Level, plan: Plan) -> Iterator[Fault]:
-    """Faults that the welds of an otherwise sound level make."""
+    """Faults of welds; the level has no other faults."""
     if not level.welds:
         return
     layout, firsts = plan.layout, plan.first_of_weld

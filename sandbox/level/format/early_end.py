@@ -1,4 +1,4 @@
-"""Where a JSON text ends too early: what is still open there, in words."""
+"""Describes a JSON text that ends too early: which lists and objects are still open."""
 
 import json
 import re
@@ -11,7 +11,7 @@ _STUMP = re.compile(r"[\w.+-]*\s*", re.ASCII)
 
 
 def early_end(text: str, error: json.JSONDecodeError) -> str | None:
-    """What a text that ends too early ends inside of; None where something else is wrong with it."""
+    """Where a text ends too early, in words; None if it has another fault."""
     is_cut = error.msg.startswith("Unterminated string") or _STUMP.fullmatch(text, error.pos)
     path = _open_path(text) if is_cut else None
     if path is None:
@@ -20,7 +20,7 @@ def early_end(text: str, error: json.JSONDecodeError) -> str | None:
 
 
 def _open_path(text: str) -> list[str | int] | None:
-    """Keys and indices of the lists and objects that are open at the end of a text; None where none is."""
+    """Keys and indices of the lists and objects that are open at the end of a text; None if there are none."""
     opened: list[list[str | int | None]] = []
     last = ""
     for found in _TOKEN.finditer(text):

@@ -1,4 +1,4 @@
-"""Files of other programs, given as levels: what a file is, by its first bytes or by its keys."""
+"""Recognises files of other programs by their first bytes or by their keys."""
 
 import re
 from typing import Any
@@ -18,7 +18,7 @@ _HEAD = 4096  # [bytes]
 
 
 def foreign_bytes(data: bytes) -> str | None:
-    """What a file is by its first bytes, in words; None where they tell nothing."""
+    """The kind of a file by its first bytes, in words; None if unknown."""
     for start, kind in _STARTS:
         if data.startswith(start):
             return kind
@@ -35,7 +35,7 @@ def foreign_bytes(data: bytes) -> str | None:
 
 
 def foreign_keys(raw: dict[str, Any]) -> str | None:
-    """What an object without a "format" is by its keys, in words; None where they tell nothing."""
+    """The kind of an object without a "format" by its keys, in words; None if unknown."""
     if raw.get("type") == "map" or {"layers", "tilewidth"} <= raw.keys():
         return "a Tiled map (JSON)"
     if {"body", "gravity"} <= raw.keys() and isinstance(raw["body"], list):

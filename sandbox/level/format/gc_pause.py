@@ -1,4 +1,4 @@
-"""Python's collector of cycles, which takes most of the time where many small objects are made at once."""
+"""Pauses Python's collector of cycles: it takes most of the time if a program makes many small objects at once."""
 
 import contextlib
 import gc
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def collector_paused(pause: bool) -> Iterator[None]:
-    """Let the collector rest inside, if that is asked for and it does not rest already."""
+    """Pause the collector inside, if asked, unless it is paused already."""
     pause = pause and gc.isenabled()
     if pause:
         gc.disable()

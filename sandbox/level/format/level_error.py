@@ -1,4 +1,4 @@
-"""LevelError: all faults of a level at once, each one line that says where it is and what to do."""
+"""LevelError: all faults of a level, one line each, with the place and the remedy."""
 
 import difflib
 import itertools
@@ -20,7 +20,7 @@ _CHOICES = 200
 
 
 class LevelError(ValueError):
-    """A level that is refused; `faults` holds one line per fault, at most 50, with file, place and what to do."""
+    """A level that is refused. `faults` has one line per fault, at most 50, with file, place and remedy."""
 
     def __init__(self, source: str, faults: Iterable[Fault]) -> None:
         first = list(itertools.islice(faults, FAULT_LIMIT + 1))
@@ -32,12 +32,12 @@ class LevelError(ValueError):
 
 
 def one_line(text: str) -> str:
-    """Text as it is where every character can be printed on one line, else with escapes."""
+    """A text as it is if one line can show it, else with escapes."""
     return text if text.isprintable() else json.dumps(text)[1:-1]
 
 
 def shown(value: Any) -> str:
-    """A value as it would stand in the file, cut short; of lists and objects only what they are."""
+    """A value as a file has it, cut short; of lists and objects only the type."""
     if isinstance(value, list | tuple):
         return "a list"
     if isinstance(value, dict):
@@ -51,9 +51,9 @@ def shown(value: Any) -> str:
 
 
 def suggestion(word: str, choices: Collection[str]) -> str:
-    """`; did you mean "..."?` where one of few choices resembles the word, else nothing.
+    """`; did you mean "..."?` if one of few choices resembles the word, else an empty text.
 
-    One that looks the same is told with the character that differs.
+    If both look the same, the text names the character that differs.
     """
     if len(choices) > _CHOICES or len(word) > _SHOWN:
         return ""
@@ -75,7 +75,7 @@ def _odd_one(word: str, choice: str) -> str:
 
 
 def json_path(parts: Iterable[Any]) -> str:
-    """Keys and indices joined by dots; keys that could not be read so in quotes."""
+    """Keys and indices joined by dots; keys that would be ambiguous in quotes."""
     return ".".join(_part(part) for part in parts)
 
 

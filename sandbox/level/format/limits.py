@@ -1,4 +1,4 @@
-"""Limits of the level format: each stands here once, with its unit; a file beyond one is refused, never clamped."""
+"""Limits of the level format, each with its unit. A file beyond a limit is refused, never clamped."""
 
 from typing import Final
 

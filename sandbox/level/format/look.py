@@ -1,15 +1,15 @@
-"""How things look: names of stuffs and colours, and what a level, a body, a material or a particle says of itself.
+"""Models of looks: of a level, a body, a material and a particle, with the names of skins, lines, balls and colours.
 
-None of it reaches the physics: neither worlds, nor hashes, nor the checks of recordings know it.
+Physics, hashes and recordings ignore looks.
 """
 
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from sandbox.level.format.quantities import Description, Id, Index, Line, Name
+from sandbox.level.format.quantities import Description, Id, Index, Line, Name, empty
 
-# What surfaces and lines are made of, and balls and terrain. A name that is not listed falls back to automatic.
+# Names of skins, lines, balls and grounds. A name that is not listed counts as automatic.
 SKINS = ("jelly", "rubber", "balloon", "wood", "stone", "brick", "cloth", "plain", "lattice")
 LINES = (
     "steel", "paint", "brass", "rope", "cable", "chain", "deck", "wood", "rubber", "thread", "silk", "coil", "bone",
@@ -17,7 +17,7 @@ LINES = (
 )  # fmt: skip
 BALLS = ("marble", "stripe", "steel", "sand", "bumper", "plain")
 GROUNDS = ("soil", "rock", "metal", "wood", "glass")
-# Toys' colours, given out in this order: neighbours differ in lightness too.
+# Automatic colours, in this order; neighbours differ in lightness too.
 PALETTE = {
     "raspberry": 0xF2557B, "lemon": 0xFFD24A, "sky": 0x4DB3FF, "tangerine": 0xFF9142, "grape": 0x9B7BFF,
     "lime": 0x8EDB6B, "bubblegum": 0xFF9BD2, "lagoon": 0x2FC4B2,
@@ -41,50 +41,68 @@ class LevelLook(Description):
     """How a level looks."""
 
     theme: Literal["dark", "light"] | None = Field(
-        default=None, description="Theme that it is meant for; null = the person's."
+        default=None, description="Theme that it is drawn in.", json_schema_extra=empty("the player's")
     )
     ground: dict[Line, GroundName] = Field(
         default={},
         max_length=1_000,
-        description=f"What pieces of terrain are made of, by their ids: {', '.join(GROUNDS)}.",
+        description="What pieces of terrain are made of, by their ids: a name of a ground.",
     )
     faces: bool | None = Field(
-        default=None, description="Whether jellies have faces; null = where a level has at most 16 bodies."
+        default=None,
+        description="Whether jellies have faces; automatic: in levels of at most 16 bodies.",
+        json_schema_extra=empty("automatic"),
     )
     material: Name | None = Field(
-        default=None, description="Material that the panel shows first; null = that of the most springs."
+        default=None,
+        description="Material that the panel shows first.",
+        json_schema_extra=empty("the one of most springs"),
     )
     follow: Id | None = Field(
-        default=None, description="Body or loose particle that the camera goes along with; null = it stands."
+        default=None,
+        description="Body or loose particle that the camera follows.",
+        json_schema_extra=empty("none"),
     )
 
 
 class BodyLook(Description):
-    """How a body looks, or all that is made of a material."""
+    """How a body looks, or every body and spring of a material."""
 
     skin: SkinName | None = Field(
-        default=None, description=f"What it is filled with: {', '.join(SKINS)}; null = automatic."
+        default=None, description="What it is filled with: a name of a skin.", json_schema_extra=empty("automatic")
     )
     line: LineName | None = Field(
-        default=None, description=f"What its springs are drawn as: {', '.join(LINES)}; null = automatic."
+        default=None,
+        description="What its springs are drawn as: a name of a line.",
+        json_schema_extra=empty("automatic"),
     )
     colour: ColourName | None = Field(
-        default=None, description='Colour: a name of the palette, or "#RRGGBB"; null = automatic.'
+        default=None,
+        description='Colour: a name of the palette, or "#RRGGBB".',
+        json_schema_extra=empty("automatic"),
     )
-    face: bool | None = Field(default=None, description="Whether it has a face; null = automatic.")
-    width: float = Field(default=1.0, ge=0.1, le=10.0, description="Width of its lines, as a multiple of the usual.")
+    face: bool | None = Field(default=None, description="Whether it has a face.", json_schema_extra=empty("automatic"))
+    width: float = Field(
+        default=1.0, ge=0.1, le=10.0, description="Width of its lines, as a multiple of the usual width."
+    )
     panel: ColourName | None = Field(
-        default=None, description="Colour of a panel that covers all inside its outline; null = none."
+        default=None,
+        description="Colour of a panel that covers the inside of its outline.",
+        json_schema_extra=empty("none"),
     )
     window: tuple[Index, ...] = Field(
-        default=(), max_length=64, description="Particles around a window in the panel, by index."
+        default=(), max_length=64, description="Corners of a window in the panel: particles, by index."
     )
 
 
 class ParticleLook(Description):
     """How a loose particle looks."""
 
-    ball: BallName | None = Field(default=None, description=f"What ball it is: {', '.join(BALLS)}; null = automatic.")
+    ball: BallName | None = Field(
+        default=None, description="What it is drawn as: a name of a ball.", json_schema_extra=empty("automatic")
+    )
     colour: ColourName | None = Field(
-        default=None, description='Colour: a name of the palette, or "#RRGGBB"; null = automatic.'
+        default=None,
+        description='Colour: a name of the palette, or "#RRGGBB".',
+        json_schema_extra=empty("automatic"),
     )

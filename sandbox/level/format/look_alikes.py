@@ -1,4 +1,4 @@
-"""Names that look alike: letters of other alphabets, digits for letters, characters that are not seen.
+"""Finds names that look alike: letters of other alphabets, digits for letters, invisible characters.
 
 The letters are those of Unicode Technical Standard 39, "confusables", that look like Latin ones in common typefaces.
 """
@@ -15,6 +15,6 @@ _LIKE_LATIN = str.maketrans(
 
 
 def skeleton(name: str) -> str:
-    """What a name looks like: two names that look the same have the same."""
+    """The skeleton of a name: names that look the same have the same one."""
     seen = "".join(char for char in unicodedata.normalize("NFKC", name) if unicodedata.category(char) != "Cf")
     return seen.translate(_LIKE_LATIN)

@@ -32,8 +32,13 @@ from sandbox.level.format.limits import (
 
 
 def unit(name: str) -> dict[str, Any]:
-    """What a field adds to the schema for its unit."""
+    """The schema entry for the unit of a field."""
     return {"unit": name}
+
+
+def empty(words: str) -> dict[str, Any]:
+    """The schema entry for what null means, in a few words that fit into a text field."""
+    return {"empty": words}
 
 
 class Description(BaseModel):
@@ -43,7 +48,7 @@ class Description(BaseModel):
 
 
 def significant(value: float, digits: int) -> float:
-    """A number rounded to so many digits, as a person reads it."""
+    """A number rounded to a number of significant digits."""
     return float(f"{value:.{digits}g}")
 
 
@@ -60,12 +65,12 @@ _set_fields, _set_given, _set_extra, _set_private = (
 def replaced(item: Described, **changes: Any) -> Described:
     """A copy of a description with other values of some fields, which are NOT validated.
 
-    For edits of thousands of items at once by code that has checked types, ranges and field names itself: under 1 us
-    each, less than half of `model_copy`. What the two share is immutable, but for `extras`, which nobody changes.
+    For edits of thousands of items, by code that checks types, ranges and field names itself. It takes under 1 us, less
+    than half of `model_copy`. Both share their values, which are immutable, except `extras`, which nobody changes.
     """
     copy = _new(type(item))
     _set_fields(copy, item.__dict__ | changes)
-    # Which fields were given is of no interest anywhere, so the copy shares the item's.
+    # Nobody asks which fields were given, so the copy shares the item's set.
     _set_given(copy, item.__pydantic_fields_set__)
     _set_extra(copy, None)
     _set_private(copy, None)
@@ -107,7 +112,7 @@ GravityScale = Annotated[
     Field(
         ge=-GRAVITY_SCALE_LIMIT,
         le=GRAVITY_SCALE_LIMIT,
-        description="How many times gravity pulls at its particles; 0 = floats, below 0 = rises.",
+        description="Factor of gravity for its particles: 0 floats, a negative value rises.",
     ),
 ]
 Tension = Annotated[float, Field(gt=0.0, le=STRAIN_LIMIT)]
@@ -124,25 +129,31 @@ Rate = Annotated[float, Field(ge=0.0, le=RATE_LIMIT, json_schema_extra=unit("m/s
 Key = Annotated[str, Field(pattern=KEY_PATTERN)]
 Seconds = Annotated[float, Field(ge=0.0, le=SECONDS_LIMIT, json_schema_extra=unit("s"))]
 Index = Annotated[int, Field(ge=0)]
-# A default of {} would be copied, item by item of a level, deeply; what makes a new one has no place in the schema.
+# pydantic would copy a default of {} deeply for each item, and a factory does not appear in the schema.
 Extras = Annotated[
-    dict[str, Any], Field(description="Data of other tools; kept and ignored.", json_schema_extra={"default": {}})
+    dict[str, Any],
+    Field(description="Data of other tools. The program keeps it and ignores it.", json_schema_extra={"default": {}}),
 ]
-Group = Annotated[Name | None, Field(description="Group that it is selected and moved with in the editor.")]
+Group = Annotated[
+    Name | None,
+    Field(
+        description="Group of the editor: its members are selected and moved together.", json_schema_extra=empty("none")
+    ),
+]
 Corners = Annotated[tuple[Point, ...], Field(min_length=2, max_length=CORNER_LIMIT)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 FrictionCoefficient = Annotated[float, Field(ge=0.0, le=FRICTION_LIMIT)]
 Rolling = Annotated[
     Share,
     Field(
-        description="Rolling resistance: the torque against its turning, as a share of what presses it on times its "
-        "radius; of two discs the larger counts."
+        description="Rolling resistance: the torque that slows its turning, divided by its radius times the force that "
+        "presses it on. Of two discs the larger value counts."
     ),
 ]
 
 
 def _groups(value: Any) -> Any:
-    # Before the type is looked at: of a choice of types, the library would list a fault for each.
+    # This comes before the type check: for a choice of types, the library would list a fault for each.
     if isinstance(value, bool):
         return value
     if isinstance(value, list | tuple) and all(isinstance(name, str) for name in value):
@@ -153,15 +164,19 @@ def _groups(value: Any) -> Any:
 Collides = Annotated[
     bool | tuple[Name, ...],
     BeforeValidator(_groups),
-    Field(description="What it touches where the level has contacts: everything, nothing, or these groups."),
+    Field(description="What it touches if the level has contacts: everything, nothing, or these collision groups."),
 ]
 CollisionGroup = Annotated[
-    Name | None, Field(description="Group that others name in `collides`; null = the group `default`.")
+    Name | None,
+    Field(
+        description="Collision group that it is in; others name it in `collides`.", json_schema_extra=empty("default")
+    ),
 ]
 Friction = Annotated[
-    FrictionCoefficient | None, Field(description="Friction of its surface; null = that of the level's contacts.")
+    FrictionCoefficient | None,
+    Field(description="Friction of its surface.", json_schema_extra=empty("the level's")),
 ]
 Restitution = Annotated[
     Share | None,
-    Field(description="Part of its speed with which it bounces; null = that of the level's contacts."),
+    Field(description="Share of its speed that it keeps when it bounces.", json_schema_extra=empty("the level's")),
 ]

@@ -1,4 +1,4 @@
-"""A look at the bytes of a JSON text before any parser sees them: how deep it nests and how many parts it has."""
+"""Scans the bytes of a JSON text before any parser reads them: its depth, and how many lists and objects it has."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from sandbox.level.format.limits import CONTAINER_LIMIT, DEPTH_LIMIT
 
 
 def scan(data: bytes) -> Fault | None:
-    """The fault of a text that nests too deep or has too many lists and objects, or None; linear in its size."""
+    """The fault of a text that nests too deep or has too many lists and objects, or None. Takes linear time."""
     # Escapes go first, so that every quotation mark left opens or closes a string.
     if b"\\" in data:
         data = data.replace(b"\\\\", b"__").replace(b'\\"', b"__")

@@ -1,4 +1,4 @@
-"""Where what is shipped is found; loads nothing."""
+"""Finds the files that the program ships; loads none of them."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ _PACKAGE = Path(__file__).resolve().parents[2]
 
 
 def shipped_folder(kind: str) -> Path:
-    """Folder of the shipped "levels" or "assets": the checkout's own where there is one, else the wheel's."""
+    """The folder of the shipped "levels" or "assets": in a checkout its own, else the one in the wheel."""
     checkout = _PACKAGE.parent
     if (checkout / "pyproject.toml").is_file() and (checkout / kind).is_dir():
         return checkout / kind

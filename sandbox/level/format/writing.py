@@ -1,4 +1,4 @@
-"""Files written so that what was there before is never lost: in one step, or in place with a copy kept beside it."""
+"""Writes files so that the old content is never lost: in one step, or in place after a copy."""
 
 import contextlib
 import errno
@@ -31,7 +31,7 @@ _CANNOT_REPLACE = {
 def write_file(path: Path, data: bytes) -> None:
     """Write a file whole or not at all: temporary file, flush, replace, folder sync. Raises OSError.
 
-    The file keeps its permissions. After an error, also a full disk, it is as it was and nothing else is left.
+    The file keeps its permissions. After an error, such as a full disk, it is unchanged and no other file remains.
     """
     _refuse_what_is_no_file(path)
     _sweep(path.parent)
@@ -51,10 +51,10 @@ def write_file(path: Path, data: bytes) -> None:
 
 
 def write_over(path: Path, data: bytes, backups: Path | None = None) -> str | None:
-    """Write a file whole; where the place cannot do that, in place, once a copy is kept. The warning then, or None.
+    """Write a file in one step, or, if the folder does not allow that, in place after a copy. A warning then, or None.
 
-    The copy is `<name>.bak` beside the file, or in the folder `backups` where nothing can be made beside it.
-    Raises OSError; the file then holds what it held, or the message names the copy that does.
+    The copy is `<name>.bak` beside the file, or in the folder `backups` if the program cannot write beside it.
+    Raises OSError. The file is then unchanged, or the message names the copy.
     """
     try:
         write_file(path, data)
@@ -115,7 +115,7 @@ def _sweep(folder: Path) -> None:
 
 
 def _flush(descriptor: int) -> None:
-    """Bring what was written to the disk. Raises OSError, but not where a file system has no such thing."""
+    """Flush a file to the disk. Raises OSError, except on file systems that cannot flush."""
     try:
         os.fsync(descriptor)
     except OSError as error:
@@ -146,7 +146,7 @@ def _sync_folder(folder: Path) -> None:
 
 
 def _keep_copy(path: Path, backups: Path | None) -> Path | None:
-    """Copy a file to where it can be found again: the copy, or None where none can be made."""
+    """Copy a file beside it or into `backups`; returns the path of the copy, or None if that fails."""
     places = [path.with_name(path.name + ".bak")]
     if backups is not None:
         places.append(backups / (path.name + ".bak"))
@@ -174,7 +174,7 @@ def _is_whole(path: Path) -> bool:
 
 
 def _write_new(path: Path, data: bytes) -> None:
-    """Write a file that is not there yet under its own name, or leave none. Raises OSError."""
+    """Write a file that does not exist yet, whole or not at all. Raises OSError."""
     with open(path, "xb"):
         pass
     try:

@@ -1,6 +1,6 @@
-"""The kinds of body, in the order in which they are explained: the one table that names them all.
+"""The table of the kinds of body, in the order of the reference.
 
-A kind is a file beside this one, with its model and its `Expansion`, and a file of that name in the editor.
+Each kind is one file in this folder, with a model and an `Expansion`, and one file in the editor.
 """
 
 from typing import TYPE_CHECKING, Annotated, Any, Union
@@ -31,5 +31,5 @@ else:
 
 
 def expansion(body: BodyDef) -> Expansion[Any]:
-    """What a body becomes. Its arrays are those of a sound body alone: of one in which the check finds no fault."""
+    """The expansion of a body. Only a body without faults has arrays."""
     return EXPANSIONS[body.type](body)

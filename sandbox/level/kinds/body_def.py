@@ -1,4 +1,4 @@
-"""What a level file says of a body of any kind: BodyDef, the base of their models."""
+"""BodyDef: the fields that all bodies share, and models of objects inside bodies."""
 
 from collections.abc import Iterable
 from typing import Annotated, Literal
@@ -24,6 +24,7 @@ from sandbox.level.format.quantities import (
     Point,
     Restitution,
     Velocity,
+    empty,
     unit,
 )
 from sandbox.physics.forms import Firmness
@@ -32,17 +33,20 @@ End = Literal["start", "end"]
 
 
 class FirmnessDef(Description):
-    """How soft a body is as a whole, whatever its grid, size and mass: by `sag`, or by `hz` and `ratio`."""
+    """How soft a body is as a whole, at any grid, size and mass: by `sag`, or by `hz` and `ratio`."""
 
     sag: Annotated[float, Field(ge=0.0, le=SAG_LIMIT)] | None = Field(
         default=None,
-        description="Part of its height by which it sags under its weight where it stands; 0 = rigid.",
+        description="How far it sags under its own weight where it stands, as a share of its height; 0 = rigid.",
+        json_schema_extra=empty("by frequency"),
     )
     hz: Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])] | None = Field(
-        default=None, description="Frequency of its slowest wobble.", json_schema_extra=unit("Hz")
+        default=None, description="Frequency of its slowest wobble.", json_schema_extra=unit("Hz") | empty("by sag")
     )
     ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = Field(
-        default=None, description="Damping ratio of that wobble; null = 0.15, or the least that is possible."
+        default=None,
+        description="Damping ratio of that wobble.",
+        json_schema_extra=empty("0.15, or the least possible"),
     )
 
     @model_validator(mode="after")
@@ -55,63 +59,68 @@ class FirmnessDef(Description):
 
     @property
     def asked(self) -> Firmness:
-        """What is asked of the body."""
+        """The firmness in the words of the physics."""
         return Firmness(self.sag, self.hz, self.ratio)
 
 
 class BodyDef(Description):
-    """What every body has; `file_order` says where its fields stand between those of a kind of body."""
+    """The fields that all bodies share."""
 
     type: str = Field(description="Kind of body.")
-    id: Id = Field(description="Name of the body; `id.k` is its k-th particle and `id:k` its k-th spring, from 0.")
-    velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity of every particle that is not pinned.")
+    id: Id = Field(description="Name of the body. `id.k` is its particle k and `id:k` its spring k, counted from 0.")
+    velocity: Velocity = Field(default=(0.0, 0.0), description="Start velocity of its particles that are not pinned.")
     material: Name = Field(default=DEFAULT_MATERIAL, description="Name of the material of its springs.")
     firmness: FirmnessDef | None = Field(
         default=None,
-        description="How soft it is as a whole; null = each spring has Cs and Cd of the material. For forms that are "
-        "stiff without pins.",
+        description="How soft it is as a whole, in place of Cs and Cd of its material. For forms that are stiff "
+        "without pins.",
+        json_schema_extra=empty("as its material"),
     )
-    pinned: tuple[Index, ...] = Field(default=(), description="Particles that are held, by index.")
+    pinned: tuple[Index, ...] = Field(default=(), description="Particles that stay where they are, by index.")
     cut: tuple[Index, ...] = Field(
-        default=(), description="Springs that are left out, by index; the others keep their names."
+        default=(), description="Springs that are left out, by index. The others keep their names."
     )
     pose: tuple[Point, ...] | None = Field(
         default=None,
-        description="Start place of each particle where the body does not start in its own form; "
-        "rest lengths stay those of its form. null = its form.",
+        description="Start place of each particle, if the body does not start in its own form. Rest lengths stay those "
+        "of its form.",
+        json_schema_extra=empty("its own form"),
     )
     gravity_scale: GravityScale = 1.0
     drive: MuscleDef | None = Field(
-        default=None, description="Wave that the rest lengths of its springs follow: a muscle; null = none."
+        default=None, description="Makes a muscle of each of its springs.", json_schema_extra=empty("none")
     )
     particle_radius: Length | None = Field(
-        default=None, description="Radius of its particles, where things touch; null = 0.05."
+        default=None, description="Radius of its particles in collisions.", json_schema_extra=empty("0.05")
     )
     friction: Friction = None
     restitution: Restitution = None
     collides: Collides = True
     collision_group: CollisionGroup = None
     group: Group = None
-    look: BodyLook | None = Field(default=None, description="How it looks; null = as its material says, or automatic.")
+    look: BodyLook | None = Field(
+        default=None, description="How it looks.", json_schema_extra=empty("as its material, or automatic")
+    )
     extras: Extras = Field(default_factory=dict)
 
 
 class BendingDef(Description):
-    """Angular springs, which hold two springs that meet at the angle of the body's form."""
+    """Angular springs: each keeps two springs that meet at the angle that they have in the body's form."""
 
     stiffness: Coefficient = Field(
-        default=0.5, description="Cs: part of its error that an angle corrects in a tick, alone."
+        default=0.5, description="Cs: share of its error that an angle, alone, corrects in a tick."
     )
     damping: Coefficient = Field(
-        default=0.9, description="Cd: part of its turning that an angle removes in a tick, alone."
+        default=0.9, description="Cd: share of its turning that an angle, alone, removes in a tick."
     )
 
 
-BENDING = "Angular springs at every particle where two springs of the body meet; null = it bends freely."
+BENDING = "Angular springs at every particle where just two springs of the body meet."
+BENDS_FREELY = empty("bends freely")
 
 
 def file_order(names: Iterable[str]) -> list[str]:
-    """Names of fields of a body in the order of a file: type, id, those of its kind, then the others of every body."""
+    """Names of fields of a body in the order of a file: type, id, those of its kind, then the other shared ones."""
     first = ("type", "id")
     last = tuple(name for name in BodyDef.model_fields if name not in first)
     return sorted(names, key=lambda name: 0 if name in first else 2 if name in last else 1)

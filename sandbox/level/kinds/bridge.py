@@ -21,10 +21,10 @@ class BridgeDef(BodyDef):
     type: Literal["bridge"] = Field(description="Kind of body.")
     start: Point = Field(description="Place of the top row's first particle, `id.start`.")
     end: Point = Field(description="Place of the top row's last particle, `id.end`.")
-    segments: int = Field(ge=1, description="Number of cells; each row has one particle more.")
-    height: Size = Field(default=1.0, description="How far the bottom row lies straight below the top row.")
+    segments: int = Field(ge=1, description="Number of cells. Each row has one particle more.")
+    height: Size = Field(default=1.0, description="Distance of the bottom row, straight below the top row.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends where both rows are held: "start", "end".')
+    pin: tuple[End, ...] = Field(default=(), max_length=2, description="Ends where both rows stay where they are.")
 
 
 class Bridge(Expansion[BridgeDef]):
@@ -38,7 +38,7 @@ class Bridge(Expansion[BridgeDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """Of each cell two chords, a vertical and two diagonals; one vertical more."""
+        """Each cell has two chords, a vertical and two diagonals; there is one more vertical."""
         return 2 * (self.body.segments + 1), 5 * self.body.segments + 1
 
     @cached_property
@@ -61,7 +61,7 @@ class Bridge(Expansion[BridgeDef]):
         return {"start": 0, "end": self.body.segments}
 
     def named_pins(self) -> list[int]:
-        """Both rows at the ends that are held."""
+        """Both rows, at the ends that `pin` names."""
         top = [self.named_particles[end] for end in self.body.pin]
         return top + [particle + self.body.segments + 1 for particle in top]
 

@@ -1,4 +1,4 @@
-"""Expansion: what a body becomes, whatever its kind; each kind has a file of its own beside this one."""
+"""Expansion: the particles and springs of a body, the base of all kinds. Each kind is one file in this folder."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
@@ -23,19 +23,19 @@ NO_POLYGONS: Pairs = np.zeros((0, 3), dtype=np.int64)
 
 
 class Expansion(Generic[Body]):
-    """Particles and springs of one body in generation order, before welds; each array is made when first asked for.
+    """Particles and springs of one body in generation order, before welds. Each array is made at its first use.
 
-    A kind of body is a subclass: it says what its form is, and whatever of the rest differs from what stands here.
-    The form is where particles stand at rest, before cuts and pose. Counts, names and faults allocate nothing.
+    A kind of body is a subclass: it defines the form, and overrides what differs from this class. The form is where
+    particles stand at rest, before cuts and pose. Counts, names and faults allocate nothing.
     """
 
     model: ClassVar[type[BodyDef]]
-    # Where a body of this kind says how large it is: what a refused level is told to change.
+    # Path of the field that sets the size of such a body; a message about a too large level names it.
     size_path: ClassVar[Sequence[str]] = ("segments",)
-    # What several of them are called, and the order of particles and springs, for the reference of the format.
+    # The plural, and the order of particles and springs, for the reference.
     plural: ClassVar[str]
     generation: ClassVar[str]
-    # Models of objects inside, by the words that a file chooses one of them with.
+    # Models of alternative objects inside, by the key that chooses one.
     alternatives: ClassVar[Mapping[str, type[Description]]] = {}
 
     def __init__(self, body: Body) -> None:
@@ -43,29 +43,29 @@ class Expansion(Generic[Body]):
 
     @classmethod
     def kind(cls) -> str:
-        """The `type` that a file gives it."""
+        """The `type` of the kind in a file."""
         return str(get_args(cls.model.model_fields["type"].annotation)[0])
 
-    # ---- what each kind says
+    # ---- each kind defines this
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """Particles and springs of the form, those that are cut included; beyond the limits a kind may stop short."""
+        """Numbers of particles and springs of the form, with cut springs; a kind may stop counting at the limits."""
         raise NotImplementedError
 
     @cached_property
     def local_form(self) -> tuple[Points, Pairs]:
-        """Places [m] (n, 2) of the form, about the body's `position` if it has one, and pairs of particles (m, 2).
+        """Places [m] (n, 2) of the form, relative to the body's `position`, if any, and pairs of particles (m, 2).
 
-        Without its `position` such a form depends on no place: bodies of the same shape have the same.
+        Bodies of the same shape at different positions have the same local form.
         """
         raise NotImplementedError
 
-    # ---- what a kind may say
+    # ---- a kind may override this
 
     @property
     def polygon_work(self) -> tuple[int, int]:
-        """Corners of the polygon that it fills, and how many points and sides filling looks at."""
+        """Number of corners of its polygon, and the work of filling it [points and sides]."""
         return 0, 0
 
     @property
@@ -98,7 +98,7 @@ class Expansion(Generic[Body]):
         return np.full(len(self.pairs), LINE, dtype=np.int8)
 
     def polygons(self) -> Pairs:
-        """Polygons (t, k) of particles that keep their areas, counter-clockwise, as long as no side is cut."""
+        """Polygons (t, k) of particles that keep their areas while no side is cut, counter-clockwise."""
         return NO_POLYGONS
 
     @property
@@ -113,28 +113,28 @@ class Expansion(Generic[Body]):
 
     @property
     def motor(self) -> MotorDef | None:
-        """What turns particles 1, 2, ... about particle 0."""
+        """The motor that turns particles 1, 2, ... about particle 0."""
         return None
 
     def faults(self, path: str) -> Iterator[Fault]:
-        """What its fields alone do not show, of a body at a place in the file."""
+        """Faults that involve several fields; path: the place of the body in the file."""
         return self.outline_faults(path)
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
-        """Whether what it expands to has an outline that stays inside the world."""
+        """Faults of an outline that leaves the world."""
         yield from ()
 
-    # ---- what follows
+    # ---- derived from the above
 
     @property
     def count(self) -> tuple[int, int]:
-        """Particles and springs that the body expands to; else as `form_count`."""
+        """Numbers of particles and springs without cut ones; else as `form_count`."""
         particles, springs = self.form_count
         return particles, springs - len({number for number in self.body.cut if number < springs})
 
     @property
     def origin(self) -> tuple[float, float]:
-        """What the local form is about [m]."""
+        """The origin [m] of the local form."""
         return self.body.__dict__.get("position", (0.0, 0.0))
 
     @cached_property
@@ -154,7 +154,7 @@ class Expansion(Generic[Body]):
 
     @cached_property
     def pinned(self) -> NDArray[np.bool_]:
-        """Which particles (n,) are held."""
+        """Whether each particle (n,) is pinned."""
         pinned = np.zeros(self.form_count[0], dtype=np.bool_)
         pinned[list(self.body.pinned)] = True
         pinned[self.named_pins()] = True
@@ -174,7 +174,7 @@ class Expansion(Generic[Body]):
 
     @cached_property
     def area_constraints(self) -> Pairs:
-        """Polygons (t, k) of particles that keep their area: those of which no spring along a side is cut."""
+        """Polygons (t, k) of particles that keep their areas; no spring along a side of them is cut."""
         polygons = self.polygons()
         if not len(polygons):
             return polygons
@@ -183,10 +183,9 @@ class Expansion(Generic[Body]):
 
     @cached_property
     def bending_constraints(self) -> Pairs:
-        """Triples (t, 3) of a body with bending, in order of their middle ones: where just two springs meet.
+        """Triples (t, 3) of particles, in order of the middle ones, at each of which just two springs meet.
 
-        Of the two ends, the one of the earlier spring comes first. Both springs have a length in the form, and so an
-        angle.
+        The end of the earlier spring comes first. Both springs have a length in the form.
         """
         if self.bending is None:
             return NO_POLYGONS
@@ -195,25 +194,25 @@ class Expansion(Generic[Body]):
         particle, start, count = np.unique(ends[order], return_index=True, return_counts=True)
         joints = np.flatnonzero(count == 2)
         first, second = order[start[joints]], order[start[joints] + 1]
-        # The other end of a spring is next to it in the list.
+        # The two ends of a spring are neighbours in the list.
         angles = np.stack([ends[first ^ 1], particle[joints], ends[second ^ 1]], axis=1)
         return angles[(np.diff(self.form[angles], axis=1) != 0.0).any(axis=2).all(axis=1)]
 
     @property
     def may_be_stiff(self) -> bool:
-        """Whether enough holds it that its form may be stiff without pins: a sieve, as a count is."""
-        # n particles move in 2 n ways, in three of them as a whole. One of two is a spring, and no body to be firm.
+        """Whether it has enough springs to be stiff without pins. This counts only, so it may be wrong."""
+        # n particles have 2 n degrees of freedom; three of them move the whole. Two particles are a spring, not a body.
         held = len(self.pairs) + len(self.stiff_form.areas) + len(self.stiff_form.bends)
         return held >= 2 * self.form_count[0] - WHOLE_MOTIONS >= WHOLE_MOTIONS
 
     @cached_property
     def stiff_form(self) -> StiffForm:
-        """What its firmness depends on: the form and what holds it, but an area of more than three corners."""
+        """The form, and the springs, angles and triangles that hold it; areas of more corners do not count."""
         areas = self.area_constraints if self.area_constraints.shape[1] == 3 else NO_POLYGONS
         return StiffForm(self.local_form[0], self.mass, self.pairs, areas, self.bending_constraints)
 
     def change_faults(self, path: str) -> Iterator[Fault]:
-        """Whether pins, cuts and pose speak of particles and springs that the form has."""
+        """Faults of pins, cuts and pose that name particles or springs that do not exist."""
         particles, springs = self.form_count
         for index, particle in enumerate(self.body.pinned):
             if particle >= particles:
@@ -230,7 +229,7 @@ class Expansion(Generic[Body]):
 
 
 def round_outline_faults(path: str, kind: str, position: tuple[float, float], radius: float) -> Iterator[Fault]:
-    """Whether a disc about a position [m] stays inside the world."""
+    """Faults of a disc about a position [m] that leaves the world."""
     if max(map(abs, position)) + radius > COORDINATE_LIMIT:
         yield f"{path}.radius", f"takes the {kind} beyond the limit {COORDINATE_LIMIT:.15g}"
 

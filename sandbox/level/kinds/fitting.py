@@ -1,4 +1,4 @@
-"""Fitted meshes: particles on an outline at even spacing, and even triangles inside; holes stay empty."""
+"""Fitted meshes: particles at equal distances on an outline, even triangles inside, and empty holes."""
 
 import math
 from functools import lru_cache
@@ -44,11 +44,11 @@ class FittedMesh(NamedTuple):
 
 
 class TooCoarse(ValueError):
-    """The spacing is too large for an outline: its parts would touch, or its triangles be slivers."""
+    """The spacing is too large for an outline: sides would touch, or triangles would be slivers."""
 
 
 def disc_rings(radius: Any, spacing: float) -> int:
-    """How many rings of particles about its centre a disc has."""
+    """Number of rings of particles of a disc, around its centre."""
     return max(1, round(min(radius / spacing, RING_LIMIT)))
 
 
@@ -58,14 +58,14 @@ def disc_counts(rings: int) -> tuple[int, int]:
 
 
 def corners_of(outline: Outline, spacing: float) -> Loop:
-    """Corners [m] of an outline; of a circle those that its mesh has on it."""
+    """Corners [m] of an outline; for a circle, the corners of its mesh."""
     if isinstance(outline, tuple):
         return outline
     return tuple((x, y) for x, y in (outline * spokes(0.0, 6 * disc_rings(outline, spacing))).tolist())
 
 
 def disc_mesh(radius: float, rings: int) -> FittedMesh:
-    """A disc of rings about its centre, the k-th of 6 k particles; from the border inwards."""
+    """The mesh of a disc: ring k around the centre has 6 k particles; from the border inwards."""
     firsts = [disc_counts(rings)[0] - disc_counts(ring)[0] for ring in range(rings + 1)]
     places = [radius * (ring / rings) * spokes(0.0, 6 * ring) for ring in range(rings, 0, -1)]
     triangles = []
@@ -94,7 +94,7 @@ def _sides_of(triangles: Pairs) -> Pairs:
 
 @lru_cache(maxsize=32)
 def fitted_mesh(outline: Outline, holes: tuple[Loop, ...], spacing: float) -> FittedMesh:
-    """The mesh of a simple outline [m] with holes, which lie inside it and apart. Raises TooCoarse."""
+    """The mesh of a simple outline [m] with separate holes inside it. Raises TooCoarse."""
     if not isinstance(outline, tuple):
         if not holes:
             return disc_mesh(outline, disc_rings(outline, spacing))
@@ -111,7 +111,7 @@ def fitted_mesh(outline: Outline, holes: tuple[Loop, ...], spacing: float) -> Fi
 def fitting_spacing(
     outline: Outline, holes: tuple[Loop, ...], spacing: float, most: float = POLYGON_WORK_LIMIT / PARTICLE_WORK
 ) -> float | None:
-    """The spacing [m] or the first smaller one at which triangles fit; None where that takes above `most` particles."""
+    """The spacing [m], or the first smaller one that fits; None if that takes more than `most` particles."""
     finer = spacing
     for tries in range(TRIES):
         if fitted_work(outline, holes, finer) > most * PARTICLE_WORK or finer < SPACING_RANGE[0]:
@@ -126,7 +126,7 @@ def fitting_spacing(
 
 
 def fitted_work(outline: Outline, holes: tuple[Loop, ...], spacing: float) -> int:
-    """About how much work the mesh of an outline [m] with holes is, in the unit of the limit of polygons."""
+    """An estimate of the work for the mesh of an outline [m] with holes, in the unit of the limit of polygons."""
     loops = (corners_of(outline, spacing), *holes)
     border = sum(float(np.sum(_lengths(np.diff(np.array([*loop, loop[0]]), axis=0)))) for loop in loops) / spacing
     corners = np.array(loops[0], dtype=np.float64)
@@ -172,11 +172,11 @@ class _Way:
 
     @property
     def length(self) -> float:
-        """All round [m]."""
+        """Length of the whole way [m]."""
         return float(self.start[-1])
 
     def at(self, along: NDArray[np.float64]) -> Points:
-        """Places [m] (k, 2) that far [m] along it, at most once round either way."""
+        """Places [m] (k, 2) at distances [m] along it, at most once around either way."""
         length = self.start[-1]
         along = np.where(along < 0.0, along + length, np.where(along >= length, along - length, along))
         side = np.clip(np.searchsorted(self.start, along, side="right") - 1, 0, len(self.corners) - 1)
@@ -268,7 +268,7 @@ def _lattice(loops: list[Points], spacing: float) -> Points:
 
 
 def _clear(points: NDArray[np.bool_], left: int, bottom: int, loop: Points, flat: Points) -> None:
-    """Take out what is near to the sides of a loop, in spacings (b, 2), and in units of the lattice (b, 2)."""
+    """Take out points near the sides of a loop, which is given in spacings (b, 2) and in lattice units (b, 2)."""
     rows, columns = points.shape
     low = np.floor(np.minimum(flat, np.roll(flat, -1, axis=0)) - 1.1)
     high = np.maximum(flat, np.roll(flat, -1, axis=0)) + 1.1

@@ -1,4 +1,4 @@
-"""Points and pairs that the forms of several kinds of body are made of: rows, chains, rings and spokes."""
+"""Points and pairs for the forms of several kinds: rows, chains, rings and spokes."""
 
 import math
 
@@ -40,11 +40,11 @@ def chain(segments: int) -> Pairs:
 
 
 def spokes(angle: float, count: int) -> Points:
-    """Unit vectors (count, 2) all round, counter-clockwise from an angle [rad] on."""
+    """Unit vectors (count, 2) all around, counter-clockwise from an angle [rad]."""
     return np.array([turn(angle + math.tau * spoke / count) for spoke in range(count)])
 
 
 def ring(first: int, size: int) -> Pairs:
-    """Pairs (size, 2) of neighbours in a ring of that many particles, which begins at an index."""
+    """Pairs (size, 2) of neighbours in a ring of particles; first: index of the first one."""
     spoke = np.arange(size, dtype=np.int64)
     return first + np.stack([spoke, (spoke + 1) % size], axis=1)

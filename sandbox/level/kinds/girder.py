@@ -23,13 +23,13 @@ class GirderDef(BodyDef):
     start: Point = Field(description="Place of the first row's first particle, `id.start`.")
     end: Point = Field(description="Place of the first row's last particle, `id.end`.")
     segments: int = Field(
-        ge=1, description="Number of cells, and of the second row's particles; the first has one more."
+        ge=1, description="Number of cells, and of particles of the second row. The first row has one particle more."
     )
     height: Size = Field(
-        default=1.0, description="How far the second row lies to the right of the way from start to end."
+        default=1.0, description="Distance of the second row, to the right of the way from start to end."
     )
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends that are held: any of "start", "end".')
+    pin: tuple[End, ...] = Field(default=(), max_length=2, description="Ends that stay where they are.")
 
 
 class Girder(Expansion[GirderDef]):
@@ -40,11 +40,11 @@ class Girder(Expansion[GirderDef]):
     generation = """\
 - Girder: the first row from start to end, then the second, each particle half a cell further and `height` to the
   right of the way from start to end. Springs: first chords, second chords, then per cell the diagonal that leaves the
-  first row and the one that comes back. It can stand at any angle; a bridge's bottom row lies straight below."""
+  first row and the one that comes back. A girder can stand at any angle; a bridge's bottom row is straight below."""
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """Of each cell two chords and two diagonals; one chord less."""
+        """Each cell has two chords and two diagonals; there is one chord less."""
         return 2 * self.body.segments + 1, 4 * self.body.segments - 1
 
     @cached_property
@@ -67,7 +67,7 @@ class Girder(Expansion[GirderDef]):
         return [self.named_particles[end] for end in self.body.pin]
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
-        """Whether it has a length, and its second row stays inside the world."""
+        """Faults of a girder without length, or whose second row leaves the world."""
         body = self.body
         apart = [end - start for start, end in zip(body.start, body.end, strict=True)]
         if max(map(abs, apart)) < SPACING_RANGE[0]:

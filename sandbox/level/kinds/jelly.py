@@ -47,7 +47,7 @@ class PolygonShape(Description):
 
     polygon: tuple[Point, ...] = Field(
         min_length=3,
-        description="Corners in order, relative to the jelly's position; sides may not touch or cross.",
+        description="Corners in order, relative to the jelly's position. Sides may not touch or cross.",
     )
 
 
@@ -75,7 +75,7 @@ class JellyDef(BodyDef):
     angle: Angle = Field(default=0.0, description="Turn about the centre, counter-clockwise.")
     mesh: Literal["grid", "fitted"] = Field(
         default="grid",
-        description='"grid": particles on a square grid; "fitted": evenly on the outline, in even triangles inside.',
+        description='"grid": a square grid. "fitted": particles evenly on the outline, even triangles inside.',
     )
     holes: tuple[Annotated[tuple[Point, ...], Field(min_length=3)], ...] = Field(
         default=(),
@@ -84,44 +84,44 @@ class JellyDef(BodyDef):
         "jelly's position; none touches another or the outline.",
         json_schema_extra=unit("m"),
     )
-    spacing: Spacing = Field(description="Distance of neighbours in the mesh; a box stretches its grid to fit.")
+    spacing: Spacing = Field(description="Distance between neighbours in the mesh. A box stretches its grid to fit.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
     area: bool = Field(
         default=True,
-        description="Whether its triangles keep their areas, with Cs and Cd of its material, so that it comes back "
-        "from being crushed or turned inside out; those of a Hooke material never do.",
+        description="Whether its triangles keep their areas, with Cs and Cd of its material. Then it recovers after it "
+        "was crushed or turned inside out. With a Hooke material they never do.",
     )
 
 
 class Jelly(Expansion[JellyDef]):
-    """The points of a grid that lie in the shape."""
+    """The points of a grid inside a shape, or a fitted mesh."""
 
     model = JellyDef
     size_path = ("spacing",)
     alternatives = SHAPES
     plural = "jellies"
     generation = """\
-- Jelly, box: `round(width / spacing) + 1` columns, rows alike, stretched to fit the box; row by row from the bottom
-  left. Where that leaves one column or row, it stands in the middle.
-- Jelly, circle and polygon: the whole multiples of `spacing` on either side of the centre, the shape's own [0, 0],
-  that lie inside the shape or on its border; row by row from the bottom left.
-- Springs of a jelly: all to the right, all upward, then per cell the diagonal that rises to the right and the other;
-  where both ends exist. The shape is turned by `angle` afterwards.
-- Jelly, fitted: first the outline, counter-clockwise from its first corner that is kept, of a circle from the right;
-  then each hole, clockwise; then what is inside. A corner is kept where the outline turns by 20 degrees or more from
-  half a spacing before it to half a spacing after; of two nearer than half a spacing the sharper. Between two that are
-  kept particles stand on the outline at equal distances along it, as near to `spacing` as a whole number of them is.
-- Jelly, fitted circle without holes: `round(radius / spacing)` rings, at least 1, the k-th of 6 k particles, from the
-  border inwards, each counter-clockwise from the right; the centre last.
-- Jelly, fitted, any other: inside are the points of a lattice of even triangles about the shape's own [0, 0], row by
-  row from the bottom left, which are moved a little where that makes triangles more even. The triangles are those of
-  Delaunay. None has an angle below 20 degrees, or half the sharpest corner of the outline if that is less, and none
-  below 5; where the spacing is too large for that, the file is refused and the message names one that is not.
+- Jelly, box: `round(width / spacing) + 1` columns, and rows likewise, stretched to fit the box; row by row from the
+  bottom left. A single column or row stands in the middle.
+- Jelly, circle and polygon: the points at whole multiples of `spacing` from the shape's own [0, 0] that lie inside the
+  shape or on its border; row by row from the bottom left.
+- Springs of a jelly on a grid: all rightward ones, all upward ones, then per cell the diagonal that rises to the right
+  and the other one; each where both ends exist. `angle` turns the shape afterwards.
+- Jelly, fitted: first the outline, counter-clockwise from its first fixed corner, of a circle from the right; then each
+  hole, clockwise; then the inside. A corner is fixed if the outline turns by 20 degrees or more from half a spacing
+  before it to half a spacing after it. Of two fixed corners nearer than half a spacing, the sharper one stays. Between
+  fixed corners particles stand on the outline at equal distances, as near to `spacing` as a whole number allows.
+- Jelly, fitted circle without holes: `round(radius / spacing)` rings, at least 1; ring k has 6 k particles. From the
+  border inwards, each ring counter-clockwise from the right; the centre last.
+- Jelly, fitted, any other: inside are the points of a lattice of even triangles around the shape's own [0, 0], row by
+  row from the bottom left. The program moves points a little if that makes triangles more even. The triangles are
+  Delaunay's. No angle is below 20 degrees, or half the sharpest corner of the outline if that is less, and none is
+  below 5. If the spacing is too large for that, the program refuses the file and names a spacing that fits.
 - Springs of a fitted jelly: the sides of its triangles, by their lower particles, then by their higher ones."""
 
     @property
     def polygon_work(self) -> tuple[int, int]:
-        """Of a polygon its corners, and a look at every column and side in each row; of a fitted mesh its triangles."""
+        """Corners, and the work of filling: columns and sides of each row, or the triangles of a fitted mesh."""
         shape = self.body.shape
         if self._is_fitted:
             corners = len(shape.polygon) if isinstance(shape, PolygonShape) else 0
@@ -134,7 +134,7 @@ class Jelly(Expansion[JellyDef]):
 
     @cached_property
     def form_count(self) -> tuple[int, int]:
-        """Set points, and pairs of neighbours both of which are set; of a circle beyond the limit a number above it."""
+        """Numbers of points and springs; for a circle beyond the limit, any number above the limit."""
         if self._is_disc:
             return disc_counts(disc_rings(self._outline, self.body.spacing))
         if self._is_fitted:
@@ -167,7 +167,7 @@ class Jelly(Expansion[JellyDef]):
 
     @property
     def edges(self) -> NDArray[np.int8]:
-        """Kind of edge (m,): solid are the sides that one square or triangle of its mesh has alone."""
+        """Kind of edge (m,): a side of only one square or triangle of the mesh is solid."""
         pairs, count = self.pairs, self.form_count[0]
         sides, inner = _sides(self._numbers, count) if self._fitted is None else _keys(self._fitted.triangles, count)
         there, back = pairs[:, 0] * count + pairs[:, 1], pairs[:, 1] * count + pairs[:, 0]
@@ -177,10 +177,10 @@ class Jelly(Expansion[JellyDef]):
         return np.where(hidden, NO_EDGE, kind).astype(np.int8)
 
     def polygons(self) -> Pairs:
-        """Triangles (t, 3), counter-clockwise: those fitted, or two of each cell of its grid, one of three corners.
+        """Triangles (t, 3), counter-clockwise: of the fitted mesh, or of each grid cell, which has two or one.
 
-        Cells are cut along one diagonal and the other in turns, as a chessboard is coloured: no way of shearing is
-        easier.
+        The diagonals that cut cells alternate like the colours of a chessboard, so it is equally stiff against shear
+        either way.
         """
         if not self.body.area:
             return NO_POLYGONS
@@ -190,7 +190,7 @@ class Jelly(Expansion[JellyDef]):
         row, column = np.indices(corners.shape[:2])
         corners = corners.reshape(-1, 4)
         missing = corners < 0
-        # A missing corner is cut off; of whole cells the first or the second.
+        # A cell of three corners has one triangle, a whole cell two.
         cut = np.where(missing.any(axis=1), np.argmax(missing, axis=1), ((row + column) % 2).reshape(-1))
         ahead = cut[:, None] + np.array([1, 2, 3])
         inner = np.take_along_axis(corners, ahead % 4, axis=1)
@@ -199,7 +199,7 @@ class Jelly(Expansion[JellyDef]):
         return both[(both >= 0).all(axis=1)]
 
     def faults(self, path: str) -> Iterator[Fault]:
-        """Whether its shape is one, lies inside the world, and holds a point of the grid or even triangles."""
+        """Faults of a shape that crosses itself, leaves the world, or has no point of the grid inside."""
         outline = list(self.outline_faults(path))
         yield from outline
         if self.form_count[0] or (self._is_fitted and outline):
@@ -212,7 +212,7 @@ class Jelly(Expansion[JellyDef]):
         yield f"{path}.spacing", f"{shown(self.body.spacing)} is too coarse for triangles to fit the outline; {advice}"
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
-        """Whether its shape is one, its holes lie apart inside it, and all of it inside the world."""
+        """Faults of a shape that crosses itself or leaves the world, and of holes that touch or leave the shape."""
         shape = self.body.shape
         if isinstance(shape, PolygonShape) and not is_simple(shape.polygon):
             yield f"{path}.shape.polygon", _NOT_SIMPLE
@@ -264,7 +264,7 @@ class Jelly(Expansion[JellyDef]):
 
     @cached_property
     def _fitted(self) -> FittedMesh | None:
-        """The mesh, where it is fitted; None where it is not, or cannot be."""
+        """The fitted mesh; None if it has a grid, or if no mesh fits."""
         if not self._is_fitted or any(True for _ in self.outline_faults("")):
             return None
         try:
@@ -274,7 +274,7 @@ class Jelly(Expansion[JellyDef]):
 
     @cached_property
     def _grid(self) -> tuple[int, int, NDArray[np.bool_]]:
-        """Left, bottom, and which points of the grid over the shape belong to it (rows, columns), from there on."""
+        """Left and bottom of the grid over the shape, and which of its points (rows, columns) belong to the shape."""
         body, shape = self.body, self.body.shape
         if isinstance(shape, BoxShape):
             return 0, 0, np.ones(self._box_grid()[::-1], dtype=np.bool_)
@@ -282,7 +282,7 @@ class Jelly(Expansion[JellyDef]):
 
     @cached_property
     def _numbers(self) -> Pairs:
-        """Particles on the grid (rows, columns), -1 where there is none."""
+        """Index of the particle on each point of the grid (rows, columns); -1 = none."""
         cells = self._grid[2]
         numbers = np.full(cells.shape, -1, dtype=np.int64)
         numbers[cells] = np.arange(np.count_nonzero(cells))
@@ -318,10 +318,10 @@ def _reach(radius: float, spacing: float) -> int:
     return math.floor(radius / spacing + BORDER)
 
 
-# The same bodies are looked at again at every edit of any other.
+# Cached, since every edit of another body checks this one again.
 @lru_cache(maxsize=64)
 def _grid_in(outline: tuple[Point, ...] | float, spacing: float) -> tuple[int, int, NDArray[np.bool_]]:
-    """Left, bottom, and the points of the grid (rows, columns) inside a polygon or a circle of that radius [m]."""
+    """Left and bottom of a grid, and which of its points (rows, columns) lie in a polygon or a circle [m]."""
     if isinstance(outline, float | int):
         reach = _reach(outline, spacing)
         steps = np.arange(-reach, reach + 1, dtype=np.float64)
@@ -346,7 +346,7 @@ _NEIGHBOURS = (
 
 
 def _neighbours(numbers: Pairs) -> Pairs:
-    """Pairs of a grid of indices (rows, columns), -1 = none: all right, all up, then per cell both diagonals."""
+    """Pairs of a grid of indices (rows, columns; -1 = none): rightward, upward, then both diagonals of each cell."""
     right, up, rising, falling = (np.stack([numbers[a], numbers[b]], axis=-1) for a, b in _NEIGHBOURS)
     diagonals = np.stack([rising, falling], axis=-2)
     pairs = np.concatenate([part.reshape(-1, 2) for part in (right, up, diagonals)])
@@ -359,7 +359,7 @@ def _corners(numbers: Pairs) -> Pairs:
 
 
 def _sides(numbers: Pairs, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Keys a n + b of the sides a to b of squares and triangles, counter-clockwise, and of whole squares' diagonals."""
+    """Keys a n + b of the sides from a to b of squares and triangles, counter-clockwise, and of diagonals."""
     corners = _corners(numbers).reshape(-1, 4)
     present = corners >= 0
     full = corners[present.all(axis=1)]

@@ -9,33 +9,33 @@ from pydantic import Field
 
 from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import SPEED_LIMIT
-from sandbox.level.format.quantities import Index, Mass, Point, Velocity, unit
-from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef
+from sandbox.level.format.quantities import Index, Mass, Point, Velocity, empty, unit
+from sandbox.level.kinds.body_def import BENDING, BENDS_FREELY, BendingDef, BodyDef
 from sandbox.level.kinds.expansion import Expansion, Floats
 from sandbox.level.kinds.geometry import Pairs, Points
 
 
 class MeshDef(BodyDef):
-    """Particles and springs one by one, for whatever the other bodies do not offer."""
+    """Particles and springs one by one, for forms that no other kind of body has."""
 
     type: Literal["mesh"] = Field(description="Kind of body.")
     particles: tuple[Point, ...] = Field(min_length=1, description="Place of each particle.")
     masses: tuple[Mass, ...] | None = Field(
-        default=None, description="Mass of each particle; null = 1 each.", json_schema_extra=unit("kg")
+        default=None, description="Mass of each particle.", json_schema_extra=unit("kg") | empty("1 each")
     )
     velocities: tuple[Velocity, ...] | None = Field(
         default=None,
-        description="Start velocity of each particle, added to the body's `velocity`; null = none.",
-        json_schema_extra=unit("m/s"),
+        description="Start velocity of each particle, added to the body's `velocity`.",
+        json_schema_extra=unit("m/s") | empty("none"),
     )
     springs: tuple[tuple[Index, Index], ...] = Field(
-        default=(), description="Pairs of particles, by index, that a spring joins; rest lengths are as placed."
+        default=(), description="Pairs of particles, by index. A spring joins each pair; its rest length is as placed."
     )
-    bending: BendingDef | None = Field(default=None, description=BENDING)
+    bending: BendingDef | None = Field(default=None, description=BENDING, json_schema_extra=BENDS_FREELY)
 
 
 class Mesh(Expansion[MeshDef]):
-    """What its lists say."""
+    """The particles and springs of its lists."""
 
     model = MeshDef
     size_path = ()
@@ -44,7 +44,7 @@ class Mesh(Expansion[MeshDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """As many as are listed."""
+        """The lengths of its lists."""
         return len(self.body.particles), len(self.body.springs)
 
     @cached_property
@@ -60,7 +60,7 @@ class Mesh(Expansion[MeshDef]):
 
     @cached_property
     def velocity(self) -> Points:
-        """Start velocity [m/s] (n, 2): the body's and each particle's own."""
+        """Start velocity [m/s] (n, 2): the sum of the body's and each particle's own."""
         velocity = super().velocity
         return velocity if self.body.velocities is None else velocity + np.array(self.body.velocities)
 
@@ -70,7 +70,7 @@ class Mesh(Expansion[MeshDef]):
         return self.body.bending
 
     def faults(self, path: str) -> Iterator[Fault]:
-        """Whether its lists fit each other, and its springs join particles that exist."""
+        """Faults of lists of different lengths, and of springs that join particles that do not exist."""
         body, size = self.body, len(self.body.particles)
         for name, values in (("masses", body.masses), ("velocities", body.velocities)):
             if values is not None and len(values) != size:

@@ -1,4 +1,4 @@
-"""Polygons of jelly: whether one is simple, and which points of a square grid it holds."""
+"""Polygons: whether one is simple, and which points of a square grid lie inside."""
 
 import math
 from collections.abc import Sequence
@@ -14,17 +14,17 @@ BORDER = 1e-9
 
 
 def grid_bounds(corners: Corners, spacing: float) -> tuple[int, int, int, int]:
-    """Left, bottom, columns, rows of the whole multiples of spacing [m] that lie in a polygon's bounding box."""
+    """Left, bottom, columns and rows of the grid of a spacing [m] in a polygon's bounding box."""
     left, bottom = (math.ceil(min(c[axis] for c in corners) / spacing - BORDER) for axis in (0, 1))
     right, top = (math.floor(max(c[axis] for c in corners) / spacing + BORDER) for axis in (0, 1))
     return left, bottom, max(0, right - left + 1), max(0, top - bottom + 1)
 
 
 def polygon_grid(corners: Corners, spacing: float) -> tuple[int, int, NDArray[np.bool_]]:
-    """Left, bottom, and which points of the grid (rows, columns) lie inside a simple polygon or on its border.
+    """Left and bottom of a grid, and which of its points (rows, columns) lie in a simple polygon or on its border.
 
-    The grid's points are the whole multiples of spacing [m]. A row is inside between each two crossings of the border
-    in order; besides, each side marks the points that lie on it.
+    Points of the grid are whole multiples of spacing [m]. A row is inside between its first and second crossing of the
+    border, its third and fourth, and so on. Each side also marks the points on it.
     """
     left, bottom, columns, rows = grid_bounds(corners, spacing)
     if not rows or not columns:
@@ -65,9 +65,9 @@ def _mark(edges: NDArray[np.int64], row: NDArray[np.int64], start: object, end: 
 
 
 def largest_part(points: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Of the points of a grid (rows, columns) those of the largest part that holds together; all, where none does.
+    """The largest connected region of the points of a grid (rows, columns); all points if there is none.
 
-    What does: cells of three corners or four that share sides. A tip that hangs by one point would flap.
+    Cells of three or four corners are connected if they share a side. A tip that hangs by one point would flap.
     """
     corners = points[:-1, :-1].astype(np.int8) + points[:-1, 1:] + points[1:, :-1] + points[1:, 1:]
     cells = corners >= 3
@@ -98,11 +98,11 @@ def largest_part(points: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def is_simple(corners: Corners) -> bool:
-    """Whether no two corners coincide and no two sides touch, but neighbours in their common corner."""
+    """Whether all corners differ and no sides touch, except neighbours at their common corner."""
     return _is_simple(tuple((float(x), float(y)) for x, y in corners))
 
 
-# What a body is made of is asked for again at every edit of any other.
+# Cached, since every edit of another body asks for this one again.
 @lru_cache(maxsize=64)
 def _is_simple(corners: tuple[tuple[float, float], ...]) -> bool:
     a = np.array(corners, dtype=np.float64)
@@ -122,7 +122,7 @@ def _is_simple(corners: tuple[tuple[float, float], ...]) -> bool:
 
 
 def holds(corners: Corners, point: tuple[float, float]) -> bool:
-    """Whether a simple polygon holds a point that is not on its border."""
+    """Whether a point, which is not on the border, lies inside a simple polygon."""
     x, y = point
     a = np.array(corners, dtype=np.float64) - np.array([x, y])
     b = np.roll(a, -1, axis=0)
@@ -165,10 +165,10 @@ def _folds_back(p: NDArray[np.float64], q: NDArray[np.float64], r: NDArray[np.fl
 
 
 def simplified(corners: Corners, tolerance: float) -> list[tuple[float, float]]:
-    """Corners of a closed line drawn by hand, without those that change it by at most a tolerance [m].
+    """Simplify a closed line drawn by hand: drop corners that change it by at most a tolerance [m].
 
-    Two far corners stay; of the ways between them each is replaced by its chord or divided at the corner farthest from
-    it (Ramer 1972; Douglas and Peucker 1973). What comes twice in a row goes first.
+    Two far corners stay. Each way between them becomes a chord, or is split at the corner farthest from the chord
+    (Ramer 1972; Douglas and Peucker 1973). Repeated corners go first.
     """
     given = [corner for index, corner in enumerate(corners) if corner != corners[index - 1]]
     if len(given) < 3:

@@ -8,14 +8,14 @@ import numpy as np
 from pydantic import Field
 
 from sandbox.level.format.level_error import Fault
-from sandbox.level.format.quantities import Angle, Inflation, Mass, Point, Size
-from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef
+from sandbox.level.format.quantities import Angle, Inflation, Mass, Point, Size, empty
+from sandbox.level.kinds.body_def import BENDING, BENDS_FREELY, BendingDef, BodyDef
 from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion, round_outline_faults
 from sandbox.level.kinds.geometry import Pairs, Points, ring, spokes
 
 
 class RingDef(BodyDef):
-    """A closed ring of particles, which keeps the area inside: a balloon, a tyre."""
+    """A closed ring of particles that keeps the area inside it: a balloon, a tyre."""
 
     type: Literal["ring"] = Field(description="Kind of body.")
     position: Point = Field(default=(0.0, 0.0), description="Place of the centre.")
@@ -24,9 +24,11 @@ class RingDef(BodyDef):
     segments: int = Field(ge=3, description="Number of springs, and of particles.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
     inflation: Inflation | None = Field(
-        default=1.0, description="Area that the ring wants, as a multiple of its own; null = it holds nothing."
+        default=1.0,
+        description="Area that the ring keeps, as a multiple of the area of its own form.",
+        json_schema_extra=empty("keeps no area"),
     )
-    bending: BendingDef | None = Field(default=None, description=BENDING)
+    bending: BendingDef | None = Field(default=None, description=BENDING, json_schema_extra=BENDS_FREELY)
 
 
 class Ring(Expansion[RingDef]):
@@ -48,12 +50,12 @@ class Ring(Expansion[RingDef]):
         return self.body.radius * spokes(self.body.angle, self.body.segments), ring(0, self.body.segments)
 
     def polygons(self) -> Pairs:
-        """All of it, unless it holds nothing."""
+        """The whole ring, unless it keeps no area."""
         return NO_POLYGONS if self.body.inflation is None else np.arange(self.body.segments, dtype=np.int64)[None]
 
     @property
     def inflation(self) -> float:
-        """Area that it wants, as a multiple of its own."""
+        """Area that it keeps, as a multiple of the area of its form."""
         return 1.0 if self.body.inflation is None else self.body.inflation
 
     @property

@@ -6,8 +6,8 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from sandbox.level.format.quantities import Length, Mass, Point
-from sandbox.level.kinds.body_def import BENDING, BendingDef, BodyDef, End
+from sandbox.level.format.quantities import Length, Mass, Point, empty
+from sandbox.level.kinds.body_def import BENDING, BENDS_FREELY, BendingDef, BodyDef, End
 from sandbox.level.kinds.expansion import Expansion, Floats
 from sandbox.level.kinds.geometry import Pairs, Points, chain, row
 
@@ -18,12 +18,16 @@ class RopeDef(BodyDef):
     type: Literal["rope"] = Field(description="Kind of body.")
     start: Point = Field(description="Place of the first particle, `id.start`.")
     end: Point = Field(description="Place of the last particle, `id.end`.")
-    segments: int = Field(ge=1, description="Number of springs; the particles are one more.")
+    segments: int = Field(ge=1, description="Number of springs. There is one particle more.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    end_mass: Mass | None = Field(default=None, description="Mass of the last particle; null = `particle_mass`.")
-    rest_length: Length | None = Field(default=None, description="Rest length of each spring; null = as placed.")
-    pin: tuple[End, ...] = Field(default=(), max_length=2, description='Ends that are held: any of "start", "end".')
-    bending: BendingDef | None = Field(default=None, description=BENDING)
+    end_mass: Mass | None = Field(
+        default=None, description="Mass of the last particle.", json_schema_extra=empty("as the others")
+    )
+    rest_length: Length | None = Field(
+        default=None, description="Rest length of each spring.", json_schema_extra=empty("as placed")
+    )
+    pin: tuple[End, ...] = Field(default=(), max_length=2, description="Ends that stay where they are.")
+    bending: BendingDef | None = Field(default=None, description=BENDING, json_schema_extra=BENDS_FREELY)
 
 
 class Rope(Expansion[RopeDef]):
@@ -31,7 +35,7 @@ class Rope(Expansion[RopeDef]):
 
     model = RopeDef
     plural = "ropes"
-    generation = "- Rope: from start to end, evenly, whatever its rest length."
+    generation = "- Rope: from start to end, at equal distances, with any rest length."
 
     @property
     def form_count(self) -> tuple[int, int]:
@@ -61,7 +65,7 @@ class Rope(Expansion[RopeDef]):
 
     @cached_property
     def rest_length(self) -> Floats:
-        """Rest length [m] (m,), as placed or as given."""
+        """Rest length [m] (m,): the file's, or as placed."""
         if self.body.rest_length is None:
             return super().rest_length
         return np.full(len(self.pairs), self.body.rest_length)

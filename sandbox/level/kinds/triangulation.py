@@ -1,7 +1,7 @@
-"""Triangulations of points in a plane: Delaunay's of all, borders forced into it, what lies inside kept and evened out.
+"""Delaunay triangulations of points in a plane, with borders forced into them, trimmed to the inside and smoothed.
 
-Points are whole numbers and every decision is exact, so that the same points give the same triangles in the same order
-with any library and on any machine: an outline often has four points on one circle, where rounding would choose.
+Points are whole numbers and every decision is exact. So the same points give the same triangles in the same order on
+any machine. An outline often has four points on one circle, where rounding would decide.
 """
 
 from collections.abc import Iterable, Sequence
@@ -17,9 +17,9 @@ EVEN = 1.28
 
 
 class Triangulation:
-    """Triangles by their sides: of a triangle a b c, counter-clockwise, `apex` of (a, b) is c, and so on round.
+    """Triangles by their sides: in a counter-clockwise triangle a b c, `apex` of (a, b) is c, of (b, c) is a.
 
-    Built point by point (Lawson 1977), within a frame of three far corners, which `inside` leaves behind.
+    Built point by point (Lawson 1977) in a frame of three far corners, which `inside` removes.
     """
 
     def __init__(self, sites: Sequence[Site]) -> None:
@@ -39,7 +39,7 @@ class Triangulation:
     # ---- building
 
     def force(self, a: int, b: int) -> None:
-        """Make a side of two sites, by flipping what crosses it (Sloan 1993). No site may lie on it."""
+        """Make the line between two sites a side, by flips of sides across it (Sloan 1993). No site may lie on it."""
         crossing = self._crossing(a, b)
         at = 0
         while at < len(crossing):
@@ -56,7 +56,7 @@ class Triangulation:
                 crossing.append((left, right))
 
     def inside(self, borders: Iterable[Side]) -> None:
-        """Keep what lies to the left of closed borders alone; their sides are triangles' sides and never flipped."""
+        """Keep only the triangles to the left of closed borders, which are made of sides. Those are never flipped."""
         self._borders = set(borders)
         kept: dict[Side, int] = {}
         waiting = list(self._borders)
@@ -73,7 +73,7 @@ class Triangulation:
         del self.sites[-3:]
 
     def even_out(self, fixed: int) -> None:
-        """Move the sites from the number `fixed` on, where that makes the smallest angle about them larger."""
+        """Move each site from the number `fixed` on, if that makes the smallest angle at it larger."""
         self._settle(list(self.apex))
         around = self._stars()
         active = {site for site in range(fixed, len(self.sites)) if self._worst(site, around[site]) > EVEN}
@@ -89,7 +89,7 @@ class Triangulation:
     # ---- reading
 
     def triangles(self) -> list[Triangle]:
-        """All of them, each from its lowest site on, in order."""
+        """All triangles, each from its lowest site on, in order."""
         return sorted((a, b, c) for (a, b), c in self.apex.items() if a < b and a < c)
 
     def turn(self, a: int, b: int, c: int) -> int:
@@ -130,7 +130,7 @@ class Triangulation:
         self._last = site, self._second[site]
 
     def _settle(self, sides: list[Side]) -> None:
-        """Flip sides, and those about them, until no circle about a triangle holds the next one's apex."""
+        """Flip sides and their neighbours until no circle around a triangle contains the apex of the next one."""
         while sides:
             a, b = sides.pop()
             left, right = self.apex.get((a, b)), self.apex.get((b, a))
@@ -159,7 +159,7 @@ class Triangulation:
         self._add(right, left, a)
 
     def _crossing(self, a: int, b: int) -> list[Side]:
-        """Sides that cross the way from a to b; none where it is one."""
+        """Sides that cross the line from a to b; none if it is a side."""
         if (a, b) in self.apex or (b, a) in self.apex:
             return []
         first = second = self._second[a]
@@ -187,7 +187,7 @@ class Triangulation:
         return [side for other in around for side in ((site, other), (other, self.apex[site, other]))]
 
     def _worst(self, site: int, around: list[int]) -> float:
-        """Cotangent of the smallest angle of the triangles about an inner site; infinite where one is turned over."""
+        """Cotangent of the smallest angle of the triangles at an inner site; infinite if one is turned over."""
         return max(self._sharpest(site, other, self.apex[site, other]) for other in around)
 
     def _sharpest(self, *corners: int) -> float:
@@ -201,7 +201,7 @@ class Triangulation:
         return max(p, q, r) / double
 
     def _improve(self, site: int, around: list[int]) -> bool:
-        """Move a site to the middle of its neighbours, or some of the way, if the smallest angle becomes larger."""
+        """Move a site toward the middle of its neighbours if that makes the smallest angle larger."""
         before, (x, y) = self._worst(site, around), self.sites[site]
         # Neighbours weigh as their triangles do, so that many on one side draw no more than few on the other.
         middle_x = sum(self.sites[other][0] for other in around) // len(around)

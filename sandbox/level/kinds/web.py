@@ -20,11 +20,13 @@ class WebDef(BodyDef):
     type: Literal["web"] = Field(description="Kind of body.")
     position: Point = Field(default=(0.0, 0.0), description="Place of the particle in the centre, `id.centre`.")
     angle: Angle = Field(default=0.0, description="Direction of the first spoke, counter-clockwise from the right.")
-    radius: Size = Field(description="Radius of the outermost ring; the others lie evenly inside.")
-    spokes: int = Field(ge=3, description="Number of spokes, and of the particles of each ring.")
+    radius: Size = Field(description="Radius of the outermost ring. The others lie evenly inside.")
+    spokes: int = Field(ge=3, description="Number of spokes, and of particles in each ring.")
     rings: int = Field(ge=1, description="Number of rings.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    pin: tuple[Literal["rim"], ...] = Field(default=(), max_length=1, description='"rim": the outermost ring is held.')
+    pin: tuple[Literal["rim"], ...] = Field(
+        default=(), max_length=1, description='"rim": the outermost ring stays where it is.'
+    )
 
 
 class Web(Expansion[WebDef]):
@@ -39,7 +41,7 @@ class Web(Expansion[WebDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """A thread inward and one onward of every particle but that in the centre."""
+        """Every particle except the centre has a thread inward and a thread along its ring."""
         return 1 + self.body.spokes * self.body.rings, 2 * self.body.spokes * self.body.rings
 
     @cached_property
@@ -59,7 +61,7 @@ class Web(Expansion[WebDef]):
         return {"centre": 0}
 
     def named_pins(self) -> list[int]:
-        """The outermost ring, where it is held."""
+        """The outermost ring, if `pin` names it."""
         count = self.form_count[0]
         return list(range(count - self.body.spokes, count)) if self.body.pin else []
 

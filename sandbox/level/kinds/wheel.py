@@ -9,7 +9,7 @@ from pydantic import Field
 
 from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.level_error import Fault, shown
-from sandbox.level.format.quantities import Angle, Mass, Point, Size
+from sandbox.level.format.quantities import Angle, Mass, Point, Size, empty
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion, Floats, round_outline_faults
 from sandbox.level.kinds.geometry import Pairs, Points, ring, spokes
@@ -22,16 +22,20 @@ class WheelDef(BodyDef):
     position: Point = Field(default=(0.0, 0.0), description="Place of the hub, `id.hub`.")
     angle: Angle = Field(default=0.0, description="Direction of the first spoke, counter-clockwise from the right.")
     radius: Size = Field(description="Radius of the outer ring.")
-    thickness: Size = Field(description="How far the inner ring lies inside the outer; below the radius.")
-    segments: int = Field(ge=3, description="Number of spokes, and of the particles of each ring.")
+    thickness: Size = Field(description="Distance from the outer ring to the inner one; less than the radius.")
+    segments: int = Field(ge=3, description="Number of spokes, and of particles in each ring.")
     particle_mass: Mass = Field(default=1.0, description="Mass of each particle.")
-    hub_mass: Mass | None = Field(default=None, description="Mass of the hub; null = `particle_mass`.")
-    pin: tuple[Literal["hub"], ...] = Field(default=(), max_length=1, description='"hub": the hub is held.')
-    motor: MotorDef | None = Field(default=None, description="Motor that turns it about its hub; null = none.")
+    hub_mass: Mass | None = Field(
+        default=None, description="Mass of the hub.", json_schema_extra=empty("as the others")
+    )
+    pin: tuple[Literal["hub"], ...] = Field(default=(), max_length=1, description='"hub": the hub stays where it is.')
+    motor: MotorDef | None = Field(
+        default=None, description="Motor that turns it about its hub.", json_schema_extra=empty("none")
+    )
     touches_mount: bool = Field(
         default=True,
-        description="Whether it touches what it is mounted on: all that welds and loose springs join to its hub, "
-        "directly or by way of others.",
+        description="Whether it touches its mount: all bodies that welds and loose springs join to its hub, directly "
+        "or through other bodies.",
     )
 
 
@@ -46,7 +50,7 @@ class Wheel(Expansion[WheelDef]):
 
     @property
     def form_count(self) -> tuple[int, int]:
-        """Of each cell a spoke, three sides and two diagonals."""
+        """Each cell has a spoke, three sides and two diagonals."""
         return 1 + 2 * self.body.segments, 6 * self.body.segments
 
     @cached_property
@@ -69,7 +73,7 @@ class Wheel(Expansion[WheelDef]):
         return {"hub": 0}
 
     def named_pins(self) -> list[int]:
-        """The hub, where it is held."""
+        """The hub, if `pin` names it."""
         return [0] if self.body.pin else []
 
     @cached_property
@@ -82,11 +86,11 @@ class Wheel(Expansion[WheelDef]):
 
     @property
     def motor(self) -> MotorDef | None:
-        """What turns both rings about the hub."""
+        """The motor that turns both rings about the hub."""
         return self.body.motor
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
-        """Whether its rim has an inner ring, and stays inside the world."""
+        """Faults of a rim without an inner ring, or that leaves the world."""
         body = self.body
         if body.thickness >= body.radius:
             yield f"{path}.thickness", f"{shown(body.thickness)} is not below the radius, {shown(body.radius)}"

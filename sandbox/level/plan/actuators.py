@@ -1,4 +1,4 @@
-"""Actuators of a level: which there are, in the order of their slots, which keys control them, and their arrays."""
+"""Actuators of a level: their order, the keys that control them, and their arrays."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -27,7 +27,7 @@ class Actuator:
 
     @property
     def start_value(self) -> float:
-        """The value that it begins with: a motor without keys runs from the start, all else waits."""
+        """Drive value at the start: 1 for a motor without keys, else 0."""
         keyed = self.drive.key is not None or self.drive.reverse_key is not None
         return 0.0 if keyed or isinstance(self.drive, HydraulicDef) else 1.0
 
@@ -48,7 +48,7 @@ def actuators(level: Level) -> list[Actuator]:
 
 
 def driving_keys(level: Level) -> dict[str, list[tuple[int, float]]]:
-    """What each key controls: numbers of actuators, with the value of each."""
+    """The actuators that each key controls, by number, with the value of each."""
     result: dict[str, list[tuple[int, float]]] = {}
     for number, part in enumerate(actuators(level)):
         for key, value in ((part.drive.key, 1.0), (part.drive.reverse_key, -1.0)):
@@ -58,7 +58,7 @@ def driving_keys(level: Level) -> dict[str, list[tuple[int, float]]]:
 
 
 def add_actuators(world: World, level: Level, plan: Plan, slots: Slots) -> None:
-    """Give the world its muscles, hydraulics and motors; slots: what each particle before welds becomes."""
+    """Give the world its muscles, hydraulics and motors; slots: the slot of each particle before welds."""
     found = actuators(level)
     owners = [plan.layout.owners[each.name] for each in found if isinstance(each.drive, MotorDef)]
     motors = [each.drive for each in found if isinstance(each.drive, MotorDef)]
@@ -103,7 +103,7 @@ def _muscles(level: Level, bodies: list[Expansion[Any]]) -> Muscles:
 
 
 def _forces(given: list[float | None]) -> NDArray[np.float64]:
-    """The largest forces [N] (k,), infinite where there is none; (0,) where no part has any."""
+    """The largest forces [N] (k,), infinite without a limit; (0,) if no spring has a limit."""
     if all(force is None for force in given):
         return np.zeros(0)
     return np.array([np.inf if force is None else force for force in given])

@@ -1,4 +1,4 @@
-"""Axles: what wheels are mounted on, which they pass through where they say so."""
+"""Axles: the mounts of wheels, and which wheels pass through theirs."""
 
 from collections import defaultdict
 
@@ -7,16 +7,16 @@ from sandbox.level.kinds.wheel import WheelDef
 
 
 def free_wheels(level: Level) -> list[tuple[int, frozenset[int]]]:
-    """Wheels that touch nothing of their mount, with that mount, by index."""
+    """Wheels that pass through their mounts, with their mounts, by index."""
     wheels = (index for index, body in enumerate(level.bodies) if isinstance(body, WheelDef) and not body.touches_mount)
     found = [(wheel, mount_of(level, wheel)) for wheel in wheels]
     return [(wheel, mount) for wheel, mount in found if mount]
 
 
 def mount_of(level: Level, wheel: int) -> frozenset[int]:
-    """What a wheel is mounted on, by index: bodies, and after them loose particles.
+    """The mount of a wheel, by index: bodies, then loose particles.
 
-    It is what welds and loose springs join to the hub, and whatever they join to that; the wheel is no part of it.
+    It is everything that welds and loose springs join to the hub, directly or through others, without the wheel.
     """
     axle = level.bodies[wheel].id
     ids = [*(body.id for body in level.bodies), *(particle.id for particle in level.particles)]

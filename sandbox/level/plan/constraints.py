@@ -1,4 +1,4 @@
-"""Area and bending constraints of the bodies of a level, added to its world."""
+"""Adds the area and bending constraints of a level's bodies to its world."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -22,9 +22,9 @@ def add_constraints(
     slots: Slots,
     materials: dict[str, Material],
 ) -> list[int]:
-    """Add the area and bending constraints, body by body; at rest they are those of the body's form.
+    """Add the area and bending constraints, body by body, with the areas and angles of the bodies' forms.
 
-    Returned is where those of each body begin, and where the last end.
+    Returns where the constraints of each body begin, and where the last ones end.
     """
     index = {name: number for number, name in enumerate(materials)}
     firsts = []

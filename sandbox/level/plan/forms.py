@@ -1,4 +1,4 @@
-"""Bodies of a level whose firmness can be set, made known to its world, with the firmness that the level asks."""
+"""Gives a world the forms of bodies whose firmness can be set, and sets the firmness of the level."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -16,10 +16,10 @@ def add_forms(
     world: World, level: Level, bodies: Sequence[Expansion[Any]], materials: dict[str, Material],
     first_constraint: list[int],
 ) -> None:  # fmt: skip
-    """Give the world the forms of those bodies that enough holds to be stiff without pins, and set their firmness.
+    """Give the world the forms of bodies that may be stiff without pins, and set their firmness.
 
-    bodies: what those of the level expand to; first_constraint: where the constraints of each body begin, and where the
-    last end.
+    bodies: expansions of the level's bodies; first_constraint: where the constraints of each body begin, and where the
+    last ones end.
     """
     first_spring = 0
     for number, (body, made) in enumerate(zip(level.bodies, bodies, strict=True)):

@@ -1,4 +1,4 @@
-"""Layout: which slots the bodies, loose particles and loose springs of a level get, and who has which name."""
+"""Layout: the slots of bodies, loose particles and loose springs of a level, and their names."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +12,7 @@ _INDEX = re.compile(r"0|[1-9][0-9]{0,8}")
 
 
 class Owner(NamedTuple):
-    """The slots of one body or loose particle: first, how many, and the indices of those with a name of their own."""
+    """The slots of one body or loose particle: first slot, count, and the indices of particles with names."""
 
     first: int
     size: int
@@ -23,8 +23,8 @@ class Owner(NamedTuple):
 class Layout:
     """Slots by name, as they are before welds: particles of bodies in file order, then loose particles.
 
-    bodies: what those of the first ids expand to. Names that are taken twice keep their first owner; `repeated` lists
-    the others.
+    bodies: expansions of the bodies, which have the first ids. A repeated name belongs to its first owner; `repeated`
+    lists the others.
     """
 
     def __init__(self, body_ids: Sequence[str], bodies: Sequence[Expansion[Any]], particle_ids: Sequence[str]) -> None:
@@ -47,13 +47,13 @@ class Layout:
             self.owners[name] = owner
 
     def second_names(self) -> Iterator[tuple[str, int]]:
-        """Names such as `id.start` of particles that have a number too, with their slots."""
+        """Names such as `id.start`, with their slots."""
         for name, owner in self.owners.items():
             for part, index in owner.named.items():
                 yield f"{name}.{part}", owner.first + index
 
     def slot(self, reference: str) -> int:
-        """Slot of the particle that `id`, `id.k` or a name such as `id.start` refers to. Raises LookupError."""
+        """Slot of the particle with a name: `id`, `id.k`, or one such as `id.start`. Raises LookupError."""
         owner = self.owners.get(reference)
         if owner is not None and owner.loose:
             return owner.first

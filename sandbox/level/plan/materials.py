@@ -1,4 +1,4 @@
-"""Materials as the world has them: law and coefficients of every spring, strains at which it breaks or yields."""
+"""Materials as arrays: law and coefficients of every spring, and the strains at which it breaks or yields."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN
 
 
 def coefficients(material: NDArray[np.int64], materials: dict[str, Material]) -> dict[str, NDArray[np.generic]]:
-    """Law and coefficients of every spring (m,), by the argument of World.add_springs that takes them."""
+    """Law and coefficients of every spring (m,), as arguments of World.add_springs."""
     rows = [_row(chosen) for chosen in materials.values()]
     law, stiffness, damping, k, c = (np.array(column)[material] for column in zip(*rows, strict=True))
     return {"law": law, "stiffness": stiffness, "damping": damping, "hooke_stiffness": k, "hooke_damping": c}

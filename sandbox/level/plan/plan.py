@@ -1,4 +1,4 @@
-"""Plan: what a level expands to and in which slots, found once, for its check, its world and its picture."""
+"""Plan: the expansion of a level and its slots, computed once for its check, its world and its picture."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -14,11 +14,11 @@ from sandbox.level.plan.welds import Slots, united
 
 
 class Plan:
-    """The bodies of a level expanded, the slots and names of its particles, and which of them are one.
+    """The expanded bodies of a level, the slots and names of its particles, and its welds.
 
-    Each part is made when it is first asked for. The check asks first, and in an order in which nothing is made of a
-    level that is too large; beyond `layout`, and of the arrays of bodies, only a sound level has any.
-    bodies: expansions of the level's bodies where they are known already.
+    Each attribute is computed at its first use. The check uses them first, in an order that computes nothing for a
+    level that is too large. Only a sound level has attributes other than `layout`, and arrays of bodies.
+    bodies: expansions of the level's bodies, if they are known already.
     """
 
     def __init__(self, level: Level, bodies: Sequence[Expansion[Any]] | None = None) -> None:
@@ -40,16 +40,16 @@ class Plan:
 
     @cached_property
     def first_of_weld(self) -> Slots:
-        """The first (n,) of the particles that each one is welded to, itself where it is welded to none."""
+        """The first particle (n,) that each particle is welded to; itself without a weld."""
         slot = self.layout.slot
         return united(self.layout.particle_count, ((slot(a), slot(b)) for a, b in self._welds))
 
 
 def keep_plan(level: Level, plan: Plan) -> None:
-    """Let a level keep the plan that its check has found sound, for as long as it lives."""
+    """Store the plan of a sound level in the level, for as long as the level lives."""
     object.__setattr__(level, "_plan", plan)
 
 
 def kept_plan(level: Level) -> Plan | None:
-    """The plan that a level keeps: one that was read has one, one that was made of another has none."""
+    """The plan that a level keeps. A level that was read has one, a copy of another level has none."""
     return getattr(level, "_plan", None)

@@ -14,7 +14,7 @@ from sandbox.physics.actuators import Surface
 from sandbox.physics.collision.filter import ALL_GROUPS, TERRAIN_GROUP
 from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain
 
-# Names of the groups that exist in every level: that of terrain and walls, and that of bodies which name none.
+# Groups that exist in every level: of terrain and walls, and of bodies that name none.
 TERRAIN_NAME, DEFAULT_GROUP = "terrain", "default"
 
 Item = BodyDef | ParticleDef
@@ -28,7 +28,7 @@ def colliding_items(level: Level) -> Iterator[tuple[str, Item]]:
 
 
 def group_bits(level: Level) -> dict[str, int]:
-    """The bit of every collision group of a level, by its name, in the order of the file."""
+    """The bits of the collision groups of a level, by name, in the order of the file."""
     named = (item.collision_group for _, item in colliding_items(level) if item.collision_group is not None)
     names = dict.fromkeys([TERRAIN_NAME, DEFAULT_GROUP, *named])
     return {name: TERRAIN_GROUP << number for number, name in enumerate(names)}
@@ -60,9 +60,9 @@ def terrain_of(level: Level) -> Terrain:
 
 
 def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[Any]]:
-    """Radius, friction, restitution, owner, group and collides of every particle (n,), by argument of add_particles.
+    """Radius, friction, restitution, owner, group and collides of every particle (n,), as arguments of add_particles.
 
-    counts: particles of each body. Where the level has no contacts, nothing collides.
+    counts: number of particles of each body. In a level without contacts nothing collides.
     """
     usual, bits = level.contacts or ContactsDef(), group_bits(level)
     sizes = [*counts, *([1] * len(level.particles))]
@@ -94,7 +94,7 @@ def surfaces_of(level: Level, counts: Sequence[int]) -> dict[str, NDArray[Any]]:
 
 
 def surface_of(level: Level) -> Surface:
-    """What a particle that joins the level while it runs is like to the touch: like one that says nothing else."""
+    """The surface of a particle that joins the running level: that of a particle with defaults."""
     if not level.has_contacts:
         return Surface()
     usual = level.contacts or ContactsDef()
@@ -102,21 +102,21 @@ def surface_of(level: Level) -> Surface:
 
 
 def _free_wheels(level: Level, bits: dict[str, int], rows: list[list[Any]]) -> None:
-    """Let wheels pass through what they are mounted on: each is in a group of its own, which its mount does not touch.
+    """Let wheels pass through their mounts: each wheel gets a group of its own, which its mount does not touch.
 
-    rows: as those of `surfaces_of`, group and collides last.
+    rows: as in `surfaces_of`; group and collides are last.
     """
     for number, (wheel, mount) in enumerate(free_wheels(level)):
         named, own = bits[level.bodies[wheel].collision_group or DEFAULT_GROUP], TERRAIN_GROUP << len(bits) + number
         rows[wheel][-2] = own
         for index, row in enumerate(rows):
-            # Who touched the group that it is said to be in touches it still.
+            # Everything that touched its named group still touches it.
             touches = row[-1] | own if row[-1] & named else row[-1] & ~own
             row[-1] = touches & ~own if index in mount else touches
 
 
 def _touched(item: Item, bits: dict[str, int]) -> int:
-    """Bits of the groups that a body or particle touches."""
+    """The bits of the groups that a body or particle touches."""
     if isinstance(item.collides, bool):
         return ALL_GROUPS if item.collides else 0
     touched = 0

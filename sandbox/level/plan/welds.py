@@ -1,4 +1,4 @@
-"""Welds, the rigid joints: which particles are one."""
+"""Welds, the rigid joints: which particles become one."""
 
 from collections.abc import Iterable
 
@@ -9,9 +9,9 @@ Slots = NDArray[np.int64]
 
 
 def united(count: int, pairs: Iterable[tuple[int, int]]) -> Slots:
-    """The first of the particles that each particle is one with (count,), itself where it is welded to none.
+    """The first particle (count,) of the union that each particle belongs to; itself without a weld.
 
-    pairs: slots before welds, all below count. Chains and repetitions are one union.
+    pairs: slots before welds, all below count. A chain of welds is one union.
     """
     parents: dict[int, int] = {}
 

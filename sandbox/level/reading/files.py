@@ -1,4 +1,4 @@
-"""Level files: read with limits first, write so that no level is lost, find what is shipped."""
+"""Level files: reads them within limits, writes them without losing the old one, finds the shipped ones."""
 
 import os
 import stat
@@ -27,13 +27,13 @@ __all__ = [
 
 
 def read_level(path: str | os.PathLike[str]) -> Level:
-    """Read a level file. Raises LevelError with one line per fault, also where the file itself cannot be read."""
+    """Read a level file. Raises LevelError with one line per fault, also if the file cannot be read."""
     source = os.fspath(path)
     return parse_level(read_bytes(source), source)
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
-    """Read the bytes of a level file, of one beyond the limit no more than shows it. Raises LevelError."""
+    """Read the bytes of a level file, at most one more than the limit. Raises LevelError."""
     source = os.fspath(path)
     try:
         if not stat.S_ISREG(os.stat(source).st_mode):
@@ -50,7 +50,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 
 
 def load_level(name: str | os.PathLike[str]) -> Level:
-    """Read a level file, or the shipped level of that bare name (`rope`). Raises LevelError."""
+    """Read a level file, or a shipped level by its name (`rope`). Raises LevelError."""
     text = os.fspath(name)
     if "\0" in text or Path(text).name != text or os.path.isfile(text):
         return read_level(text)
@@ -63,10 +63,10 @@ def load_level(name: str | os.PathLike[str]) -> Level:
 
 
 def write_level(level: Level, path: str | os.PathLike[str], backups: Path | None = None) -> str | None:
-    """Write a level in canonical form, whole or not at all. Raises LevelError where it could not be read back.
+    """Write a level in canonical form, whole or not at all. Raises LevelError if it could not be read back.
 
-    Where the place cannot replace a file in one step, a copy of the old one is kept first (beside it, or in the
-    folder `backups`): the warning that says so, else None.
+    If the folder does not allow to replace a file in one step, a copy of the old file is made first, beside it or in
+    the folder `backups`. Returns a warning that says so, else None.
     """
     source = os.fspath(path)
     check_level(level, source)

@@ -1,4 +1,4 @@
-"""Older versions of the level format, brought to this one in memory by a chain of pure functions."""
+"""Converts older versions of the level format in memory, by a chain of pure functions."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -12,9 +12,9 @@ Migration = Callable[[dict[str, Any]], dict[str, Any]]
 def migrated(
     raw: dict[str, Any], migrations: Mapping[int, Migration] | None = None, version: int = VERSION
 ) -> dict[str, Any]:
-    """A level's JSON in this version of the format; as it is where it is of this version or of none that is known.
+    """The JSON of a level converted to this version of the format; unchanged if its version is this one or unknown.
 
-    Raises ValueError where it is not what its own version allows.
+    Raises ValueError if it is not valid in its own version.
     """
     migrations = MIGRATIONS if migrations is None else migrations
     while type(raw.get("version")) is int and raw["version"] < version and raw["version"] in migrations:
@@ -27,10 +27,10 @@ def migrated(
 
 
 def _springs_keep_their_constant(raw: dict[str, Any]) -> dict[str, Any]:
-    """Version 1 to 2: substeps of the direct solver leave k and c of springs; before, they left the motion of each.
+    """Version 1 to 2: substeps of the direct solver keep k and c of springs; before, they kept the motion of each.
 
-    Cs and Cd of a tick are changed so that those of a substep are what they were. What a firmness decides, and what is
-    as rigid as can be, is as it was.
+    Changes Cs and Cd of a tick so that those of a substep stay the same. Materials at 1, and bodies with a firmness,
+    stay as they are.
     """
     settings = raw.get("settings") or {}
     parts = settings.get("substeps", 1)

@@ -1,7 +1,7 @@
-"""parse_level: from the bytes of a level file to a Level, or to all its faults; cheap on hostile input.
+"""parse_level: makes a Level of the bytes of a file, or lists all of its faults. Hostile input costs little.
 
 Order: size, depth by a scan of the bytes, duplicate keys, sizes of lists, the models on the same bytes, references
-and counts. Each stage trusts what the one before has refused.
+and counts. Each stage relies on the ones before.
 """
 
 import codecs
@@ -100,7 +100,7 @@ def _parse(data: bytes, source: str) -> Level:
 
 
 def _load(data: bytes, source: str) -> Any:
-    """The plain JSON value of the bytes. Raises LevelError for what is no JSON, and for keys that come twice."""
+    """The plain JSON value of the bytes. Raises LevelError for text that is not JSON, and for repeated keys."""
     fault = _not_text(data) or scan(data)
     if fault:
         raise LevelError(source, [fault])
@@ -192,7 +192,7 @@ def _library_faults(error: ValidationError, raw: dict[str, Any]) -> Iterator[Fau
 
 
 def _stricter(text: str) -> Fault:
-    """Syntax that the plain reader lets through: halves of characters in escapes, numbers beyond any range."""
+    """Faults that Python's reader does not see: halves of characters in escapes, numbers beyond any range."""
     match = re.fullmatch(r"(.*) at (line \d+) (column \d+)", text)
     what, where = (match[1], f"{match[2]}, {match[3]}") if match else (text, "")
     if "hex escape" in what or "surrogate" in what:
@@ -201,14 +201,14 @@ def _stricter(text: str) -> Fault:
 
 
 def _piecewise(raw: dict[str, Any]) -> Iterator[Fault]:
-    """Faults of a level that has thousands, found in a piece of every list at a time."""
+    """Faults of a level that has thousands, found piece by piece of every list."""
     longest = max((len(value) for value in raw.values() if isinstance(value, list)), default=0)
     for start in range(0, max(1, longest), _PIECE):
         yield from _piece(raw, start)
 
 
 def _piece(raw: dict[str, Any], start: int) -> list[Fault]:
-    """Faults of the items from start on of every list of the level, and of the level's other parts where start is 0."""
+    """Faults of a piece of every list of the level, from index start on; at start 0 also of all other fields."""
     piece = {
         key: _cut(value[start : start + _PIECE] if isinstance(value, list) else value)
         for key, value in itertools.chain(_known(raw), itertools.islice(_unknown(raw), _PIECE))
@@ -245,7 +245,7 @@ def _moved(error: Any, start: int) -> dict[str, Any] | None:
 
 
 def _is_real(error: dict[str, Any], raw: Any) -> bool:
-    """Whether an error of a piece is one of the whole: a key that seems missing may only have been cut off."""
+    """Whether an error of a piece is an error of the whole level; a missing key may be in another piece."""
     if error["type"] != "missing":
         return True
     parts = place(error["loc"])

@@ -1,4 +1,4 @@
-"""salvage: what is valid of a level that is refused, and a line for each part that is left out."""
+"""salvage: keeps what is valid of a damaged level, with a line for each thing that it leaves out."""
 
 import collections
 import itertools
@@ -22,14 +22,14 @@ from sandbox.level.reading.parse import BODY_LIMITS, LEVEL_LIMITS
 _NAME = "Untitled"
 _HEAD = {"format": FORMAT, "version": VERSION, "name": _NAME}
 _LISTS = ("tags", "terrain", "bodies", "particles", "springs", "welds", "checks")
-# Lists whose items mean nothing to each other, so that one alone can go.
+# Lists whose items are independent, so that a single one can be left out.
 _INDEPENDENT = ("springs", "pinned", "cut", "pin")
-# Items that are looked at together while all of them are valid, which is many times faster.
+# Number of items that are validated together while all are valid, which is many times faster.
 _BATCH = 500
-# Rounds of taking out one part after another; of a level that is not sound then, whole ends of lists go.
+# Rounds of taking out one item after another. If the level is still not sound, whole ends of lists go.
 _ROUNDS = 20
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-# What parts of these lists cannot be without; what a body needs depends on its kind.
+# Required fields of items of these lists; those of a body depend on its kind.
 _REQUIRED = {
     key: frozenset(name for name, field in model.model_fields.items() if field.is_required())
     for key, model in (
@@ -44,10 +44,10 @@ Path = Sequence[Any]
 
 
 def salvage(data: bytes, source: str) -> tuple[Level | None, list[str]]:
-    """As much of a level as is valid, and the lines of what is left out, at most 50; source names it in them.
+    """The valid content of a level, and at most 50 lines about what is left out; source names the level in them.
 
-    A field that is invalid falls to its default, a part that needs it falls with it, and so does what refers to that
-    part. The level is None where the bytes are no JSON, no level, or of a version that is not known.
+    An invalid field gets its default. An item that needs the field is left out, and so is everything that refers to the
+    item. The level is None if the bytes are not JSON, not a level, or of an unknown version.
     """
     faults: list[Fault] = []
     try:
@@ -121,7 +121,7 @@ def _of_this_version(raw: dict[str, Any], faults: list[Fault]) -> dict[str, Any]
 
 
 class _Remains:
-    """The parts of a level that are still there, as plain JSON, and the places that those of lists have in the file."""
+    """The remaining content of a level as plain JSON, and the places of list items in the file."""
 
     def __init__(self, raw: dict[str, Any], faults: list[Fault]) -> None:
         self.faults = faults
@@ -136,7 +136,7 @@ class _Remains:
             self._mended([key], None)
 
     def level(self) -> Level:
-        """The level that is left once nothing refers to what is gone."""
+        """The remaining level, in which nothing refers to what was left out."""
         for attempt in itertools.count():
             level = Level.model_validate_json(json.dumps(self.parts))
             found = list(level_faults(level, Plan(level)))
@@ -146,7 +146,7 @@ class _Remains:
         return level
 
     def _take(self, key: str, value: Any) -> None:
-        """Take the valid part of one field of the level."""
+        """Keep what is valid of one field of the level."""
         limit = LEVEL_LIMITS.get(key)
         if limit is not None and isinstance(value, list | dict) and len(value) > limit:
             self.faults.append((key, f"has {len(value):,} items; the first {limit:,} are taken"))
@@ -174,7 +174,7 @@ class _Remains:
             yield from batch
 
     def _within_limits(self, path: Path, body: Any) -> Any:
-        """A body without lists that no file may hold."""
+        """A body without lists that are longer than any file may have."""
         if not isinstance(body, dict):
             return body
         long = [
@@ -186,15 +186,15 @@ class _Remains:
         return {name: value for name, value in body.items() if name not in long}
 
     def _mended(self, path: Path, value: Any, mended: bool = False) -> Any:
-        """A value of the level, or the item of a list or of the materials, without what is invalid in it, else None.
+        """A value of the level, or an item of a list or of the materials, without its invalid content, else None.
 
-        mended: whether a field has been taken out already.
+        mended: whether a field was taken out already.
         """
         for attempt in itertools.count():
             errors = _errors(_inside(path, value))
             if not errors:
                 break
-            # What is missing once an invalid field is gone has been told already.
+            # A line already names the invalid field that is now missing.
             if len(self.faults) <= FAULT_LIMIT:
                 told = [error for error in errors if error["type"] != "missing" or (attempt == 0 and not mended)]
                 self.faults.extend(_told(path, told))
@@ -205,13 +205,13 @@ class _Remains:
         return value
 
     def _drop(self, level: Level, found: Iterable[Fault], with_rest: bool) -> None:
-        """Take out what faults of the whole level name, also the rest of a list from there on if told so."""
+        """Take out what faults of the whole level name; if asked, also the rest of its list."""
         wrong: dict[tuple[str, int], list[tuple[Path, bool]]] = {}
         for where, text in found:
             key, *rest = where.split(".")
             if key not in self.places:
                 self.faults.append((where, text))
-                # A fault of the whole is one of numbers, of which bodies have told theirs each.
+                # A fault of the whole level is one of counts, which bodies have reported themselves.
                 for name in [key] if key else ["particles", "springs"]:
                     self.parts.pop(name, None)
                     self.places.pop(name, None)
@@ -220,7 +220,7 @@ class _Remains:
             inner = [int(part) if part.isdigit() else part for part in rest[1:]]
             if len(self.faults) <= FAULT_LIMIT:
                 told = json_path([key, self.places[key][index], *inner])
-                # A check whose particle is gone would otherwise be told to need one.
+                # Else a check whose particle was left out would be reported as incomplete.
                 if told not in (place for place, _ in self.faults):
                     self.faults.append((told, text))
             if key == "bodies" and not inner and self._unweld(level.bodies[index].id):
@@ -247,7 +247,7 @@ class _Remains:
 
 
 def _errors(part: dict[str, Any]) -> list[Any]:
-    """What the validation library finds in a level that has this part alone."""
+    """Errors of the validation library in a level with only this value."""
     try:
         Level.model_validate_json(json.dumps({**_HEAD, **part}))
     except ValidationError as error:
@@ -256,7 +256,7 @@ def _errors(part: dict[str, Any]) -> list[Any]:
 
 
 def _inside(path: Path, value: Any) -> dict[str, Any]:
-    """A level's field that holds the value alone."""
+    """A level's field with only this value."""
     if len(path) == 1:
         return {path[0]: value}
     return {path[0]: {path[1]: value} if isinstance(path[1], str) else [value]}
@@ -271,9 +271,9 @@ def _told(path: Path, errors: list[Any]) -> Iterator[Fault]:
 
 
 def _without(value: Any, wrong: Iterable[tuple[Path, bool]], required: frozenset[str]) -> dict[str, Any] | None:
-    """A part without the fields or items of fields at these paths, each missing or wrong; None where it falls.
+    """A value without the fields or items at these paths, each missing or wrong; None if it must be left out.
 
-    required: fields that it cannot be without, as far as they are known.
+    required: fields that it needs, as far as they are known.
     """
     if not isinstance(value, dict):
         return None
