@@ -27,7 +27,7 @@ import pygame
 from sandbox.app.base.display import SCALE_RANGE, Display
 from sandbox.app.base.start_request import StartRequest
 from sandbox.app.edit.edit_screen import EditScreen
-from sandbox.app.edit.side.side import PAGES
+from sandbox.app.edit.side.side import PAGES, UNLISTED
 from sandbox.app.kernels.compiling import warm_up_rest
 from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import SETTINGS
@@ -165,7 +165,7 @@ class Monkey:
     def _turn_page(self) -> None:
         editor = self._editor
         if editor is not None and editor.side is not None:
-            editor.side.choose(self._random.choice(sorted(PAGES)))
+            editor.side.choose(self._random.choice([*sorted(PAGES), *UNLISTED]))
 
     def _select(self) -> None:
         """Select something in the editor: its fields and materials are shown."""
@@ -239,6 +239,16 @@ class Monkey:
         self.frame()
         self.seen[f"begun: {screen}"] += 1
 
+    def meet_parts(self) -> None:
+        """See every ready part and every page of it once, as later stretches do in turn: their pictures are kept."""
+        for part in catalogue():
+            if part.level is not None:
+                self.app.documents.edit_level(part.level)
+                for page in PAGES:
+                    self.app.documents.editor.side.choose(page)
+                    self.frame()
+                self.app.documents.give_up()
+
     def verified(self, path: Path) -> str | None:
         """Record the run on the screen into a file and play it again; what differs, None where nothing does."""
         play = self.app.play
@@ -306,6 +316,8 @@ def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, str
         warm_up(tuple(SOLVERS))
         warm_up_rest()
     monkey = Monkey(seed)
+    if measures:
+        monkey.meet_parts()
     sizes: list[int] = []
     found: list[str] = []
     end = None if seconds is None else time.monotonic() + seconds
