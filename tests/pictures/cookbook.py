@@ -1,7 +1,6 @@
 """Writes docs/cookbook.md: each level of docs/cookbook with its picture, its text and its file."""
 
 import json
-import re
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from sandbox.app.draw.camera import Box
 from sandbox.app.draw.picture import draw_picture, view_of
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import read_level
+from sandbox.level.reference import anchor
 from sandbox.session.held_keys import HeldKeys
 from sandbox.session.session import Session
 from tests.pictures.photographer import DOCS, ROOT
@@ -94,7 +94,7 @@ def page() -> str:
     lines = [OPENING]
     levels = {name: read_level(path_of(name)) for name in RECIPES}
     for title, recipes in SECTIONS.items():
-        links = ", ".join(f"[{levels[name].name}](#{_anchor(levels[name].name)})" for name in recipes)
+        links = ", ".join(f"[{levels[name].name}](#{anchor(levels[name].name)})" for name in recipes)
         lines.append(textwrap.fill(f"- {title}: {links}", 120, subsequent_indent="  ", break_on_hyphens=False))
     for title, recipes in SECTIONS.items():
         lines += ["", f"## {title}"]
@@ -102,10 +102,6 @@ def page() -> str:
             lines += ["", *_entry(name, levels[name])]
     lines += ["", "`make pictures` draws the pictures."]
     return "\n".join(lines) + "\n"
-
-
-def _anchor(title: str) -> str:
-    return re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
 
 
 def _entry(name: str, level: Level) -> list[str]:
