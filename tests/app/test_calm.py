@@ -186,11 +186,11 @@ def test_a_button_that_is_held_keeps_it_awake(driver, monkeypatch):
 def test_an_editor_that_has_said_what_it_found_rests_until_the_level_is_another(edit):
     driver = edit(small_level())
     assert let_calm_come(driver)
-    driver.editor.toggle_forecast()
+    driver.editor.watch.toggle_forecast()
     driver.app.frame(0.1)
     assert not driver.app.calm.has_come
     assert let_calm_come(driver)
-    assert driver.editor.hanging is not None
+    assert driver.editor.watch.hanging is not None
     driver.editor.show((0.0, 0.0))
     driver.app.frame(0.1)
     assert not driver.app.calm.has_come

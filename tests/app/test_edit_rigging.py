@@ -37,8 +37,8 @@ def test_it_begins_at_rest_by_a_key_and_by_the_button_and_undo_takes_it_back(dri
             break
         driver.frames()
     assert driver.editor.document.level.bodies[0].pose[2][1] < 1.9
-    assert driver.editor.history.labels[-1] == "Begin at rest" and not driver.editor.shows_forecast
+    assert driver.editor.history.labels[-1] == "Begin at rest" and not driver.editor.watch.forecasts
     driver.key(pygame.K_z, CTRL)
     assert driver.editor.document.level is before
     driver.click_widget(driver.editor.bar.buttons.by_action["rest"])
-    assert driver.editor.shows_forecast
+    assert driver.editor.watch.forecasts

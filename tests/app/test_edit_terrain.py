@@ -226,5 +226,5 @@ def test_a_finding_is_mended_by_its_button(edit):
     driver.click_widget(page.mend)
     driver.frames(30)
     assert labels(driver) == ["Move it out"]
-    assert not any(finding.remedy for finding in driver.editor.findings)
+    assert not any(finding.remedy for finding in driver.editor.watch.findings)
     assert not page.mend.is_enabled

@@ -87,7 +87,7 @@ def test_a_large_scene_is_drawn_plainly_at_once_and_smoothly_afterwards():
 def test_findings_come_after_a_moment_and_a_place_can_be_shown(edit):
     driver = edit(small_level(settings={"solver": "direct"}))
     driver.frames(60)
-    texts = [finding.text for finding in driver.editor.findings]
+    texts = [finding.text for finding in driver.editor.watch.findings]
     assert texts
     driver.editor.show((40.0, 0.0))
     driver.frames()
@@ -100,13 +100,13 @@ def test_the_forecast_shows_where_a_rope_will_hang_and_changes_nothing(edit):
     driver.key(pygame.K_u)
     for _ in range(3000):
         driver.frames()
-        if driver.editor.hanging is not None:
+        if driver.editor.watch.hanging is not None:
             break
-    hanging = driver.editor.hanging
+    hanging = driver.editor.watch.hanging
     assert hanging[driver.editor.scene.slot("rope.4")] == pytest.approx((0, -4), abs=0.3)
     assert driver.editor.document.level is level
     driver.key(pygame.K_u)
-    assert driver.editor.hanging is None
+    assert driver.editor.watch.hanging is None
 
 
 def test_the_window_can_be_resized_and_the_panel_hidden(driver):

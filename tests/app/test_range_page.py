@@ -71,4 +71,4 @@ def test_a_window_laid_out_anew_still_shows_what_was_tried(driver):
 def test_a_range_that_is_no_number_is_told_in_a_line(driver):
     choose_row(driver, "Mass [kg]")
     driver.fill(driver.editor.side.page.fields["From"], "light")
-    assert "light" in driver.notices[-1] and driver.editor.range_trial is None
+    assert "light" in driver.notices[-1] and driver.editor.watch.range_trial is None

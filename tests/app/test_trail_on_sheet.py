@@ -48,9 +48,9 @@ def test_after_playing_the_way_of_that_run_is_shown_too(driver):
     driver.frames(60)
     trail = driver.editor.watch.last_trail
     assert trail.is_done and len(trail.places) == 1 + ran // 2
-    assert [is_last for _, is_last in driver.editor.trails] == [True, False]
+    assert [is_last for _, is_last in driver.editor.watch.shown_trails] == [True, False]
     driver.app.act("trail")
-    assert driver.editor.trails == []
+    assert driver.editor.watch.shown_trails == []
 
 
 def test_without_a_selection_the_person_is_told_to_select(driver):

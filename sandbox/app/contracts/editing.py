@@ -71,6 +71,39 @@ class PointerTool(Protocol):
         ...
 
 
+class Watching(Protocol):
+    """What is worked out beside the editing: findings, the forecast, trails, and values that are tried."""
+
+    findings: list[Finding]
+    # Whether it is shown where everything will hang, and where things will go.
+    forecasts: bool
+    trails: bool
+    # Values of a number that are tried; None = none are.
+    range_trial: RangeTrial | None
+
+    @property
+    def hanging(self) -> NDArray[np.float64] | None:
+        """Where everything will hang [m]; None while it is not asked for or not known."""
+        ...
+
+    @property
+    def shown_trails(self) -> list[tuple[Trail, bool]]:
+        """The trails that are shown, that of the last run (True) first."""
+        ...
+
+    def toggle_forecast(self) -> None:
+        """Show where everything will hang, or no more."""
+        ...
+
+    def toggle_trail(self) -> None:
+        """Show where what is selected will go, or no more."""
+        ...
+
+    def begin_at_rest(self) -> None:
+        """Let everything begin where it will hang."""
+        ...
+
+
 class Editing(Protocol):
     """A level that is edited; `edit` alone changes it, so that every change can be undone."""
 
@@ -94,6 +127,11 @@ class Editing(Protocol):
     @property
     def show_side(self) -> bool:
         """Whether the panel at the side is shown."""
+        ...
+
+    @property
+    def watch(self) -> Watching:
+        """What is worked out beside the editing."""
         ...
 
     # The document.
@@ -130,16 +168,6 @@ class Editing(Protocol):
     @property
     def scales_apart(self) -> bool:
         """Whether width and height of the selection can be changed each by itself."""
-        ...
-
-    @property
-    def findings(self) -> list[Finding]:
-        """What the linter found."""
-        ...
-
-    @property
-    def hanging(self) -> NDArray[np.float64] | None:
-        """Where everything will hang [m]; None while it is not asked for or not known."""
         ...
 
     def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
@@ -286,42 +314,6 @@ class Editing(Protocol):
         """Show another page of the panel at the side."""
         ...
 
-    @property
-    def shows_forecast(self) -> bool:
-        """Whether it is shown where everything will hang."""
-        ...
-
-    def begin_at_rest(self) -> None:
-        """Let everything begin where it will hang."""
-        ...
-
-    def toggle_forecast(self) -> None:
-        """Show where everything will hang, or no more."""
-        ...
-
-    @property
-    def trails(self) -> list[tuple[Trail, bool]]:
-        """The trails that are shown, that of the last run (True) first."""
-        ...
-
-    @property
-    def range_trial(self) -> RangeTrial | None:
-        """The values of a number that are tried."""
-        ...
-
-    def try_range(self, trial: RangeTrial | None) -> None:
-        """Try values of a number; None = no longer."""
-        ...
-
     def show_attempt(self, index: int | None) -> None:
         """Draw the way of one of the values that are tried in full colour."""
-        ...
-
-    @property
-    def shows_trail(self) -> bool:
-        """Whether it is shown where things will go."""
-        ...
-
-    def toggle_trail(self) -> None:
-        """Show where what is selected will go, or no more."""
         ...

@@ -161,8 +161,8 @@ class Bar:
             show(action, bool(screen.document.selection))
         show("save", not history.is_saved or screen.level_file.path is None)
         show("snap", on=screen.snapping)
-        show("forecast", on=screen.shows_forecast)
-        show("trail", on=screen.shows_trail)
+        show("forecast", on=screen.watch.forecasts)
+        show("trail", on=screen.watch.trails)
         show("panel", on=screen.show_side)
         name = screen.document.level.name + ("" if history.is_saved else " *")
         if self.title is not None:

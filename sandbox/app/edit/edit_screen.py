@@ -6,9 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pygame
-from numpy.typing import NDArray
 
 from sandbox.app.base.profile import Profile
 from sandbox.app.base.sentences import sentence
@@ -40,15 +38,12 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import can_scale_unevenly, move
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
-from sandbox.editor.lint.finding import Finding
 from sandbox.editor.panel.field_info import Pick
-from sandbox.editor.range_trial import RangeTrial
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.selecting import LASSO
 from sandbox.editor.tools.snap import Snap, snap
-from sandbox.editor.trail import Trail
 from sandbox.editor.visibility import Visibility
 
 # Sizes in layout units.
@@ -185,57 +180,9 @@ class EditScreen:
 
     # What the panels ask.
 
-    @property
-    def findings(self) -> list[Finding]:
-        """What the linter found."""
-        return self.watch.findings
-
-    @property
-    def hanging(self) -> NDArray[np.float64] | None:
-        """Where everything will hang [m]; None while it is not asked for or not known."""
-        return self.watch.hanging
-
-    @property
-    def shows_forecast(self) -> bool:
-        """Whether it is shown where everything will hang."""
-        return self.watch.forecasts
-
-    def begin_at_rest(self) -> None:
-        """Let everything begin where it will hang."""
-        self.watch.begin_at_rest()
-
-    def toggle_forecast(self) -> None:
-        """Show where everything will hang, or no more."""
-        self.watch.toggle_forecast()
-
-    @property
-    def trails(self) -> list[tuple[Trail, bool]]:
-        """The trails that are shown, that of the last run (True) first."""
-        shown = ((self.watch.last_trail, True), (self.watch.trail, False))
-        return [(trail, is_last) for trail, is_last in shown if trail is not None and self.watch.trails]
-
-    @property
-    def range_trial(self) -> RangeTrial | None:
-        """The values of a number that are tried."""
-        return self.watch.range_trial
-
-    def try_range(self, trial: RangeTrial | None) -> None:
-        """Try values of a number; None = no longer."""
-        self.watch.range_trial = trial
-        self.view.chosen_attempt = None
-
     def show_attempt(self, index: int | None) -> None:
         """Draw the way of one of the values that are tried in full colour."""
         self.view.chosen_attempt = index
-
-    @property
-    def shows_trail(self) -> bool:
-        """Whether it is shown where things will go."""
-        return self.watch.trails
-
-    def toggle_trail(self) -> None:
-        """Show where what is selected will go, or no more."""
-        self.watch.toggle_trail()
 
     def show(self, place: Point) -> None:
         """Bring a place [m] into view, and mark it for a moment."""
@@ -550,8 +497,8 @@ class EditScreen:
             (TOOLS[self.tool].title, ACCENT),
             (self.pointer_tool.hint, TEXT),
         ]
-        errors = sum(finding.severity == "error" for finding in self.findings)
-        warnings = sum(finding.severity == "warning" for finding in self.findings)
+        errors = sum(finding.severity == "error" for finding in self.watch.findings)
+        warnings = sum(finding.severity == "warning" for finding in self.watch.findings)
         if errors:
             parts.append((f"{errors} {'error' if errors == 1 else 'errors'}", DANGER))
         if warnings:

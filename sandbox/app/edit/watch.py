@@ -87,6 +87,12 @@ class Watch:
         if self.trails and not self._screen.document.selection:
             self._screen.say("Select something to see where it will go.")
 
+    @property
+    def shown_trails(self) -> list[tuple[Trail, bool]]:
+        """The trails that are shown, that of the last run (True) first."""
+        shown = ((self.last_trail, True), (self.trail, False))
+        return [(trail, is_last) for trail, is_last in shown if trail is not None and self.trails]
+
     def remember(self, run: Session) -> None:
         """Show where things went in a run of the level, beside where they will go."""
         if self.trails:

@@ -61,10 +61,10 @@ class View:
         self._draw_scene(surface)
         self._draw_forecast(surface)
         screen = self._screen
-        if screen.range_trial is None:
-            draw_trails(surface, screen.ui, screen.camera, screen.trails, screen.document.selection)
+        if screen.watch.range_trial is None:
+            draw_trails(surface, screen.ui, screen.camera, screen.watch.shown_trails, screen.document.selection)
         else:
-            draw_attempts(surface, screen.ui, screen.camera, screen.range_trial, self.chosen_attempt)
+            draw_attempts(surface, screen.ui, screen.camera, screen.watch.range_trial, self.chosen_attempt)
         self._draw_ghost(surface)
         self._draw_marks(surface)
 
@@ -83,7 +83,7 @@ class View:
         self._marks.draw(surface, screen.camera, scene, chosen)
 
     def _draw_forecast(self, surface: pygame.Surface) -> None:
-        scene, position = self._screen.scene, self._screen.hanging
+        scene, position = self._screen.scene, self._screen.watch.hanging
         if position is None:
             return
         if self._hanging is None or self._hanging[0] is not scene or self._hanging[1] is not position:

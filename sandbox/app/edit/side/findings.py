@@ -34,7 +34,7 @@ class FindingsPage:
 
     def refresh(self) -> None:
         """Show what has been found by now."""
-        found = self._screen.findings
+        found = self._screen.watch.findings
         if found is self._shown:
             return
         self._shown = found

@@ -36,7 +36,7 @@ class RangePage:
         self._number: Number | None = None
         self._chosen: int | None = None
         self._shown: object = None
-        trial = screen.range_trial
+        trial = screen.watch.range_trial
         if trial is None:
             self._offer()
         else:
@@ -110,10 +110,11 @@ class RangePage:
             screen.say(sentence(error))
             return
         self._chosen = None
-        screen.try_range(RangeTrial(screen.document, now, values))
+        screen.watch.range_trial = RangeTrial(screen.document, now, values)
+        screen.show_attempt(None)
 
     def _again(self) -> None:
-        self._screen.try_range(None)
+        self._screen.watch.range_trial = None
         self._number = None
         self._offer()
 
@@ -123,7 +124,7 @@ class RangePage:
         self._screen.show_attempt(index)
 
     def _take(self) -> None:
-        trial, screen = self._screen.range_trial, self._screen
+        trial, screen = self._screen.watch.range_trial, self._screen
         if trial is None or self._chosen is None:
             screen.say("Choose a value above first.")
             return
@@ -145,7 +146,7 @@ class RangePage:
                 rows = [Row(number.title, aside=number_text(number.value)) for number in self._numbers]
                 self.list.show_rows(rows, None)
             return
-        trial = self._screen.range_trial
+        trial = self._screen.watch.range_trial
         done = None if trial is None else (trial, trial.done, self._chosen)
         if done != self._shown or done is None:
             self._shown = done

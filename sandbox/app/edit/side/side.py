@@ -85,7 +85,7 @@ class Side:
         if tab != self.tab:
             if self.tab in UNLISTED:
                 # What it shows on the sheet goes with it.
-                self._screen.try_range(None)
+                self._screen.watch.range_trial = None
             self.page.close()
             self.tab = tab
             self.page = self._made()
@@ -126,7 +126,7 @@ class Side:
         return isinstance(self.page, CataloguePage) and self.page.moves
 
     def _count_findings(self) -> None:
-        count = len(self._screen.findings)
+        count = len(self._screen.watch.findings)
         button = self._tab_button("findings")
         text = f"Findings {count}" if count else "Findings"
         if button.text != text:
