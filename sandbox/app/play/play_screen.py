@@ -47,7 +47,6 @@ from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.joints.readings import motor_readings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.session.commands import Free
 from sandbox.tools.drag import STRENGTHS
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.play_tools import PLAY_TOOLS
@@ -381,13 +380,8 @@ class PlayScreen:
 
     def _free(self) -> None:
         """Free what is stuck, all in one gesture."""
-        if not self.stuck.particles:
+        if not self.stuck.free(self.playback):
             self._app.say("Nothing is stuck.")
-            return
-        gesture = self.playback.session.new_gesture()
-        for particle in self.stuck.particles:
-            self.playback.submit(Free(particle), gesture)
-        self.stuck = StuckBodies()
 
     def _reset(self) -> None:
         self.leave()

@@ -5,11 +5,13 @@ import pygame
 
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import WARNING
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.changing.freeing import overlapping
 from sandbox.physics.components import body_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World
+from sandbox.session.commands import Free
 
 # What overlaps for so long is stuck [s]; what parts takes less than two. For so long it may be apart in between.
 STUCK_SECONDS = 4.0
@@ -28,7 +30,7 @@ class StuckBodies:
         self.particles: list[int] = []
 
     def update(self, world: World) -> None:
-        """Look at a world after its ticks; one that went back in time, or has lost particles, is looked at anew."""
+        """Look at a world after its ticks; one that went back in time, or has lost particles, is looked at from the start."""
         if world.tick < self._tick or world.particle_count < self._count:
             self._since.clear()
             self.particles = []
@@ -47,6 +49,15 @@ class StuckBodies:
         stuck = [pair for pair, (first, last) in self._since.items() if last - first >= STUCK_SECONDS * rate]
         chosen = [_to_be_moved(world, pair) for pair in stuck]
         self.particles = sorted({particle for particle in chosen if particle >= 0})
+
+    def free(self, playback: Playback) -> bool:
+        """Free what is stuck, all in one gesture; whether anything was."""
+        gesture, found = playback.session.new_gesture(), self.particles
+        for particle in found:
+            playback.submit(Free(particle), gesture)
+        self._since.clear()
+        self.particles = []
+        return bool(found)
 
     def draw(self, surface: pygame.Surface, ui: Ui, camera: Camera, current: Snapshot) -> None:
         """Draw a ring round each body that is stuck."""
