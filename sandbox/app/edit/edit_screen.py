@@ -525,6 +525,7 @@ class EditScreen:
         """Give up what is under way, and let go of pictures as large as some windows; the document stays as it is."""
         self.settle()
         self._close_side()
+        self.watch.let_go()
         self.view = View(self)
 
     def settle(self) -> None:

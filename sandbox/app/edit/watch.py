@@ -93,6 +93,10 @@ class Watch:
         shown = ((self.last_trail, True), (self.trail, False))
         return [(trail, is_last) for trail, is_last in shown if trail is not None and self.trails]
 
+    def let_go(self) -> None:
+        """Keep nothing that can be worked out again, while another screen is shown."""
+        self.trail = self.last_trail = self.range_trial = self.forecast = self._lint = self._level = None
+
     def remember(self, run: Session) -> None:
         """Show where things went in a run of the level, beside where they will go."""
         if self.trails:

@@ -30,7 +30,7 @@ class StuckBodies:
         self.particles: list[int] = []
 
     def update(self, world: World) -> None:
-        """Look at a world after its ticks; one that went back in time, or has lost particles, is looked at from the start."""
+        """Look at a world after its ticks; one that went back in time, or has lost particles, is looked at afresh."""
         if world.tick < self._tick or world.particle_count < self._count:
             self._since.clear()
             self.particles = []
