@@ -1,9 +1,12 @@
 """Machines that a person builds by mouse from an empty sheet, and what they do when they play."""
 
+import numpy as np
 import pygame
 import pytest
 
-from tests.support.machines import build_car, build_walker
+from sandbox.editor.edits.parts import place_part
+from sandbox.editor.storage.part_files import catalogue
+from tests.support.machines import build_car, build_chain, build_walker, check_car
 
 
 def play(driver):
@@ -53,3 +56,66 @@ def test_a_jelly_built_by_mouse_walks_on_three_feet(edit):
     assert place(driver, "jelly.6")[0] > start + 1.5
     # On its feet, not on its side.
     assert place(driver, "jelly.32")[1] > place(driver, "jelly.6")[1] > place(driver, "particle")[1] + 0.5
+
+
+def checked(driver):
+    """Run the checks by their button; the last row of the list."""
+    page = driver.editor.side.page
+    driver.click_widget(page.buttons[2])
+    page.trial.wait()
+    driver.frames(2)
+    return page.list.rows[-1].detail
+
+
+def test_the_car_has_a_check_that_holds_because_it_holds_the_key(edit):
+    driver = edit()
+    build_car(driver)
+    check_car(driver)
+    assert checked(driver).startswith("holds"), checked(driver)
+    driver.editor.side.page.form._press_key("hold.0.key", None)
+    driver.frames(2)
+    assert checked(driver).startswith("fails")
+
+
+def test_a_chain_of_a_ball_dominoes_and_a_ball_ends_in_the_basket(edit):
+    driver = edit()
+    driver.app.display.window.size = (1280, 720)
+    driver.frames(2)
+    build_chain(driver)
+    level = driver.editor.document.level
+    assert [body.position[0] for body in level.bodies] == pytest.approx([-1.875, -1.175, -0.475, 0.225])
+    assert checked(driver).startswith("holds"), checked(driver)
+    play(driver)
+    driver.frames(300)
+    x, y = place(driver, "particle 2")
+    assert 1.2 < x < 4.5 and y < -1.5
+
+
+@pytest.mark.parametrize("deed", ["move", "turn", "copy"])
+def test_a_ready_car_is_moved_turned_and_copied_whole(edit, deed):
+    driver = edit()
+    part = next(part for part in catalogue() if part.path.stem == "car")
+    driver.editor.edit("Put", lambda document: place_part(document, part.level, (0.0, 0.0)))
+    driver.editor.select(frozenset())
+    driver.app.act("fit")
+    driver.frames(2)
+    before = driver.editor.scene
+    lengths = before.rest_length.copy()
+    hub = before.position[before.slot("car.0")]
+    if deed == "turn":
+        driver.click_at(*hub)
+        handles = driver.editor.pointer_tool.handles()
+        x, y = driver.editor.camera.to_world(handles.knob)
+        driver.drag((x, y), (x + 0.3, y), (x + 0.6, y - 0.05))
+    else:
+        if deed == "copy":
+            driver.click_at(*hub)
+        driver.drag(hub, hub + 1.0, np.add(hub, (3.0, 1.0)), mods=pygame.KMOD_CTRL if deed == "copy" else 0)
+    after = driver.editor.scene
+    apart = np.linalg.norm(after.position[after.particle_a] - after.position[after.particle_b], axis=1)
+    count = 2 if deed == "copy" else 1
+    assert len(after.rest_length) == count * len(lengths)
+    # Nothing is torn: each spring has the length that it had.
+    was = np.linalg.norm(before.position[before.particle_a] - before.position[before.particle_b], axis=1)
+    assert np.allclose(np.sort(apart), np.sort(np.tile(was, count)), atol=1e-9)
+    assert not np.allclose(after.position[-1], before.position[-1])

@@ -11,7 +11,7 @@ from sandbox.session.sweep.grid import SweepGrid
 from sandbox.session.sweep.pool import swept
 from sandbox.terminal import cores
 from tests.pictures.photographer import DOCS, ROOT, Photographer, write_small
-from tests.support.machines import build_car, build_walker
+from tests.support.machines import build_car, build_chain, build_walker
 
 FOLDER, BUILT = DOCS / "how-to", DOCS / "built-by-mouse"
 # What is drawn on a sheet: corners of solid ground, and tools, each from where to where it is dragged [m].
@@ -85,8 +85,11 @@ def build() -> None:
 
 
 def machines() -> None:
-    """What a maker of machines does: a car that crosses a bridge, and a jelly that walks."""
-    for name, make, key, ticks in (("car", build_car, pygame.K_d, 105), ("walker", build_walker, None, 200)):
+    """What a maker of machines does: a car that crosses a bridge, a jelly that walks, and a chain."""
+    built = (
+        ("car", build_car, pygame.K_d, 105), ("walker", build_walker, None, 200), ("chain", build_chain, None, 160),
+    )  # fmt: skip
+    for name, make, key, ticks in built:
         driver = Photographer(load_level("rope"))
         driver.app._describe("")
         driver.app.documents.new()

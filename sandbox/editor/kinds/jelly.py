@@ -87,7 +87,9 @@ class JellyDrawing(BodyDrawing[JellyOptions]):
 
 
 class BoxDrawing(JellyDrawing):
-    """A box of jelly."""
+    """A box of jelly; its corner goes to the grid at any angle."""
+
+    anchor = None
 
     start_hint = "Drag from corner to corner, or click both"
     end_hint = "Click or release at the opposite corner; + and - change the number of cells"

@@ -78,8 +78,9 @@ class TerrainLineDrawing(GroundDrawing):
 
 
 class WallsDrawing(Drawing[SurfaceOptions]):
-    """Four walls around a box, in place of those that the level has."""
+    """Four walls around a box, in place of those that the level has; corners go to the grid at any angle."""
 
+    anchor = None
     defaults = SurfaceOptions()
     start_hint = "Drag from corner to corner of the room, or click both; the page Level removes walls"
     end_hint = "Click or release at the opposite corner"
