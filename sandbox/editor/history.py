@@ -4,12 +4,14 @@ from typing import NamedTuple
 
 from sandbox.editor.document import Document, select
 from sandbox.editor.items import Selection
+from sandbox.editor.objects import called_together
 
 
 class _Step(NamedTuple):
     label: str
     document: Document
     merge: str | None
+    subject: str = ""
 
 
 class History:
@@ -34,6 +36,11 @@ class History:
         return [step.label for step in self._steps]
 
     @property
+    def subjects(self) -> list[str]:
+        """What each step was made to, in a few words; "" where nothing was selected after it."""
+        return [step.subject for step in self._steps]
+
+    @property
     def can_undo(self) -> bool:
         """Whether there is a step to take back."""
         return self.index > 0
@@ -54,14 +61,14 @@ class History:
             return
         del self._steps[self.index + 1 :]
         if merge is not None and merge == present.merge:
-            self._steps[self.index] = _Step(label, document, merge)
+            self._steps[self.index] = _Step(label, document, merge, called_together(document))
             return
         self.end_merge()
-        self._steps.append(_Step(label, document, merge))
+        self._steps.append(_Step(label, document, merge, called_together(document)))
         self.index += 1
 
     def end_merge(self) -> None:
-        """Let the next step begin anew, whatever its key, as when a drag has ended."""
+        """Let the next step be a step of its own, as when a drag has ended."""
         self._steps[self.index] = self._steps[self.index]._replace(merge=None)
 
     def select(self, selection: Selection) -> None:

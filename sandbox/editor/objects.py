@@ -2,9 +2,13 @@
 
 from typing import NamedTuple
 
-from sandbox.editor.items import Definition, Item, Selection, definitions, items_of
+from sandbox.editor.document import Document
+from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, definitions, items_of
 from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
 from sandbox.level.kinds.body_def import BodyDef
+
+# Of more things than these nobody asks whether they are one group.
+MOST_NAMED = 1_000
 
 
 class ObjectLine(NamedTuple):
@@ -56,6 +60,18 @@ def name_of(level: Level, item: Item) -> str:
         return str(item.key)
     spring = level.springs[int(item.key)]
     return spring.name or f"{spring.a} to {spring.b}"
+
+
+def called_together(document: Document) -> str:
+    """What is selected, in a few words: a name, that of their group, or how many things; "" = none."""
+    level, selection = document.level, document.selection
+    if len(selection) > MOST_NAMED or not selection:
+        return f"{len(selection):,} things" if selection else ""
+    if len(selection) == 1:
+        return name_of(level, next(iter(selection)))
+    groups = {part.group for part in chosen_definitions(level, selection)}
+    group = groups.pop() if len(groups) == 1 else None
+    return group if group is not None else f"{len(selection)} things"
 
 
 def _kind(part: Definition) -> str:

@@ -676,3 +676,16 @@ def test_names_without_a_width_can_be_opened_shown_and_typed_over(edit, tmp_path
     driver.frames(3)
     assert [card.name for card in driver.app.gallery.cards] == [name]
     assert driver.app.title() == "My levels - Spring Sandbox"
+
+
+def test_the_history_says_what_each_step_was_made_to(driver):
+    choose(driver, ROPE)
+    driver.fill(entry(driver, "segments"), "5")
+    choose(driver, ROPE, Item("body", "pair"))
+    driver.fill(entry(driver, "segments"), "6")
+    choose(driver)
+    driver.fill(entry(driver, "name"), "Other")
+    page = open_tab(driver, "history")
+    assert [(row.text, row.aside) for row in page.list.rows[1:]] == [
+        ("Segments", "rope"), ("Segments", "2 things"), ("Name", ""),
+    ]  # fmt: skip

@@ -156,8 +156,13 @@ def _lay_turf(marks: MarkList, corners: Floats, theme: Theme, scale: float) -> N
     metres = np.cumsum(length)
     # With what is solid on the right as seen, what faces up runs to the left.
     chosen = -along[:, 0] / length > TURF_FROM
-    ends = np.concatenate([corners, after], axis=1)[chosen] + TURF_SINK * scale * np.array([0.0, 1.0, 0.0, 1.0])
-    period = (np.column_stack([metres - length, metres]) / (TURF_PERIOD * scale))[chosen]
+    # A stroke is round at its ends: at a cliff it ends before the edge, else it would stand in the air.
+    inset = np.minimum(TURF_HALF * scale, 0.45 * length)
+    before, beyond = inset * ~np.roll(chosen, 1), inset * ~np.roll(chosen, -1)
+    way = along / length[:, None]
+    ends = np.concatenate([corners + before[:, None] * way, after - beyond[:, None] * way], axis=1)[chosen]
+    ends = ends + TURF_SINK * scale * np.array([0.0, 1.0, 0.0, 1.0])
+    period = (np.column_stack([metres - length + before, metres - beyond]) / (TURF_PERIOD * scale))[chosen]
     sod = tuple(round(0.45 * a + 0.55 * b) for a, b in zip(*theme.turf, strict=True))
     marks.strokes(ends + scale * np.array([0.0, 1.0, 0.0, 1.0]), 3.2 * scale, _packed(sod))
     marks.strips(ends, TURF_HALF * scale, TILE["turf"], period)

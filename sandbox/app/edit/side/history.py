@@ -26,8 +26,8 @@ class HistoryPage:
             return
         self._shown = history.document
         rows = [
-            Row(label or "Edit", colour=TEXT if index <= history.index else DISABLED)
-            for index, label in enumerate(history.labels)
+            Row(label or "Edit", colour=TEXT if index <= history.index else DISABLED, aside=subject)
+            for index, (label, subject) in enumerate(zip(history.labels, history.subjects, strict=True))
         ]
         self.list.show_rows(rows, history.index, reveal=True)
 
