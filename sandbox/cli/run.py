@@ -80,7 +80,7 @@ def _keep_apart(options: argparse.Namespace) -> None:
 
 def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
     from sandbox.level.format.level_error import LevelError
-    from sandbox.session.replay.again import with_settings
+    from sandbox.session.replay.rerecord import with_settings
 
     given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}
     if not given:

@@ -9,7 +9,7 @@ from typing import Any
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import set_material
 from sandbox.editor.items import chosen_bodies, chosen_springs
-from sandbox.editor.panel.field_info import abouts
+from sandbox.editor.panel.field_info import fields_of
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
@@ -124,7 +124,7 @@ def _of_material(name: str, material: Material) -> list[Property]:
         Property(
             field, replace(about, title=f"{about.title} of {name}"), getattr(material, field), partial(write, field)
         )
-        for field, about in abouts(type(material)).items()
+        for field, about in fields_of(type(material)).items()
     ]
 
 

@@ -20,7 +20,7 @@ from sandbox.session.log import Branch, LogEntry
 from sandbox.session.replay.format import STATE_TICKS
 from sandbox.session.replay.writer import Recorder
 from sandbox.session.run_history import RunHistory
-from sandbox.session.whole import Interrupted, whole
+from sandbox.session.transaction import Interrupted, all_or_nothing
 
 # Ticks between two calls of `progress` while re-stepping: few, as a tick of a full world takes a tenth of a second.
 PROGRESS_TICKS = 4
@@ -149,7 +149,7 @@ class Session:
             raise ValueError(f"tick {tick} is outside {self.history.keyframes.first.tick}..{self.history.last_tick}")
         if self._recorder is not None:
             raise ValueError("stop the recording before going back in time")
-        with self._whole(changes_history=False):
+        with self._all_or_nothing(changes_history=False):
             self._rewind(tick, sought=True)
 
     def kept_before(self, tick: int) -> int:
@@ -310,10 +310,10 @@ class Session:
             return
         tick = self.tick
         if isinstance(command, Undo):
-            with self._whole():
+            with self._all_or_nothing():
                 self._undo()
         elif isinstance(command, Redo):
-            with self._whole():
+            with self._all_or_nothing():
                 self._redo()
         else:
             if gesture not in self.history.entries and not self.history.reached.has(tick):
@@ -326,12 +326,12 @@ class Session:
         if self._recorder is not None:
             self._record(self._recorder.write_command, tick, gesture, to_record(command, self.world))
 
-    def _whole(self, changes_history: bool = True) -> AbstractContextManager[None]:
+    def _all_or_nothing(self, changes_history: bool = True) -> AbstractContextManager[None]:
         """Do something whole, or where `progress` gives it up not at all."""
         if self.progress is None:
             # Nothing gives it up; a copy of a long history takes milliseconds.
             return nullcontext()
-        return whole(self._checkpoint(changes_history))
+        return all_or_nothing(self._checkpoint(changes_history))
 
     def _checkpoint(self, with_history: bool) -> Callable[[], None]:
         """What brings the present state back, and the history as it is now."""
@@ -432,7 +432,7 @@ class Session:
             raise ValueError("stop the recording before going back in time")
         if branch not in self.history.branches:
             raise ValueError("that branch is gone: only the last ones are kept")
-        with self._whole():
+        with self._all_or_nothing():
             self._rewind(self.history.return_to(branch))
 
     def _step(self, order: int) -> None:

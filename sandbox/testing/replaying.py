@@ -9,9 +9,9 @@ import pytest
 
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import LevelError, load_level
-from sandbox.session.replay.again import record_again, with_settings
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.rerecord import record_again, with_settings
 from sandbox.session.replay.verify import Comparison, compare
 from sandbox.testing.failed import Failed
 

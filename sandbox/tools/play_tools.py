@@ -1,11 +1,11 @@
 """The tools in play, in the order of the strip and of the help page."""
 
-from sandbox.tools.blowing import PUSH, WIND
 from sandbox.tools.cut import CUT
+from sandbox.tools.delete_freeze import DELETE, FREEZE
 from sandbox.tools.drag import DRAG
 from sandbox.tools.dropping import DROPS
 from sandbox.tools.pin import PIN
-from sandbox.tools.taking import DELETE, FREEZE
+from sandbox.tools.push_wind import PUSH, WIND
 
 _ALL = (DRAG, PIN, CUT, *DROPS, PUSH, WIND, DELETE, FREEZE)
 PLAY_TOOLS = {tool.name: tool for tool in _ALL}

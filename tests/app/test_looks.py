@@ -16,8 +16,8 @@ from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.themes import THEMES
 from sandbox.app.draw.things.balls import Balls
 from sandbox.app.draw.things.borders import chains_of, hull_of, sides_of, traced
-from sandbox.app.draw.things.cast import cast_of
-from sandbox.app.draw.things.ensemble import Ensemble
+from sandbox.app.draw.things.drawables import Drawables
+from sandbox.app.draw.things.level_slots import level_slots_of
 from sandbox.level.format.look import LINES, PALETTE, SKINS
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.level.reading.parse import parse_level
@@ -40,9 +40,9 @@ def looks(materials=None, **body):
     return body_looks(level)[0]
 
 
-def ensemble_of(session):
+def drawables_of(session):
     snapshot = session.snapshot()
-    return Ensemble(cast_of(session.level), snapshot, shown_particles(snapshot), shown_springs(snapshot))
+    return Drawables(level_slots_of(session.level), snapshot, shown_particles(snapshot), shown_springs(snapshot))
 
 
 def pixels_of(surface):
@@ -133,37 +133,37 @@ def test_chains_run_through_particles_of_two_springs_and_end_where_three_meet():
 
 def test_a_torn_jelly_has_another_border_and_a_jelly_torn_to_threads_none():
     session = Session(small_level(bodies=[jelly("it")], materials={}))
-    (before,) = ensemble_of(session).soft.shapes
+    (before,) = drawables_of(session).soft.shapes
     middle = session.world.position.mean(axis=0)
     ends = session.world.position[session.world.particle_a], session.world.position[session.world.particle_b]
     crossing = (ends[0][:, 1] - middle[1] - 0.05) * (ends[1][:, 1] - middle[1] - 0.05) < 0.0
     session.world.cut(np.flatnonzero(crossing & session.world.spring_active).tolist())
-    (halves,) = ensemble_of(session).soft.shapes
+    (halves,) = drawables_of(session).soft.shapes
     assert (len(before.loops), len(halves.loops)) == (1, 2)
     session.world.cut(range(len(session.world.spring_active) - 10))
-    assert ensemble_of(session).soft.shapes == []
+    assert drawables_of(session).soft.shapes == []
 
 
 def test_a_wheel_whose_ring_is_cut_is_drawn_as_its_bars():
     wheel = {"type": "wheel", "id": "w", "radius": 1, "thickness": 0.25, "segments": 8}
     session = Session(small_level(bodies=[wheel], materials={}))
-    whole = ensemble_of(session)
+    whole = drawables_of(session)
     assert len(whole.wheels) == 1 and whole.members.count == 0
     session.world.cut([10])
-    torn = ensemble_of(session)
+    torn = drawables_of(session)
     assert len(torn.wheels) == 0 and torn.members.count == int(shown_springs(session.snapshot()).sum())
 
 
 def test_particles_and_springs_that_join_a_run_are_drawn_and_pins_are_no_balls():
     session = Session(small_level())
     world = session.world
-    count = len(ensemble_of(session).balls.slots)
+    count = len(drawables_of(session).balls.slots)
     world.add_particles(["+1", "+2"], np.array([[0.0, 1.0], [1.0, 1.0]]), radius=0.2)
     world.add_springs(["+s"], [len(world.mass) - 2], [len(world.mass) - 1])
-    after = ensemble_of(session)
+    after = drawables_of(session)
     assert len(after.balls.slots) == count + 2 and after.members.count >= 1
     snapshot = session.snapshot()
-    balls = Balls(cast_of(session.level), snapshot, np.zeros(0, dtype=np.int64))
+    balls = Balls(level_slots_of(session.level), snapshot, np.zeros(0, dtype=np.int64))
     assert (snapshot.inverse_mass[balls.pins] == 0.0).all() and len(balls.pins)
 
 

@@ -12,8 +12,8 @@ from sandbox.app.settings.chosen import Chosen
 from sandbox.app.sound import waves
 from sandbox.app.sound.bank import MAKERS, Bank, Note
 from sandbox.app.sound.device import Device, may_have_sound
-from sandbox.app.sound.ear import Ear
 from sandbox.app.sound.mixdown import Mixdown
+from sandbox.app.sound.sound_events import SoundEvents
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.sound.voices import SPARE, VOICES, Cue, Voices
 from sandbox.level.reading.files import load_level
@@ -70,7 +70,7 @@ def test_waves_sound_at_their_pitch():
 
 def hear(level, ticks, act=lambda session: None):
     """What is heard of a level, tick by tick, and the run's hashes."""
-    session, ear, heard, hashes = Session(level), Ear(), [], []
+    session, ear, heard, hashes = Session(level), SoundEvents(), [], []
     for _ in range(ticks):
         act(session)
         session.advance()
@@ -111,7 +111,7 @@ def test_what_is_cut_snaps_and_what_is_taken_out_does_not():
 
 
 def test_motors_are_heard_while_they_are_driven():
-    session, ear = Session(load_level("suspension_car")), Ear()
+    session, ear = Session(load_level("suspension_car")), SoundEvents()
     for _ in range(5):
         session.advance()
     assert ear.motors(session.world) == []

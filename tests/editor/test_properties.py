@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item, definitions, items_of
 from sandbox.editor.panel.check_form import add_check, check_properties, delete_check
-from sandbox.editor.panel.field_info import abouts
+from sandbox.editor.panel.field_info import fields_of
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
@@ -111,16 +111,16 @@ def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
 
 
 def test_units_limits_and_tooltips_come_from_the_schema():
-    about = abouts(KINDS["rope"])["particle_mass"]
+    about = fields_of(KINDS["rope"])["particle_mass"]
     assert (about.unit, about.low, about.high, about.above) == ("kg", 1e-9, 1e9, False)
     assert about.tooltip == "Mass of each particle. 1e-09 to 1e+09 kg."
-    assert abouts(KINDS["wheel"])["radius"].above
-    assert abouts(SpringDef)["rest_length"].optional and not abouts(ParticleDef)["mass"].optional
+    assert fields_of(KINDS["wheel"])["radius"].above
+    assert fields_of(SpringDef)["rest_length"].optional and not fields_of(ParticleDef)["mass"].optional
 
 
 def test_an_empty_field_says_what_null_means_as_its_model_declares_it():
     words = {"rest_length": "as placed", "end_mass": "as the others", "friction": "the level's", "group": "none"}
-    rope = abouts(KINDS["rope"])
+    rope = fields_of(KINDS["rope"])
     assert {name: rope[name].empty for name in words} == words
     assert rope["end_mass"].tooltip == "Mass of the last particle. Empty: as the others. 1e-09 to 1e+09 kg."
     assert {name for name, about in rope.items() if about.empty} == {name for name in rope if rope[name].optional}
@@ -347,7 +347,7 @@ def test_a_number_is_counted_up_and_down_within_its_limits(level):
     assert [wheel["radius"].stepped(by) for by in (1, -1)] == [2.1, 1.9]
     assert wheel["gravity_scale"].stepped(-10) == 0.0
     assert wheel["hub_mass"].stepped(1) is None and wheel["id"].stepped(1) is None
-    assert Property("x", abouts(KINDS["wheel"])["radius"], 0.001).stepped(-1) == 0.001
+    assert Property("x", fields_of(KINDS["wheel"])["radius"], 0.001).stepped(-1) == 0.001
 
 
 def test_settings_are_set_with_the_formats_types(level):

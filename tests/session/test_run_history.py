@@ -8,7 +8,7 @@ from sandbox.level.reading.files import load_level
 from sandbox.session.commands import Pin, Unpin
 from sandbox.session.run_history import RunHistory
 from sandbox.session.session import Session
-from sandbox.session.whole import Interrupted
+from sandbox.session.transaction import Interrupted
 
 
 @pytest.fixture

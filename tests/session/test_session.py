@@ -20,7 +20,7 @@ from sandbox.session.commands import (
 from sandbox.session.log import ReachedStates
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
-from sandbox.session.whole import Interrupted
+from sandbox.session.transaction import Interrupted
 from tests.support.rope_level import rope_level
 
 

@@ -45,7 +45,7 @@ from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
-from sandbox.session.whole import Interrupted
+from sandbox.session.transaction import Interrupted
 from tests.support.rope_level import rope_level
 
 EMPTY = parse_level(

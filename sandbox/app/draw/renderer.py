@@ -18,9 +18,9 @@ from sandbox.app.draw.still import UNSEEN, UNSEEN_STRAIN, UNSEEN_TURN, Still
 from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import THEMES, Theme, theme_now
-from sandbox.app.draw.things.cast import Cast, cast_of, joined_cast
-from sandbox.app.draw.things.ensemble import Ensemble
+from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame, strain_of
+from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
@@ -101,10 +101,10 @@ class Renderer:
         # The terrain that was drawn last, and how many there have been: arrays cannot be compared as a key is.
         self._ground: Terrain | None = None
         self._grounds = 0
-        self._cast: Cast | None = None
-        self._level_cast: Cast | None = None
+        self._level_slots: LevelSlots | None = None
+        self._own_slots: LevelSlots | None = None
         self._joined: tuple[Joined, ...] = ()
-        self._ensemble: Ensemble | None = None
+        self._drawables: Drawables | None = None
         self._key: tuple[NDArray[np.bool_], ...] = ()
         self._tiles: tuple[str, Tiles] | None = None
 
@@ -160,8 +160,8 @@ class Renderer:
             particles, springs = shown_particles(current), shown_springs(current)
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
             if self.level is not None:
-                self._cast = self._cast_now(self.level, current.equipment.joined)
-                self.effects.see(current, frame.seconds, self._cast.strikes)
+                self._level_slots = self._slots_now(self.level, current.equipment.joined)
+                self.effects.see(current, frame.seconds, self._level_slots.strikes)
             place = pygame.Rect(camera.viewport)
             self._follow(frame, current, camera, overlay)
             if self._still.show(surface, place):
@@ -173,8 +173,8 @@ class Renderer:
                     )  # fmt: skip
             with profile.part("things"):
                 if self.level is not None:
-                    ensemble = self._ensemble_of(frame, particles, springs)
-                    self._draw_things(ensemble, frame, camera)
+                    drawables = self._drawables_of(frame, particles, springs)
+                    self._draw_things(drawables, frame, camera)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
                     self._draw_lattice(frame, current, particles, springs)
@@ -203,7 +203,7 @@ class Renderer:
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
             self._grounds, (frame.seconds if moves else 0.0), (current.tick if shown & CHANGING else 0),
             current.particle_active.tobytes(), current.spring_active.tobytes(), (current.inverse_mass == 0.0).tobytes(),
-            self._ensemble.faces.blinks(frame.seconds).tobytes() if self._ensemble is not None else b"",
+            self._drawables.faces.blinks(frame.seconds).tobytes() if self._drawables is not None else b"",
         )  # fmt: skip
         numbers = [(frame.at, UNSEEN), (frame.angle, UNSEEN_TURN)]
         self._still.follow(key, [*numbers, (frame.strain, UNSEEN_STRAIN)] if self.lattice else numbers)
@@ -213,10 +213,10 @@ class Renderer:
             self._tiles = self.theme.name, Tiles(self.theme)
         return self._tiles[1]
 
-    def _draw_things(self, ensemble: Ensemble, frame: Frame, camera: Camera) -> None:
+    def _draw_things(self, drawables: Drawables, frame: Frame, camera: Camera) -> None:
         painter = self._painter
-        ensemble.soft.trace(painter, frame)
-        thrown, shapes = ensemble.thrown(frame)
+        drawables.soft.trace(painter, frame)
+        thrown, shapes = drawables.thrown(frame)
         offset = (SHADOW[0] * self.scale, SHADOW[1] * self.scale)
         if self.detail < NO_SHADOWS:
             painter.shadows(thrown, shapes, offset, packed(self.theme.shadow), self.theme.shadow_strength)
@@ -224,27 +224,27 @@ class Renderer:
             dust = MarkList()
             self.effects.mark_dust(dust, camera, self.theme, self.scale)
             painter.marks(dust, frame.tiles.array)
-        ensemble.draw(painter, frame, self.lattice)
+        drawables.draw(painter, frame, self.lattice)
 
-    def _cast_now(self, level: Level, joined: tuple[Joined, ...]) -> Cast:
-        """The cast of the level and of what has joined it."""
-        if self._cast is None or self._joined is not joined:
+    def _slots_now(self, level: Level, joined: tuple[Joined, ...]) -> LevelSlots:
+        """The slots of the level and of what has joined it."""
+        if self._level_slots is None or self._joined is not joined:
             # Bodies that were there go on as they are.
-            goes_on = self._cast is not None and joined[: len(self._joined)] == self._joined
-            self._level_cast = self._level_cast or cast_of(level)
-            present = self._cast if goes_on and self._cast is not None else self._level_cast
-            self._cast = joined_cast(present, joined[len(self._joined) if goes_on else 0 :])
-            self._joined, self._ensemble = joined, None
-        return self._cast
+            goes_on = self._level_slots is not None and joined[: len(self._joined)] == self._joined
+            self._own_slots = self._own_slots or level_slots_of(level)
+            present = self._level_slots if goes_on and self._level_slots is not None else self._own_slots
+            self._level_slots = joined_slots(present, joined[len(self._joined) if goes_on else 0 :])
+            self._joined, self._drawables = joined, None
+        return self._level_slots
 
-    def _ensemble_of(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> Ensemble:
+    def _drawables_of(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> Drawables:
         held = frame.state.inverse_mass == 0.0
         key = particles, springs, held
         is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
-        if self._ensemble is None or not is_same:
-            assert self._cast is not None
-            self._ensemble, self._key = Ensemble(self._cast, frame.state, particles, springs), key
-        return self._ensemble
+        if self._drawables is None or not is_same:
+            assert self._level_slots is not None
+            self._drawables, self._key = Drawables(self._level_slots, frame.state, particles, springs), key
+        return self._drawables
 
     def _draw_lattice(
         self, frame: Frame, state: Snapshot, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
@@ -291,8 +291,8 @@ class Renderer:
             self.effects.mark_breaks(layer, camera, self.theme, self.scale)
         elif self.detail < NO_EFFECTS and self.has_effects:
             self.effects.mark_sparks(layer, camera, self.scale)
-        if self._ensemble is not None:
-            self._ensemble.balls.mark_pins(layer, frame)
+        if self._drawables is not None:
+            self._drawables.balls.mark_pins(layer, frame)
         if current.grab_spring >= 0:
             hands = slice(current.grab_spring, current.grab_spring + 10)
             active = np.flatnonzero(current.spring_active[hands]) + current.grab_spring

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from sandbox.app.contracts.application import Application
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
+from sandbox.editor.edits.adopt_dropped import keep_added
 from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_pins, keep_pose
-from sandbox.editor.edits.keeping import keep_added
 from sandbox.physics.world import World
 
 Keeper = Callable[[Document, World], Document]

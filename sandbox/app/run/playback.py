@@ -22,7 +22,7 @@ from sandbox.session.commands import Command, CommandError, Redo, Undo
 from sandbox.session.log import Branch
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.session import Session
-from sandbox.session.whole import Interrupted
+from sandbox.session.transaction import Interrupted
 from sandbox.tools.tool import Response
 
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,

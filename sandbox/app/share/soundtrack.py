@@ -9,8 +9,8 @@ import numpy as np
 from sandbox.app.draw.camera import Camera
 from sandbox.app.film.film import Film
 from sandbox.app.sound.bank import Bank
-from sandbox.app.sound.ear import Ear
 from sandbox.app.sound.mixdown import Mixdown
+from sandbox.app.sound.sound_events import SoundEvents
 from sandbox.app.sound.sounds import cue_of
 from sandbox.app.sound.voices import Voices
 from sandbox.app.sound.waves import RATE
@@ -25,14 +25,14 @@ def write_soundtrack(film: Film, start: float, end: float, path: Path) -> Iterat
     """Write what is heard from start to end [s] of a film, a tick at a time; where nothing is, there is no file."""
     camera = Camera(viewport=(0, 0, *_SIZE))
     camera.fit(film.box)
-    ear, bank, mixdown = Ear(), Bank(), Mixdown()
+    events, bank, mixdown = SoundEvents(), Bank(), Mixdown()
     voices = Voices(mixdown, bank)
     for world in film.states(start, end):
         if world is not None:
-            ear.hear(world)
-            heard, ear.heard = ear.heard, []
+            events.hear(world)
+            heard, events.heard = events.heard, []
             voices.play([cue_of(each, camera) for each in heard], mixdown.now)
-            voices.hum([cue_of(each, camera) for each in ear.motors(world)], mixdown.now)
+            voices.hum([cue_of(each, camera) for each in events.motors(world)], mixdown.now)
             mixdown.advance(1.0 / film.rate)
         yield
     mixed = mixdown.mixed

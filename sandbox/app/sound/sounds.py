@@ -7,7 +7,7 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.run.playback import Playback
 from sandbox.app.sound.bank import Bank, Note
 from sandbox.app.sound.device import Device
-from sandbox.app.sound.ear import Ear, Sounding
+from sandbox.app.sound.sound_events import SoundEvents, Sounding
 from sandbox.app.sound.voices import Cue, Voices
 
 # What is outside the view is quieter by this factor for each width of the view that it is away.
@@ -44,7 +44,7 @@ class Sounds:
         self.device = device or Device()
         self.bank = Bank()
         self.voices = Voices(self.device, self.bank)
-        self._ear = Ear()
+        self._ear = SoundEvents()
         self._playback: Playback | None = None
         # What this run is likely to need, made a piece a frame, so that no frame waits for it.
         self._ahead: list[Note] = []

@@ -15,7 +15,7 @@ from sandbox.level.reading.files import load_level, read_level, shipped_folder
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.sweep.grid import SweepError
-from sandbox.session.whole import Interrupted
+from sandbox.session.transaction import Interrupted
 
 # How the name of a sweep's table ends.
 TABLE = ".csv"

@@ -6,7 +6,7 @@ import pygame
 
 from sandbox.app.contracts.application import Application
 from sandbox.app.play.status import draw_bar, draw_work
-from sandbox.session.whole import Interrupted
+from sandbox.session.transaction import Interrupted
 
 # What takes no longer than this [s] shows nothing; then the bar is drawn this often [s].
 PATIENCE = 0.3

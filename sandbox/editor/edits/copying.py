@@ -11,7 +11,7 @@ from sandbox.editor.edits.collision_groups import without_lost_groups
 from sandbox.editor.edits.grouping import taken_groups
 from sandbox.editor.edits.moving import move, rotate
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, rewired, taken_ids
-from sandbox.editor.edits.pace import set_rate_in_pace
+from sandbox.editor.edits.retime import set_rate_in_pace
 from sandbox.editor.items import Item, Selection, chosen_bodies, chosen_particles, chosen_terrain, items_of, keys
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.canonical import level_text

@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.editor.document import EditError, subject
 from sandbox.editor.kinds.motion import Motion, mapped_velocity
 from sandbox.editor.kinds.table import editing
-from sandbox.editor.panel.field_info import DEGREES, abouts
+from sandbox.editor.panel.field_info import DEGREES, fields_of
 from sandbox.level.document.model import ParticleDef, TerrainDef
 from sandbox.level.format.quantities import Description, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
@@ -31,7 +31,7 @@ def _rounded(value: Any) -> Any:
 def without_dust(part: Described) -> Described:
     """A body, particle, spring or piece of terrain, its lengths, angles and speeds rounded, in what it holds too."""
     changes: dict[str, Any] = {}
-    about = abouts(type(part))
+    about = fields_of(type(part))
     for name, value in part.__dict__.items():
         if isinstance(value, Description):
             changes[name] = without_dust(value)

@@ -5,7 +5,7 @@ from typing import Any
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import scale_exactly
 from sandbox.editor.items import items_of
-from sandbox.editor.panel.field_info import abouts
+from sandbox.editor.panel.field_info import fields_of
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import HydraulicDef, Level
 from sandbox.level.format.level_error import LevelError, one_line
@@ -54,7 +54,7 @@ def _heavier(part: Any, factor: float) -> Any:
     """A description with its masses and forces, and those of what it holds, for lengths so many times as large."""
     changes: dict[str, Any] = {}
     model: type[Description] = type(part)
-    known = abouts(model)
+    known = fields_of(model)
     for name, value in part.__dict__.items():
         power = POWERS.get(known[name].unit, 0)
         if isinstance(part, HydraulicDef) and name == "rate":

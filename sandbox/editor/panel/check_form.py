@@ -8,7 +8,7 @@ from typing import Any
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import set_checks
 from sandbox.editor.items import chosen_bodies, chosen_particles
-from sandbox.editor.panel.field_info import FieldInfo, Pick, abouts
+from sandbox.editor.panel.field_info import FieldInfo, Pick, fields_of
 from sandbox.editor.panel.level_properties import FIRST_ROOM
 from sandbox.editor.panel.property import Property, Section, with_axes
 from sandbox.level.checks import METRICS, SUBJECTS, CheckDef, HoldDef, bounds_of, window_of
@@ -31,7 +31,7 @@ def check_properties(document: Document, index: int) -> tuple[Section, ...]:
     checks = document.level.checks
     if not 0 <= index < len(checks):
         return ()
-    check, about = checks[index], abouts(CheckDef)
+    check, about = checks[index], fields_of(CheckDef)
     measured = METRICS[check.metric]
     labels = tuple(each.label for each in METRICS.values())
     metric = replace(about["metric"], title="What", choices=tuple(METRICS), labels=labels)
@@ -62,7 +62,7 @@ def _time_properties(check: CheckDef, index: int) -> list[Property]:
     about = FieldInfo("choice", "When", choices=choices, labels=tuple(_WHEN[name] for name in choices), tooltip=tip)
     made = [Property("when", about, present, partial(_set_when, index))] if momentary else []
     if present == "after":
-        return [*made, Property("after", abouts(CheckDef)["after"], check.after, partial(_set, index, "after"))]
+        return [*made, Property("after", fields_of(CheckDef)["after"], check.after, partial(_set, index, "after"))]
     tip = "The span of time, from the start of the level."
     span = FieldInfo("point", "From, to", "s", low=0.0, tooltip=tip)
     return [*made, Property("span", span, window_of(check), partial(_set_span, index), ("From", "To"))]
@@ -76,7 +76,7 @@ def _hold_properties(document: Document, check: CheckDef, index: int) -> list[Pr
     about = FieldInfo("part", "Hold a key", tooltip=tip)
     made = [Property("hold", about, False, lambda document, _: _add_hold(document, index))]
     for number, hold in enumerate(check.hold):
-        key = replace(abouts(HoldDef)["key"], title="Hold", optional=True)
+        key = replace(fields_of(HoldDef)["key"], title="Hold", optional=True)
         span = FieldInfo("point", "From, to", "s", low=0.0, tooltip="From when to when the key is held.")
         made.append(Property(f"hold.{number}.key", key, hold.key, partial(_set_held_key, index, number)))
         write = partial(_set_held_span, index, number)

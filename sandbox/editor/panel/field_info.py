@@ -1,4 +1,4 @@
-"""abouts(): what the models of the level format declare of each field, for people who edit it."""
+"""fields_of(): what the models of the level format declare of each field, for people who edit it."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -91,7 +91,7 @@ class FieldInfo:
 
 
 @cache
-def abouts(model: type[BaseModel]) -> dict[str, FieldInfo]:
+def fields_of(model: type[BaseModel]) -> dict[str, FieldInfo]:
     """A description of every field of a model, by name, in the model's order."""
     fields = model.model_json_schema(by_alias=False)["properties"]
     return {name: _about(name, fields[name], _part(field.annotation)) for name, field in model.model_fields.items()}

@@ -8,7 +8,7 @@ from typing import Any
 from sandbox.editor.document import Document, EditError, validated
 from sandbox.editor.edits.fields import change_items
 from sandbox.editor.items import Definition, Item
-from sandbox.editor.panel.field_info import FieldInfo, abouts
+from sandbox.editor.panel.field_info import FieldInfo, fields_of
 from sandbox.editor.panel.property import Property, same
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.level.format.level_error import shown
@@ -43,7 +43,7 @@ def firmness_properties(level: Level, parts: Mapping[Item, Definition]) -> list[
         "How soft the whole body is, for any grid, size and mass: set it here, or let Cs and Cd of its material decide."
     )
     choices = (OF_MATERIAL, *WORDS, NUMBERS)
-    about, inside = FieldInfo("choice", "Firmness", tooltip=tip, choices=choices), abouts(FirmnessDef)
+    about, inside = FieldInfo("choice", "Firmness", tooltip=tip, choices=choices), fields_of(FirmnessDef)
     sag_tip = "How far it sags under its own weight, in % of its height. 0 to 40 %."
     sag_about = FieldInfo("number", "Sag", "%", 0.0, PERCENT * SAG_LIMIT, tooltip=sag_tip)
     hz_about = FieldInfo("number", "Wobble", "Hz", *FREQUENCY_RANGE, tooltip=inside["hz"].tooltip)

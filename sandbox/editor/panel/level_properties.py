@@ -10,7 +10,7 @@ from sandbox.editor.document import Document, EditError, first_fault
 from sandbox.editor.edits.fields import set_level_field, set_setting
 from sandbox.editor.edits.materials import set_material
 from sandbox.editor.panel.extra_values import extras_properties
-from sandbox.editor.panel.field_info import abouts
+from sandbox.editor.panel.field_info import fields_of
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.model import Level, Material, MaterialDef, NissenMaterial, Settings
@@ -27,10 +27,10 @@ _LEVEL_FIELDS = ("name", "description", "author", "licence", "tags", "view")
 def level_properties(document: Document) -> tuple[Section, ...]:
     """What can be changed of the level itself and of how its time passes."""
     level = document.level
-    about = abouts(Level)
+    about = fields_of(Level)
     of_level = [Property(name, about[name], getattr(level, name), partial(_set_level, name)) for name in _LEVEL_FIELDS]
     settings = []
-    for name, each in abouts(Settings).items():
+    for name, each in fields_of(Settings).items():
         value = getattr(level.settings, name)
         settings.append(Property(name, each, str(value) if each.kind == "choice" else value, partial(_set_time, name)))
     return (
@@ -54,7 +54,7 @@ def _object(document: Document, name: str) -> list[Property]:
     def add(document: Document) -> Document:
         return change(document, lambda old: _FIRST[name](document) if old is None else old)
 
-    return part_properties(name, abouts(Level)[name], [getattr(document.level, name)], change, add)
+    return part_properties(name, fields_of(Level)[name], [getattr(document.level, name)], change, add)
 
 
 def look_properties(name: str, material: Material) -> list[Property]:
@@ -72,7 +72,7 @@ def look_properties(name: str, material: Material) -> list[Property]:
     def add(document: Document) -> Document:
         return change(document, lambda old: {} if old is None else old.__dict__)
 
-    return part_properties("look", abouts(MaterialDef)["look"], [material.look], change, add)
+    return part_properties("look", fields_of(MaterialDef)["look"], [material.look], change, add)
 
 
 def _first_walls(document: Document) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.terrain import FORMS, Form, corners_of, form_of, outlined, with_corners
 from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
 from sandbox.editor.panel.extra_values import extras_properties
-from sandbox.editor.panel.field_info import FieldInfo, abouts
+from sandbox.editor.panel.field_info import FieldInfo, fields_of
 from sandbox.editor.panel.firmness import firmness_properties
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.editor.panel.typed import number_text
@@ -92,7 +92,7 @@ def _summary(kinds: Iterable[type], parts: Sequence[Definition]) -> str:
 
 def _common(kinds: Iterable[Any], number: int) -> dict[str, FieldInfo]:
     """The fields that all kinds have alike, with the limits that hold for all."""
-    first, *others = (abouts(kind) for kind in kinds)
+    first, *others = (fields_of(kind) for kind in kinds)
     found = {}
     for name in file_order(first):
         if name in ("type", *_OUTLINES) or (name in ("id", "name") and number > 1) or first[name].kind == "part":
@@ -108,7 +108,7 @@ def _of_some(kinds: Iterable[Any], common: dict[str, FieldInfo]) -> dict[str, Fi
     found: dict[str, FieldInfo] = {}
     unlike = set(common)
     for kind in kinds:
-        for name, about in abouts(kind).items():
+        for name, about in fields_of(kind).items():
             if not _section_of(name) or about.kind == "part" or (name in found and not _alike(found[name], about)):
                 unlike.add(name)
             found.setdefault(name, about)
@@ -117,7 +117,7 @@ def _of_some(kinds: Iterable[Any], common: dict[str, FieldInfo]) -> dict[str, Fi
 
 def _objects(kinds: Iterable[Any]) -> dict[str, FieldInfo]:
     """The fields of any of the kinds that hold an object or none, the same object in all that have it."""
-    known = [about for kind in kinds for about in abouts(kind).items() if about[1].kind == "part"]
+    known = [about for kind in kinds for about in fields_of(kind).items() if about[1].kind == "part"]
     models = {(name, about.model) for name, about in known}
     return {name: about for name, about in known if sum(name == other for other, _ in models) == 1}
 
@@ -231,7 +231,7 @@ def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> l
         points = with_tuples(corners)
         return outlined(document, selection, lambda piece: with_corners(piece, points))
 
-    about = replace(abouts(TerrainDef)["polygon"], title="Corners", optional=False, tooltip="Corners in order.")
+    about = replace(fields_of(TerrainDef)["polygon"], title="Corners", optional=False, tooltip="Corners in order.")
     return [
         Property("form", kind, same(form_of(piece) for piece in pieces), choose),
         Property("corners", about, same(corners_of(piece) for piece in pieces), write),
@@ -251,7 +251,7 @@ def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Pro
     found = [Property("shape", about, kind, choose)]
     if kind is MIXED:
         return found
-    about = abouts(type(shapes[0]))[kind]
+    about = fields_of(type(shapes[0]))[kind]
     if kind == "box":
         pairs = [shape.box for shape in shapes if isinstance(shape, BoxShape)]
 

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any, Final
 
 from sandbox.editor.document import Document, EditError
-from sandbox.editor.panel.field_info import DEGREES, FieldInfo, abouts
+from sandbox.editor.panel.field_info import DEGREES, FieldInfo, fields_of
 from sandbox.editor.panel.typed import (
     DIGITS,
     line_text,
@@ -182,7 +182,7 @@ def part_properties(
     if is_there is True and about.model is not None:
         found += [
             Property(f"{name}.{field}", each, same(o[field] for o in objects), partial(_set_inside, change, field))
-            for field, each in abouts(about.model).items()
+            for field, each in fields_of(about.model).items()
             # What is by name in a file is written there.
             if not isinstance(objects[0][field], dict)
         ]

@@ -19,8 +19,8 @@ from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import CHAIN_DIGITS, FORMAT, TICK_DIGITS, VERSION, level_digest, unseal
-from sandbox.session.replay.line import CommandLine, Digest, Line, Tick, checked, json_object
-from sandbox.session.replay.lines import GZIP_MAGIC, ReplayLines, kind_of
+from sandbox.session.replay.line_reader import GZIP_MAGIC, ReplayLines, kind_of
+from sandbox.session.replay.record import CommandLine, Digest, Line, Tick, checked, json_object
 from sandbox.session.replay.recording import Replay, ReplayError, StoredState, TickHashes
 
 # What a stored state may hold [bytes]: so much, and so much for each particle and spring. Shipped levels have up to 224

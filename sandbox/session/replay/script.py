@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.replay.line import CommandLine, checked
-from sandbox.session.replay.lines import COMMAND_LIMIT
+from sandbox.session.replay.line_reader import COMMAND_LIMIT
+from sandbox.session.replay.record import CommandLine, checked
 from sandbox.session.replay.recording import ReplayError
 
 # What a script may hold: some hours of dragging, in [bytes] and lines.

@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from sandbox.app.draw.raster.mark_kernels import MARBLED, PLAIN, STRIPED, STUDDED
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import SANDS
-from sandbox.app.draw.things.cast import Ball, Cast
 from sandbox.app.draw.things.frame import Frame, Seen
+from sandbox.app.draw.things.level_slots import Ball, LevelSlots
 from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.format.look import PALETTE
 
@@ -25,8 +25,8 @@ SCREW, SCREW_RIM, SCREW_SLOT = 0xB4BCC9, 0x141924, 0x4A5363
 class Balls:
     """Loose particles of a level, and those that joined the world while it ran, that are there."""
 
-    def __init__(self, cast: Cast, state: Seen, strangers: Slots) -> None:
-        there = [ball for ball in cast.balls if state.particle_active[ball.slot]]
+    def __init__(self, level_slots: LevelSlots, state: Seen, strangers: Slots) -> None:
+        there = [ball for ball in level_slots.balls if state.particle_active[ball.slot]]
         # A small one that is held is a pin.
         shown = [
             ball for ball in there
@@ -47,7 +47,7 @@ class Balls:
         bumpers = {ball.slot for ball in shown if ball.kind == "bumper"}
         held = np.flatnonzero(state.particle_active & (state.inverse_mass == 0.0))
         self.pins = np.array([slot for slot in held.tolist() if slot not in balls], dtype=np.int64)
-        self.pins = self.pins[np.isin(self.pins, cast.particles)]
+        self.pins = self.pins[np.isin(self.pins, level_slots.particles)]
         self._held = np.array([slot for slot in held.tolist() if slot in balls - bumpers], dtype=np.int64)
 
     def radii(self, frame: Frame) -> Floats:

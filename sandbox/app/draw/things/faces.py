@@ -10,8 +10,8 @@ from sandbox.app.draw.raster.mark_kernels import DISC, GLOW, STROKE
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import CHEEK, EYE, INK
 from sandbox.app.draw.things.borders import starts_of
-from sandbox.app.draw.things.cast import Actor
 from sandbox.app.draw.things.frame import Frame
+from sandbox.app.draw.things.level_slots import Actor
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]

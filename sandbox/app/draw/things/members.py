@@ -11,8 +11,8 @@ from sandbox.app.draw.raster.mark_kernels import DISC, STRIP, STROKE
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.textures import TILE
 from sandbox.app.draw.themes import outline_of
-from sandbox.app.draw.things.cast import Actor
 from sandbox.app.draw.things.frame import Frame
+from sandbox.app.draw.things.level_slots import Actor
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]

@@ -9,8 +9,8 @@ from sandbox.app.draw.raster.cells import CellArrays
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.textures import laid, woven
 from sandbox.app.draw.themes import CLOTH_STRIPE, dark_edge, outline_of
-from sandbox.app.draw.things.cast import Actor
 from sandbox.app.draw.things.frame import Frame
+from sandbox.app.draw.things.level_slots import Actor
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]

@@ -12,8 +12,8 @@ from sandbox.app.draw.raster.painter import NO_GRAIN, BodyLayer, Painter
 from sandbox.app.draw.textures import grains, skin_table
 from sandbox.app.draw.themes import SQUEEZED_FLUSH, STRETCHED_FLUSH, outline_of
 from sandbox.app.draw.things.borders import starts_of
-from sandbox.app.draw.things.cast import Actor
 from sandbox.app.draw.things.frame import FLUSH_FROM, FLUSH_RANGE, Frame
+from sandbox.app.draw.things.level_slots import Actor
 from sandbox.level.kinds.jelly import CircleShape, JellyDef
 
 Slots = NDArray[np.int64]

@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.textures import TILE
 from sandbox.app.draw.themes import rgb_of
-from sandbox.app.draw.things.cast import Join
 from sandbox.app.draw.things.frame import Frame
+from sandbox.app.draw.things.level_slots import Join
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]

@@ -7,8 +7,8 @@ from sandbox.app.draw.raster.mark_kernels import STUDDED
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.textures import TILE
 from sandbox.app.draw.themes import STEEL
-from sandbox.app.draw.things.cast import Actor
 from sandbox.app.draw.things.frame import Frame
+from sandbox.app.draw.things.level_slots import Actor
 from sandbox.app.draw.things.soft import Shape
 from sandbox.app.draw.things.strands import PIECES, curved
 

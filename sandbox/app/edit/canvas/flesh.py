@@ -10,9 +10,9 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.raster.painter import Painter
 from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import Theme, theme_now
-from sandbox.app.draw.things.cast import Cast, cast_of
-from sandbox.app.draw.things.ensemble import Ensemble
+from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame
+from sandbox.app.draw.things.level_slots import LevelSlots, level_slots_of
 from sandbox.editor.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -46,7 +46,7 @@ class Flesh:
     def __init__(self) -> None:
         self._painter = Painter()
         self._tiles: tuple[Theme, Tiles] | None = None
-        self._cast: tuple[Scene, Cast] | None = None
+        self._level_slots: tuple[Scene, LevelSlots] | None = None
 
     def paint(
         self, layer: pygame.Surface, camera: Camera, scene: Scene, particles: Mask, springs: Mask, scale: float,
@@ -55,8 +55,8 @@ class Flesh:
         """Draw those particles (n,) and springs (m,) of a scene on a layer; whether that would not take too long."""
         if not 0 < len(scene.position) + len(scene.particle_a) <= MOST:
             return False
-        if self._cast is None or self._cast[0] is not scene:
-            self._cast = (scene, cast_of(scene.level, is_welded=False))
+        if self._level_slots is None or self._level_slots[0] is not scene:
+            self._level_slots = (scene, level_slots_of(scene.level, is_welded=False))
         if self._tiles is None or self._tiles[0] is not theme_now():
             self._tiles = theme_now(), Tiles(theme_now())
         state = _state_of(scene, particles, springs)
@@ -66,9 +66,9 @@ class Flesh:
         picture.set_clip(layer.get_clip())
         self._painter.compiled = compiled
         self._painter.begin(picture)
-        ensemble = Ensemble(self._cast[1], state, particles, springs)
-        ensemble.soft.trace(self._painter, frame)
-        ensemble.draw(self._painter, frame, False)
+        drawables = Drawables(self._level_slots[1], state, particles, springs)
+        drawables.soft.trace(self._painter, frame)
+        drawables.draw(self._painter, frame, False)
         picture.set_alpha(alpha)
         layer.blit(picture, (0, 0))
         return True

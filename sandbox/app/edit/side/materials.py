@@ -20,7 +20,7 @@ from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import add_material, assign, delete_material, rename_material, set_material
-from sandbox.editor.panel.field_info import FieldInfo, abouts
+from sandbox.editor.panel.field_info import FieldInfo, fields_of
 from sandbox.editor.panel.level_properties import look_properties
 from sandbox.editor.panel.property import Property, Section
 from sandbox.editor.panel.typed import line_text, number_text, read_line, read_number
@@ -79,7 +79,7 @@ class MaterialsPage:
         self.law = ui.choice(place, LAWS, self._choose_law, content)
         self._widgets += self.law.buttons.values()
         self._y += ROW + GAP + 4
-        for name, about in abouts(type(material)).items():
+        for name, about in fields_of(type(material)).items():
             if name in SHORT:
                 self._add_coefficient(name, about)
         if isinstance(material, NissenMaterial):
@@ -91,7 +91,7 @@ class MaterialsPage:
         self._widgets.append(heading)
         self._y += ROW + 4
         for name in LIMITS:
-            self._add_limit(name, abouts(type(material))[name])
+            self._add_limit(name, fields_of(type(material))[name])
         self.look = Form(self._screen, self.area, above=self._y + 6)
 
     def _label(self, text: str, tip: str = "") -> None:
@@ -257,7 +257,7 @@ class MaterialsPage:
         return value is not None and self._put(SHORT[name][:2].strip(), replaced(self._material, **{name: value}))
 
     def _type_limit(self, name: str, text: str) -> bool:
-        about = abouts(type(self._material))[name]
+        about = fields_of(type(self._material))[name]
         is_empty = about.optional and not text.strip()
         value = None if is_empty else self._number(about.title, text)
         if value is None and not is_empty:
@@ -265,7 +265,7 @@ class MaterialsPage:
         return self._put(about.title.lower(), replaced(self._material, **{name: value}))
 
     def _scrub_limit(self, name: str, steps: int) -> None:
-        about = abouts(type(self._material))[name]
+        about = fields_of(type(self._material))[name]
         value = Property(name, about, getattr(self._material, name)).stepped(steps)
         if value is not None:
             changed = replaced(self._material, **{name: value})

@@ -12,7 +12,7 @@ from sandbox.app.widgets.dialogs import ask
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
-from sandbox.editor.edits.pace import set_rate_in_pace
+from sandbox.editor.edits.retime import set_rate_in_pace
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.level.document.model import Level
 

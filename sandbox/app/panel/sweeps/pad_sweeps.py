@@ -17,7 +17,7 @@ from sandbox.app.widgets.coefficient_scale import PLAIN
 from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.physics.settings import WorldSettings
-from sandbox.session.replay.again import with_settings
+from sandbox.session.replay.rerecord import with_settings
 from sandbox.session.sweep.background import BackgroundSweep
 from sandbox.session.sweep.grid import CD, CS, SweepError, SweepGrid
 from sandbox.session.sweep.journal import Journal

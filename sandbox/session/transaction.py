@@ -9,8 +9,8 @@ class Interrupted(Exception):
 
 
 @contextmanager
-def whole(put_back: Callable[[], object]) -> Iterator[None]:
-    """Do something whole; where it is interrupted, `put_back` is called."""
+def all_or_nothing(put_back: Callable[[], object]) -> Iterator[None]:
+    """Do something whole or not at all: where it is interrupted, `put_back` is called."""
     try:
         yield
     except Interrupted:

@@ -1,4 +1,4 @@
-"""Keeping of what joined a level while it was played: it becomes ordinary bodies and particles of the document."""
+"""Adopting what was dropped into a run: it becomes ordinary bodies and particles of the level."""
 
 from dataclasses import replace
 from typing import Any

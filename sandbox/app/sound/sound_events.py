@@ -1,4 +1,7 @@
-"""Ear: hears what happens in a run: blows, breaks, jerks of strings, rubbing and motors. It reads and never writes."""
+"""SoundEvents: collects what is to be heard of a run: blows, breaks, jerks of strings, rubbing and motors.
+
+It reads and never writes.
+"""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -77,7 +80,7 @@ class _Onsets:
         return found
 
 
-class Ear:
+class SoundEvents:
     """Told of every tick by `hear`, after it; what it heard waits in `heard`."""
 
     def __init__(self) -> None:

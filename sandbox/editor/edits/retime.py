@@ -1,4 +1,4 @@
-"""Another tick rate, at which springs and muscles go on as fast per second as they did."""
+"""Another tick rate at which springs and muscles move as fast per second as before."""
 
 from dataclasses import replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Ensemble: what of a world is which thing, as its springs stand; made anew where one is torn or another is added."""
+"""Drawables: groups the slots of a world into what is drawn; made again where something breaks or joins."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +10,9 @@ from sandbox.app.draw.raster.shadows import Thrown
 from sandbox.app.draw.themes import dark_edge, outline_of
 from sandbox.app.draw.things.balls import Balls
 from sandbox.app.draw.things.borders import hull_of
-from sandbox.app.draw.things.cast import Actor, Cast, Join
 from sandbox.app.draw.things.faces import Faces
 from sandbox.app.draw.things.frame import Frame, Seen
+from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots
 from sandbox.app.draw.things.members import Members
 from sandbox.app.draw.things.sheets import Sheets
 from sandbox.app.draw.things.soft import Shape, Soft, shape_of
@@ -40,10 +40,10 @@ def _strangers(there: Mask, own: Slots) -> Slots:
     return np.flatnonzero(left)
 
 
-class Ensemble:
+class Drawables:
     """All things of a world whose particles (n,) and springs (m,) are there."""
 
-    def __init__(self, cast: Cast, state: Seen, particles: Mask, springs: Mask) -> None:
+    def __init__(self, level_slots: LevelSlots, state: Seen, particles: Mask, springs: Mask) -> None:
         self._state = state
         self._triangles: dict[int, tuple[Slots, Slots]] = {}
         self.members, self.strands, self.sheets = Members(), Strands(), Sheets()
@@ -51,15 +51,15 @@ class Ensemble:
         self._balloons: list[tuple[int, Actor]] = []
         self._shapes: list[Shape] = []
         self._faces: list[tuple[Actor, Slots]] = []
-        joins = [join for join in cast.joins if springs[join.spring]]
-        for actor in cast.actors:
+        joins = [join for join in level_slots.joins if springs[join.spring]]
+        for actor in level_slots.actors:
             there = springs[actor.springs]
             joins += self._add(actor, there)
-        strangers = _strangers(springs, cast.springs)
+        strangers = _strangers(springs, level_slots.springs)
         ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
         self._add_joins(joins, ends)
         self.members.add_strangers(ends[strangers], strangers, state.rest_length)
-        self.balls = Balls(cast, state, _strangers(particles, cast.particles))
+        self.balls = Balls(level_slots, state, _strangers(particles, level_slots.particles))
         self.faces = Faces(self._faces)
         self._hems = [Shape([loop], CLOTH, 0, -1, rounds=0, line=False) for loop in self.sheets.outlines()]
         self.soft = Soft(self._shapes + self._hems)

@@ -1,4 +1,4 @@
-"""Cast: which slots of a world each body, ball and loose spring of a level has, and what it looks like; made once."""
+"""LevelSlots: the slots of a world of each body, ball and loose spring of a level, and how each looks; made once."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -133,7 +133,7 @@ class Join:
 
 
 @dataclass(eq=False)
-class Cast:
+class LevelSlots:
     """Everything in a level that can be seen; particles and springs: the slots that belong to its bodies and parts.
 
     strikes: by the spring's slot, as far as there are any, those that spark when they tear.
@@ -148,7 +148,7 @@ class Cast:
     strikes: Mask
 
 
-def cast_of(level: Level, is_welded: bool = True) -> Cast:
+def level_slots_of(level: Level, is_welded: bool = True) -> LevelSlots:
     """The cast of a level; is_welded: particles that are one share a slot, as in a world, not as in the editor."""
     plan = kept_plan(level) or Plan(level)
     count = plan.layout.particle_count
@@ -175,15 +175,15 @@ def cast_of(level: Level, is_welded: bool = True) -> Cast:
     kinds = [(actor.look, len(actor.springs)) for actor in actors] + [(join.look, 1) for join in joins]
     sparks = [look.line in METALS and look.skin in ("", "steel wheel") for look, _ in kinds]
     strikes = np.repeat(np.array(sparks, dtype=np.bool_), [count for _, count in kinds])
-    return Cast(level, actors, balls, joins, np.unique(slots), np.arange(spring + len(joins)), strikes)
+    return LevelSlots(level, actors, balls, joins, np.unique(slots), np.arange(spring + len(joins)), strikes)
 
 
-def joined_cast(cast: Cast, joined: Sequence[Joined]) -> Cast:
+def joined_slots(level_slots: LevelSlots, joined: Sequence[Joined]) -> LevelSlots:
     """The cast of a level, or of one that bodies have joined while it ran, once these bodies have joined it as well."""
-    actors, joins = list(cast.actors), list(cast.joins)
-    particles, springs = [cast.particles], [cast.springs]
+    actors, joins = list(level_slots.actors), list(level_slots.joins)
+    particles, springs = [level_slots.particles], [level_slots.springs]
     for each in joined:
-        own, first, spring = cast_of(each.source), each.first_particle, each.first_spring
+        own, first, spring = level_slots_of(each.source), each.first_particle, each.first_spring
         actors += [replace(actor, slots=actor.slots + first, springs=actor.springs + spring) for actor in own.actors]
         joins += [
             Join(join.spring + spring, (join.ends[0] + first, join.ends[1] + first), join.look) for join in own.joins
@@ -191,5 +191,5 @@ def joined_cast(cast: Cast, joined: Sequence[Joined]) -> Cast:
         particles.append(own.particles + first)
         springs.append(own.springs + spring)
     return replace(
-        cast, actors=actors, joins=joins, particles=np.concatenate(particles), springs=np.concatenate(springs)
+        level_slots, actors=actors, joins=joins, particles=np.concatenate(particles), springs=np.concatenate(springs)
     )
