@@ -183,13 +183,13 @@ class Progress:
             self._bar.close()
 
     def update(self, count: int = 1) -> None:
-        """Something has happened, so many units of it."""
+        """Something has happened, this many units of it."""
         self.done += count
         if self._bar is not None:
             self._bar.update(count)
 
     def show(self, done: int, total: int) -> None:
-        """So many units are done, of as many as are known by now."""
+        """This many units are done, of as many as are known by now."""
         if self._bar is not None:
             self._bar.total = total
         self.update(done - self.done)

@@ -33,8 +33,8 @@ COMMANDS = (
     play, toy, run, replay, resume, check, diff, bisect, sweep, render, take_home, export, format, edit, prepare,
     schema,
 )  # fmt: skip
-# Python searches for garbage after so many new objects, in place of 700: what is imported stays, and looking through it
-# again and again was a sixth of a start. Objects that hold each other, as those do, are few in a run.
+# Python searches for garbage after this many new objects, in place of 700: what is imported stays, and looking through
+# it again and again was a sixth of a start. Objects that hold each other, as those do, are few in a run.
 SEARCH_AFTER = 200_000
 
 

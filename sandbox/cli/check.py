@@ -19,7 +19,7 @@ def add(commands: Commands) -> None:
     parser.add_argument("levels", nargs="+", metavar="LEVEL")
     parser.add_argument("--json", action="store_true", help="print one JSON object a level")
     parser.add_argument(
-        "--processes", type=processes, metavar="N", help="check so many at a time; default: by cores and levels"
+        "--processes", type=processes, metavar="N", help="check this many at a time; default: by cores and levels"
     )
 
 

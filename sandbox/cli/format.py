@@ -15,7 +15,7 @@ def add(commands: Commands) -> None:
 
 
 def rewrite(options: argparse.Namespace) -> int:
-    """Write a level file anew. Raises Refused."""
+    """Write a level file again. Raises Refused."""
     from sandbox.level.reading.files import LevelError, read_level, write_level
 
     try:

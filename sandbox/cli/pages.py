@@ -19,7 +19,7 @@ PAGE = ".html"
 
 @contextmanager
 def watching(ticks: int) -> "Iterator[Watched]":
-    """Show how far it is while so many ticks are played in all, and let Ctrl+C end it between two."""
+    """Show how far it is while this many ticks are played in all, and let Ctrl+C end it between two."""
     with Progress(ticks) as bar, interrupted_between_ticks() as look_up:
 
         def watched(states: "Iterable[World]") -> "Iterator[World]":

@@ -24,7 +24,7 @@ def add(commands: Commands) -> None:
         "level", nargs="?", metavar="LEVEL", help="a level file, a shipped level's name, or a replay file"
     )
     parser.add_argument("--profile", action="store_true", help="print where a frame's time goes, at the end")
-    parser.add_argument("--seconds", type=seconds, help="close the app after so many seconds")
+    parser.add_argument("--seconds", type=seconds, help="close the app after this many seconds")
     add_window_options(parser)
 
 

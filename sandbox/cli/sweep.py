@@ -40,7 +40,7 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--dask", metavar="ADDRESS", help="run by the scheduler of dask there; local: by one of this machine"
     )
-    parser.add_argument("--fresh", action="store_true", help="run anew what is known already")
+    parser.add_argument("--fresh", action="store_true", help="run again what is known already")
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="OUT.csv|png", help="table; or map, with the table beside"
     )
@@ -138,7 +138,7 @@ def _known(table: Path, grid: "SweepGrid", is_beside: bool) -> "Rows | None":
     except (SweepError, UnicodeDecodeError):
         pass
     if is_beside:
-        raise Refused(f"{table}: would be written over, but is not of this sweep; move it, or begin anew with --fresh")
+        raise Refused(f"{table}: would be written over, but is not of this sweep; move it, or start over with --fresh")
     return None
 
 
@@ -148,7 +148,7 @@ def _run(table: Path, grid: "SweepGrid", options: argparse.Namespace) -> "Rows |
 
     journal = Journal(table, grid, options.fresh)
     if journal.replaced:
-        tell([f"{journal.path}: was of another level or grid; all runs begin anew"])
+        tell([f"{journal.path}: was of another level or grid; all runs start over"])
     if journal.rows:
         tell([f"{len(journal.rows)} of {grid.runs} runs are known already; --fresh runs them again"])
     try:

@@ -18,7 +18,7 @@ def add(commands: Commands) -> None:
     parser = add_command(commands, "toy", play_toy, text)
     parser.add_argument("level", nargs="?", metavar="LEVEL", help="a level file or a shipped level's name")
     parser.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
-    parser.add_argument("--seconds", type=seconds, help="close it after so many seconds")
+    parser.add_argument("--seconds", type=seconds, help="close it after this many seconds")
     add_look_options(parser)
 
 

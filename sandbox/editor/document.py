@@ -96,7 +96,7 @@ def check_places(bodies: Iterable[AnyBody]) -> None:
 
 
 def validated(definition: Described) -> Described:
-    """A definition whose fields have been changed unseen, read anew. Raises EditError where one is out of range."""
+    """A definition whose fields have been changed unseen, read again. Raises EditError where one is out of range."""
     return all_validated([definition])[0]
 
 

@@ -140,7 +140,7 @@ def _numbers(each: Property) -> list[Number]:
 
 
 def between(low: float, high: float, count: int, *, whole: bool) -> list[float]:
-    """So many values from one to the other, both included, at even distances. Raises EditError."""
+    """This many values from one to the other, both included, at even distances. Raises EditError."""
     if low == high:
         raise EditError("from and to are the same; give a range")
     if not 2 <= count <= MOST:

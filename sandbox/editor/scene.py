@@ -1,4 +1,4 @@
-"""Scene: a level as arrays to draw, pick from and measure, made anew after every edit from what did not change."""
+"""Scene: a level as arrays to draw, pick from and measure, made again after every edit from what did not change."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

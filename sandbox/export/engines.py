@@ -22,7 +22,7 @@ from sandbox.physics.analysis.stability import BOUND
 SOFT_STEP_SUBSTEPS = 4
 # Times that a damped spring of Godot's is damped in a step: every second of its 16 solver iterations.
 GODOT_TIMES = 8
-# A tick is cut into at most so many steps for an engine that adds springs one by one; beyond, a rod is advised.
+# A tick is cut into at most this many steps for an engine that adds springs one by one; beyond, a rod is advised.
 MOST_STEPS = 64
 # Springs whose reduced masses agree to this share are of one line.
 SAME_MASS = 1e-6
@@ -30,7 +30,7 @@ SAME_MASS = 1e-6
 
 @dataclass(frozen=True)
 class MassLine:
-    """k [N/m] and c [N s/m] of so many springs of one reduced mass [kg]."""
+    """k [N/m] and c [N s/m] of this many springs of one reduced mass [kg]."""
 
     reduced_mass: float
     springs: int
@@ -86,7 +86,7 @@ def _solved(body: ChosenBody, engine: str, steps: int, own: float, difference: s
 
 
 def _added(body: ChosenBody, engine: str, steps: int, times: int, difference: str) -> EngineNumbers:
-    """An engine that adds springs one by one, and damps so many times a step."""
+    """An engine that adds springs one by one, and damps this many times a step."""
     rigid = body.rigid or steps > MOST_STEPS
     steps = 1 if rigid else steps
     share = body.tick / steps / body.h
@@ -97,7 +97,7 @@ def _numbers(
     body: ChosenBody, engine: str, steps: int, restoring: float, damping: float, rigid: bool, difference: str,
     times: int = 1,
 ) -> EngineNumbers:  # fmt: skip
-    """restoring = k h^2 / m_r and damping = c h / m_r of the engine's step, in which it is damped so many times."""
+    """restoring = k h^2 / m_r and damping = c h / m_r of the engine's step, in which it is damped this many times."""
     h, least = body.tick / steps, max(damping, 0.0)
     ratio = 0.5 * least / math.sqrt(restoring) if restoring > 0.0 else 0.0
     masses = tuple(

@@ -58,7 +58,7 @@ def _rounded(value: np.float64) -> float:
 
 
 def _constants(world: World, count: int) -> tuple[Floats, Floats]:
-    """k [N/m] and c [N s/m] of the first so many springs (count,)."""
+    """k [N/m] and c [N s/m] of the first this many springs (count,)."""
     modes = np.zeros(world.spring_count)
     for body in world.forms:
         if len(body.shape.mass) <= LARGEST_READ:

@@ -36,7 +36,7 @@ class LoopPair:
 
 @dataclass(frozen=True)
 class LoopRow:
-    """What is proven with so many substeps of h [s] in a tick: the largest Cs = Cd, and the largest of the level's own
+    """What is proven with some substeps of h [s] in a tick: the largest Cs = Cd, and the largest of the level's own
     ratio of Cs to Cd."""
 
     substeps: int

@@ -11,7 +11,7 @@ from sandbox.physics.world import World
 
 KEYFRAME_TICKS = 60
 # Commands of one tick after which its state is kept as well, until the next keyframe, so that undoing the last of
-# thousands does not carry out all the others again: so many, and so many more for each particle, as keeping takes
+# thousands does not carry out all the others again: this many, and this many more for each particle, as keeping takes
 # longer then. Lower keeps more, higher undoes slower.
 KEYFRAME_COMMANDS, COMMANDS_PER_PARTICLE = 4, 0.004
 # Memory for keyframes [bytes]; beyond it every other one goes, and going back re-steps twice as far.

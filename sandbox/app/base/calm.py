@@ -4,8 +4,8 @@ import time
 
 import pygame
 
-# It is calm once nothing has happened for so long [s]; then so many frames a second are enough, and so many of a run
-# that goes on at rest: with fewer of them each would have more ticks to make than it has time for.
+# It is calm once nothing has happened for this long [s]; then this many frames a second are enough, and this many of a
+# run that goes on at rest: with fewer of them each would have more ticks to make than it has time for.
 CALM_AFTER, CALM_RATE, RESTING_RATE = 1.0, 10, 20
 # How often it is looked for events meanwhile [s]: a person who comes back waits no longer. Where the library waits by
 # itself it looks every millisecond, which costs four times as much.

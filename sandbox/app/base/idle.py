@@ -6,7 +6,7 @@ import gc
 REST = 0.5
 # New objects that are worth a search of them: a frame of a run makes less than a tenth.
 ENOUGH = 10_000
-# Of so many searches one looks at all objects: it takes 0.1 s and more where the history of a large level is long.
+# Of this many searches one looks at all objects: it takes 0.1 s and more where the history of a large level is long.
 FULL_EVERY = 10
 
 

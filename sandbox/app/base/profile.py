@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 PARTS = ("events", "commands", "ticks", "stage", "things", "marks", "sound", "ui", "flip", "frame")
-# So many times of each part are remembered: a minute, so that an app that is left open does not grow.
+# This many times of each part are remembered: a minute, so that an app that is left open does not grow.
 REMEMBERED = 3_600
 
 

@@ -1,4 +1,4 @@
-"""RecentPictures: pictures by name, those used last, in so many bytes."""
+"""RecentPictures: pictures by name, those used last, in this many bytes."""
 
 from collections import OrderedDict
 from collections.abc import Hashable
@@ -10,7 +10,7 @@ Name = TypeVar("Name", bound=Hashable)
 
 
 class RecentPictures(Generic[Name]):
-    """Keeps pictures in at most so many bytes, but always the one that came last; bytes: what they take."""
+    """Keeps pictures in at most this many bytes, but always the one that came last; bytes: what they take."""
 
     def __init__(self, most: int) -> None:
         self._most = most

@@ -116,7 +116,7 @@ class CompareScreen(PlayScreen):
     # Building.
 
     def build(self, ui: Ui) -> None:
-        """Lay the bar, the panel and both halves out anew."""
+        """Lay the bar, the panel and both halves out again."""
         super().build(ui)
         if self.beside is not None:
             self.beside.place(self.other_viewport, ui.scale)

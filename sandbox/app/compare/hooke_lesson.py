@@ -46,7 +46,7 @@ class HookeLesson(CompareScreen):
         return TwinPlayback(lesson_level(self.trial, True)), TwinPlayback(lesson_level(self.trial, False))
 
     def build(self, ui: Ui) -> None:
-        """Lay everything out anew; the panel is there in every window."""
+        """Lay everything out again; the panel is there in every window."""
         self._wants_panel = True if self._wants_panel is None else self._wants_panel
         super().build(ui)
         left, top, width, height = self.viewport

@@ -22,7 +22,7 @@ MASSES, RATES, SPRINGS = (0.1, 1.0, 10.0), (30, 60, 240), (1, 6)
 
 
 class LessonPanel:
-    """The panel; change: what is done with another trial, again: what begins the same anew."""
+    """The panel; change: what is done with another trial, again: what begins the same again."""
 
     pad: CoefficientPad | None = None
     material: int | None = None

@@ -247,7 +247,7 @@ class Application(Protocol):
         ...
 
     def rebuild(self) -> None:
-        """Lay everything out anew."""
+        """Lay everything out again."""
         ...
 
     def quit(self) -> None:

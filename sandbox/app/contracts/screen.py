@@ -49,7 +49,7 @@ class Screen(Protocol):
         ...
 
     def build(self, ui: Ui) -> None:
-        """Lay the widgets out anew."""
+        """Lay the widgets out again."""
         ...
 
     def contains(self, pixel: Pixel) -> bool:

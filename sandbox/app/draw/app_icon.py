@@ -1,4 +1,4 @@
-"""The app's icon: a jelly with a face on a spring. `python -m sandbox.app.draw.app_icon` draws assets/icon.png anew."""
+"""The app's icon: a jelly with a face on a spring. `python -m sandbox.app.draw.app_icon` draws assets/icon.png."""
 
 import os
 
@@ -26,7 +26,7 @@ def icon_file() -> str:
 
 
 def app_icon(side: int) -> pygame.Surface:
-    """The icon of so many pixels, with straight alpha."""
+    """The icon of this many pixels, with straight alpha."""
     large = side * OVERSAMPLING
     picture = pygame.Surface((large, large), pygame.SRCALPHA)
     _draw_spring(picture, large)

@@ -29,7 +29,7 @@ SOIL_DEPTH, BEVEL, LINE_HALF = 26.0, 9.0, 0.9
 # Turf lies on what faces up, as far as this cosine; half width, length of its pattern, how far it sinks.
 TURF_FROM, TURF_HALF, TURF_PERIOD, TURF_SINK = 0.8, 12.0, 46.0, 2.0
 EDGE_HALF = 2.4
-# The stage is made in bands of so many rows, a multiple of 4: what is computed on the way has to fit in a processor's
+# The stage is made in bands of this many rows, a multiple of 4: what is computed on the way has to fit in a processor's
 # cache.
 BAND = 32
 _GRAINS = {"soil": EARTH, "rock": EARTH, "wood": TIMBER}

@@ -33,7 +33,7 @@ _shown: list[ThemeName] = ["dark"]
 
 
 def show_theme(name: ThemeName) -> None:
-    """Draw in the colours of a theme from now on; what is painted already stays until it is painted anew."""
+    """Draw in the colours of a theme from now on; what is painted already stays until it is painted again."""
     _shown[0] = name
 
 

@@ -2,9 +2,9 @@
 
 # Frames that take longer than this [s] are late: 50 of them in a second.
 LATE = 0.020
-# Of so many frames in a row, so many must be late before less is drawn.
+# Of this many frames in a row, this many must be late before less is drawn.
 FRAMES, MOST_LATE = 30, 15
-# After so many frames in time more is tried; where that is late at once, only after twice as many, up to the last.
+# After this many frames in time more is tried; where that is late at once, only after twice as many, up to the last.
 TRY_AFTER, TRY_AT_LAST = 240, 3840
 # What is left out, in this order.
 FULL, NO_SHADOWS, NO_EFFECTS = range(3)

@@ -14,7 +14,7 @@ from sandbox.physics.snapshot import Snapshot
 
 Floats = NDArray[np.float64]
 
-# At most so many at a time; of one moment at most so many places.
+# At most this many at a time; of one moment at most this many places.
 MOST_SPARKS, MOST_DUST, PLACES = 240, 80, 16
 SPARKS_A_TEAR = 9
 # Change of velocity [m/s] in a frame from which a contact raises dust.

@@ -41,7 +41,7 @@ def picture_of(part: str, size: int) -> pygame.Surface:
 
 
 class PartGhost:
-    """The pale picture of what would be dropped; it is drawn anew where the part, its size or the zoom are others."""
+    """The pale picture of what would be dropped; it is drawn again where the part, its size or the zoom are others."""
 
     def __init__(self) -> None:
         self._key: tuple[object, ...] = ()

@@ -78,7 +78,7 @@ def write_png(picture: pygame.Surface, path: Path) -> None:
 
 
 def run_ahead(level: Level, ticks: int, most_particles: int) -> Generator[bool, None, Snapshot]:
-    """Give the state of a level after so many ticks, one a slice; of one of more particles, as it is built."""
+    """Give the state of a level after this many ticks, one a slice; of one of more particles, as it is built."""
     session = Session(level)
     for _ in range(ticks if len(session.world.mass) <= most_particles else 0):
         yield True

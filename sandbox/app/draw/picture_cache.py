@@ -79,7 +79,7 @@ def read_picture(path: Path, size: tuple[int, int]) -> pygame.Surface:
 
 
 def draw_in_slices(level: Level, theme: ThemeName, seconds: float = SECONDS) -> Generator[bool, None, pygame.Surface]:
-    """Draw a level after so many seconds, a slice of the work at a time; the picture is what it gives in the end.
+    """Draw a level after this many seconds, a slice of the work at a time; the picture is what it gives in the end.
 
     theme: what it is drawn in, where the level itself asks for none.
     """

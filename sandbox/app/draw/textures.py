@@ -216,7 +216,7 @@ def laid(skin: str, colour: int) -> NDArray[np.int64]:
 
 
 def _noise(rng: np.random.Generator, reach: int) -> Floats:
-    """Noise (GRAIN, GRAIN) that tiles, of patches about so many texels wide, of deviation 1."""
+    """Noise (GRAIN, GRAIN) that tiles, of patches about this many texels wide, of deviation 1."""
     noise = rng.normal(0, 1, (GRAIN, GRAIN))
     for _ in range(2):
         for axis in (0, 1):

@@ -52,7 +52,7 @@ SIDE_WIDTH = 292.0
 NUDGE_LEAP = 10
 # Of more items than this the panel at the side follows a frame later.
 LARGE_SELECTION = 1_000
-# Scenes of so many states are kept, for who goes back to them; one of 20,000 particles takes some megabytes.
+# Scenes of this many states are kept, for who goes back to them; one of 20,000 particles takes some megabytes.
 SCENES_KEPT = 4
 # Of a view: what makes it no wider and no higher than this many times is fitted in with it.
 FARTHEST = 3.0
@@ -243,7 +243,7 @@ class EditScreen:
         return left, top, max(width - left - right, 1), max(height - top - ui.px(STATUS_HEIGHT), 1)
 
     def build(self, ui: Ui) -> None:
-        """Lay the widgets out anew."""
+        """Lay the widgets out again."""
         self.ui = ui
         before = self.camera.viewport
         self.camera.viewport = self._viewport()

@@ -80,7 +80,7 @@ class Guide:
     # The card.
 
     def build(self) -> None:
-        """Lay the card out anew, the window's widgets being new."""
+        """Lay the card out again, the window's widgets being new."""
         self._panel, self._made_for, self.buttons = None, (), {}
 
     def _take_away(self) -> None:

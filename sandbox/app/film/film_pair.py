@@ -96,7 +96,7 @@ class _PairSheet:
 
 
 def _tags_within(words: Sequence[str], room: int, scale: float) -> list[pygame.Surface]:
-    """Tags in letters of one size, none wider than so many pixels; the end of what is too long is left out."""
+    """Tags in letters of one size, none wider than this many pixels; the end of what is too long is left out."""
     for part in SMALLER:
         tags = [name_tag(text, scale * part) for text in words]
         if all(tag.get_width() <= room for tag in tags):

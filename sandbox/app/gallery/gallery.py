@@ -40,7 +40,7 @@ from sandbox.physics import jit
 LEAST_WIDTH, MOST_WIDTH = 218.0, 420.0
 SMALL_HEIGHT = 54.0
 GAP = 16.0
-# Large windows have larger cards, not more than so many side by side, until cards have their greatest width.
+# Large windows have larger cards, not more than this many side by side, until cards have their greatest width.
 COLUMNS = 5
 MARGIN = 36.0
 HEADING = 40.0

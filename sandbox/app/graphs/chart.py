@@ -45,7 +45,7 @@ class GraphLine:
 
 
 def nice_step(span: float, most: float) -> float:
-    """The smallest of 1, 2 and 5 times a power of ten that divides a span into at most so many parts."""
+    """The smallest of 1, 2 and 5 times a power of ten that divides a span into at most this many parts."""
     least = span / max(most, 1.0)
     if not (np.isfinite(least) and least > 1e-300):
         return 1.0
@@ -241,7 +241,7 @@ def _range(lines: Sequence[GraphLine], from_zero: bool) -> tuple[float, float]:
 
 
 def _thinned(x: Floats, y: Floats, good: NDArray[np.bool_], most: int) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """At most about so many points: of neighbours the lowest and the highest, so that no peak is lost."""
+    """At most about this many points: of neighbours the lowest and the highest, so that no peak is lost."""
     if len(x) <= most:
         return x, y, good
     size = 2 * -(-len(x) // most)

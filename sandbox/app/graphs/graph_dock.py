@@ -34,7 +34,7 @@ ONE_WIDTH = 92.0
 SPANS = (10.0, 30.0, 60.0, 5.0)
 # Particles that are followed at most.
 MOST_PICKED = 4
-# A picture that is kept is so many times as large.
+# A picture that is kept is this many times as large.
 PICTURE_SCALE = 2.0
 WANTED = "graphs"
 
@@ -67,7 +67,7 @@ class GraphDock:
     # Building.
 
     def build(self, ui: Ui, width: float, bottom: float) -> None:
-        """Lay it out anew, width wide, above a lower edge [layout units]."""
+        """Lay it out again, width wide, above a lower edge [layout units]."""
         self._tabs, self._one, self._ui = None, None, ui
         if not self.is_shown:
             return

@@ -32,7 +32,7 @@ GROUPS = ("basics", "contacts")
 TYPING, LINKING = 2.4, 1.0
 # More processes would slow other programs down, and the longest share gets no shorter.
 MOST_PROCESSES = 4
-# A child looks for garbage after so many new objects, in place of 700: compiling makes many that stay, a tenth of it.
+# A child looks for garbage after this many new objects, in place of 700: compiling makes many that stay, a tenth of it.
 SEARCH_AFTER = 50_000
 # How often children are looked after where nothing else is to be done [s].
 POLL = 0.05
@@ -263,7 +263,7 @@ def compile_all(
 
 
 def _main(number: str, processes: str, groups: str, solvers: str) -> None:
-    """Compile one share of so many, and say so on standard output, to whoever listens."""
+    """Compile one share of this many, and say so on standard output, to whoever listens."""
     if sys.platform != "win32":
         os.nice(NICENESS)
     gc.set_threshold(SEARCH_AFTER)

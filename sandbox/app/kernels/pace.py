@@ -44,7 +44,7 @@ class Pace:
         return self._has_held is not None
 
     def note(self, ticks: int, seconds: float) -> None:
-        """Take into account that so many ticks of the run took so many seconds."""
+        """Take into account that this many ticks of the run took this many seconds."""
         # While it is paused, or has not begun, nothing is late.
         if not ticks:
             return

@@ -59,7 +59,7 @@ class Preparation:
         return self.is_ready(contacts) or (not jit.COMPILED and self._pace is not None and self._pace.holds)
 
     def note(self, ticks: int, seconds: float) -> None:
-        """Take into account that so many ticks of that run took so many seconds."""
+        """Take into account that this many ticks of that run took this many seconds."""
         if not jit.COMPILED and self._pace is not None:
             self._pace.note(ticks, seconds)
 

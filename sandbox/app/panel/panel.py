@@ -67,7 +67,7 @@ class Panel:
 
     choose: what is done with a strength of the "hand", with a "view" that is shown or no longer, with how "springs" are
     set ("pad" or "sliders"), that they are to "melt", the section whose "fold" changes, another tick "rate" [1/s], and
-    of two runs the "side" to show. touch: what begins the run anew where things touch otherwise.
+    of two runs the "side" to show. touch: what begins the run again where things touch otherwise.
     """
 
     def __init__(
@@ -314,7 +314,7 @@ class Panel:
             self._scale = scale_for(lambda cs, cd: _sag(body, cs, cd), own)
 
     def _find_zones(self) -> None:
-        """Find the pad's zones anew, where what they depend on has changed: not the chosen springs' own Cs and Cd."""
+        """Find the pad's zones again, where what they depend on has changed: not the chosen springs' own Cs and Cd."""
         if not self.by_pad:
             return
         world = self.playback.session.world

@@ -1,4 +1,4 @@
-"""Another tick rate for a run, which then begins anew: at the same pace per second, or with the same Cs and Cd."""
+"""Another tick rate for a run, which then starts over: at the same pace per second, or with the same Cs and Cd."""
 
 from functools import partial
 
@@ -17,7 +17,7 @@ from sandbox.physics.world import World
 def level_at_rate(level: Level, world: World, rate: int, in_pace: bool) -> Level:
     """The level of a run at another tick rate, with the springs and the solver that its world has now.
 
-    in_pace: Cs and Cd are worked out anew so that springs move per second as they do. Raises EditError.
+    in_pace: Cs and Cd are worked out again so that springs move per second as they do. Raises EditError.
     """
     document = keep_coefficients(Document(level), world)
     for name in CHANGEABLE_SETTINGS:
@@ -26,7 +26,7 @@ def level_at_rate(level: Level, world: World, rate: int, in_pace: bool) -> Level
 
 
 def ask_for_pace(app: Application, playback: Playback, rate: int) -> None:
-    """Ask whether behaviour per second or Cs and Cd are kept, and begin the run anew so."""
+    """Ask whether behaviour per second or Cs and Cd are kept, and begin the run again so."""
 
     def begin(in_pace: bool) -> None:
         try:

@@ -20,7 +20,7 @@ UNSEEN = 1e-5
 
 
 def number(value: float, digits: int = DIGITS) -> str:
-    """A number without an exponent, in so many significant digits; large ones keep all before the point."""
+    """A number without an exponent, in this many significant digits; large ones keep all before the point."""
     if not math.isfinite(value):
         return "\u221e" if value > 0.0 else "\u2212\u221e" if value < 0.0 else "?"
     if value == 0.0 or abs(value) < 1e-12:

@@ -14,14 +14,14 @@ from sandbox.physics.analysis.spring_motion import SpringMotion, errors_of, moti
 # Longest time that is looked at, and those that the curve may show [ticks].
 LONGEST = 960
 LENGTHS = (12, 30, 60, 120, 240, 480, LONGEST)
-# Up to so many ticks each has a dot.
+# Up to this many ticks each has a dot.
 MOST_DOTS = 60
 # Sizes in layout units.
 TEXT_SIZE, TOP, BOTTOM, SIDE = 10.5, 17.0, 15.0, 4.0
 
 
 class ResponseCurve(Painted):
-    """The curve of one spring; it is worked out anew where Cs, Cd or the tick rate change."""
+    """The curve of one spring; it is worked out again where Cs, Cd or the tick rate change."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any = None) -> None:
         super().__init__(ui, rect, container)

@@ -70,7 +70,7 @@ class SolverRows:
         return self._submit(SetSolver(iterations=int(value)))
 
     def _type_rate(self, text: str) -> bool:
-        """Ask how to go on at another tick rate; the run has the old one until it begins anew."""
+        """Ask how to go on at another tick rate; the run has the old one until it starts over."""
         if not text.strip().isdecimal():
             self._say(f"Ticks a second: {text.strip() or 'nothing'!r} is not a whole number.")
         elif int(text) != self.playback.session.world.settings.tick_rate:

@@ -1,4 +1,4 @@
-"""Whether things touch each other in a level that is played, and how: another way begins the run anew."""
+"""Whether things touch each other in a level that is played, and how: another way begins the run again."""
 
 from dataclasses import dataclass, replace
 
@@ -45,7 +45,7 @@ def level_touching(playback: Playback, touching: Touching) -> Level:
 
 
 def begin_touching(app: Application, playback: Playback, touching: Touching, of_document: bool) -> None:
-    """Begin a run anew with things that touch so, or say why that cannot be."""
+    """Begin a run again with things that touch so, or say why that cannot be."""
     if of_document:
         app.say("This run belongs to the editor. Change it there, on the page Level.")
         return

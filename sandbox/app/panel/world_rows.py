@@ -23,7 +23,7 @@ GRAVITY_TIP = "How fast things fall; -9.81 is the Earth's gravity, at 0 they flo
 class WorldRows:
     """What the rows show and do; choose: what is done with a strength of the "hand" and with a "view".
 
-    touch: what begins the run anew where things touch otherwise.
+    touch: what begins the run again where things touch otherwise.
     """
 
     def __init__(

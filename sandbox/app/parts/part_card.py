@@ -155,7 +155,7 @@ class PartCard(Lit, Pressable):
 
 
 def card_places(ui: Ui, count: int, columns: int, room: float, y: float, gap: float) -> tuple[list[pygame.Rect], float]:
-    """Where so many cards lie [pixels] in a room so wide, from y on, and where they end [layout units]."""
+    """Where this many cards lie [pixels] in a room so wide, from y on, and where they end [layout units]."""
     width = (room - 6 - gap * (columns - 1)) / columns
     height = width * PICTURE_RATIO + NAME_HEIGHT
     cells = (divmod(index, columns) for index in range(count))

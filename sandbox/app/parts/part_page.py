@@ -37,7 +37,7 @@ class PartPage:
     """A modal page; what cannot join the world is pale, and says why where it is pointed at.
 
     is_ready: whether pictures can be drawn. take: called with the part that is chosen, and whether by a key. again:
-    opens the page anew, scrolled to an offset [pixels]. last_taken: the part that Enter takes; else the first one that
+    opens the page again, scrolled to an offset [pixels]. last_taken: the part that Enter takes; else the first one that
     can be had.
     """
 

@@ -60,7 +60,7 @@ class _Sample:
 
 
 class Legend:
-    """Draws the card; it is painted anew where what it says has changed."""
+    """Draws the card; it is painted again where what it says has changed."""
 
     def __init__(self) -> None:
         self._key: tuple[object, ...] = ()

@@ -24,7 +24,7 @@ class MeltLesson(PlayScreen):
     again_top = 72.0
 
     def build(self, ui: Ui) -> None:
-        """Lay everything out anew, and the button in the middle of the stage's top."""
+        """Lay everything out again, and the button in the middle of the stage's top."""
         super().build(ui)
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - SIZE[0] / 2
         self._is_melted = is_melted(self.playback)

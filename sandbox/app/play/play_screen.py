@@ -177,7 +177,7 @@ class PlayScreen:
         return left, self._below + keys, end
 
     def build(self, ui: Ui) -> None:
-        """Lay the bar and the panel out anew."""
+        """Lay the bar and the panel out again."""
         self._ui = ui
         self.show_panel = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
         self.toolbar = Toolbar(ui, self._app.act, self.of_document)
@@ -220,7 +220,7 @@ class PlayScreen:
         return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape, self.touch)
 
     def touch(self, touching: Touching) -> None:
-        """Begin the run anew with things that touch so."""
+        """Begin the run again with things that touch so."""
         begin_touching(self._app, self.playback, touching, self.of_document)
 
     def _set_by(self, way: str) -> None:
@@ -247,7 +247,7 @@ class PlayScreen:
         self._app.say(toggle_melt(self.playback))
 
     def _ask_rate(self, typed: str) -> None:
-        """Ask how to begin anew at another tick rate."""
+        """Ask how to start over at another tick rate."""
         if self.of_document:
             self._app.say("This run belongs to the editor. Change its ticks a second there, on the page Level.")
         else:

@@ -59,7 +59,7 @@ class TimeBar:
         return HEIGHT if self.is_shown else 0.0
 
     def build(self, ui: Ui, width: float, bottom: float) -> None:
-        """Lay it out anew, width wide, above a lower edge [layout units]."""
+        """Lay it out again, width wide, above a lower edge [layout units]."""
         self.track = None
         if not self.is_shown:
             return

@@ -25,7 +25,7 @@ class Liveliness:
         self._speeds[shown.tick] = float(np.nan_to_num(speed).mean()) if len(speed) else 0.0
 
     def liveliest(self, first: int, last: int, ticks: int) -> int:
-        """The tick from which on so many ticks within first..last move the most; those not shown count as still."""
+        """The tick from which on this many ticks within first..last move the most; those not shown count as still."""
         speeds = np.array([self._speeds.get(tick, 0.0) for tick in range(first, last + 1)])
         if len(speeds) <= ticks:
             return first

@@ -296,7 +296,7 @@ class Playback:
         return done
 
     def _make_room(self) -> None:
-        """Let a frame do one part of what joining takes: adding and drawing it anew, what its ticks need, a tick."""
+        """Let a frame do one part of what joining takes: adding and drawing it again, what its ticks need, a tick."""
         self._making_room -= 1
         if self._making_room == 0:
             precompute(self.session.world)

@@ -1,4 +1,4 @@
-"""How near the springs of a run are to the limit of what is proven stable, worked out anew where that may change."""
+"""How near the springs of a run are to the limit of what is proven stable, worked out again where that may change."""
 
 import numpy as np
 from numpy.typing import NDArray

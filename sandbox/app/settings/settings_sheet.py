@@ -24,7 +24,7 @@ KEYS_NOTE = "Click a row, then press the new keys. Delete clears it, Escape canc
 
 
 class SettingsSheet:
-    """A modal page; page: one of PAGES. It is made anew after what changes how all widgets look."""
+    """A modal page; page: one of PAGES. It is made again after what changes how all widgets look."""
 
     def __init__(
         self,
@@ -89,7 +89,7 @@ class SettingsSheet:
         self._show_anew()
 
     def _show_anew(self) -> None:
-        # What was chosen may have laid all widgets out anew, and this page with them, by `_again`.
+        # What was chosen may have laid all widgets out again, and this page with them, by `_again`.
         if self._sheet.alive():
             focus = self._ui.focus_place
             self.close()

@@ -156,7 +156,7 @@ def _pictures(comparison: Comparison) -> Iterator[pygame.Surface]:
 
 
 def _states(run: Session, first: int, last: int, step: int) -> Iterator[tuple[int, Snapshot]]:
-    """States of a run every so many ticks, those before its present tick told again."""
+    """States of a run every this many ticks, those before its present tick told again."""
     present = run.tick
     for world in told_states(run, first, last):
         if (world.tick - first) % step == 0 or world.tick == present:

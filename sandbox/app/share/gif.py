@@ -17,7 +17,7 @@ COLOURS = 255
 UNCHANGED = COLOURS
 # Pixels that the palette is made of, at most.
 MOST_PIXELS = 50_000
-# Colours are looked up with so many bits a channel; what is cut off decides the pattern of dots.
+# Colours are looked up with this many bits a channel; what is cut off decides the pattern of dots.
 BITS = 6
 CUT = 8 - BITS
 # How strongly the eye sees red, green and blue.

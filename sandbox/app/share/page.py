@@ -76,7 +76,7 @@ class SharePage:
 
 
 class ShareForm:
-    """What is on the page at one step of sharing, in one window; again: called where it is laid out anew."""
+    """What is on the page at one step of sharing, in one window; again: called where it is laid out again."""
 
     def __init__(self, ui: Ui, sharing: Sharing, leave: Callable[[], None], again: Callable[[Ui], None]) -> None:
         self._ui, self._sharing, self._leave = ui, sharing, leave
@@ -261,7 +261,7 @@ class FilmPreview(Painted):
         self.repaint()
 
     def show_picture(self, picture: pygame.Surface | None) -> None:
-        """Show another picture, which may have been drawn on anew."""
+        """Show another picture, which may have been drawn on again."""
         if picture is not None:
             self.picture = picture
             self.repaint()

@@ -153,7 +153,7 @@ class Sharing:
         self.choose(start=start, end=min(start + LIVELY, film.seconds))
 
     def _film_preview(self) -> None:
-        """Draw what is chosen anew, where other seconds are."""
+        """Draw what is chosen again, where other seconds are."""
         film, wanted = self.film, self.wanted
         chosen = (0.0, film.seconds) if film is not None and wanted.kind == "png" else (wanted.start, wanted.end)
         if film is None or chosen == self._previewed:

@@ -28,11 +28,11 @@ NEWS = 1.5
 RUB, HARD_RUB = 0.12, 1.2
 # From what jerk of a string [m/s] it sounds, and where it is loudest.
 JERK, HARD_JERK = 1.0, 8.0
-# Strings of the size of a level would be too low to hear: so many times higher, up to so many Hz.
+# Strings of the size of a level would be too low to hear: this many times higher, up to this many Hz.
 TUNED, HIGHEST_STRING = 24.0, 700.0
 # Pitches [Hz] of a break of a spring of 0.3 m, and of a motor that stands and one of 1 rad/s.
 SNAP_PITCH, MOTOR_PITCH, MOTOR_RISE = 420.0, 70.0, 9.0
-# Of one tick at most so many of each kind: the loudest.
+# Of one tick at most this many of each kind: the loudest.
 MOST = 4
 
 

@@ -6,7 +6,7 @@ from typing import Protocol
 
 from sandbox.app.sound.bank import LEVELS, Bank, Note, Sample
 
-# Sounds that play at once, at most; and so many of them motors.
+# Sounds that play at once, at most; and this many of them motors.
 VOICES, MOTORS = 12, 3
 # Of the voices this many are kept free by letting the quietest fade [s]: a sound that is cut off clicks.
 SPARE, CUT_FADE = 2, 0.03
@@ -19,7 +19,7 @@ NEW_PER_FRAME, FOLLOWING = 4, 0.8
 SOFTEST_VOICE = 0.012
 # The mixer may be behind by this [s]: what is still to come of a sound is counted from there.
 LATENCY = 0.06
-# Motors rise and fall within so many s, and change their note no sooner than this [s].
+# Motors rise and fall within this many s, and change their note no sooner than this [s].
 MOTOR_FADE, MOTOR_HOLD = 0.12, 0.15
 # How far to a side what is at the edge of the view is heard.
 WIDTH = 0.7

@@ -25,7 +25,7 @@ class Stuff:
     """What is heard of a stuff that is struck: its modes and the noise of the blow.
 
     pitch: of a thing of 1 m [Hz]. modes: frequency over the lowest, time [s] to fall to 1/e, strength. glide: how much
-    higher it begins. noise: strength of the blow, below cut [Hz], over in so many s.
+    higher it begins. noise: strength of the blow, below cut [Hz], over in this many s.
     """
 
     pitch: float

@@ -9,9 +9,9 @@ from filelock import FileLock, Timeout
 from sandbox.editor.storage.data_folder import data_folder
 from sandbox.editor.storage.preferences import preference, set_preference
 
-# Under what toys are remembered; so many places are kept, of the levels that were toys last.
+# Under what toys are remembered; this many places are kept, of the levels that were toys last.
 KEPT, MOST_PLACES = "toy", 40
-# So many toys at once keep out of each other's way.
+# This many toys at once keep out of each other's way.
 MOST_TOYS = 12
 
 Place = tuple[int, int]

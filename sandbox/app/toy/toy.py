@@ -95,7 +95,7 @@ class Toy:
     # The loop.
 
     def run(self, seconds: float | None = None) -> None:
-        """Run until it is closed, or for so many seconds."""
+        """Run until it is closed, or for this many seconds."""
         started = before = time.perf_counter()
         clock = pygame.time.Clock()
         while self.running and (seconds is None or before - started < seconds):

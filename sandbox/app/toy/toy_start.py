@@ -22,7 +22,7 @@ def run_toy(
     find: "Callable[[], Level]", tell: Callable[[str], object], record: Path | None, seconds: float | None,
     scale: float | None, theme: str | None,
 ) -> None:  # fmt: skip
-    """Open a toy and run it until it is closed, or for so many seconds.
+    """Open a toy and run it until it is closed, or for this many seconds.
 
     find: the level. tell: told in one line where the system cannot do what a toy needs. record: a file that it is
     recorded to. scale, theme: in place of what is remembered of the person.

@@ -24,7 +24,7 @@ class HintedEntry(UITextEntryLine):
         super().set_text(text)
 
     def rebuild(self) -> None:
-        """Draw it anew."""
+        """Draw it again."""
         super().rebuild()
         self._tint(self.is_focused)
         if not self.text and self.placeholder_text and self.drawable_shape is not None:

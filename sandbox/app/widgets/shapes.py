@@ -13,7 +13,7 @@ from sandbox.app.base.recent_pictures import RecentPictures
 
 # What pictures of buttons and the like that are kept may take [bytes]; most have 10 kB, none has more than 160.
 HELD = 8_000_000
-# Larger ones [pixels] are made anew, as the library has it.
+# Larger ones [pixels] are made again, as the library has it.
 LARGEST_KEPT = 40_000
 # Rounded rectangles are drawn no larger [pixels], and stretched: the library gives the background inside a border the
 # corners of the border, made as much smaller, and in a much smaller shape that would be seen.

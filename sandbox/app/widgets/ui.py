@@ -34,7 +34,7 @@ ANSWERS = (
 )
 
 
-# Opens a modal page anew on other widgets, with what was typed so far.
+# Opens a modal page again on other widgets, with what was typed so far.
 Again = Callable[["Ui"], object]
 
 
@@ -42,7 +42,7 @@ Again = Callable[["Ui"], object]
 class Sheet:
     """A modal page and the widgets on it; close: what Escape does; is_page: it is read, so no notices lie over it.
 
-    again: opens it anew in another layout; None = it ends with this one. is_question: it outlives the screen under it.
+    again: opens it again in another layout; None = it ends with this one. is_question: it outlives the screen under it.
     """
 
     panel: UIPanel

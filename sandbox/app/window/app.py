@@ -56,7 +56,7 @@ FIGURES_EVERY = 0.5
 WAITING_RATE = 20
 # A run that waits for kernels no longer than this [s] says nothing of it.
 WAIT_UNSEEN = 0.3
-# Settings that all widgets are laid out anew for.
+# Settings that all widgets are laid out again for.
 LAID_OUT = ("theme", "scale", "keys")
 
 
@@ -134,7 +134,7 @@ class App:
         self.guide.build()
 
     def rebuild(self) -> None:
-        """Lay everything out anew, after the window or the scale changed."""
+        """Lay everything out again, after the window or the scale changed."""
         before = self.ui
         self._build_ui()
         self.ui.take_over(before)
@@ -480,7 +480,7 @@ def run_app(
     show_progress: Callable[[], object] = lambda: None,
     says_states: bool = False,
 ) -> None:
-    """Show what is wanted in the window and run until it is closed, or for so many seconds.
+    """Show what is wanted in the window and run until it is closed, or for this many seconds.
 
     given: see `Chosen`. show_progress: called now and then until there is something to show. says_states: the window's
     title says what happens.

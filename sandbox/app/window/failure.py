@@ -14,7 +14,7 @@ from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.storage.data_folder import data_folder
 from sandbox.level.format.level_error import one_line
 
-# So many faults within this time [s], and no frame can be trusted any more.
+# This many faults within this time [s], and no frame can be trusted any more.
 MOST, WITHIN = 3, 4.0
 # Reports that are kept, the latest.
 KEPT = 20

@@ -18,7 +18,7 @@ REPEATED = (
     "step", "back", "zoom_in", "zoom_out", "undo", "redo",
     "next_particle", "previous_particle", "next_item", "previous_item",
 )  # fmt: skip
-# Actions that lay the widgets out anew, which keeps what is being typed; they work over a page, too.
+# Actions that lay the widgets out again, which keeps what is being typed; they work over a page, too.
 LAYOUT = ("fullscreen", "larger", "smaller")
 # Actions that open something else to play, or a page over it, which a gallery that nothing lies over has too.
 OF_GALLERY = ("open", "open_file", "recent", "recordings", "new", "settings", "help", "tour")

@@ -90,7 +90,7 @@ def open_app(
     theme: str | None = None,
     says_states: bool = False,
 ) -> int:
-    """Open the window and run until it is closed, or for so many seconds; returns the exit code.
+    """Open the window and run until it is closed, or for this many seconds; returns the exit code.
 
     find: says what to show, called once the window is there; what it raises is raised here, with the window closed.
     profile: print where a frame's time went, at the end. scale, theme: in place of what is remembered of the person.

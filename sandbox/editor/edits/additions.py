@@ -21,7 +21,7 @@ from sandbox.level.kinds.body_def import BendingDef, FirmnessDef
 from sandbox.level.kinds.wheel import WheelDef
 from sandbox.level.plan.axles import mount_of
 
-# A new muscle swings by this share of its length, once in so many ticks: a second, at 60 ticks in one.
+# A new muscle swings by this share of its length, once in this many ticks: a second, at 60 ticks in one.
 MUSCLE = MuscleDef(amplitude=0.2, period=60)
 # A body is given this firmness first.
 SOFT = FirmnessDef(sag=0.1)
@@ -29,7 +29,7 @@ SOFT = FirmnessDef(sag=0.1)
 # its rim: one wheel alone climbs from corner to corner of 16 with 0.2 of it, and 10 degrees with another 0.17.
 MOTOR_SPEED = 3.0
 MOTOR_SHARE = 0.75
-# Of few segments it is at least so many times the torque that climbing from corner to corner takes.
+# Of few segments it is at least this many times the torque that climbing from corner to corner takes.
 CORNERS_SHARE = 2.0
 WEIGHT = 9.81  # [N/kg], where a level has no gravity
 # A new hydraulic begins as long as its spring is drawn, reaches this much of that, and needs a second for it.

@@ -1,4 +1,4 @@
-"""Sizing: a part so many times larger, as a thing of the same stuff is: heavier by its area, and driven along."""
+"""Sizing: a part this many times larger, as a thing of the same stuff is: heavier by its area, and driven along."""
 
 from typing import Any
 
@@ -51,7 +51,7 @@ def _with_masses(body: AnyBody, factor: float) -> AnyBody:
 
 
 def _heavier(part: Any, factor: float) -> Any:
-    """A description with its masses and forces, and those of what it holds, for lengths so many times as large."""
+    """A description with its masses and forces, and those of what it holds, for lengths this many times as large."""
     changes: dict[str, Any] = {}
     model: type[Description] = type(part)
     known = fields_of(model)

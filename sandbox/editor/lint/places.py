@@ -21,7 +21,7 @@ OVERLAP = BODY_RADIUS / 2.0
 # millions, which say no more.
 COMPARED = 2_000_000
 PAIRS = 200
-# Springs of two bodies are held against each other in blocks of at most so many: a few milliseconds each.
+# Springs of two bodies are held against each other in blocks of at most this many: a few milliseconds each.
 BLOCK = 128
 OTHER_BLOCK = 128
 # Springs that meet within this share of their length from an end touch; beyond rounding, below what is seen.

@@ -95,7 +95,7 @@ class Property:
         return read_line(text)
 
     def stepped(self, steps: int) -> float | None:
-        """The value so many steps up or down, within its limits; None where it is no number, or not the same of all."""
+        """The value some steps up or down, within its limits; None where it is no number, or not the same of all."""
         about = self.about
         if about.kind not in ("number", "integer") or self.value is None or self.value is MIXED:
             return None

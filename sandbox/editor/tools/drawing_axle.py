@@ -22,7 +22,7 @@ from sandbox.level.format.limits import TORQUE_LIMIT, TURN_LIMIT
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.wheel import WheelDef
 
-# A wheel beside a body hangs on this many of its particles, none farther from the axle than so many radii.
+# A wheel beside a body hangs on this many of its particles, none farther from the axle than this many radii.
 STRUTS, STRUT_REACH = 3, 3.0
 STRUT_MATERIAL = "steel"
 # Two struts hold an axle where the sine of the angle between them is this large; smaller: it gives way across them.

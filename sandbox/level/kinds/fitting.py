@@ -26,7 +26,7 @@ CLEARANCE = 0.6
 # Cotangents of the smallest angle that a triangle may have: 20 degrees; of an outline with sharper corners than twice
 # that, half its sharpest, and never below 5 degrees, where a triangle is little more than a line.
 LEAST_ANGLE, SLIVER = 2.7475, 11.43
-# A disc of so many rings is beyond every limit.
+# A disc of this many rings is beyond every limit.
 RING_LIMIT = 1e4
 # Work of a mesh in units of the limit of polygons: for each particle, and for each pair of sides of the border.
 PARTICLE_WORK, PAIR_WORK = 200.0, 0.25

@@ -92,7 +92,7 @@ _KINDS: dict[bytes, type[_SealedLine]] = {
 
 @dataclass
 class _Gathered:
-    """What was read of a recording of a version, whose level has so many particles and springs (slots)."""
+    """What was read of a recording of a version, whose level has this many particles and springs (slots)."""
 
     version: int
     slots: int

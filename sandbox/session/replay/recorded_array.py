@@ -42,7 +42,7 @@ def recorded_array(found: NDArray[Any], fits: Callable[[str], bool]) -> NDArray[
 
 
 def _changes(bits: int) -> Iterator[Callable[[NDArray[Any]], NDArray[Any]]]:
-    """What may have become of numbers of so many bits, read as unsigned, the likeliest first."""
+    """What may have become of numbers of this many bits, read as unsigned, the likeliest first."""
 
     def moved(step: int) -> Callable[[NDArray[Any]], NDArray[Any]]:
         return lambda numbers: numbers + numbers.dtype.type(step % 2**bits)

@@ -10,7 +10,7 @@ from sandbox.session.session import Session
 
 
 def resume(replay: Replay, ticks: int, progress: Callable[[int], object] | None = None) -> None:
-    """Put in the place of a recording one that goes on where it was cut off, to so many ticks in all, and is whole.
+    """Put in the place of a recording one that goes on where it was cut off, to this many ticks in all, and is whole.
 
     progress: called with each tick that was run. Raises ReplayError where the run is not the recorded one any more,
     CommandError where a command cannot be carried out, OSError where the file cannot be written; whatever is raised,

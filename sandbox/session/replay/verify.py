@@ -227,7 +227,7 @@ def _differing_state(replay: Replay, world: World) -> Divergence | None:
             raise ReplayError(f"{replay.source}: line {stored.line if stored else 0}: {error}") from None
         if column is None or array is None or canonical_bytes(array) == canonical_bytes(getattr(world, column.name)):
             continue
-        note = "the stored state is not the one whose hash stands at its tick: changed, and sealed anew"
+        note = "the stored state is not the one whose hash stands at its tick: changed, and sealed again"
         found = first_difference(world.tick, name, array, world)
         return replace(found, note=note)
     return None

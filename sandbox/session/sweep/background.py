@@ -25,7 +25,7 @@ _HOME = Path(__file__).resolve().parents[3]
 
 
 class BackgroundSweep:
-    """Runs points of a grid by their numbers, those named first soonest, in so many children; nothing here waits.
+    """Runs points of a grid by their numbers, those named first soonest, in this many children; nothing here waits.
 
     error: the reason why it cannot go on. Raises OSError where no child can be started.
     """

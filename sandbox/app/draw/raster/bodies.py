@@ -83,7 +83,7 @@ class BodyScratch(NamedTuple):
 
 @inner_kernel
 def _raise_skin(scratch, width, height, wide, tall, edge):  # type: ignore[no-untyped-def]
-    """Coverage from areas, and from it a quarter as many cells of the skin, inside an empty edge of so many cells."""
+    """Coverage from areas, and from it a quarter as many cells of the skin, inside an empty edge of this many cells."""
     cover, high = scratch.cover, scratch.high
     stride = width + 2
     for y in range(height):

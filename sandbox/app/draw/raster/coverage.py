@@ -82,7 +82,7 @@ def add_outline(cells, width, height, point, first, last, x0, y0, scale):  # typ
 
 @inner_kernel
 def blur(cells, spare, sums, width, height, reach, passes):  # type: ignore[no-untyped-def]
-    """Blur cells (height, width) by boxes of 2 reach + 1, so many times; what lies outside counts as 0."""
+    """Blur cells (height, width) by boxes of 2 reach + 1, this many times; what lies outside counts as 0."""
     share = 1.0 / (2 * reach + 1)
     ahead, wide = unsigned(reach), unsigned(width)
     for _ in range(passes):

@@ -1,4 +1,4 @@
-"""Borders: closed loops of particles around what is filled, traced anew where springs are torn."""
+"""Borders: closed loops of particles around what is filled, traced again where springs are torn."""
 
 import math
 from itertools import pairwise
@@ -120,7 +120,7 @@ def chains_of(ends: Slots) -> list[tuple[Slots, Slots]]:
 
 
 def starts_of(lengths: list[int]) -> Slots:
-    """Where each of so many rows begins, and where the last ends."""
+    """Where each of this many rows begins, and where the last ends."""
     return np.array([0, *np.cumsum(lengths)], dtype=np.int64) if lengths else np.zeros(1, dtype=np.int64)
 
 

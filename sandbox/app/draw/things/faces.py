@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 LARGEST, SMALLEST = 120.0, 24.0
 # Mean strain above which a face is squeezed; speed [m/s] above which its mouth is open.
 SQUEEZED, FAST = 0.10, 2.5
-# A blink of this length [s] every so many seconds, and more of the others.
+# A blink of this length [s] every this many seconds, and more of the others.
 BLINK, BLINK_EVERY = 0.13, 3.4
 GAP, EYE_SIZE, EYE_UP, MOUTH_DOWN, MOUTH_WIDE = 0.19, 0.118, -0.09, 0.125, 0.125
 MOUTH_PIECES = 8

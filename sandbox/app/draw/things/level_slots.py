@@ -43,7 +43,7 @@ class Filling(NamedTuple):
 class Actor:
     """A body. slots (n,) of its particles; springs (m,) slots, pairs (m, 2) their ends by index, ends by slot.
 
-    What it takes long to find of it is kept, as all bodies are gone through anew where one is torn or another is added.
+    It keeps what takes long to find, since all bodies are gone through again where one is torn or another is added.
     """
 
     body: BodyDef

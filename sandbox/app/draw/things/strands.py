@@ -51,7 +51,7 @@ class Strands:
             self._groups = []
             for (kind, width), found in self._found.items():
                 rows, rest, springs = (np.concatenate(part) for part in zip(*found, strict=True))
-                # Each strand's pattern begins anew.
+                # Each strand's pattern starts over.
                 metres = np.concatenate([np.cumsum(own) for _, own, _ in found])
                 along = np.column_stack([metres - rest, metres])
                 self._groups.append((kind, width, rows, along, springs, float(np.median(rest)) if len(rest) else 1.0))

@@ -54,7 +54,7 @@ HIGHLIGHT_WIDTH = 2.4
 GHOST_FLESH = 600
 # Springs and particles over what they look like are so much thinner.
 FINE = 0.55
-# The smooth picture is made of so many springs or particles at a time, for so long [s] in every frame.
+# The smooth picture is made of this many springs or particles at a time, for so long [s] in every frame.
 CHUNK = 2_000
 SLICE = 0.006
 # Particles that would be smaller than this [pixels] are left out of the plain picture.

@@ -18,7 +18,7 @@ from sandbox.editor.scene import Scene
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Scenes of more particles and springs than this show their springs alone: each edit makes all of it anew.
+# Scenes of more particles and springs than this show their springs alone: each edit makes all of it again.
 MOST = 4_000
 # How much of it shows, of 255.
 ALPHA = 190

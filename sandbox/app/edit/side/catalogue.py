@@ -124,7 +124,7 @@ class CataloguePage:
             self._chosen = next(same, None)
         drawing = self._drawing()
         if self._chosen is None and drawing is not None and drawing.options.part is not None:
-            # The window is laid out anew, and the tool still has it.
+            # The window is laid out again, and the tool still has it.
             self._chosen = next((part for part in files if part.level is drawing.options.part), None)
         own = [part for part in files if part.is_own]
         y = self._add_section("Ready", [part for part in files if not part.is_own], 0.0)

@@ -41,7 +41,7 @@ NOTE_LINES = 3
 NOTE_LINE = 15.0
 # Characters of a line to type into; what is longer is copied and pasted as a whole.
 TEXT_LENGTH = 600
-# Choices of at most this many letters in all, and so many of them, stand side by side, others in a menu.
+# Choices of at most this many letters in all, and this many of them, stand side by side, others in a menu.
 SIDE_BY_SIDE = 14
 MOST_SIDE_BY_SIDE = 4
 SQUARED = {"m/s^2": "m/s²"}
@@ -73,7 +73,7 @@ def _listed(collides: Any) -> Sequence[str]:
 
 
 class Form:
-    """Properties in a scrolled area, which is its owner's; the widgets are made anew only when other fields are shown.
+    """Properties in a scrolled area, which is its owner's; the widgets are made again only when other fields are shown.
 
     above, below: what is left free there [layout units]. empty: what it says without properties.
     """

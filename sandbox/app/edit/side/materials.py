@@ -186,7 +186,7 @@ class MaterialsPage:
                 self.fields[name].show(number(value))
 
     def _used(self, level: Level) -> tuple[Counter[str], Counter[str]]:
-        """How many bodies and loose springs are of each material, counted anew only where these have changed."""
+        """How many bodies and loose springs are of each material, counted again only where these have changed."""
         uses = self._uses
         if uses is None or uses[0] is not level.bodies or uses[1] is not level.springs:
             of_bodies = Counter(body.material for body in level.bodies)

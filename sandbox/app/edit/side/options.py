@@ -36,7 +36,7 @@ Item = tuple[float, Callable[[], None]]
 
 
 class OptionsRow:
-    """Fields of the tool in use, in a rectangle of pixels; made anew when the tool or the materials change.
+    """Fields of the tool in use, in a rectangle of pixels; made again when the tool or the materials change.
 
     Where they do not fit side by side, a button turns to those that come next.
     """

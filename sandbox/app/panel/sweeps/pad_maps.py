@@ -16,7 +16,7 @@ MENU_TEXT, MENU_EDGES = 13.0, 40.0
 
 
 class PadMaps:
-    """Keeps a pad at what is chosen; sweeps: outlives it when the panel is laid out anew."""
+    """Keeps a pad at what is chosen; sweeps: outlives it when the panel is laid out again."""
 
     def __init__(self, ui: Ui, place: pygame.Rect, playback: Playback, sweeps: PadSweeps, container: Any) -> None:
         self._ui, self.sweeps = ui, sweeps
