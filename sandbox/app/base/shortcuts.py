@@ -107,7 +107,7 @@ SHORTCUTS = (
     Shortcut("undo", ("Ctrl+Z",), "Undo a drag, cut, pin or slider move", "Tools", "play"),
     Shortcut("redo", ("Ctrl+Y", "Ctrl+Shift+Z"), "Redo", "Tools", "play"),
     *_tools("Draw"),
-    Shortcut("", ("+", "-"), "While drawing: more or fewer parts", "Draw", "edit"),
+    Shortcut("", ("+", "-"), "While drawing: more or fewer segments", "Draw", "edit"),
     Shortcut("finish", ("Ctrl+Enter",), "Finish the drawing at the pointer", "Draw", "edit"),
     Shortcut("cancel", ("Escape",), "Cancel; then select nothing", "Draw", "edit"),
     *_tools("Terrain"),

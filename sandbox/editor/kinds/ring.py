@@ -32,11 +32,11 @@ PARTS = (8, 60)
 class RingOptions(BodyOptions):
     """A ring; segments None: about 0.25 m each."""
 
-    segments: int | None = count_option("parts", "Number of parts; empty = about 0.25 m each.", 3)
+    segments: int | None = count_option("segments", "Number of segments; empty = about 0.25 m each.", 3)
     inflation: float | None = option(
         1.2,
         OptionInfo("number", "inflation", "Air inside: the area it tries to have, times its own; empty = no air.", "",
-              0.0, INFLATION_LIMIT, optional=True),
+              0.0, INFLATION_LIMIT, optional=True, empty="no air"),
     )  # fmt: skip
     particle_mass: float = mass_option(0.1)
     material: str = material_option("rubber")
@@ -68,8 +68,8 @@ class RingDrawing(RoundDrawing[RingOptions]):
         return self.fitting(points) if self.options.segments is None else self.options.segments
 
     def sizes(self, points: list[Snap]) -> str:
-        """Radius and number of parts."""
-        return f"radius {length(points):.3g} m, {self._parts(points)} parts"
+        """Radius and number of segments."""
+        return f"radius {length(points):.3g} m, {self._parts(points)} segments"
 
 
 def _draw_ring(pen: IconPen) -> None:

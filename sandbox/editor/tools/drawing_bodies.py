@@ -129,7 +129,7 @@ class LineDrawing(BodyDrawing[AnyLineOptions], Generic[AnyLineOptions]):
 
     counted = "segments"
     parts = "cells"
-    end_hint = "Click or release where it ends; + and - change the number of parts"
+    end_hint = "Click or release where it ends; + and - change the number of segments"
 
     def ends(self, points: list[Snap]) -> dict[str, Any]:
         """Start, end, segments and pins."""
@@ -155,7 +155,7 @@ class RoundDrawing(BodyDrawing[AnyBodyOptions], Generic[AnyBodyOptions]):
     """A round body from its centre to a point of its rim, where its first spoke points."""
 
     start_hint = "Drag from the centre to the rim, or click both"
-    end_hint = "Click or release at the rim; + and - change the number of parts"
+    end_hint = "Click or release at the rim; + and - change the number of segments"
 
     def disc(self, points: list[Snap]) -> dict[str, Any]:
         """Place, angle and radius."""

@@ -24,7 +24,7 @@ SIGNED_STEP = 0.05
 class OptionInfo:
     """What a person is told of an option: kind, label, tooltip, unit, and least and most value (both included).
 
-    optional: None is a value too, "choose one that fits the size".
+    optional: None is a value too, "choose one that fits the size"; empty: a word that stands in an empty field.
     """
 
     kind: Kind
@@ -34,6 +34,7 @@ class OptionInfo:
     least: float = 0.0
     most: float = COORDINATE_LIMIT
     optional: bool = False
+    empty: str = "auto"
 
 
 def option(default: Any, about: OptionInfo) -> Any:
@@ -48,13 +49,14 @@ def count_option(label: str, text: str, least: int, default: int | None = None) 
 
 def mass_option(default: float | None, label: str = "mass", text: str = "Mass of each particle.") -> Any:
     """A mass [kg]; None: as the others."""
-    return option(default, OptionInfo("number", label, text, "kg", *MASS_RANGE, optional=default is None))
+    return option(default, OptionInfo("number", label, text, "kg", *MASS_RANGE, optional=default is None, empty="same"))
 
 
 def sag_option(default: float | None) -> Any:
     """A sag [%] by which a body is as soft as a whole; None: as soft as its material makes it."""
     text = "How far it sags under its weight, in % of its height; empty = as its material makes it."
-    return option(default, OptionInfo("number", "sag", text, "%", 0.0, 100.0 * SAG_LIMIT, optional=True))
+    about = OptionInfo("number", "sag", text, "%", 0.0, 100.0 * SAG_LIMIT, optional=True, empty="material")
+    return option(default, about)
 
 
 def size_option(label: str, text: str) -> Any:

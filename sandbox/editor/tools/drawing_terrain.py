@@ -19,7 +19,7 @@ from sandbox.level.kinds.polygon import simplified
 
 
 def _surface(label: str, text: str, most: float) -> Any:
-    return option(None, OptionInfo("number", label, text, "", 0.0, most, optional=True))
+    return option(None, OptionInfo("number", label, text, "", 0.0, most, optional=True, empty="level's"))
 
 
 @dataclass(frozen=True)

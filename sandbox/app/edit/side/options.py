@@ -80,7 +80,7 @@ class OptionsRow:
         elif chosen:
             items = self._numbers()
         else:
-            self._add_label("Nothing is selected. Draw with the tools at the left, or click a part.", "@muted")
+            self._add_label("Nothing is selected. Draw with a tool at the left, or click something.", "@muted")
         pages = self._pages([width for width, _ in items])
         self._page %= len(pages)
         for index in pages[self._page]:
@@ -142,8 +142,8 @@ class OptionsRow:
 
         return self._text_width(label) + 4 + LABEL_GAP + width + gap, make
 
-    def _add_field(self, name: str, commit: Callable[[str], bool], width: float, tip: str) -> None:
-        field = self._ui.field(self._rect(width), "", commit, self.back, 24)
+    def _add_field(self, name: str, commit: Callable[[str], bool], width: float, tip: str, empty: str = "") -> None:
+        field = self._ui.field(self._rect(width), "", commit, self.back, 24, hint=empty)
         field.entry.set_tooltip(tip)
         self.fields[name] = field
         self._made.append(field.entry)
@@ -181,7 +181,9 @@ class OptionsRow:
 
     def _add_value(self, tool: DrawTool, name: str, about: OptionInfo) -> None:
         tip = f"{about.text} The wheel or Up and Down change it."
-        self._add_field(name, partial(self._type_option, tool, name, about), ENTRY_WIDTH, tip)
+        self._add_field(
+            name, partial(self._type_option, tool, name, about), ENTRY_WIDTH, tip, about.empty if about.optional else ""
+        )
         self.fields[name].turn = partial(self._turn_option, tool, name, about)
 
     def _settle_material(self, tool: DrawTool, name: str) -> None:
