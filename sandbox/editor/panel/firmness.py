@@ -26,6 +26,8 @@ NUMBERS = "by numbers"
 PERCENT = 100.0
 # Digits of readings.
 DIGITS = 3
+# Decimals of a sag in per cent.
+SAG_DECIMALS = 4
 
 # The firmness that a body is to have instead of the one that it has; None = that of its material.
 Asked = Callable[[FirmnessRange, FirmnessDef | None], Firmness | None]
@@ -93,7 +95,9 @@ def _reading(level: Level, body: BodyDef) -> tuple[Any, Any, Any]:
     else:
         pair = reach.coefficients(body.firmness.asked)
     sag, hz, ratio = reach.reading(*pair)
-    return tuple(significant(value, DIGITS) if value < float("inf") else None for value in (PERCENT * sag, hz, ratio))  # type: ignore[return-value]
+    # A ten-thousandth of a per cent is nothing that anybody sees.
+    seen = (round(PERCENT * sag, SAG_DECIMALS) if sag < float("inf") else sag, hz, ratio)
+    return tuple(significant(value, DIGITS) if value < float("inf") else None for value in seen)  # type: ignore[return-value]
 
 
 def _word(firmness: FirmnessDef | None) -> str:

@@ -54,6 +54,8 @@ HIGHLIGHT_WIDTH = 2.4
 GHOST_FLESH = 600
 # Springs and particles over what they look like are so much thinner.
 FINE = 0.55
+# Discs that are larger than this [pixels at scale 1] are not painted over.
+LARGE = 9.0
 # The smooth picture is made of this many springs or particles at a time, for so long [s] in every frame.
 CHUNK = 2_000
 SLICE = 0.006
@@ -65,14 +67,22 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Part:
-    """Particles and springs of a scene to draw; tint: in place of their own colours; ghost: pale; is_fine: thin."""
+    """Particles and springs of a scene to draw; tint: in place of their own colours; ghost: pale.
+
+    has_flesh: what they look like is drawn below them; they are thin, or where they have a tint large discs are rings.
+    """
 
     scene: Scene
     particles: Mask
     springs: Mask
     tint: Colour | None = None
     ghost: bool = False
-    is_fine: bool = False
+    has_flesh: bool = False
+
+    @property
+    def thinness(self) -> float:
+        """How thin they are beside what is drawn without flesh."""
+        return FINE if self.has_flesh and self.tint is None else 1.0
 
 
 class SelectionMasks(NamedTuple):
@@ -172,10 +182,10 @@ class ScenePainter:
         alpha = ALPHA if self.lattice else OPAQUE
         has_flesh = self._flesh.paint(layer, camera, scene, *shown, self.scale, self.compiled, alpha)
         if self.lattice or not has_flesh:
-            others = Part(scene, shown[0] & ~particles, shown[1] & ~away, is_fine=has_flesh)
+            others = Part(scene, shown[0] & ~particles, shown[1] & ~away, has_flesh=has_flesh)
             yield from self._slices(layer, camera, others, plain)
         if not hidden:
-            yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT), plain)
+            yield from self._slices(layer, camera, Part(scene, particles, springs, ACCENT, has_flesh=has_flesh), plain)
 
     def paint_ghost(self, surface: pygame.Surface, camera: Camera, part: Part) -> None:
         """Draw a preview, pale, and where it is small as what it will be."""
@@ -183,7 +193,7 @@ class ScenePainter:
         has_flesh = is_small and self._ghost_flesh.paint(
             surface, camera, part.scene, part.particles, part.springs, self.scale, self.compiled
         )
-        self.paint(surface, camera, replace(part, ghost=True, is_fine=has_flesh))
+        self.paint(surface, camera, replace(part, ghost=True, has_flesh=has_flesh))
 
     def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: SelectionMasks) -> None:
         """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""
@@ -225,7 +235,7 @@ class ScenePainter:
         if plain:
             canvas.plain_lines(np.ascontiguousarray(ends), colours)
         else:
-            width = self._width(camera, scene.rest_length[springs]) * (FINE if part.is_fine else 1.0)
+            width = self._width(camera, scene.rest_length[springs]) * part.thinness
             passes = [(colours, width)]
             if part.tint is not None:
                 under = np.full(len(springs), packed(mixed(BACKGROUND, part.tint, 0.55)))
@@ -266,7 +276,11 @@ class ScenePainter:
         radii = np.maximum(own * camera.zoom, smallest)
         # Particles of the usual radius shrink with the mesh that they belong to, or it is a field of dots.
         radii = np.where(own <= BODY_RADIUS, np.minimum(radii, max(smallest, crowded)), radii)
-        radii = radii * (FINE if part.is_fine else 1.0)
+        radii = radii * part.thinness
+        is_large = (own > BODY_RADIUS) & (own * camera.zoom > LARGE * self.scale)
+        if part.has_flesh and is_large.any():
+            self._paint_large(canvas, part, pixels[shown[is_large]], own[is_large] * camera.zoom, shown[is_large])
+            shown, radii = shown[~is_large], radii[~is_large]
         centres = np.ascontiguousarray(pixels[shown])
         colour = mixed(PARTICLE, BACKGROUND, GHOST_SHARE) if part.ghost else PARTICLE
         if plain:
@@ -281,6 +295,20 @@ class ScenePainter:
         if len(scene.welds):
             welded = np.isin(shown, scene.welds) & ~held
             self._paint_rings(canvas, centres[welded], radii[welded], mixed(WELD, BACKGROUND, fade))
+
+    def _paint_large(
+        self, canvas: Canvas, part: Part, centres: NDArray[np.float64], radii: NDArray[np.float64],
+        slots: NDArray[np.int64],
+    ) -> None:  # fmt: skip
+        """Draw discs that are seen below as they are: a ring where they have a tint, and a small mark where pinned."""
+        if part.tint is not None:
+            for (x, y), radius in zip(centres.tolist(), radii.tolist(), strict=True):
+                pygame.draw.aacircle(
+                    canvas.surface, part.tint, (x, y), radius + 2.0 * self.scale, round(2.4 * self.scale)
+                )
+        held = part.scene.pinned[slots]
+        small = np.full(int(held.sum()), PIN_RADIUS * self.scale * 0.6)
+        self._paint_rings(canvas, np.ascontiguousarray(centres[held]), small, part.tint or PINNED)
 
     def _paint_rings(
         self, canvas: Canvas, centres: NDArray[np.float64], radii: NDArray[np.float64], colour: Colour
