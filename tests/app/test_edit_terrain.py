@@ -228,3 +228,16 @@ def test_a_finding_is_mended_by_its_button(edit):
     assert labels(driver) == ["Move it out"]
     assert not any(finding.remedy for finding in driver.editor.watch.findings)
     assert not page.mend.is_enabled
+
+
+def test_the_place_of_a_clicked_corner_is_typed(driver):
+    driver.click_at(1, -1.6)
+    driver.frames(2)
+    assert set(driver.editor.options.fields) == {"x", "y", "width", "height", "turn"}
+    driver.click_at(4, -1)
+    driver.frames(2)
+    assert {name: field.text for name, field in driver.editor.options.fields.items()} == {"x": "4", "y": "-1"}
+    driver.fill(driver.editor.options.fields["x"], "3.75")
+    driver.frames(2)
+    assert terrain(driver)[0].polygon[2] == (3.75, -1) and labels(driver) == ["Move a corner"]
+    assert driver.editor.options.fields["x"].text == "3.75"

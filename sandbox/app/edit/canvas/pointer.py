@@ -123,17 +123,27 @@ class SelectTool:
         self._screen.edit("Delete a corner", lambda document: delete_corner(document, str(piece.key), corner))
         return True
 
-    def nudge_corner(self, dx: float, dy: float) -> bool:
-        """Move the clicked corner by dx, dy [m]; whether there is one."""
+    @property
+    def corner_place(self) -> Point | None:
+        """Where the clicked corner is [m]; None where none is."""
         piece, corner = self.piece, self.corner
         if piece is None or corner is None:
+            return None
+        return corners_of(piece_of(self._screen.document.level, str(piece.key)))[corner]
+
+    def put_corner(self, place: Point, label: str, merge: str | None = None) -> bool:
+        """Move the clicked corner, which there is, to a place [m]; whether it can be there."""
+        piece, corner = self.piece, self.corner
+        assert piece is not None and corner is not None
+        key, at = str(piece.key), (round(place[0], PLACE_DECIMALS) + 0.0, round(place[1], PLACE_DECIMALS) + 0.0)
+        return self._screen.edit(label, lambda document: move_corner(document, key, corner, at), merge=merge)
+
+    def nudge_corner(self, dx: float, dy: float) -> bool:
+        """Move the clicked corner by dx, dy [m]; whether there is one."""
+        place = self.corner_place
+        if place is None:
             return False
-        screen, key = self._screen, str(piece.key)
-        x, y = corners_of(piece_of(screen.document.level, key))[corner]
-        place = (round(x + dx, PLACE_DECIMALS) + 0.0, round(y + dy, PLACE_DECIMALS) + 0.0)
-        screen.edit(
-            "Nudge a corner", lambda document: move_corner(document, key, corner, place), merge="nudge a corner"
-        )
+        self.put_corner((place[0] + dx, place[1] + dy), "Nudge a corner", "nudge a corner")
         return True
 
     def handles(self) -> Handles | None:

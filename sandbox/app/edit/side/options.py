@@ -9,8 +9,9 @@ import pygame
 
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
+from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import material_colours
-from sandbox.app.edit.canvas.pointer import DrawTool
+from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.rows import Picker, Row
 from sandbox.editor.document import EditError
@@ -59,7 +60,7 @@ class OptionsRow:
         chosen = bool(screen.document.selection)
         materials = tuple(screen.scene.materials)
         tool = screen.pointer_tool
-        made_for = (screen.tool, materials) if isinstance(tool, DrawTool) else ("select", chosen)
+        made_for = (screen.tool, materials) if isinstance(tool, DrawTool) else ("select", chosen, self._corner is None)
         if made_for != self._made_for:
             self._made_for, self._page = made_for, 0
             self._remake()
@@ -67,6 +68,12 @@ class OptionsRow:
             self._show_options(tool)
         elif chosen:
             self._show_selection()
+
+    @property
+    def _corner(self) -> Point | None:
+        """Where the corner of terrain is that was clicked; None where none is."""
+        tool = self._screen.pointer_tool
+        return tool.corner_place if isinstance(tool, SelectTool) else None
 
     def _remake(self) -> None:
         for widget in self._made:
@@ -149,8 +156,15 @@ class OptionsRow:
         self._made.append(field.entry)
 
     def _numbers(self) -> list[Item]:
-        """Place and size of the selection."""
+        """Place and size of the selection, or the place of a corner of it."""
         items = []
+        if self._corner is not None:
+            for name in ("x", "y"):
+                add = partial(
+                    self._add_field, name, partial(self._type_corner, name), NUMBER_WIDTH, "Of the corner [m]"
+                )
+                items.append(self._labelled(f"corner {name}", NUMBER_WIDTH, add))
+            return items
         for name, label, tip in (
             ("x", "x", "Centre of the selection [m]"),
             ("y", "y", "Centre of the selection [m]"),
@@ -215,7 +229,11 @@ class OptionsRow:
             picker.show_value(rows, Row(getattr(options, name), swatch=colours[getattr(options, name)]))
 
     def _show_selection(self) -> None:
-        box = self._screen.selection_box
+        box, corner = self._screen.selection_box, self._corner
+        if corner is not None:
+            for name, value in zip(("x", "y"), corner, strict=True):
+                self.fields[name].show(f"{value:.8g}")
+            return
         if box is None:
             return
         left, bottom, right, top = box
@@ -270,6 +288,14 @@ class OptionsRow:
         except EditError as error:
             self._screen.say(sentence(error))
             return None
+
+    def _type_corner(self, name: str, text: str) -> bool:
+        """Move the corner that was clicked to what was typed."""
+        value, tool = self._number(f"corner {name}", text), self._screen.pointer_tool
+        corner = self._corner
+        if value is None or corner is None or not isinstance(tool, SelectTool):
+            return False
+        return tool.put_corner((value, corner[1]) if name == "x" else (corner[0], value), "Move a corner")
 
     def _type_number(self, name: str, text: str) -> bool:
         """Move, scale or turn the selection to what was typed."""
