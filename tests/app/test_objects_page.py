@@ -60,6 +60,9 @@ def test_words_narrow_the_list_while_they_are_typed(driver):
     driver.app.ui.focus_on(page(driver).search.entry)
     driver.type("rub")
     assert names(driver) == ["pair"]
+    driver.key(pygame.K_RETURN)
+    assert selected(driver) == {PAIR} and driver.app.ui.focus is page(driver).list
+    driver.app.ui.focus_on(page(driver).search.entry)
     driver.type("x")
     assert names(driver) == []
 

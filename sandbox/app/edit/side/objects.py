@@ -35,6 +35,7 @@ class ObjectsPage:
         ui, gap, row = screen.ui, screen.ui.px(GAP), screen.ui.px(ROW)
         width = place.width - ui.px(6)
         self.search = ui.field(pygame.Rect(place.topleft, (width, row)), "", lambda _: True, container, 80, hint=HINT)
+        self.search.enter = lambda _: self._choose_first()
         top, bottom = place.top + row + gap, place.bottom - row - 2 * gap
         self.list = RowList(
             ui, pygame.Rect(place.left, top, width, bottom - top), self._choose, container, empty=EMPTY, at_once=False
@@ -95,6 +96,12 @@ class ObjectsPage:
         colour = DISABLED if "hidden" in states else TEXT
         swatch = None if line.material is None else colours.get(line.material)
         return Row(line.name, "", swatch, colour, ", ".join([line.kind, *states]), int(line.group is not None))
+
+    def _choose_first(self) -> None:
+        """Select the first line that has the words, and go on in the list."""
+        if self.lines:
+            self._choose(0)
+            self._ui.focus_on(self.list)
 
     @property
     def _selected(self) -> Selection:
