@@ -363,3 +363,11 @@ def test_a_rest_length_beyond_the_limit_is_not_left_to_a_loose_spring():
     long = RopeDef(type="rope", id="r", start=(-1e6, 0.0), end=(1e6, 0.0), segments=1, pose=((0.0, 0.0), (1.0, 0.0)))
     with pytest.raises(EditError, match="too long"):
         break_apart(add_body(Document(empty_level()), long))
+
+
+@pytest.mark.parametrize("name", ["", "a.b", "x" * 500])
+def test_a_name_that_cannot_be_is_refused_with_the_old_name_and_the_reason(name):
+    document = Document(zoo())
+    body = document.level.bodies[0].id
+    with pytest.raises(EditError, match=f'^"{body}" cannot be called .*: the name '):
+        rename(document, Item("body", body), name)

@@ -95,7 +95,11 @@ def rename(document: Document, item: Item, new_id: str) -> Document:
     part = _named_part(level, item)
     if new_id == item.key:
         return document
-    new = validated(replaced(part, id=new_id))
+    try:
+        new = validated(replaced(part, id=new_id))
+    except EditError as error:
+        fault = str(error).partition(": id: ")[2]
+        raise EditError(f"{shown(part.id)} cannot be called {shown(new_id)}: the name {fault}") from None
     if new_id in taken_ids(level):
         raise EditError(f"{shown(new_id)} is taken; each body, particle and piece of terrain needs its own name")
 
