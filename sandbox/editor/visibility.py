@@ -33,7 +33,7 @@ class Visibility:
 
     def among(self, items: Selection) -> "Visibility":
         """What of it speaks of some items."""
-        return Visibility(self.hidden & items, self.locked & items) if self.hidden or self.locked else self
+        return Visibility(self.hidden & items, self.locked & items)
 
 
 def _renamed(items: Selection, old: Item, new: Item) -> Selection:

@@ -124,7 +124,9 @@ class EditScreen:
         """What of the level is hidden or locked."""
         level = self.document.level
         if self._visible_in is not level:
-            self._visible_in, self._visible_now = level, self._visibility.among(frozenset(self.scene.items))
+            self._visible_in = level
+            has_any = bool(self._visibility.closed)
+            self._visible_now = self._visibility.among(frozenset(self.scene.items)) if has_any else self._visibility
         return self._visible_now
 
     def set_visibility(self, visibility: Visibility) -> None:
