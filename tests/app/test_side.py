@@ -689,3 +689,19 @@ def test_the_history_says_what_each_step_was_made_to(driver):
     assert [(row.text, row.aside) for row in page.list.rows[1:]] == [
         ("Segments", "rope"), ("Segments", "2 things"), ("Name", ""),
     ]  # fmt: skip
+
+
+def test_a_finding_that_is_ignored_stays_away_until_all_are_asked_for(edit):
+    driver = edit(small_level(particles=[{"id": "one", "position": [0, 3]}, {"id": "two", "position": [0, 3]}]))
+    driver.frames(60)
+    page = open_tab(driver, "findings")
+    count, first = len(page.findings), page.findings[0].text
+    click_row(driver, page.list, 0)
+    press(driver, page.ignore)
+    assert first not in [found.text for found in page.findings] and len(page.findings) == count - 1
+    driver.key(pygame.K_RIGHT)
+    driver.frames(60)
+    assert first not in [found.text for found in page.findings]
+    click_row(driver, page.list, len(page.findings))
+    driver.frames(60)
+    assert first in [found.text for found in page.findings]

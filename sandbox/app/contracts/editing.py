@@ -82,6 +82,19 @@ class Watching(Protocol):
     range_trial: RangeTrial | None
 
     @property
+    def ignored(self) -> int:
+        """How many findings are ignored."""
+        ...
+
+    def ignore(self, finding: Finding) -> None:
+        """Show a finding no more while the level is open."""
+        ...
+
+    def show_ignored(self) -> None:
+        """Look for everything again."""
+        ...
+
+    @property
     def hanging(self) -> NDArray[np.float64] | None:
         """Where everything will hang [m]; None while it is not asked for or not known."""
         ...

@@ -27,7 +27,9 @@ class Watch:
 
     def __init__(self, screen: Editing) -> None:
         self._screen = screen
+        # What the linter found, without what the person ignores, by its text, while the level is open.
         self.findings: list[Finding] = []
+        self._ignored: dict[str, Finding] = {}
         self.forecasts = False
         self.forecast: Forecast | None = None
         # Whether trails are shown, that of the next seconds, and that of the run before.
@@ -78,6 +80,20 @@ class Watch:
         self._is_wanted = self._is_wanted and self.forecasts
         self.forecast = None
         self._level = None
+
+    @property
+    def ignored(self) -> int:
+        """How many findings are ignored."""
+        return len(self._ignored)
+
+    def ignore(self, finding: Finding) -> None:
+        """Show a finding no more while the level is open."""
+        self._ignored[finding.text] = finding
+        self.findings = [each for each in self.findings if each is not finding]
+
+    def show_ignored(self) -> None:
+        """Look for everything again."""
+        self._ignored, self._level = {}, None
 
     def toggle_trail(self) -> None:
         """Show where what is selected will go in the next seconds and went in the last run, or no longer."""
@@ -154,7 +170,8 @@ class Watch:
                 self._found.append(found)
             if time.perf_counter() > end:
                 return
-        self._lint, self.findings = None, self._found
+        self._lint = None
+        self.findings = [finding for finding in self._found if finding.text not in self._ignored]
 
     @property
     def hanging(self) -> NDArray[np.float64] | None:

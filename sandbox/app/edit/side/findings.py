@@ -5,7 +5,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.contracts.editing import Editing
-from sandbox.app.draw.colours import ACCENT, DANGER, WARNING, Colour
+from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, WARNING, Colour
 from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.items import items_of
@@ -14,6 +14,8 @@ from sandbox.editor.lint.finding import SEVERITIES, Finding, Remedy
 COLOURS: dict[str, Colour] = {"error": DANGER, "warning": WARNING, "hint": ACCENT}
 NOTHING = "No problems found."
 LINES = 6
+# Width of the button that ignores a finding [layout units].
+IGNORE_WIDTH = 72.0
 NO_REMEDY = "Choose a finding to see it"
 
 
@@ -26,8 +28,14 @@ class FindingsPage:
         ui, below = screen.ui, screen.ui.px(ROW + 2 * GAP)
         upper = pygame.Rect(place.topleft, (place.width - ui.px(6), place.height - below))
         self.list = RowList(ui, upper, self._show, container, empty=NOTHING, at_once=False, most_lines=LINES)
-        row = pygame.Rect(place.left, place.bottom - ui.px(ROW + 4), upper.width, ui.px(ROW))
+        gap, top, tall = ui.px(GAP), place.bottom - ui.px(ROW + 4), ui.px(ROW)
+        narrow = ui.px(IGNORE_WIDTH)
+        row = pygame.Rect(place.left, top, upper.width - narrow - gap, tall)
         self.mend = ui.button(row, "", self._mend, container, style="@segment", tip="Fix the finding chosen above")
+        row = pygame.Rect(row.right + gap, top, narrow, tall)
+        tip = "Do not show the chosen finding again while this level is open"
+        self.ignore = ui.button(row, "Ignore", self._ignore, container, style="@segment", tip=tip)
+        self._chosen: Finding | None = None
         self._offer(None)
         self.findings: list[Finding] = []
         self._shown: object = None
@@ -41,11 +49,17 @@ class FindingsPage:
         grades = list(SEVERITIES)
         self.findings = sorted(found, key=lambda finding: grades.index(finding.severity))
         rows = [Row(each.text, each.severity, COLOURS[each.severity]) for each in self.findings]
+        if self._screen.watch.ignored:
+            rows.append(Row(f"{self._screen.watch.ignored} ignored: show them again", colour=MUTED))
         self.list.show_rows(rows, None)
         self._offer(None)
 
     def _show(self, index: int) -> None:
+        if index == len(self.findings):
+            self._screen.watch.show_ignored()
+            return
         screen, finding = self._screen, self.findings[index]
+        self._chosen = finding
         known = finding.items.intersection(items_of(screen.document.level))
         if known:
             screen.select(known)
@@ -60,6 +74,11 @@ class FindingsPage:
         self.mend.set_text(NO_REMEDY if remedy is None else remedy.label)
         (self.mend.disable if remedy is None else self.mend.enable)()
 
+    def _ignore(self) -> None:
+        if self._chosen is not None:
+            self._screen.watch.ignore(self._chosen)
+            self._chosen = None
+
     def _mend(self) -> None:
         if self._remedy is not None:
             self._screen.edit(self._remedy.label, self._remedy.edit)
@@ -68,3 +87,4 @@ class FindingsPage:
         """Take the page away."""
         self._ui.remove(self.list)
         self._ui.remove(self.mend)
+        self._ui.remove(self.ignore)
