@@ -249,11 +249,11 @@ if __name__ == "__main__":
     chosen, all_substeps, ticks, *mode = sys.argv[1:]
     if mode:
         prepare(mode[0])
-    from sandbox.physics.jit import COMPILED
+    from sandbox.physics.jit import way
 
     advance = Ticks(int(mode[1]) if mode[:1] == ["--switch"] else -1).advance
     for number, substeps in enumerate(all_substeps.split(",")):
-        print("compiled" if COMPILED else "interpreted")
+        print(way())
         given = advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks)
         if mode != ["--without-cache"]:
             print("\n".join(hashes(*given)))

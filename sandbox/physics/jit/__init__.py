@@ -1,11 +1,13 @@
-"""The only place that knows numba.
+"""The only place that knows libraries of kernels, and numba.
 
-Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing or
-does not work with this Python or numpy, where NUMBA_DISABLE_JIT is set, and after `start_interpreted` until
-`switch_to_compiled`. Which it is, COMPILED says; modules that hold it by name see it change.
+Kernels run from the library of this platform. Where there is none, or the sources of kernels were edited, numba
+compiles them, with a disk cache; where numba is missing or does not work with this Python or numpy, they are
+interpreted. One line says so. SANDBOX_KERNELS chooses: library, numba or interpreted; where NUMBA_DISABLE_JIT is set,
+and after `start_interpreted` until `switch_to_compiled`, they are interpreted. COMPILED says whether they are not;
+modules that hold it by name see it change.
 
 A kernel costs nothing until it is called: before the first call of one, or the first question for COMPILED, nothing is
-made of any, and numba is not imported.
+made of any, and neither a library nor numba is opened.
 """
 
 import importlib
@@ -15,7 +17,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from types import FunctionType, ModuleType
+from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 from sandbox.physics.jit import interpreted
@@ -30,7 +32,9 @@ unsigned: Any = interpreted.unsigned
 contents: Any = interpreted.contents
 
 _ENTRIES = ("kernel", "waiting_kernel")
-# How kernels are made: the module `interpreted` or `compiled`.
+# Which way kernels are made, by its name for people, and the module that makes them.
+_WAYS = {"library": "library", "numba": "compiled", "interpreted": "interpreted"}
+_WISH = "SANDBOX_KERNELS"
 _way: Any = None
 _recording: str | None = None
 _making = threading.RLock()
@@ -71,6 +75,8 @@ class Kernel:
         with _making:
             if isinstance(self.held, Entry):
                 made = _chosen().make(self)
+                if type(made) is BuiltinFunctionType:
+                    _BY_FUNCTION[made] = self
                 for module in _modules(self.function.__module__):
                     if vars(module).get(self.function.__name__) is self.held:
                         setattr(module, self.function.__name__, made)
@@ -94,7 +100,8 @@ _BY_FUNCTION: dict[Any, Kernel] = {}
 
 def kernel_of(held: Any) -> Kernel | None:
     """The kernel that this is, or what runs it; None for anything else."""
-    return _BY_FUNCTION.get(held) if type(held) is FunctionType else getattr(held, "_kernel", None)
+    is_plain = type(held) in (FunctionType, BuiltinFunctionType)
+    return _BY_FUNCTION.get(held) if is_plain else getattr(held, "_kernel", None)
 
 
 def _modules(*homes: str) -> list[ModuleType]:
@@ -114,15 +121,47 @@ def _can_compile() -> bool:
     return True
 
 
-def _choose(compiled: bool) -> Any:
+def _best() -> str:
+    """The way that is wished for; else the best that there is, with one line if that is no library."""
+    wish = os.environ.get(_WISH, "")
+    if wish == "interpreted" or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return "interpreted"
+    why = f"{_WISH} is {wish}"
+    if wish != "numba":
+        library = importlib.import_module(f"{__name__}.library")
+        try:
+            library.open_library()
+        except library.NoLibrary as fault:
+            why = str(fault)
+        else:
+            return "library"
+    way = "numba" if _can_compile() else "interpreted"
+    if way != wish:
+        does = "numba compiles kernels, once" if way == "numba" else "kernels are interpreted, a hundred times slower"
+        _say(f"{why}: {does}")
+    return way
+
+
+def _say(line: str) -> None:
+    if sys.stderr is not None:  # a program without a console has none
+        print(line, file=sys.stderr)
+
+
+def _choose(way: str) -> Any:
     global _way, COMPILED
-    _way = importlib.import_module(f"{__name__}.{'compiled' if compiled else 'interpreted'}")
-    COMPILED = compiled
+    _way = importlib.import_module(f"{__name__}.{_WAYS[way]}")
+    COMPILED = _way.COMPILED
     return _way
 
 
 def _chosen() -> Any:
-    return _way or _choose(_can_compile())
+    return _way or _choose(_best())
+
+
+def way() -> str:
+    """How kernels run in this process: "library", "numba" or "interpreted"."""
+    chosen = _chosen().__name__.rpartition(".")[2]
+    return next(name for name, module in _WAYS.items() if module == chosen)
 
 
 def __getattr__(name: str) -> Any:
@@ -139,11 +178,11 @@ def start_interpreted() -> None:
     """
     if _way is not None and _way.COMPILED:
         raise RuntimeError("kernels are compiled already")
-    _choose(False)
+    _choose("interpreted")
 
 
 def switch_to_compiled() -> bool:
-    """Compile kernels from now on, in every module that holds one, between two ticks; whether numba can.
+    """Let numba compile kernels from now on, in every module that holds one, between two ticks; whether it can.
 
     The bits stay the same. A world that goes on drops what it derived: `World.drop_caches`.
     """
@@ -152,7 +191,7 @@ def switch_to_compiled() -> bool:
     if not _can_compile():
         return False
     with _making:
-        _choose(True)
+        _choose("numba")
         new: dict[int, Any] = {}
         old = [kernel.held for kernel in KERNELS]  # so that no new one has the identity of one before
         for kernel in entries():
@@ -192,11 +231,7 @@ def entries() -> list[Kernel]:
 
 def precompile(held: Any, *arguments: Any) -> None:
     """Compile a kernel for such arguments, or load it, as a call would, which is not made."""
-    kernel = cast(Kernel, kernel_of(held))
-    if _chosen().COMPILED:
-        kernel.ready().compile(_way.types_of(arguments))
-    else:
-        kernel.note(*arguments)
+    _chosen().precompile(cast(Kernel, kernel_of(held)), arguments)
 
 
 def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:

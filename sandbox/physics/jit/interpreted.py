@@ -64,6 +64,11 @@ def make(kernel: Any) -> Callable[..., Any]:
     return cast(Callable[..., Any], made)
 
 
+def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
+    """While calls are recorded: remember the types of such arguments."""
+    kernel.note(*arguments)
+
+
 def bundle(items: tuple[Any, ...]) -> Any:
     """Arrays and named tuples as one argument, viewed once."""
     return Bundle(items)
