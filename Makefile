@@ -27,27 +27,20 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test quick kernels byte-code lint bounds goldens goldens-record libraries pictures bench abuse soak clean
+.PHONY: play install test quick lint bounds goldens goldens-record libraries pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
 
 install: $(VENV)/installed-dev
 
+# Tests are collected once before: byte code of theirs is made then. The run itself reports broken tests.
 test: $(VENV)/installed-dev
-	$(MAKE) --jobs=2 kernels byte-code
+	-$(BIN)/python -m pytest --collect-only --quiet > $(VENV)/collected
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 quick: $(VENV)/installed-dev
 	$(BIN)/python -m tests.quick -n $(WORKERS)
-
-# Kernels are compiled before tests, or each worker would compile all of them.
-kernels: $(VENV)/installed-dev
-	-$(BIN)/python -m sandbox prepare
-
-# The byte code of tests, too. The run itself reports broken tests.
-byte-code: $(VENV)/installed-dev
-	-$(BIN)/python -m pytest --collect-only --quiet > $(VENV)/collected
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check sandbox tests examples
@@ -60,10 +53,10 @@ bounds: export SANDBOX_KERNELS := numba
 bounds: export NUMBA_CACHE_DIR := $(CURDIR)/$(VENV)/bounds
 bounds: test
 
-goldens: kernels
+goldens: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal tests/determinism/goldens
 
-goldens-record: kernels
+goldens-record: $(VENV)/installed-dev
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)
 
 libraries: $(VENV)/installed-dev

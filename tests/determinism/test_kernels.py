@@ -66,11 +66,3 @@ def test_kernels_compile_uncached_where_no_cache_can_be_written():
     uncached = runs("single_pass", "--without-cache", way="numba")[1]
     assert (uncached[0], len(uncached)) == ("numba", 1 + TICKS)
     assert uncached[1:] == lines("single_pass")[-TICKS:]
-
-
-@needs_numba
-@pytest.mark.parametrize(("solver", "tick"), [("single_pass", 0), ("direct", 17), ("direct", 53), ("iterative", 61)])
-def test_a_run_that_is_switched_between_two_ticks_from_interpreted_to_compiled_gives_the_same_bits(solver, tick):
-    switched = lines(solver, "--switch", str(tick))
-    assert switched[0] == "interpreted"
-    assert switched[1:] == lines(solver)[1:]

@@ -75,8 +75,8 @@ class Watch:
         is_waiting = level is not self._level or self._since < PATIENCE
         return is_waiting or self._lint is not None or (forecast is not None and not self._is_told)
 
-    def update(self, frame_time: float, ready: bool = True) -> None:
-        """Go on with both for a moment; ready: kernels are there, or a forecast would take many frames at a time."""
+    def update(self, frame_time: float) -> None:
+        """Go on with both for a moment."""
         level = self._screen.document.level
         if level is not self._level:
             self._level, self._since = level, 0.0
@@ -89,7 +89,7 @@ class Watch:
             self._is_told = False
             self.forecast = Forecast(level) if self.forecasts and self._screen.scene.items else None
         self._look()
-        if ready and self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
+        if self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
             self._is_told = True
             if self._is_wanted:
                 self._take_forecast()

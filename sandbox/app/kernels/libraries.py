@@ -14,14 +14,13 @@ from concurrent.futures import ProcessPoolExecutor
 from importlib.metadata import version
 from typing import Any
 
-from sandbox.app.kernels.compiling import GROUPS, needed_kernels
-from sandbox.physics import jit
+from sandbox.app.kernels.compiling import needed_kernels
 from sandbox.physics.jit.library import FOLDER, MANIFEST, NoLibrary, file_digest, library_name, read_manifest
 from sandbox.physics.jit.sources import edited, sources_now
 
 # No instruction that only the maker's processor has, and no order that changes from run to run.
 _SETTINGS = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_OPT": "3", "PYTHONHASHSEED": "0"}
-# What both ways of the level that a library is tried out with are to agree on.
+# What a library is tried out with: it is to come to the state that the interpreter comes to.
 _TRIAL = ("run", "balloons", "--seconds", "1", "--json")
 
 
@@ -37,9 +36,7 @@ def _made(here_only: bool) -> tuple[dict[str, bytes], dict[str, Any]]:
     from sandbox.physics.jit.making.gathering import gather
     from sandbox.physics.jit.making.platforms import LIBRARIES, WEB
 
-    kernels = sorted(needed_kernels(GROUPS, None), key=lambda kernel: kernel.name)
-    if not jit.switch_to_compiled():
-        raise RuntimeError("numba cannot be imported")
+    kernels = sorted(needed_kernels(), key=lambda kernel: kernel.name)
     bitcode, codes = gather([(kernel, kinds) for kernel in kernels for kinds in kernel.signatures.values()])
     wanted = [each for each in (*LIBRARIES, WEB) if not here_only or each.file == library_name()]
     with ProcessPoolExecutor(os.cpu_count()) as pool:
@@ -86,10 +83,13 @@ def _write(files: dict[str, bytes], entries: dict[str, Any]) -> None:
         "entries": entries,
         "sources": sources_now(),
     }
-    MANIFEST.write_text(_text(manifest), encoding="utf-8", newline="\n")
+    _write_manifest(manifest)
     if _runs_here():
-        manifest["run_on"] = [library_name().partition(".")[0]]
-        MANIFEST.write_text(_text(manifest), encoding="utf-8", newline="\n")
+        _write_manifest(manifest | {"run_on": [library_name().partition(".")[0]]})
+
+
+def _write_manifest(manifest: dict[str, Any]) -> None:
+    MANIFEST.write_text(_text(manifest), encoding="utf-8", newline="\n")
 
 
 def _runs_here() -> bool:
@@ -123,6 +123,16 @@ def _differences(here_only: bool) -> list[str]:
     return found
 
 
+def _are_current() -> bool:
+    """Whether libraries and manifest are whole, and made of these kernels by these makers."""
+    try:
+        manifest = read_manifest()
+        whole = all(file_digest((FOLDER / name).read_bytes()) == digest for name, digest in manifest["files"].items())
+    except (NoLibrary, OSError):
+        return False
+    return whole and manifest["makers"] == makers_here() and not edited(manifest["sources"])
+
+
 def _said(makers: dict[str, str]) -> str:
     return ", ".join(f"{name} {what}" for name, what in makers.items())
 
@@ -141,6 +151,11 @@ def _main() -> int:
         if differences:
             print("make libraries makes them anew")
         return 1 if differences else 0
+    if _are_current():
+        # What was edited beside kernels is looked at no more at each start.
+        _write_manifest(read_manifest() | {"sources": sources_now()})
+        print("the libraries are those of the sources")
+        return 0
     files, entries = _made(here_only=False)
     _write(files, entries)
     print(*(f"{len(content):8d} bytes  {name}" for name, content in files.items()), sep="\n")

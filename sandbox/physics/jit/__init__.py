@@ -3,8 +3,7 @@
 Kernels run from the library of this platform. Where there is none, or the sources of kernels were edited, numba
 compiles them, with a disk cache; where numba is missing or does not work with this Python or numpy, they are
 interpreted. One line says so. SANDBOX_KERNELS chooses: library, numba or interpreted; where NUMBA_DISABLE_JIT is set,
-and after `start_interpreted` until `switch_to_compiled`, they are interpreted. COMPILED says whether they are not;
-modules that hold it by name see it change.
+and after `start_interpreted`, they are interpreted. COMPILED says whether they are not.
 
 A kernel costs nothing until it is called: before the first call of one, or the first question for COMPILED, nothing is
 made of any, and neither a library nor numba is opened.
@@ -32,11 +31,13 @@ unsigned: Any = interpreted.unsigned
 contents: Any = interpreted.contents
 
 _ENTRIES = ("kernel", "waiting_kernel")
+# Functions, of which it is looked up which kernel they run.
+_PLAIN = (FunctionType, BuiltinFunctionType)
 # Which way kernels are made, by its name for people, and the module that makes them.
 _WAYS = {"library": "library", "numba": "compiled", "interpreted": "interpreted"}
 _WISH = "SANDBOX_KERNELS"
 _way: Any = None
-_recording: str | None = None
+_recording = False
 _making = threading.RLock()
 
 
@@ -45,14 +46,13 @@ class Kernel:
     """One kernel of this process.
 
     held: what modules hold of it: an `Entry`, or what runs it; of what only kernels call, the function itself.
-    signatures: types of arguments, by their text, that calls were noted with, of an interpreted one. group: under which
-    name they were noted first. part: what other kernels are compiled with, once one is that calls it.
+    signatures: types of arguments, by their text, that calls were noted with, of an interpreted one. part: what other
+    kernels are compiled with, once one is that calls it.
     """
 
     role: str
     function: Callable[..., Any]
     held: Any = None
-    group: str = ""
     signatures: dict[str, tuple[Any, ...]] = field(default_factory=dict)
     part: Any = None
 
@@ -63,9 +63,8 @@ class Kernel:
 
     def note(self, *arguments: Any) -> None:
         """While calls are recorded: remember the types of these arguments."""
-        if _recording is not None:
+        if _recording:
             types = importlib.import_module(f"{__name__}.compiled").types_of(arguments)
-            self.group = self.group or _recording
             self.signatures[str(types)] = types
 
     def ready(self) -> Any:
@@ -75,7 +74,7 @@ class Kernel:
         with _making:
             if isinstance(self.held, Entry):
                 made = _chosen().make(self)
-                if type(made) is BuiltinFunctionType:
+                if type(made) in _PLAIN:
                     _BY_FUNCTION[made] = self
                 for module in _modules(self.function.__module__):
                     if vars(module).get(self.function.__name__) is self.held:
@@ -100,8 +99,7 @@ _BY_FUNCTION: dict[Any, Kernel] = {}
 
 def kernel_of(held: Any) -> Kernel | None:
     """The kernel that this is, or what runs it; None for anything else."""
-    is_plain = type(held) in (FunctionType, BuiltinFunctionType)
-    return _BY_FUNCTION.get(held) if is_plain else getattr(held, "_kernel", None)
+    return _BY_FUNCTION.get(held) if type(held) in _PLAIN else getattr(held, "_kernel", None)
 
 
 def _modules(*homes: str) -> list[ModuleType]:
@@ -171,57 +169,25 @@ def __getattr__(name: str) -> Any:
 
 
 def start_interpreted() -> None:
-    """Interpret kernels, and import no numba, until `switch_to_compiled`.
+    """Interpret kernels in this process.
 
     Raises:
-        RuntimeError: where kernels are compiled already.
+        RuntimeError: where they run in another way already.
     """
     if _way is not None and _way.COMPILED:
         raise RuntimeError("kernels are compiled already")
     _choose("interpreted")
 
 
-def switch_to_compiled() -> bool:
-    """Let numba compile kernels from now on, in every module that holds one, between two ticks; whether it can.
-
-    The bits stay the same. A world that goes on drops what it derived: `World.drop_caches`.
-    """
-    if _chosen().COMPILED:
-        return True
-    if not _can_compile():
-        return False
-    with _making:
-        _choose("numba")
-        new: dict[int, Any] = {}
-        old = [kernel.held for kernel in KERNELS]  # so that no new one has the identity of one before
-        for kernel in entries():
-            new[id(kernel.held)] = Entry(kernel)
-            kernel.held = new[id(kernel.held)]
-        for module in _modules(*(kernel.function.__module__ for kernel in KERNELS)):
-            _rebind(module, new)
-        del old
-    return True
-
-
-def _rebind(module: ModuleType, new: dict[int, Any]) -> None:
-    if module.__name__.startswith(f"{__name__}."):
-        return
-    for name, value in list(vars(module).items()):
-        if id(value) in new:
-            setattr(module, name, new[id(value)])
-        elif name == "COMPILED":
-            setattr(module, name, True)
-
-
 @contextmanager
-def recorded(group: str) -> Iterator[None]:
-    """While this lasts, interpreted kernels that are called note the types of their arguments, under a group's name."""
+def recorded() -> Iterator[None]:
+    """While this lasts, interpreted kernels that are called note the types of their arguments."""
     global _recording
-    _recording = group
+    _recording = True
     try:
         yield
     finally:
-        _recording = None
+        _recording = False
 
 
 def entries() -> list[Kernel]:
@@ -235,8 +201,8 @@ def precompile(held: Any, *arguments: Any) -> None:
 
 
 def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:
-    """Compile an entry for some types of arguments and keep it, or load it; after `switch_to_compiled`."""
-    kernel.ready().compile(signature)
+    """Let numba compile an entry for some types of arguments and keep it in its cache, however kernels run here."""
+    importlib.import_module(f"{__name__}.compiled").make(kernel).compile(signature)
 
 
 def interpreter_function(name: str, result: str, *arguments: str) -> Any:
