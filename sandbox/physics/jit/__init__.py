@@ -110,8 +110,6 @@ def _modules(*homes: str) -> list[ModuleType]:
 
 
 def _can_compile() -> bool:
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        return False
     try:
         importlib.import_module("numba")
     except ImportError:  # also what an installed numba raises that is too old for this numpy
@@ -124,6 +122,8 @@ def _best() -> str:
     wish = os.environ.get(_WISH, "")
     if wish == "interpreted" or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return "interpreted"
+    if wish and wish not in _WAYS:
+        _say(f"{_WISH} is {', '.join(_WAYS)}, not {wish!r}")
     why = f"{_WISH} is {wish}"
     if wish != "numba":
         library = importlib.import_module(f"{__name__}.library")

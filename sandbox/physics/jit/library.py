@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.physics.jit import bundles
+from sandbox.physics.jit import bundles, interpreted
 from sandbox.physics.jit.sources import edited
 
 COMPILED = True
@@ -179,11 +179,17 @@ def open_library() -> Library:
 
 
 def make(kernel: Any) -> Any:
-    """What modules hold of a kernel that Python calls; numba compiles one that the library does not hold."""
+    """What modules hold of a kernel that Python calls.
+
+    One that the library does not hold, of a program of its own, numba compiles; without numba it is interpreted.
+    """
     library = open_library()
     if kernel.name in library.entries:
         return library.function(kernel.name)
-    return importlib.import_module("sandbox.physics.jit.compiled").make(kernel)
+    try:
+        return importlib.import_module("sandbox.physics.jit.compiled").make(kernel)
+    except ImportError:
+        return interpreted.make(kernel)
 
 
 def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
