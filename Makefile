@@ -3,6 +3,8 @@
 # make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-record: record them again, after a
 # change of a tick's arithmetic or of a shipped level; never to make a failing test pass.
 # make bounds: run every test with kernels that check each index; usual kernels do not.
+# make libraries: machine code of the kernels for all platforms, after a kernel was changed; minutes. CHECK=1 compares
+# it with what is there, HERE=1 only this platform's.
 # make abuse: stir, throw and drive bodies, and print figures; hours.
 # make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen.
 # make pictures: draw the pictures of the gallery and of docs/ again, after a level or the look was changed.
@@ -25,27 +27,20 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test quick kernels byte-code lint bounds goldens goldens-record pictures bench abuse soak clean
+.PHONY: play install test quick lint bounds goldens goldens-record libraries pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
 
 install: $(VENV)/installed-dev
 
+# Tests are collected once before: byte code of theirs is made then. The run itself reports broken tests.
 test: $(VENV)/installed-dev
-	$(MAKE) --jobs=2 kernels byte-code
+	-$(BIN)/python -m pytest --collect-only --quiet > $(VENV)/collected
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 quick: $(VENV)/installed-dev
 	$(BIN)/python -m tests.quick -n $(WORKERS)
-
-# Kernels are compiled before tests, or each worker would compile all of them.
-kernels: $(VENV)/installed-dev
-	-$(BIN)/python -m sandbox prepare
-
-# The byte code of tests, too. The run itself reports broken tests.
-byte-code: $(VENV)/installed-dev
-	-$(BIN)/python -m pytest --collect-only --quiet > $(VENV)/collected
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check sandbox tests examples
@@ -54,14 +49,18 @@ lint: $(VENV)/installed-dev
 	$(BIN)/mypy --strict --follow-imports=silent examples
 
 bounds: export NUMBA_BOUNDSCHECK := 1
+bounds: export SANDBOX_KERNELS := numba
 bounds: export NUMBA_CACHE_DIR := $(CURDIR)/$(VENV)/bounds
 bounds: test
 
-goldens: kernels
+goldens: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal tests/determinism/goldens
 
-goldens-record: kernels
+goldens-record: $(VENV)/installed-dev
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)
+
+libraries: $(VENV)/installed-dev
+	$(BIN)/python -m sandbox.app.kernels.libraries $(if $(CHECK),--check) $(if $(HERE),--here)
 
 pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.picture_cache

@@ -5,7 +5,6 @@ import io
 import os
 import signal
 import sys
-import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, cast
@@ -17,9 +16,6 @@ PIXEL_LIMIT = 16384
 RATE_LIMIT = 60.0
 # Most processes that a person can mean.
 PROCESS_LIMIT = 256
-# How long [s] a watch waits between two looks; where nothing has happened from one to the next, it says why.
-PATIENCE = 0.5
-SLOW = "still working: what runs for the first time is compiled, once, which takes a minute or two"
 # Longest number of ticks, in digits, for the same reason.
 COUNT_DIGITS = 12
 
@@ -162,23 +158,20 @@ def cores() -> int:
 
 
 class Progress:
-    """A bar on standard error where a person looks at it; where it stands still, a line that says why."""
+    """A bar on standard error where a person looks at it."""
 
     def __init__(self, total: int, unit: str = "tick") -> None:
         self.done = 0
         self._bar: Any = None
-        self._finished = threading.Event()
         if sys.stderr.isatty():
             from tqdm import tqdm
 
             self._bar = tqdm(total=total, unit=unit, leave=False)
-            threading.Thread(target=self._watch, daemon=True).start()
 
     def __enter__(self) -> "Progress":
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._finished.set()
         if self._bar is not None:
             self._bar.close()
 
@@ -187,12 +180,6 @@ class Progress:
         self.done += count
         if self._bar is not None:
             self._bar.update(count)
-
-    def show(self, done: int, total: int) -> None:
-        """This many units are done, of as many as are known by now."""
-        if self._bar is not None:
-            self._bar.total = total
-        self.update(done - self.done)
 
     @contextmanager
     def aside(self) -> Iterator[None]:
@@ -203,21 +190,12 @@ class Progress:
         with self._bar.external_write_mode(file=sys.stderr):
             yield
 
-    def _watch(self) -> None:
-        # Whatever takes so long, a first start is the likeliest cause; that it is one cannot be known from here.
-        before = -1
-        while not self._finished.wait(PATIENCE):
-            if self.done == before:
-                self._bar.write(SLOW, file=sys.stderr)
-                return
-            before = self.done
-
 
 @contextmanager
 def interrupted_between_ticks() -> Iterator[Callable[[], None]]:
     """Hold an interrupt back until the function given is called: it never strikes in the middle of a recorded line.
 
-    Before the first call it strikes at once: a first tick may take a minute, in which its kernels are compiled.
+    Before the first call it strikes at once: a first tick may take a minute, where numba compiles its kernels.
     """
     asked, begun = False, False
 

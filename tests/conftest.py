@@ -42,7 +42,7 @@ def memory_held():
 
 
 def pytest_sessionstart(session):
-    """Compile kernels once and say so, before workers begin."""
+    """Compile kernels that were edited once and say so, before workers begin."""
     compile_before_tests(session.config)
 
 

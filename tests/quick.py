@@ -26,7 +26,6 @@ ELSEWHERE = {
     "levels/": ("tests/level/test_shipped_levels.py", "tests/level/test_levels_keep_their_word.py"),
     "assets/": ("tests/app/test_theme.py", "tests/test_packaging.py"),
     "pyproject.toml": ("tests/test_packaging.py",),
-    "hatch_build.py": ("tests/test_packaging.py", "tests/test_wheel_kernels.py"),
 }
 # Rooms that are one file, or are tested by files of another name.
 BY_ROOM = {

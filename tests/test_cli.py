@@ -1,11 +1,9 @@
-import io
 import json
 import os
 import re
 import signal
 import subprocess
 import sys
-import threading
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,7 +13,6 @@ from PIL import Image, ImageSequence
 
 from sandbox.cli import main
 from sandbox.level.reading.files import shipped_folder
-from sandbox.terminal import SLOW
 
 ROPE = {
     "format": "spring-sandbox/level", "version": 2, "name": "Short rope", "settings": {"solver": "iterative"},
@@ -390,41 +387,12 @@ def test_an_error_without_a_file_is_not_blamed_on_standard_output(rope, monkeypa
     assert _lines(capsys) == ([], ["the system refuses: Cannot allocate memory"])
 
 
-def compiling(monkeypatch, succeeds):
-    """What `prepare` asks children for; none is started."""
-    asked = []
-
-    def compile_all(processes, groups, solvers, report):
-        asked.append((processes, groups, solvers))
-        report(1, 2)
-        return succeeds
-
-    monkeypatch.setattr("sandbox.app.kernels.compiling.compile_all", compile_all)
-    monkeypatch.setattr("sandbox.app.kernels.compiling.note_prepared", lambda: asked.append("noted"))
-    return asked
-
-
-def test_prepare_compiles_everything_or_what_one_level_needs(monkeypatch, rope, capsys):
-    asked = compiling(monkeypatch, True)
-    assert main(["prepare", "--processes", "3"]) == 0
-    assert asked == [(3, ("basics", "contacts"), None), "noted"]
-    asked.clear()
-    assert main(["prepare", rope]) == main(["prepare", "dominoes"]) == 0
-    assert [call[1:] for call in asked] == [(("basics",), ("iterative",)), (("basics", "contacts"), ("direct",))]
-    assert capsys.readouterr().out.splitlines()[-1] == "all that Dominoes needs is compiled"
-
-
-def test_prepare_that_does_not_succeed_says_so(monkeypatch, capsys):
-    assert compiling(monkeypatch, False) == [] and main(["prepare"]) == 2
-    assert "cannot compile" in capsys.readouterr().err
-
-
 COMMANDS = {
     "play": ["rope"], "toy": [], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "resume": ["x.jsonl"],
     "check": ["rope"], "diff": ["x.jsonl", "y.jsonl"], "bisect": ["x.json", "y.json"],
     "sweep": ["rope", "--cs", "0.1:1:2", "-o", "x.csv"], "render": ["rope", "-o", "x.png"],
     "take-home": ["rope"], "export": ["rope", "-o", "x.json"], "format": ["x.json"], "edit": [],
-    "prepare": [], "schema": [],
+    "schema": [],
 }  # fmt: skip
 
 
@@ -606,46 +574,6 @@ def test_a_number_of_processes_that_nobody_can_mean_is_refused(text, capsys):
     with pytest.raises(SystemExit) as leaving:
         main(["check", "rope", "--processes", text])
     assert leaving.value.code == 2
-
-
-class Terminal(io.StringIO):
-    """Standard error where a person looks at it; slow: set once the line for what takes long has been written."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.slow = threading.Event()
-
-    def isatty(self) -> bool:
-        return True
-
-    def write(self, text: str) -> int:
-        written = super().write(text)
-        if SLOW in text:
-            self.slow.set()
-        return written
-
-
-@pytest.mark.parametrize(
-    ("command", "work"),
-    [
-        (["run"], "sandbox.session.summary.run"),
-        (["check"], "sandbox.session.checking.check_level"),
-        (["render", "-o", "x.png"], "sandbox.app.draw.picture.save_picture"),
-    ],
-)
-def test_what_takes_long_before_anything_happens_is_explained_on_a_terminal(command, work, rope, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    terminal = Terminal()
-    monkeypatch.setattr(sys, "stderr", terminal)
-    told = []
-
-    def wait(*_: object) -> None:
-        told.append(terminal.slow.wait(60.0))
-        raise OSError(0, "enough")
-
-    monkeypatch.setattr(work, wait)
-    assert main([*command, rope]) == 2
-    assert told == [True]
 
 
 HEADLESS = """

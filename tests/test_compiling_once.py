@@ -1,28 +1,27 @@
-"""Who runs tests in a fresh clone is told that kernels are compiled, once, and how far that is."""
+"""Who runs tests after kernels were edited is told that numba compiles them, once, and how far that is."""
 
 from types import SimpleNamespace
 
 import pytest
 
 from sandbox.app.kernels import compiling
+from sandbox.physics import jit
 from tests.support import compiling_once
 
 
 @pytest.fixture
-def cache(monkeypatch):
-    """A cache that has no kernel until all are compiled; `works` says whether they can be."""
-    state = SimpleNamespace(prepared=False, works=True)
+def numba(monkeypatch):
+    """Kernels that numba compiles; `works` says whether it can."""
+    state = SimpleNamespace(works=True)
 
-    def compile_all(processes, groups, solvers, report):
-        assert processes >= 1 and set(groups) == set(compiling.GROUPS) and solvers is None
+    def compile_all(processes, report):
+        assert processes >= 1
         for done in range(3):
             report(done, 2)
         return state.works
 
-    monkeypatch.setattr(compiling, "is_prepared", lambda: state.prepared)
-    monkeypatch.setattr(compiling, "note_prepared", lambda: setattr(state, "prepared", True))
     monkeypatch.setattr(compiling, "compile_all", compile_all)
-    monkeypatch.setattr(compiling_once, "may_compile", lambda: True)
+    monkeypatch.setattr(jit, "way", lambda: "numba")
     return state
 
 
@@ -30,16 +29,15 @@ def config(only_lists=False, **more):
     return SimpleNamespace(option=SimpleNamespace(collectonly=only_lists), **more)
 
 
-def test_the_first_run_says_that_it_compiles_and_the_next_is_silent(cache):
+def test_a_run_says_that_it_compiles_and_how_far_it_is(numba):
     assert compiling_once.wants_kernels(config())
     said, shown = [], []
     compiling_once.compile_once(said.append, shown.append)
     assert said[0] == compiling_once.BEGINS and said[-1].startswith("Compiled in ")
     assert shown == ["0 of 2 kernels", "1 of 2 kernels", "2 of 2 kernels"]
-    assert not compiling_once.wants_kernels(config())
 
 
-def test_where_lines_stay_progress_is_a_line_now_and_then(cache, monkeypatch):
+def test_where_lines_stay_progress_is_a_line_now_and_then(numba, monkeypatch):
     said = []
     compiling_once.compile_once(said.append)
     assert len(said) == 2
@@ -48,25 +46,16 @@ def test_where_lines_stay_progress_is_a_line_now_and_then(cache, monkeypatch):
     assert said[3:6] == ["0 of 2 kernels", "1 of 2 kernels", "2 of 2 kernels"]
 
 
-def test_neither_a_worker_nor_a_run_that_only_lists_tests_nor_one_without_numba_compiles(cache, monkeypatch):
+@pytest.mark.parametrize("way", ["library", "interpreted"])
+def test_neither_a_worker_nor_a_run_that_only_lists_tests_nor_another_way_compiles(way, numba, monkeypatch):
     assert not compiling_once.wants_kernels(config(workerinput={}))
     assert not compiling_once.wants_kernels(config(only_lists=True))
-    monkeypatch.setattr(compiling_once, "may_compile", lambda: False)
+    monkeypatch.setattr(jit, "way", lambda: way)
     assert not compiling_once.wants_kernels(config())
 
 
-def test_what_cannot_be_compiled_is_said_and_asked_for_again(cache):
-    cache.works = False
+def test_what_cannot_be_compiled_is_said(numba):
+    numba.works = False
     said = []
     compiling_once.compile_once(said.append)
     assert said[-1].startswith("Not everything could be compiled")
-    assert compiling_once.wants_kernels(config())
-
-
-@pytest.mark.parametrize(("value", "expected"), [("1", False), ("0", True), ("", True)])
-def test_numba_that_is_switched_off_compiles_nothing(value, expected, monkeypatch):
-    monkeypatch.setenv("NUMBA_DISABLE_JIT", value)
-    monkeypatch.setattr(compiling_once, "find_spec", lambda name: object())
-    assert compiling_once.may_compile() is expected
-    monkeypatch.setattr(compiling_once, "find_spec", lambda name: None)
-    assert not compiling_once.may_compile()

@@ -33,6 +33,9 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
     assert (installed / "sandbox" / "py.typed").is_file()
     readers = {path.name for path in (installed / "sandbox" / "_shipped" / "examples" / "flat").iterdir()}
     assert readers == {path.name for path in (ROOT / "examples" / "flat").iterdir() if path.is_file()}
+    libraries = Path("sandbox", "physics", "jit", "libraries")
+    shipped = {path.name: path.read_bytes() for path in (installed / libraries).iterdir()}
+    assert shipped == {path.name: path.read_bytes() for path in (ROOT / libraries).iterdir()}
     program = (
         "import sandbox; from sandbox.level.reading.files import load_level, shipped_folder, shipped_levels\n"
         "assert load_level('rope').name and shipped_levels()\n"
@@ -50,13 +53,15 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
     assert int(assets) == len(list((ROOT / "assets").iterdir()))
 
 
-def test_make_play_installs_what_shared_files_need_and_dev_contains_it_and_what_sweeps_need():
+def test_make_play_installs_what_shared_files_need_and_no_compiler_and_dev_all_extras():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    assert {f"{project['name']}[{name}]" for name in ("export", "sweep")} <= set(extras["dev"])
+    assert {f"{project['name']}[{name}]" for name in ("export", "sweep", "build")} <= set(extras["dev"])
     packages = {name: {re.split(r"[<>=]", needed)[0] for needed in extras[name]} for name in ("export", "sweep")}
     assert packages["export"] == {kind.package for kind in KINDS.values() if kind.package} | {"matplotlib"}
     assert packages["sweep"] == {"dask", "distributed"}
+    needed = {re.split(r"[<>=]", each)[0] for each in project["dependencies"]}
+    assert not needed & {"numba", "llvmlite", "ziglang"}
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     recipe = makefile.split("$(VENV)/installed:")[1].split("\n\n")[0]
     assert '--editable ".[export]"' in recipe

@@ -154,10 +154,6 @@ class World(StateArrays):
         for slots in particles:
             self.energy_bank[slots] = BANK_UNOPENED
 
-    def drop_caches(self) -> None:
-        """Forget all derived objects: they hold for interpreted kernels or for compiled ones, not for both."""
-        self._derived.clear()
-
     @property
     def settings(self) -> WorldSettings:
         """Settings of a tick, replaced as a whole; another solver resets what solvers keep, auto the energy banks."""

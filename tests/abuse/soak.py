@@ -28,15 +28,13 @@ from sandbox.app.base.display import SCALE_RANGE, Display
 from sandbox.app.base.start_request import StartRequest
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.edit.side.side import PAGES, UNLISTED
-from sandbox.app.kernels.compiling import warm_up_rest
 from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import SETTINGS
 from sandbox.app.window.app import App
 from sandbox.editor.items import items_of
 from sandbox.editor.storage.part_files import catalogue
 from sandbox.level.reading.files import load_level
-from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.warm_up import warm_up
+from sandbox.physics.every_kernel import call_every_kernel
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from tests.support.person import VirtualScreen
@@ -205,7 +203,6 @@ class Monkey:
     def frame(self) -> None:
         """Let a frame pass."""
         app = self.app
-        app.preparation.finish(app.play is not None and app.play.has_contacts)
         app.frame(FRAME)
         # Nobody goes before the time is over.
         app.running = True
@@ -312,9 +309,8 @@ def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, str
     """Do it; what was found."""
     measures = frames // stretch > len(SCREENS)
     if measures:
-        # Machine code comes once and stays; which levels need it first is left to chance.
-        warm_up(tuple(SOLVERS))
-        warm_up_rest()
+        # What a kernel needs once comes at its first call and stays; which levels need it first is left to chance.
+        call_every_kernel()
     monkey = Monkey(seed)
     if measures:
         monkey.meet_parts()

@@ -92,7 +92,6 @@ class Driver:
             del self.app._draw
 
     def _frame(self):
-        self.app.preparation.finish(self.app.play is not None and self.app.play.has_contacts)
         self.app.frame(FRAME)
 
     def take_sliders(self):

@@ -5,7 +5,6 @@ import json
 import os
 import subprocess
 import sys
-import threading
 
 import numpy as np
 import pygame
@@ -15,16 +14,12 @@ from sandbox.app.base.display import has_display
 from sandbox.app.base.shortcuts import action_of, shortcuts
 from sandbox.app.base.start_request import StartRequest
 from sandbox.app.contracts.screen import Figures
-from sandbox.app.kernels.preparing import Preparation
-from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.scroll import BAR_WIDTH
 from sandbox.app.window.opening import open_app
-from sandbox.editor.storage.recent import remember
-from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import shipped_levels
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
-from tests.app.conftest import FRAME, small_level
+from tests.app.conftest import small_level
 
 DISPLAY_NAMES = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
 CTRL = pygame.KMOD_CTRL
@@ -477,49 +472,3 @@ def test_the_app_closes_after_the_given_time_and_prints_where_the_time_went(caps
     printed = capsys.readouterr().out
     parts = ("events", "ui", "flip", "frames a second", "without a new picture", "words in the window", "first page")
     assert all(part in printed for part in parts)
-
-
-def delayed_contacts(driver, monkeypatch):
-    """Contacts that are loaded once the event is set."""
-    touching = threading.Event()
-    driver.app.preparation.finish()
-    monkeypatch.setattr("sandbox.app.kernels.preparing._load_contacts", touching.wait)
-    monkeypatch.setattr(driver.app, "preparation", Preparation())
-    driver.app.preparation.finish()
-    return touching
-
-
-def test_a_level_in_which_things_touch_waits_until_contacts_are_prepared(driver, monkeypatch):
-    touching = delayed_contacts(driver, monkeypatch)
-    driver.frames()
-    assert driver.app.ready
-    driver.app.start(Playback(small_level(contacts={})))
-    for _ in range(5):
-        driver.app.frame(FRAME)
-    assert not driver.app.ready
-    assert driver.playback.session.tick == 0
-    touching.set()
-    driver.frames(5)
-    assert driver.app.ready
-    assert driver.playback.session.tick > 0
-
-
-def test_pictures_of_levels_in_which_nothing_touches_are_drawn_before_contacts_are_prepared(
-    open_app, monkeypatch, tmp_path
-):
-    for name, changes in (("Touching", {"contacts": {}}), ("Loose", {})):
-        path = tmp_path / f"{name}.json"
-        path.write_text(level_text(small_level(name=name, **changes)))
-        remember(path)
-    driver = open_app(small_level())
-    driver.app.preparation.finish()
-    touching = delayed_contacts(driver, monkeypatch)
-    driver.app.open_gallery("mine")
-    has_picture = {}
-    while not has_picture.get("Loose"):
-        driver.app.frame(FRAME)
-        has_picture = {card.name: card.picture is not None for card in driver.app.gallery.cards}
-    assert has_picture == {"Loose": True, "Touching": False}
-    touching.set()
-    while not all(card.picture is not None for card in driver.app.gallery.cards):
-        driver.frames()

@@ -227,7 +227,6 @@ def test_the_loop_slows_down_wakes_at_a_key_and_makes_up_for_no_time_that_it_sle
 
     def noted_frame(app, frame_time):
         times.append(frame_time)
-        app.preparation.finish()
         app._draw = lambda: None
         app.status.notices.clear()
         if len(times) == 2:

@@ -179,7 +179,7 @@ def triangles(surface, corners, colours, compiled=True):
 @pytest.mark.parametrize("compiled", [True, False])
 def test_triangles_that_share_a_side_fill_their_square(compiled):
     if compiled and not COMPILED:
-        pytest.skip("needs numba")
+        pytest.skip("kernels are interpreted here")
     surface = pygame.Surface((60, 60), 0, 32)
     corners = [[[10.2, 10.7], [50.2, 12.7], [48.2, 50.7]], [[10.2, 10.7], [48.2, 50.7], [8.2, 48.7]]]
     triangles(surface, corners, [0xFF0000, 0x0000FF], compiled)

@@ -242,7 +242,7 @@ def maker(screen, tmp_path, edit):
 def test_three_levels_are_built_by_mouse_saved_reopened_played_and_their_recordings_verify(maker):
     documents = maker.folder.parent / "documents" / "Spring Sandbox"
     # What was drawn in the plain way until then changes once, which is no answer to the person.
-    maker.person.wait_for("Untitled - Level editor", without="preparing")
+    maker.person.wait_for("Untitled - Level editor")
     maker.picture("the tour is offered")
     maker.person.click(maker.place_of_label("Skip"))
     maker.twin.choose("Skip")

@@ -16,7 +16,6 @@ from tests.app.conftest import Driver, small_level
 
 def test_every_shipped_level_has_a_card_with_a_picture(open_app):
     driver = open_app()
-    driver.app.preparation.finish(contacts=True)
     driver.frames(len(shipped_levels()) + 2)
     cards = [card for card in driver.app.gallery.cards if card in driver.app.gallery._paths]
     assert len(cards) == len(shipped_levels())

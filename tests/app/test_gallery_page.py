@@ -105,7 +105,6 @@ def played_for(page, name, frames=40):
     gallery.area.scroll_to(card.relative_rect.top - 20)
     still = card.picture
     page.move(card.rect.center)
-    page.app.preparation.finish(contacts=True)
     page.frames(frames)
     return card, still
 

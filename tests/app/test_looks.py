@@ -28,7 +28,7 @@ from sandbox.session.session import Session
 from tests.app.conftest import small_level
 from tests.support.zoo import zoo
 
-needs_kernels = pytest.mark.skipif(not COMPILED, reason="needs numba")
+needs_kernels = pytest.mark.skipif(not COMPILED, reason="kernels are interpreted here")
 
 
 def jelly(name, **more):

@@ -49,7 +49,6 @@ class Person:
 
     def frames(self, count):
         for _ in range(count):
-            self.toy.preparation.finish(True)
             self.toy.frame(FRAME)
 
     def post(self, kind, **data):

@@ -124,7 +124,6 @@ def measure(level: Level, page: str) -> dict[str, float]:
     app = App(Display(1.0))
     app.open(StartRequest(level))
     try:
-        app.warming.join()
         app.documents.edit_level(level)
         maker = Maker(app, page)
         maker.work()

@@ -53,7 +53,7 @@ def main() -> int:
         print(seconds_per_pass(5))
         return 0
     if not COMPILED:
-        sys.exit("numba is missing or switched off: there is nothing to compare")
+        sys.exit("kernels are interpreted here: there is nothing to compare")
     pairs = [(seconds_per_pass(200), interpreted_seconds()) for _ in range(PAIRS)]
     ratios = [slow / fast for fast, slow in pairs]
     springs = grid_with_diagonals(columns=SIDE, rows=SIDE).spring_count

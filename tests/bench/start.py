@@ -1,5 +1,5 @@
 """How programs start: what commands take, when the app has words, the first page and the first tick, and how long its
-window stands still; and what compiling everything takes.
+window stands still.
 
 Wall time counts what else the machine does; processor time is that of the app alone, its children not among it.
 """
@@ -12,7 +12,7 @@ import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-# What is started again and again, with filled caches; the median is of so many starts.
+# What is started again and again; the median is of so many starts.
 COMMANDS = (
     ("--help",), ("check", "rope"), ("check", "dominoes"), ("run", "rope", "--seconds", "5", "--json"),
     ("run", "dominoes", "--seconds", "1", "--json"),
@@ -38,7 +38,7 @@ program()
 def start(*arguments: str, cache: str) -> None:
     """Print when a start comes to what; cache: where the user's caches are."""
     environment = {**os.environ, "SDL_VIDEODRIVER": "dummy", "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": cache}
-    environment |= {"NUMBA_CACHE_DIR": cache, "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
+    environment |= {"PYGAME_HIDE_SUPPORT_PROMPT": "1"}
     command = [sys.executable, "-c", PROGRAM, str(time.perf_counter()), "play", *arguments]
     ended = subprocess.run(
         [*command, "--profile", "--seconds", str(SECONDS)], cwd=ROOT, env=environment, capture_output=True, text=True,
@@ -58,20 +58,16 @@ def spent(arguments: Sequence[str], environment: Mapping[str, str]) -> float:
 
 
 def main() -> None:
-    """Compile everything, start with filled caches, then with empty ones, whose compiling goes on behind the last."""
-    with tempfile.TemporaryDirectory() as cache:
-        environment = {**os.environ, "NUMBA_CACHE_DIR": cache, "XDG_CACHE_HOME": cache}
-        print(f"compiling everything: {spent(['prepare', '--processes', '2'], environment):.0f} s of processor time")
-        for command in COMMANDS:
-            times = sorted(spent(command, environment) for _ in range(STARTS))
-            print(*command, f"- {times[STARTS // 2]:.2f} s of processor time, at least {times[0]:.2f}")
-        for arguments in ((), ("rope",), ("dominoes",)):
-            print("filled caches:", *arguments)
-            start(*arguments, cache=cache)
-    for arguments in ((), ("rope",)):
+    """Start with empty caches, then with filled ones."""
+    for arguments in ((), ("rope",), ("dominoes",)):
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as cache:
-            print("empty caches:", *arguments)
-            start(*arguments, cache=cache)
+            for what in ("empty caches:", "filled caches:"):
+                print(what, *arguments)
+                start(*arguments, cache=cache)
+    with tempfile.TemporaryDirectory() as cache:
+        for command in COMMANDS:
+            times = sorted(spent(command, {**os.environ, "XDG_CACHE_HOME": cache}) for _ in range(STARTS))
+            print(*command, f"- {times[STARTS // 2]:.2f} s of processor time, at least {times[0]:.2f}")
 
 
 if __name__ == "__main__":

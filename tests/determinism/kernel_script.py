@@ -3,50 +3,17 @@
 Some of its springs yield and break.
 
 python kernel_script.py SOLVER SUBSTEPS[,SUBSTEPS..] TICKS
-    [--without-numba | --broken-numba | --without-cache | --switch TICK]
+    [--without-numba | --broken-numba | --without-cache]
 
 --without-cache: only of a rope, which comes last else: to compile all that a busy world needs takes a minute.
---switch: kernels are interpreted until this tick, counted over all worlds that follow one another.
 """
 
-import gc
-import inspect
 import os
 import sys
 import warnings
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-
-
-class Ticks:
-    """Advances worlds, and counts."""
-
-    def __init__(self, switch: int = -1):
-        self.switch, self.count = switch, 0
-
-    def advance(self, world) -> None:
-        from sandbox.physics.step import step
-
-        if self.count == self.switch:
-            switch(world)
-        self.count += 1
-        step(world)
-
-
-def switch(world) -> None:
-    """From interpreted kernels to compiled ones, of which none is left behind."""
-    from sandbox.physics import jit
-
-    before = [(kernel, kernel.held) for kernel in jit.KERNELS if kernel.role == "kernel"]
-    assert not jit.COMPILED and "numba" not in sys.modules and len(before) > 10
-    assert jit.switch_to_compiled()
-    world.drop_caches()
-    gc.collect()
-    for kernel, held in before:
-        assert kernel.held is not held
-        holders = [one for one in gc.get_referrers(held) if not isinstance(one, tuple) or one not in before]
-        assert all(holder is vars(sys.modules[__name__]) or inspect.isframe(holder) for holder in holders), kernel.name
 
 
 class Refusal:
@@ -63,10 +30,6 @@ def prepare(mode: str) -> None:
         sys.meta_path.insert(0, Refusal())
     elif mode == "--broken-numba":
         sys.modules["numba"] = None  # importing it raises ImportError, as a numba too old for this numpy does
-    elif mode == "--switch":
-        from sandbox.physics import jit
-
-        jit.start_interpreted()
     elif mode == "--without-cache":
         os.environ["NUMBA_CACHE_DIR"] = str(Path(__file__) / "not a folder")
         warnings.filterwarnings("ignore", "compiled kernels cannot be kept")
@@ -249,16 +212,16 @@ if __name__ == "__main__":
     chosen, all_substeps, ticks, *mode = sys.argv[1:]
     if mode:
         prepare(mode[0])
-    from sandbox.physics.jit import COMPILED
+    from sandbox.physics.jit import way
+    from sandbox.physics.step import step
 
-    advance = Ticks(int(mode[1]) if mode[:1] == ["--switch"] else -1).advance
     for number, substeps in enumerate(all_substeps.split(",")):
-        print("compiled" if COMPILED else "interpreted")
-        given = advance, chosen, substeps if substeps == "auto" else int(substeps), int(ticks)
+        print(way())
+        given = step, chosen, substeps if substeps == "auto" else int(substeps), int(ticks)
         if mode != ["--without-cache"]:
             print("\n".join(hashes(*given)))
             print("\n".join(touches(*given)))
         if number == 0 and mode != ["--without-cache"]:
             print("\n".join(modes()))
-            print("\n".join(blow_up(advance, chosen, 2 * int(ticks))))
+            print("\n".join(blow_up(step, chosen, 2 * int(ticks))))
         print("\n".join(swings(*given)))

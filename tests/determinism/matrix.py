@@ -3,34 +3,33 @@
 Run by hand: python -m tests.determinism.matrix [--python PATH ...] [--setting NAME ...] [LEVEL ...]
 
 Each PYTHON has the project's dependencies (make one with `PATH -m venv` and pip; the oldest and the newest that
-pyproject.toml allows are worth two). Compiling anew for a setting takes a minute or two. Exit code 1: a bit differs.
+pyproject.toml allows are worth two). Compiling anew for a setting of numba takes a minute or two. Exit code 1: a bit
+differs.
 """
 
 import argparse
 import os
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS: dict[str, dict[str, str]] = {
-    "compiled": {},
-    "optimised 0": {"NUMBA_OPT": "0"},
-    "optimised 3": {"NUMBA_OPT": "3"},
-    "generic CPU": {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""},
-    "interpreted": {"NUMBA_DISABLE_JIT": "1"},
-    "switched": {},
+    "library": {"SANDBOX_KERNELS": "library"},
+    "numba": {"SANDBOX_KERNELS": "numba"},
+    "optimised 0": {"SANDBOX_KERNELS": "numba", "NUMBA_OPT": "0"},
+    "optimised 3": {"SANDBOX_KERNELS": "numba", "NUMBA_OPT": "3"},
+    "generic CPU": {"SANDBOX_KERNELS": "numba", "NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""},
+    "interpreted": {"SANDBOX_KERNELS": "interpreted"},
 }
 # Interpreted kernels are some hundred times slower: no contacts, and so many particles times ticks of each golden.
 INTERPRETED_WORK = 12_000
-SWITCHED_SEED, SWITCHED_TICKS = 20, 60
-VERSIONS = "import platform, numpy, numba; print(platform.python_version(), numpy.__version__, numba.__version__)"
+VERSIONS = "import platform, numpy; print(platform.python_version(), numpy.__version__)"
 
 
 def verified(names: list[str]) -> int:
     """Run goldens in this process; how many differ."""
-    from sandbox.physics.jit import COMPILED
+    from sandbox.physics.jit import COMPILED, way
     from sandbox.session.replay.reader import read_replay
     from sandbox.session.replay.verify import verify
     from tests.determinism.golden import golden_names, golden_path
@@ -47,27 +46,16 @@ def verified(names: list[str]) -> int:
         if divergence is not None:
             differing += 1
             print(f"{name}: {divergence}")
-    print(f"{'compiled' if COMPILED else 'interpreted'}, {ticks:,} ticks, {differing} goldens differ")
+    print(f"{way()}, {ticks:,} ticks, {differing} goldens differ")
     return differing
 
 
 def outcome(python: str, setting: str, names: list[str]) -> tuple[bool, str]:
     """Whether the goldens are equal on an interpreter with a setting, and the last lines that it told."""
     environment = os.environ | SETTINGS[setting] | {"PYTHONPATH": str(ROOT)}
-    with tempfile.TemporaryDirectory() as folder:
-        if setting == "switched":
-            from tests.support.switching import LEVELS
-
-            given = ["tests.support.switching", folder, str(SWITCHED_SEED), str(SWITCHED_TICKS), *LEVELS]
-        else:
-            given = ["tests.determinism.matrix", "--here", *names]
-        ended = subprocess.run(
-            [python, "-m", *given], cwd=ROOT, env=environment, capture_output=True, text=True, check=False
-        )
+    command = [python, "-m", "tests.determinism.matrix", "--here", *names]
+    ended = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     lines = ended.stdout.splitlines()
-    if setting == "switched" and ended.returncode == 0:
-        equal = all(line.endswith(": None") for line in lines)
-        return equal, f"{len(lines)} runs compiled on their way, {'all verify' if equal else ended.stdout}"
     return ended.returncode == 0, "\n".join(lines) or ended.stderr[-2000:]
 
 
@@ -87,7 +75,7 @@ def main() -> int:
         for setting in given.setting or SETTINGS:
             equal, text = outcome(python, setting, given.levels)
             all_equal &= equal
-            versions = "Python {}, numpy {}, numba {}".format(*told)
+            versions = "Python {}, numpy {}".format(*told)
             print(f"{versions}, {setting}: {'equal' if equal else 'DIFFERS'}: {text}", flush=True)
     return int(not all_equal)
 

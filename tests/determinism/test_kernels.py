@@ -1,4 +1,4 @@
-"""The same bits at every tick: in a fresh process, compiled and interpreted, without numba, without a cache."""
+"""The same bits at every tick: in a fresh process, by library, numba and interpreter, without numba or a cache."""
 
 import functools
 import importlib.util
@@ -14,24 +14,22 @@ SOLVERS = ("single_pass", "iterative", "direct")
 SUBSTEPS = (1, 4, "auto")
 TICKS = 40
 
-needs_numba = pytest.mark.skipif(
-    importlib.util.find_spec("numba") is None, reason="compares with compiled kernels, and numba is not installed"
-)
+needs_numba = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
 
 
 @functools.cache
-def runs(solver, *mode, interpreted=False, attempt=0):
+def runs(solver, *mode, way="library", attempt=0):
     """What the script prints for each number of substeps in one process: how kernels ran, then a hash per tick.
 
     After the first of them, what substeps do not change is left out.
     """
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1" if interpreted else "0"}
+    environment = {**os.environ, "SANDBOX_KERNELS": way}
     substeps = (1,) if mode else SUBSTEPS
     command = [sys.executable, str(SCRIPT), solver, ",".join(map(str, substeps)), str(TICKS), *mode]
     ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
     printed = ended.stdout.splitlines()
-    begins = [k for k, line in enumerate(printed) if line in ("compiled", "interpreted")]
+    begins = [k for k, line in enumerate(printed) if line in ("library", "numba", "interpreted")]
     blocks = [printed[first:end] for first, end in zip(begins, [*begins[1:], None], strict=True)]
     return dict(zip(substeps, blocks, strict=True))
 
@@ -47,32 +45,24 @@ def test_a_fresh_process_repeats_every_bit(solver):
     assert again == first
 
 
-@needs_numba
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_compiled_and_interpreted_kernels_give_the_same_bits(solver):
-    compiled, interpreted = runs(solver), runs(solver, interpreted=True)
+@pytest.mark.parametrize("way", [pytest.param("numba", marks=needs_numba), "interpreted"])
+def test_the_library_gives_the_bits_of_other_ways(solver, way):
+    library, other = runs(solver), runs(solver, way=way)
     for substeps in SUBSTEPS:
-        assert (compiled[substeps][0], interpreted[substeps][0]) == ("compiled", "interpreted")
-        assert interpreted[substeps][1:] == compiled[substeps][1:], f"{substeps} substeps"
+        assert (library[substeps][0], other[substeps][0]) == ("library", way)
+        assert other[substeps][1:] == library[substeps][1:], f"{substeps} substeps"
 
 
 @pytest.mark.parametrize("mode", ["--without-numba", "--broken-numba"])
-def test_physics_runs_interpreted_where_numba_cannot_be_imported(mode):
-    without = lines("iterative", mode)
+def test_physics_runs_interpreted_where_numba_is_asked_for_and_cannot_be_imported(mode):
+    without = runs("iterative", mode, way="numba")[1]
     assert without[0] == "interpreted"
     assert without[1:] == lines("iterative")[1:]
 
 
 @needs_numba
 def test_kernels_compile_uncached_where_no_cache_can_be_written():
-    uncached = lines("single_pass", "--without-cache")
-    assert (uncached[0], len(uncached)) == ("compiled", 1 + TICKS)
+    uncached = runs("single_pass", "--without-cache", way="numba")[1]
+    assert (uncached[0], len(uncached)) == ("numba", 1 + TICKS)
     assert uncached[1:] == lines("single_pass")[-TICKS:]
-
-
-@needs_numba
-@pytest.mark.parametrize(("solver", "tick"), [("single_pass", 0), ("direct", 17), ("direct", 53), ("iterative", 61)])
-def test_a_run_that_is_switched_between_two_ticks_from_interpreted_to_compiled_gives_the_same_bits(solver, tick):
-    switched = lines(solver, "--switch", str(tick))
-    assert switched[0] == "interpreted"
-    assert switched[1:] == lines(solver)[1:]

@@ -58,6 +58,40 @@ def test_kernels_are_interpreted_where_compiling_is_switched_off():
     assert ended.stdout.split() == ["False", "True"]
 
 
+OWN = """
+import sys
+sys.modules["numba"] = None
+import numpy as np
+from sandbox.physics import jit
+
+@jit.kernel
+def fill(items, share):
+    values, others = jit.contents(items)
+    for k in range(values.shape[0]):
+        values[k] = share * others[k]
+
+values = np.zeros(2)
+fill(jit.bundle((values, np.array([1.0, 3.0]))), 2.0)
+print(jit.way(), *values)
+"""
+
+
+@pytest.mark.parametrize("way", ["library", "interpreted"])
+def test_a_kernel_that_is_in_no_library_is_interpreted_where_numba_is_missing(way):
+    environment = {**os.environ, "SANDBOX_KERNELS": way}
+    command = [sys.executable, "-c", OWN]
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert ended.stdout.split() == [way, "2.0", "6.0"]
+
+
+def test_a_wish_that_is_no_way_is_told_in_one_line():
+    script = "from sandbox.physics import jit; print(jit.way())"
+    environment = {**os.environ, "SANDBOX_KERNELS": "fast"}
+    ended = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    assert ended.stderr.splitlines()[0] == "SANDBOX_KERNELS is library, numba, interpreted, not 'fast'"
+    assert ended.stdout.strip() in ("library", "numba", "interpreted")
+
+
 LAZY = """
 import sys
 import sandbox.physics.step, sandbox.physics.solvers.direct.solve, sandbox.physics.pipeline

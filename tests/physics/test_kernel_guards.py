@@ -137,7 +137,7 @@ def outcome(tmp_path, processes):
     def run(change):
         (tmp_path / "programme.py").write_text(KERNELS.replace("{change}", change))
         if not processes or processes[-1].poll() is not None:
-            environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+            environment = {**os.environ, "PYTHONPATH": str(ROOT), "SANDBOX_KERNELS": "numba"}
             pipe = subprocess.PIPE
             command = [sys.executable, "-c", PROGRAMME]
             processes.append(subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe, text=True))

@@ -1,14 +1,16 @@
-"""How often kernels are compiled: for which types of arguments, and that warming up covers them all."""
+"""How often kernels are compiled: for which types of arguments, and that calling every kernel covers them all."""
 
+import importlib.util
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from sandbox.physics import jit
+from sandbox.physics.jit.library import read_manifest
 
-pytestmark = pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled here")
+pytestmark = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="nothing is compiled here")
 ROOT = Path(__file__).resolve().parents[2]
 
 STEPS = """
@@ -25,47 +27,37 @@ def play():
             for _ in range(3):
                 step(world)
 """
-WARM_UP = f"""
+CALLS = f"""
 from sandbox.physics import jit
-from sandbox.physics.warm_up import warm_up
+from sandbox.physics.every_kernel import call_every_kernel
 {STEPS}
-warm_up()
+call_every_kernel()
 before = count()
 play()
 assert count() == before, set(count().items()) ^ set(before.items())
 print(*(f"{{name}} {{number}}" for name, number in before.items()), sep="\\n")
 """
-LOAD = f"""
-from sandbox.physics import jit
-jit.start_interpreted()
-import sandbox.physics.step
-{STEPS}
-from sandbox.physics.warm_up import warm_up
-with jit.recorded("all"):
-    warm_up()
-noted = {{kernel.name: len(kernel.signatures) for kernel in jit.entries() if kernel.signatures}}
-assert jit.switch_to_compiled()
-for kernel in jit.entries():
-    for signature in kernel.signatures.values():
-        jit.compile_entry(kernel, signature)
-before = count()
-play()
-assert count() == before, set(count().items()) ^ set(before.items())
-assert noted == before
+NOTES = """
+from sandbox.app.kernels.compiling import needed_kernels
+print(*(f"{kernel.name} {len(kernel.signatures)}" for kernel in needed_kernels()), sep="\\n")
 """
 
 
 def printed(script):
-    ended = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
+    environment = {**os.environ, "SANDBOX_KERNELS": "numba"}
+    command = [sys.executable, "-c", script]
+    ended = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
     return ended.stdout.splitlines()
 
 
-def test_warming_up_leaves_nothing_to_compile_and_each_entry_is_compiled_for_one_signature():
-    numbers = dict(line.split() for line in printed(WARM_UP))
+def test_calling_every_kernel_leaves_nothing_to_compile_and_each_entry_is_compiled_for_one_signature():
+    numbers = dict(line.split() for line in printed(CALLS))
     assert len(numbers) > 20
     assert {name: int(number) for name, number in numbers.items() if number != "1"} == {}
 
 
-def test_calls_that_interpreted_kernels_note_are_all_that_is_to_be_compiled():
-    printed(LOAD)
+def test_interpreted_kernels_note_one_signature_each_and_the_libraries_hold_them_all():
+    numbers = dict(line.split() for line in printed(NOTES) if line.startswith("sandbox."))
+    assert set(numbers.values()) == {"1"}
+    assert set(numbers) == set(read_manifest()["entries"])

@@ -1,12 +1,11 @@
-"""Kernels are compiled before the first test, once, and the person is told: a fresh clone is not silent for minutes."""
+"""Where numba compiles kernels, it does so before the first test, once, and the person is told."""
 
-import os
 import sys
 import time
 from collections.abc import Callable
-from importlib.util import find_spec
 
 from sandbox.app.kernels import compiling
+from sandbox.physics import jit
 
 # From one line of progress to the next, where lines stay [s].
 EVERY = 10.0
@@ -14,14 +13,9 @@ BEGINS = "Compiling the physics, once: later runs load it from a cache."
 
 
 def wants_kernels(config) -> bool:
-    """Whether a run of pytest will need kernels that are not in the cache: not one that only lists tests."""
+    """Whether a run of pytest will let numba compile kernels: not one that only lists tests."""
     is_worker, only_lists = hasattr(config, "workerinput"), config.option.collectonly
-    return not (is_worker or only_lists or compiling.is_prepared()) and may_compile()
-
-
-def may_compile() -> bool:
-    """Whether kernels are compiled here at all: where numba is, and is not switched off."""
-    return find_spec("numba") is not None and os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
+    return not (is_worker or only_lists) and jit.way() == "numba"
 
 
 def compile_once(write: Callable[[str], object], rewrite: Callable[[str], object] | None = None) -> None:
@@ -39,8 +33,7 @@ def compile_once(write: Callable[[str], object], rewrite: Callable[[str], object
             write(text)
 
     began = time.monotonic()
-    if compiling.compile_all(compiling.usual_processes(), compiling.GROUPS, None, report):
-        compiling.note_prepared()
+    if compiling.compile_all(compiling.usual_processes(), report):
         write(f"Compiled in {time.monotonic() - began:.0f} s.")
     else:
         write("Not everything could be compiled: tests compile the rest when they need it.")

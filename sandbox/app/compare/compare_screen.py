@@ -168,11 +168,6 @@ class CompareScreen(PlayScreen):
         if self.panel is not None and self.side == SIDES[1]:
             self.panel.follow(self.other)
 
-    def drop_caches(self) -> None:
-        """Use kernels that have come about."""
-        super().drop_caches()
-        self.other.session.world.drop_caches()
-
     def film(self, seconds: float) -> FilmPair:
         """Both, each with what it is set to."""
         assert self.beside is not None
@@ -211,10 +206,10 @@ class CompareScreen(PlayScreen):
         """Whether time passes, and yet nothing moves in either."""
         return super().rests and self.beside is not None and self.beside.rests
 
-    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Let the same time pass in both."""
         assert self.beside is not None
-        super().update(frame_time, None if pointer is None else self._in_first(pointer), profile, ready)
+        super().update(frame_time, None if pointer is None else self._in_first(pointer), profile)
         with profile.part("ticks"):
             self.other.follow(self.playback.session.tick)
         self.beside.stillness.follow(self.other.current, self.camera.zoom, frame_time)

@@ -74,9 +74,9 @@ class HookeLesson(CompareScreen):
 
     # A frame.
 
-    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Let time pass, and look whether it has exploded."""
-        super().update(frame_time, pointer, profile, ready)
+        super().update(frame_time, pointer, profile)
         world = self.playback.session.world
         if self.exploded_at is None and has_exploded(world):
             self.exploded_at = world.tick

@@ -150,11 +150,6 @@ class Application(Protocol):
         ...
 
     @property
-    def ready(self) -> bool:
-        """Whether the physics is prepared."""
-        ...
-
-    @property
     def chosen(self) -> Chosen:
         """What the person has chosen about the app."""
         ...

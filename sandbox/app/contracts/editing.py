@@ -282,11 +282,6 @@ class Editing(Protocol):
         ...
 
     @property
-    def ready(self) -> bool:
-        """Whether the physics is prepared."""
-        ...
-
-    @property
     def scale(self) -> float:
         """Pixels per layout unit."""
         ...

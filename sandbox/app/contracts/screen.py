@@ -80,8 +80,8 @@ class Screen(Protocol):
         """React to a key that is let go."""
         ...
 
-    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
-        """Let frame_time [s] pass; pointer: where the mouse is over the world, if it is; ready: kernels are there."""
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
+        """Let frame_time [s] pass; pointer: where the mouse is over the world, if it is."""
         ...
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:

@@ -211,11 +211,6 @@ class EditScreen:
     # Layout.
 
     @property
-    def ready(self) -> bool:
-        """Whether the physics is prepared."""
-        return self.app.ready
-
-    @property
     def scale(self) -> float:
         """Pixels per layout unit."""
         return self.ui.scale
@@ -457,15 +452,15 @@ class EditScreen:
         has_new = self._is_side_late or (self.side is not None and self.side.moves)
         return has_new or self.view.moves or self.watch.moves
 
-    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Follow the pointer, look for faults a little, and show the state in the widgets."""
-        self.view.update(frame_time, ready)
+        self.view.update(frame_time)
         if not pygame.mouse.get_pressed()[0] or pointer is None:
             self.pointer = pointer
             at = self.cursor if self.cursor is not None else None if pointer is None else self.camera.to_world(pointer)
             self.pointer_tool.hover(at, pygame.key.get_mods())
         with profile.part("lint"):
-            self.watch.update(frame_time, ready)
+            self.watch.update(frame_time)
         self.bar.show(self)
         self.palette.show(self.tool)
         self.options.refresh()

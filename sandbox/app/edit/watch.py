@@ -129,13 +129,13 @@ class Watch:
         )
         return is_waiting or self._lint is not None or is_drawing or (forecast is not None and not self._is_told)
 
-    def update(self, frame_time: float, ready: bool = True) -> None:
-        """Go on with both for a moment; ready: kernels are there, or a forecast would take many frames at a time."""
+    def update(self, frame_time: float) -> None:
+        """Go on with both for a moment."""
         level = self._screen.document.level
         if level is not self._level:
             self._level, self._since = level, 0.0
             self._lint = self.forecast = self.trail = None
-        if ready and self.range_trial is not None and not self.range_trial.is_done:
+        if self.range_trial is not None and not self.range_trial.is_done:
             self.range_trial.advance(TRYING)
         before, self._since = self._since, self._since + frame_time
         if self._since < PATIENCE:
@@ -146,9 +146,8 @@ class Watch:
             self.forecast = Forecast(level) if self.forecasts and self._screen.scene.items else None
             self.trail = Trail(level) if self.trails and self._screen.scene.items else None
         self._look()
-        if ready:
-            self._follow()
-        if ready and self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
+        self._follow()
+        if self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
             self._is_told = True
             if self._is_wanted:
                 self._take_forecast()

@@ -81,11 +81,6 @@ class Film:
                 twin.advance()
             yield twin.world if twin.tick >= first else None
 
-    def drop_caches(self) -> None:
-        """Forget what worlds have derived, where kernels are interpreted no more."""
-        for session in (self._past, *self._running):
-            session.world.drop_caches()
-
     def pictures(
         self, start: float, end: float, fps: float, size: Size, name: str = ""
     ) -> Iterator[pygame.Surface | None]:

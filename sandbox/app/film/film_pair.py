@@ -33,11 +33,6 @@ class FilmPair:
         """What the pictures of each show [m]: left, bottom, right, top."""
         return self.parts[0][1].box
 
-    def drop_caches(self) -> None:
-        """Forget what worlds have derived, where kernels are interpreted no more."""
-        for _, film in self.parts:
-            film.drop_caches()
-
     def pictures(
         self, start: float, end: float, fps: float, size: Size, name: str = ""
     ) -> Iterator[pygame.Surface | None]:

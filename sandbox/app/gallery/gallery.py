@@ -26,8 +26,7 @@ from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shad
 from sandbox.app.gallery.header import Header
 from sandbox.app.gallery.preview import Preview
 from sandbox.app.gallery.replay_card import date_of, fill_replay
-from sandbox.app.gallery.sections import FIRST, LIGHT_LEVELS, in_sections, is_found, search_rank
-from sandbox.app.kernels.compiling import is_prepared
+from sandbox.app.gallery.sections import FIRST, in_sections, is_found, search_rank
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
@@ -80,7 +79,6 @@ class Gallery:
         self.section = section
         # What is still to be found out or drawn for cards: each goes on by a slice, False where it has to wait.
         self._unfilled = SliceQueue()
-        self._has_kernels: Callable[[bool], bool] = lambda contacts: False
         self._paths: dict[Card, Path] = {}
         self._preview: tuple[Card, Preview, pygame.Surface | None] | None = None
         self.title = TITLES[section]
@@ -137,10 +135,6 @@ class Gallery:
     def _add_shipped(self) -> None:
         played = played_levels()
         shortcuts = self._group("Recently played", is_shortcut=True)
-        if not jit.COMPILED and not is_prepared():
-            shortcuts.title, shortcuts.line = "Ready at once", "The first start prepares the physics of the others."
-            light = [shipped_folder("levels") / f"{name}.json" for name in LIGHT_LEVELS]
-            played = [path for path in light if path.is_file()]
         for path in played[: shortcuts.columns]:
             self._add_level(shortcuts, path)
         for place, (section, paths) in enumerate(in_sections(shipped_levels())):
@@ -228,8 +222,6 @@ class Gallery:
             card.show_texts(level.name, ": ".join(about), level.tags)
         if picture is not None:
             return
-        while not self._has_kernels(level.has_contacts):
-            yield False
         picture = yield from draw_in_slices(level, theme, SECONDS if jit.COMPILED else 0.0)
         card.show_picture(pygame.transform.smoothscale(picture, size))
         if jit.COMPILED:
@@ -241,7 +233,7 @@ class Gallery:
             card = self._add_card(group, one_line(path.name), "", partial(self._app.files.open_replay, path))
             card.line = date_of(path)
             card.repaint()
-            self._unfilled.add(fill_replay(card, path, lambda contacts: self._has_kernels(contacts)))
+            self._unfilled.add(fill_replay(card, path))
 
     # Where it stands.
 
@@ -301,9 +293,8 @@ class Gallery:
         """Whether cards are still filled in, or one plays."""
         return len(self._unfilled) > 0 or (self._preview is not None and self._preview[1].moves)
 
-    def update(self, has_kernels: Callable[[bool], bool], frame_time: float) -> None:
-        """Go on filling cards for a while, those whose kernels are there (see Preparation); show what has the focus."""
-        self._has_kernels = has_kernels
+    def update(self, frame_time: float) -> None:
+        """Go on filling cards for a while; show what has the focus."""
         self._unfilled.go_on(FILL_BUDGET)
         self._search(self.header.search.entry.get_text())
         self._mark_section()
@@ -337,7 +328,7 @@ class Gallery:
         if card is None or card not in self._paths or card.is_small or self._app.chosen["motion"] == "less":
             return
         if self._preview is None:
-            self._preview = card, Preview(self._paths[card], card.picture_size, self._has_kernels), card.picture
+            self._preview = card, Preview(self._paths[card], card.picture_size), card.picture
         preview = self._preview[1]
         if preview.update(frame_time) and preview.picture is not None:
             card.show_picture(preview.picture)

@@ -1,7 +1,7 @@
 """Preview: a level that plays in its card while somebody points at it."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -25,13 +25,13 @@ MOST_TICKS = 2
 
 
 class Preview:
-    """Plays the level of a file into a picture of size [pixels]; has_kernels: whether it can be, see Preparation.
+    """Plays the level of a file into a picture of size [pixels].
 
     It begins where the still picture ends, so that this seems to come alive.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], has_kernels: Callable[[bool], bool]) -> None:
-        self._path, self._size, self._has_kernels = path, size, has_kernels
+    def __init__(self, path: Path, size: tuple[int, int]) -> None:
+        self._path, self._size = path, size
         self._clock = TickClock()
         self._rested = self._played = 0.0
         self._steps = self._prepare()
@@ -53,7 +53,6 @@ class Preview:
         while self._session is None:
             went_on = next(self._steps, None)
             self._has_ended = went_on is None and self._session is None
-            # It has ended, or waits for kernels.
             if not went_on or time.perf_counter() > end:
                 return False
         self._advance(self._session, frame_time)
@@ -65,8 +64,6 @@ class Preview:
         except LevelError:
             return
         yield True
-        while not self._has_kernels(level.has_contacts):
-            yield False
         session = Session(level)
         if len(session.world.mass) > PARTICLES:
             return

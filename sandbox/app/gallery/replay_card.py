@@ -1,7 +1,7 @@
 """Cards of recordings: what each is of, how long it is, and a picture of where it ends."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,8 +16,8 @@ from sandbox.session.replay.reader import read_in_slices
 from sandbox.session.replay.recording import Replay, ReplayError
 
 
-def fill_replay(card: Card, path: Path, has_kernels: Callable[[bool], bool]) -> Iterator[bool]:
-    """Read a recording for its card and draw it, a slice at a time; False while it waits for kernels."""
+def fill_replay(card: Card, path: Path) -> Iterator[bool]:
+    """Read a recording for its card and draw it, a slice at a time."""
     reading = read_in_slices(path, partial=True)
     try:
         while True:
@@ -35,8 +35,6 @@ def fill_replay(card: Card, path: Path, has_kernels: Callable[[bool], bool]) -> 
     if picture is not None:
         card.show_picture(picture)
         return
-    while not has_kernels(replay.level.has_contacts):
-        yield False
     try:
         # What does not move is in no recorded state.
         state = replace(replay.state(max(replay.states)), terrain=terrain_of(replay.level))

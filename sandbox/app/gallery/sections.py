@@ -64,8 +64,6 @@ SECTIONS = (
 OTHERS = GallerySection("More", "", {})
 # What a first visit is to begin with.
 FIRST = "jelly_pile"
-# Levels that can be played while the physics is still being prepared.
-LIGHT_LEVELS = ("rope", "ferris_wheel", "newtons_cradle", "breaking_bridge", "side_by_side", "truss_bridge")
 
 
 def in_sections(paths: Iterable[Path]) -> list[tuple[GallerySection, list[Path]]]:

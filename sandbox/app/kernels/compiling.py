@@ -1,47 +1,39 @@
-"""Compiling into the cache, in child processes of low priority.
+"""Compiling for numba, in processes of low priority, where kernels were edited: into its cache, before tests.
 
-Each child takes its share of the kernels that Python calls, divided so that those which call the same parts come
-together, as a process types a part once. A child changes nothing but the cache, whose files are written in one go: two
-may write at once, and any may be ended at any time.
+Each takes its share of the kernels that Python calls, divided so that those which call the same parts come together,
+as a process types a part once. It changes nothing but the cache, whose files are written in one go: two may write at
+once, and any may be ended at any time.
 """
 
 import contextlib
 import gc
-import hashlib
-import json
 import os
 import subprocess
 import sys
 import threading
 import time
-from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-import platformdirs
-
 from sandbox.physics import jit
 
-# How much nicer than others a child is: the window and other programs come first.
+# How much nicer than others a process is: other programs come first.
 NICENESS = 10
-# What is compiled, in this order: all that levels need in which nothing touches, with the drawing, and the rest.
-GROUPS = ("basics", "contacts")
 # Typing and lowering a part against optimising it once more in another entry, each in proportion to its length.
 TYPING, LINKING = 2.4, 1.0
 # More processes would slow other programs down, and the longest share gets no shorter.
 MOST_PROCESSES = 4
-# A child looks for garbage after this many new objects, in place of 700: compiling makes many that stay, a tenth of it.
+# Garbage is looked for after this many new objects, in place of 700: compiling makes many that stay, a tenth of it.
 SEARCH_AFTER = 50_000
-# How often children are looked after where nothing else is to be done [s].
+# How often processes are looked after [s].
 POLL = 0.05
-# The package that children import is this one, wherever they are started.
+# The package that they import is this one, wherever they are started.
 _HOME = Path(__file__).resolve().parents[3]
 
 
 def divide(kernels: Sequence[jit.Kernel], count: int) -> list[list[jit.Kernel]]:
-    """Kernels in `count` shares that take about the same time, those of earlier groups first in each."""
+    """Kernels in `count` shares that take about the same time, in each what is soon done first."""
     parts = {kernel: _parts(kernel) for kernel in kernels}
 
     def linking(kernel: jit.Kernel) -> float:
@@ -50,15 +42,13 @@ def divide(kernels: Sequence[jit.Kernel], count: int) -> list[list[jit.Kernel]]:
     shares: list[list[jit.Kernel]] = [[] for _ in range(count)]
     typed: list[set[jit.Kernel]] = [set() for _ in range(count)]
     loads = [0.0] * count
-    for group in GROUPS:
-        for kernel in sorted((one for one in kernels if one.group == group), key=lambda one: (-linking(one), one.name)):
-            costs = [linking(kernel) + TYPING * sum(map(_length, parts[kernel] - known)) for known in typed]
-            place = min(range(count), key=lambda k: loads[k] + costs[k])
-            shares[place].append(kernel)
-            typed[place] |= parts[kernel]
-            loads[place] += costs[place]
-    # Each one's order is free, but for the groups: what is soon done comes first, so that a bar moves.
-    return [sorted(share, key=lambda one: (GROUPS.index(one.group), linking(one), one.name)) for share in shares]
+    for kernel in sorted(kernels, key=lambda one: (-linking(one), one.name)):
+        costs = [linking(kernel) + TYPING * sum(map(_length, parts[kernel] - known)) for known in typed]
+        place = min(range(count), key=lambda k: loads[k] + costs[k])
+        shares[place].append(kernel)
+        typed[place] |= parts[kernel]
+        loads[place] += costs[place]
+    return [sorted(share, key=lambda one: (linking(one), one.name)) for share in shares]
 
 
 def _length(kernel: jit.Kernel) -> int:
@@ -67,7 +57,6 @@ def _length(kernel: jit.Kernel) -> int:
 
 def _parts(entry: jit.Kernel) -> set[jit.Kernel]:
     """A kernel and all that it calls, directly or not."""
-    by_held = {id(kernel.held): kernel for kernel in jit.KERNELS}
     found: set[jit.Kernel] = set()
     waiting = [entry]
     while waiting:
@@ -75,64 +64,27 @@ def _parts(entry: jit.Kernel) -> set[jit.Kernel]:
         if kernel not in found:
             found.add(kernel)
             named = (kernel.function.__globals__.get(name) for name in kernel.function.__code__.co_names)
-            waiting += [by_held[id(value)] for value in named if id(value) in by_held]
+            waiting += [one for one in map(jit.kernel_of, filter(callable, named)) if one is not None]
     return found
 
 
-def needed_kernels(groups: Iterable[str], solvers: Sequence[str] | None) -> list[jit.Kernel]:
-    """Kernels of these groups, with the types that they are called with; solvers: None = all of them.
+def needed_kernels() -> list[jit.Kernel]:
+    """All kernels that Python calls, with the types that they are called with.
 
     Raises:
-        RuntimeError: where kernels are compiled already: only interpreted ones are listened to.
+        RuntimeError: where kernels are not interpreted: only interpreted ones are listened to.
     """
     jit.start_interpreted()
-    from sandbox.physics.solvers import SOLVERS
-    from sandbox.physics.warm_up import warm_up
+    from sandbox.physics.every_kernel import call_every_kernel
 
-    names = tuple(SOLVERS) if solvers is None else tuple(solvers)
-    with jit.recorded("basics"):
-        warm_up(names, contacts=False)
-        warm_up_rest()
-    if "contacts" in groups:
-        with jit.recorded("contacts"):
-            warm_up(names)
-    return [kernel for kernel in jit.entries() if kernel.group in groups]
+    with jit.recorded():
+        call_every_kernel()
+        _call_the_rest()
+    return [kernel for kernel in jit.entries() if kernel.signatures]
 
 
-def _stamp() -> Path:
-    """The file that says that all kernels of these very sources are in the cache."""
-    digest = hashlib.blake2b(digest_size=10)
-    package = Path(__file__).resolve().parents[2]
-    for file in sorted([*(package / "physics").rglob("*.py"), *(package / "app" / "draw" / "raster").glob("*.py")]):
-        digest.update(file.read_bytes())
-    versions = [sys.implementation.cache_tag, *map(version, ("numba", "numpy", "llvmlite"))]
-    settings = [os.environ.get(name, "") for name in ("NUMBA_CACHE_DIR", "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")]
-    digest.update(repr((str(package), versions, settings)).encode())
-    return Path(platformdirs.user_cache_dir("spring-sandbox", appauthor=False)) / f"prepared-{digest.hexdigest()}"
-
-
-def is_prepared() -> bool:
-    """Whether all kernels are in the cache, as far as can be told without numba."""
-    try:
-        folders = json.loads(_stamp().read_text(encoding="utf-8"))
-        return all(len(list(Path(folder).glob("*.kernel"))) >= count for folder, count in folders.items())
-    except (OSError, ValueError, AttributeError, PackageNotFoundError):
-        return False
-
-
-def note_prepared() -> None:
-    """Note that all kernels are in the cache, where that can be written; after `switch_to_compiled`."""
-    from sandbox.physics.jit.cache import cache_folders
-
-    folders = {str(folder): len(list(folder.glob("*.kernel"))) for folder in cache_folders() if folder.is_dir()}
-    with contextlib.suppress(OSError):
-        stamp = _stamp()
-        stamp.parent.mkdir(parents=True, exist_ok=True)
-        stamp.write_text(json.dumps(folders), encoding="utf-8")
-
-
-def warm_up_rest() -> None:
-    """Compile what the app needs beside ticks: measures, drawing, Cs and Cd of substeps; or load it."""
+def _call_the_rest() -> None:
+    """What the app needs beside ticks: measures, drawing, Cs and Cd of substeps."""
     import numpy as np
 
     from sandbox.app.draw.raster.painter import precompile_painting
@@ -153,30 +105,29 @@ def warm_up_rest() -> None:
     precompile_painting()
 
 
-class Child:
-    """One process that compiles a share; it goes on where this program ends, since the next start gains by it."""
+class Compiler:
+    """One process that compiles a share: the one of this number among so many."""
 
-    def __init__(self, arguments: Sequence[str]) -> None:
+    def __init__(self, number: int, processes: int) -> None:
         options: dict[str, Any] = {"start_new_session": True}
         if sys.platform == "win32":
             options = {"creationflags": subprocess.BELOW_NORMAL_PRIORITY_CLASS}
         path = os.pathsep.join(filter(None, (str(_HOME), os.environ.get("PYTHONPATH"))))
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "sandbox.app.kernels.compiling", *arguments],
+            [sys.executable, "-m", "sandbox.app.kernels.compiling", str(number), str(processes)],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
             env={**os.environ, "PYTHONPATH": path, "PYGAME_HIDE_SUPPORT_PROMPT": "1"}, **options,
         )  # fmt: skip
-        # Kernels by their group: how many there are to be, and how many there are.
-        self.wanted: Counter[str] = Counter()
-        self.done: Counter[str] = Counter()
+        # How many kernels there are to be, and how many there are.
+        self.wanted = self.done = 0
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
     def _read(self) -> None:
         assert self._process.stdout is not None
         for line in self._process.stdout:
-            what, group = line.split()
-            (self.wanted if what == "wanted" else self.done)[group] += 1
+            self.wanted += line == "wanted\n"
+            self.done += line == "done\n"
 
     @property
     def result(self) -> bool | None:
@@ -190,99 +141,55 @@ class Child:
         self._process.wait()
 
 
-class Crew:
-    """Children that compile kernels of some groups, and how far they are."""
-
-    def __init__(
-        self,
-        processes: int,
-        groups: Sequence[str] = GROUPS,
-        solvers: Sequence[str] | None = None,
-        start: Callable[[Sequence[str]], Child] = Child,
-    ) -> None:
-        self.has_failed = False
-        self._children: list[Child] = []
-        for number in range(processes):
-            arguments = [str(number), str(processes), ",".join(groups), ",".join(solvers or ())]
-            try:
-                self._children.append(start(arguments))
-            except OSError:  # no more processes, or no memory for one
-                self.has_failed = True
-
-    @property
-    def progress(self) -> tuple[int, int]:
-        """How many kernels are there, and how many are to be; 0 of 0 until that is known."""
-        known = all(child.wanted or child.result is not None for child in self._children)
-        total = sum(child.wanted.total() for child in self._children) if known else 0
-        return sum(child.done.total() for child in self._children), total
-
-    @property
-    def is_busy(self) -> bool:
-        """Whether a child is at work; what those that have ended did not compile is left to others."""
-        results = [child.result for child in self._children]
-        self.has_failed = self.has_failed or False in results
-        return None in results
-
-    def has(self, groups: Iterable[str]) -> bool:
-        """Whether all kernels of these groups are there, or nobody is at work on them any more."""
-        if not self.is_busy:
-            return True
-        return all(
-            child.result is not None or (child.wanted and child.done[group] == child.wanted[group])
-            for child in self._children
-            for group in groups
-        )
-
-    def end(self) -> None:
-        """End all that is being done."""
-        for child in self._children:
-            child.end()
-
-
 def usual_processes() -> int:
     """How many processes compile where nobody has said."""
     return min(os.cpu_count() or 1, MOST_PROCESSES)
 
 
-def compile_all(
-    processes: int, groups: Sequence[str], solvers: Sequence[str] | None, report: Callable[[int, int], object]
-) -> bool:
-    """Compile in child processes, which end with this one; whether all of them could.
+def compile_all(processes: int, report: Callable[[int, int], object]) -> bool:
+    """Compile in so many processes, which end with this one; whether all of them could.
 
-    report: told now and then how many kernels are there, and how many are to be.
+    report: told now and then how many kernels are there, and how many are to be; 0 of 0 until that is known.
     """
-    crew = Crew(processes, groups, solvers)
+    compilers: list[Compiler] = []
+
+    def tell() -> None:
+        is_known = all(one.wanted or one.result is not None for one in compilers)
+        report(sum(one.done for one in compilers), sum(one.wanted for one in compilers) if is_known else 0)
+
     try:
-        while crew.is_busy:
-            report(*crew.progress)
+        for number in range(processes):
+            compilers.append(Compiler(number, processes))
+        while None in (one.result for one in compilers):
+            tell()
             time.sleep(POLL)
+    except OSError:  # no more processes, or no memory for one
+        return False
     finally:
-        crew.end()
-    report(*crew.progress)
-    return not crew.has_failed
+        for one in compilers:
+            one.end()
+    tell()
+    return all(one.result for one in compilers)
 
 
-def _main(number: str, processes: str, groups: str, solvers: str) -> None:
+def _main(number: str, processes: str) -> None:
     """Compile one share of this many, and say so on standard output, to whoever listens."""
     if sys.platform != "win32":
         os.nice(NICENESS)
     gc.set_threshold(SEARCH_AFTER)
-    kernels = needed_kernels(groups.split(","), solvers.split(",") if solvers else None)
-    share = divide(kernels, int(processes))[int(number)]
-    for kernel in share:
-        _say("wanted", kernel.group)
-    if not jit.switch_to_compiled():
-        sys.exit(1)
+    share = divide(needed_kernels(), int(processes))[int(number)]
+    for _ in share:
+        _say("wanted")
     for kernel in share:
         for signature in kernel.signatures.values():
             jit.compile_entry(kernel, signature)
-        _say("done", kernel.group)
+        _say("done")
 
 
-def _say(*words: str) -> None:
-    # The window may be closed long before the work is done.
+def _say(word: str) -> None:
+    # Whoever listened may have ended.
     with contextlib.suppress(OSError):
-        print(*words, flush=True)
+        print(word, flush=True)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """PartCard: a part of the catalogue with its picture; a click takes it up, a drag carries it to the sheet."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any, Protocol
 
@@ -163,8 +163,8 @@ def card_places(ui: Ui, count: int, columns: int, room: float, y: float, gap: fl
     return places, y + -(-count // columns) * (height + gap)
 
 
-def fill_card(card: PartCard, is_ready: Callable[[], bool]) -> Iterator[bool]:
-    """Read a card's part and draw its picture, a slice at each turn; False while kernels are not ready for that."""
+def fill_card(card: PartCard) -> Iterator[bool]:
+    """Read a card's part and draw its picture, a slice at each turn."""
     level, theme = card.part.level, shown_theme()
     card.show()
     yield True
@@ -179,8 +179,6 @@ def fill_card(card: PartCard, is_ready: Callable[[], bool]) -> Iterator[bool]:
     if picture is not None:
         card.show(picture)
         return
-    while not is_ready():
-        yield False
     picture = yield from draw_in_slices(level, theme, 0.0)
     card.show(pygame.transform.smoothscale(picture, card.picture_size))
     if jit.COMPILED:

@@ -36,16 +36,15 @@ Take = Callable[[Level, bool], object]
 class PartPage:
     """A modal page; what cannot join the world is pale, and says why where it is pointed at.
 
-    is_ready: whether pictures can be drawn. take: called with the part that is chosen, and whether by a key. again:
-    opens the page again, scrolled to an offset [pixels]. last_taken: the part that Enter takes; else the first one that
-    can be had.
+    take: called with the part that is chosen, and whether by a key. again: opens the page again, scrolled to an offset
+    [pixels]. last_taken: the part that Enter takes; else the first one that can be had.
     """
 
     def __init__(
-        self, ui: Ui, world: World, is_ready: Callable[[], bool], take: Take, again: Callable[[float], object],
-        offset: float = 0.0, last_taken: Level | None = None,
+        self, ui: Ui, world: World, take: Take, again: Callable[[float], object], offset: float = 0.0,
+        last_taken: Level | None = None,
     ) -> None:  # fmt: skip
-        self._ui, self._world, self._is_ready, self._take = ui, world, is_ready, take
+        self._ui, self._world, self._take = ui, world, take
         width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
         self._width = width - 2 * MARGIN - 12
         least = LEAST_CARD if height >= LOW else LEAST_OF_LOW
@@ -97,7 +96,7 @@ class PartPage:
     def _fill(self, card: PartCard) -> Iterator[bool]:
         yield True
         card.refusal = refusal(card.part, self._world)
-        yield from fill_card(card, self._is_ready)
+        yield from fill_card(card)
 
     # A frame.
 

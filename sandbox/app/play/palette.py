@@ -2,7 +2,6 @@
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import pygame
@@ -76,14 +75,6 @@ def _action_of(name: str) -> str:
     return "catalogue" if name == CATALOGUE else f"tool_{name}"
 
 
-@dataclass(frozen=True)
-class PaletteState:
-    """What the strip shows: the tool in use, and whether pictures may be drawn as things are."""
-
-    tool: str
-    compiled: bool
-
-
 class PartsPalette:
     """Buttons that take up what they show; `press` starts an action by its name.
 
@@ -92,8 +83,8 @@ class PartsPalette:
 
     def __init__(self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float) -> None:
         self._ui, self._press = ui, press
-        self._state: PaletteState | None = None
-        self._pictures: dict[str, pygame.Surface] = {}
+        self._tool: str | None = None
+        self._pictures = {part: picture_of(part, ui.px(PICTURE)) for part in PARTS}
         names = [*NAMES, CATALOGUE]
         rows, most = (max(1, int((room - 2 * TOP - 2 * EDGE + GAP) // LEAST_STEP)) for room in (height, width))
         shown = names if len(names) <= rows * most else [*names[: max(rows * most - 1, 0)], MORE]
@@ -119,15 +110,13 @@ class PartsPalette:
         choices = [(tip_of(action, "play"), functools.partial(self._press, action)) for action in actions]
         choose(self._ui, "More", "", choices)
 
-    def show(self, state: PaletteState) -> None:
-        """Show a state, changing what differs."""
-        before, self._state = self._state, state
-        if state == before:
+    def show(self, tool: str) -> None:
+        """Show the tool in use, changing what differs."""
+        before, self._tool = self._tool, tool
+        if tool == before:
             return
-        if before is None or before.compiled != state.compiled:
-            self._pictures = {part: picture_of(part, self._ui.px(PICTURE)) for part in PARTS}
         for name, button in self.buttons.items():
-            is_chosen = name == state.tool or (name == MORE and state.tool in self.left_out)
+            is_chosen = name == tool or (name == MORE and tool in self.left_out)
             button.show_icon(self._icon(name, ACCENT if is_chosen else TEXT))
             (button.select if is_chosen else button.unselect)()
 

@@ -33,7 +33,7 @@ from sandbox.app.play.legend import Legend
 from sandbox.app.play.melting import toggle_melt
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView, put_back
-from sandbox.app.play.palette import NAMES, PaletteState, PartsPalette
+from sandbox.app.play.palette import NAMES, PartsPalette
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import HAND_TOOL, Stage
 from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
@@ -333,9 +333,7 @@ class PlayScreen:
     def _open_catalogue(self, offset: float = 0.0) -> None:
         """Choose a part of the catalogue to drop."""
         world = self.playback.session.world
-        self.part_page = PartPage(
-            self._ui, world, lambda: self._app.ready, self._take_part, self._open_catalogue, offset, self.stage.part
-        )
+        self.part_page = PartPage(self._ui, world, self._take_part, self._open_catalogue, offset, self.stage.part)
 
     def _take_part(self, part: Level, by_key: bool) -> None:
         """Have a part in hand; by a key: where the arrows move it."""
@@ -414,10 +412,6 @@ class PlayScreen:
         span = self.playback.travel.span or last_ticks(self.playback.session, seconds)
         return Film(stage.playback.session, stage.camera, stage.renderer, span, self.stage.fitted_box)
 
-    def drop_caches(self) -> None:
-        """Use kernels that have come about."""
-        self.playback.session.world.drop_caches()
-
     # Pointer and keys.
 
     def contains(self, pixel: Pixel) -> bool:
@@ -452,16 +446,15 @@ class PlayScreen:
 
     # A frame.
 
-    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile, ready: bool) -> None:
-        """Let time pass, where no page is open and the physics is ready."""
+    def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
+        """Let time pass, where no page is open."""
         before = self.playback.session.tick
-        self.stage.update(frame_time if ready and not self._ui.has_sheet else 0.0, pointer, profile)
+        self.stage.update(frame_time if not self._ui.has_sheet else 0.0, pointer, profile)
         self._measure(self.playback.session.tick - before, profile)
-        self.stage.renderer.compiled = ready
         self._show_stuck()
         self._show_again()
         self._tell()
-        if self.panel is not None and ready:
+        if self.panel is not None:
             self.panel.refresh()
             self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
         self.stage.lit = self.panel.pointed_springs() if isinstance(self.panel, Panel) else None
@@ -469,7 +462,7 @@ class PlayScreen:
         if self.part_page is not None:
             self.part_page.update()
         if self.palette is not None:
-            self.palette.show(PaletteState(self.stage.tool_name, ready))
+            self.palette.show(self.stage.tool_name)
         self.toolbar.show(
             BarState(
                 self.playback.level.name,

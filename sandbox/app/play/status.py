@@ -1,6 +1,5 @@
 """StatusLine: what is on the screen in figures, and notices that come and go."""
 
-import math
 from collections import deque
 from dataclasses import dataclass
 
@@ -155,19 +154,6 @@ def _card(surface: pygame.Surface, ui: Ui, text: str, inset: float, height: floa
     pygame.draw.rect(surface, LINE, card, 1, border_radius=ui.px(12))
     surface.blit(ui.font(15, True).render(text, True, TEXT), (card.left + ui.px(inset), card.top + ui.px(24)))
     return card
-
-
-def draw_spinner(surface: pygame.Surface, ui: Ui, seconds: float, text: str, detail: str) -> None:
-    """A card in the middle of the window with a turning ring, while something takes its time."""
-    card = _card(surface, ui, text, 84)
-    middle = pygame.Vector2(card.left + ui.px(46), card.centery)
-    for dot in range(10):
-        turn = math.tau * dot / 10
-        age = (dot / 10 - seconds * 0.9) % 1.0
-        colour = [round(a + (z - a) * age) for a, z in zip(LINE, ACCENT, strict=True)]
-        at = middle + pygame.Vector2(math.cos(turn), math.sin(turn)) * ui.px(16)
-        pygame.draw.aacircle(surface, colour, at, ui.px(3))
-    surface.blit(ui.font(12).render(detail, True, MUTED), (card.left + ui.px(84), card.top + ui.px(50)))
 
 
 def draw_bar(surface: pygame.Surface, ui: Ui, share: float, text: str, height: float = 96) -> pygame.Rect:

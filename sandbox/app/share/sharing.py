@@ -96,7 +96,7 @@ class Sharing:
         """Take the run's last seconds, where nothing is written at the moment; whether there is anything to share."""
         if self._slices is None:
             play = self._app.play
-            if play is None or not self._app.ready:
+            if play is None:
                 self._app.say("There is nothing to share yet: play a level first.")
                 return False
             self.saved, self.note = None, ""
@@ -360,11 +360,6 @@ class Sharing:
             self._tell_more(f"The clipboard has nothing of it: {error.strerror or error}.")
 
     # With the app.
-
-    def drop_caches(self) -> None:
-        """Forget what worlds have derived, where kernels are interpreted no more."""
-        if self.film is not None:
-            self.film.drop_caches()
 
     def close(self) -> None:
         """Give everything up, as the app ends."""

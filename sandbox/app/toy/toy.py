@@ -10,7 +10,6 @@ import pygame
 from sandbox.app.base.loop import LONGEST_FRAME
 from sandbox.app.base.profile import Profile
 from sandbox.app.draw.colours import MUTED, show_theme
-from sandbox.app.kernels.preparing import Preparation
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.stage import Stage
 from sandbox.app.run.playback import Playback
@@ -60,7 +59,6 @@ class Toy:
         self.playback = Playback(level)
         if record is not None:
             self.playback.session.record_to(record)
-        self.preparation = Preparation(self._switched)
         self.motion = FrameMotion()
         self.rest = Rest()
         self.choices = ToyChoices(chosen, window.desk.kept.get("sound"))
@@ -89,9 +87,6 @@ class Toy:
         """What part of the world is seen."""
         return self.stage.camera
 
-    def _switched(self) -> None:
-        self.playback.session.world.drop_caches()
-
     # The loop.
 
     def run(self, seconds: float | None = None) -> None:
@@ -109,11 +104,7 @@ class Toy:
 
     @property
     def _is_played(self) -> bool:
-        return self._pressed or not self.motion.rests or self.rest.moves_fast or not self._is_ready
-
-    @property
-    def _is_ready(self) -> bool:
-        return self.preparation.may_play(self.playback.session.world.has_contacts)
+        return self._pressed or not self.motion.rests or self.rest.moves_fast
 
     def frame(self, seconds: float) -> None:
         """One turn: events, ticks, a picture; asleep: events alone."""
@@ -126,7 +117,7 @@ class Toy:
         held = any(is_held for _, is_held in self._keys.shown())
         if moved or held or self._pressed or any(event.type in WAKING for event in events):
             self.rest.disturb()
-        if self.rest.is_over and self._is_ready and self.motion.rests:
+        if self.rest.is_over and self.motion.rests:
             if not self.asleep:
                 self._fall_asleep()
             return
@@ -137,20 +128,13 @@ class Toy:
         self._draw()
 
     def _pass_time(self, seconds: float) -> None:
-        world = self.playback.session.world
-        self.preparation.update(self.playback.level, world.has_contacts)
-        ready = self._is_ready
-        tick, began = self.playback.session.tick, time.thread_time()
-        self.stage.renderer.compiled = ready
-        if ready:
-            self._tick(seconds)
-            stood = self.stage.stillness.lasted
-            self.rest.follow(self.playback.current, self.camera.zoom, seconds, self.hovered, stood)
-        self.preparation.note(self.playback.session.tick - tick, time.thread_time() - began)
+        self._tick(seconds)
+        stood = self.stage.stillness.lasted
+        self.rest.follow(self.playback.current, self.camera.zoom, seconds, self.hovered, stood)
         # A toy has no line of words: what broke can be seen.
         self.playback.messages.clear()
-        self.sounds.update(self, ready)
-        self._words_left -= seconds if ready else 0.0
+        self.sounds.update(self, True)
+        self._words_left -= seconds
 
     def _tick(self, seconds: float) -> None:
         """Let time pass, a shake before each tick that the frame accelerates in."""
@@ -322,9 +306,8 @@ class Toy:
             for side in (-1, 1):
                 start, end = (x - arm, y - side * arm), (x + arm, y + side * arm)
                 pygame.draw.line(surface, theme.text, start, end, max(2, round(1.6 * scale)))
-        words = self._words if self._is_ready else "Warming up"
-        if words and (self._words_left > 0.0 or not self._is_ready):
-            self._draw_words(words)
+        if self._words and self._words_left > 0.0:
+            self._draw_words(self._words)
         self.window.flip()
 
     def _draw_words(self, words: str) -> None:

@@ -1,6 +1,5 @@
 """Starting toys: in this process, or each in one of its own."""
 
-import contextlib
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from sandbox.editor.storage.data_folder import data_folder
 from sandbox.level.reading.files import write_level
-from sandbox.physics import jit
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
@@ -27,9 +25,6 @@ def run_toy(
     find: the level. tell: told in one line where the system cannot do what a toy needs. record: a file that it is
     recorded to. scale, theme: in place of what is remembered of the person.
     """
-    # A process that has compiled kernels already goes on with them.
-    with contextlib.suppress(RuntimeError):
-        jit.start_interpreted()
     from sandbox.app.settings.chosen import Chosen
     from sandbox.app.toy.toy import Toy
     from sandbox.app.toy.toy_window import ToyWindow

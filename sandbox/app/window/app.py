@@ -21,16 +21,15 @@ from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson
 from sandbox.app.compare.twin import TwinPlayback
 from sandbox.app.contracts.screen import Figures, Screen
-from sandbox.app.draw.colours import BACKGROUND, WARNING, show_theme
+from sandbox.app.draw.colours import BACKGROUND, show_theme
 from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.tour import Guide
 from sandbox.app.gallery.gallery import Gallery
 from sandbox.app.gallery.sections import FIRST
-from sandbox.app.kernels.preparing import Preparation
 from sandbox.app.play.melt_lesson import MeltLesson
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.play_screen import PlayScreen
-from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine, draw_bar, draw_spinner
+from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine
 from sandbox.app.run.playback import Playback
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.settings.settings_sheet import SettingsSheet
@@ -52,10 +51,6 @@ from sandbox.level.reading.files import load_level, read_level
 
 # How often the status figures and the window title change [s].
 FIGURES_EVERY = 0.5
-# While a run waits for kernels, more frames [1/s] would take time from what they wait for.
-WAITING_RATE = 20
-# A run that waits for kernels no longer than this [s] says nothing of it.
-WAIT_UNSEEN = 0.3
 # Settings that all widgets are laid out again for.
 LAID_OUT = ("theme", "scale", "keys")
 
@@ -75,7 +70,6 @@ class App:
         self._notices: deque[Notice] = deque(maxlen=NOTICES)
         self._description = ""
         self.running = True
-        self.ready = False
         # Whether the window's title says what happens, too.
         self.says_states = False
         self.screen: Screen | None = None
@@ -97,9 +91,6 @@ class App:
         self._build_ui()
         for fault in self.chosen.faults:
             self.say(fault)
-        self.preparation = Preparation(self._switched)
-        # How long the run on the screen has been waiting for kernels [s].
-        self._waited = 0.0
 
     # What is on the screen.
 
@@ -265,11 +256,8 @@ class App:
             return
         level, source = play.playback.level, play.source
         if isinstance(play, CompareScreen):
-            back = play.single or Playback(level)
-            # Kernels may have come about meanwhile.
-            back.session.world.drop_caches()
             self.take_back(play.welcome)
-            self.start(back, source)
+            self.start(play.single or Playback(level), source)
         elif play.of_document:
             self.say("This run belongs to the editor. Save the level and open its file to compare two settings.")
         else:
@@ -350,17 +338,14 @@ class App:
             self.input.process(events)
             if self.display.refresh():
                 self.rebuild()
-        self._prepare(frame_time)
         if self.screen is not None:
-            tick, began = self._tick, time.thread_time()
-            self.screen.update(frame_time, self.input.pointer_over_world(), self.profile, self.ready)
-            self.preparation.note(self._tick - tick, time.thread_time() - began)
+            self.screen.update(frame_time, self.input.pointer_over_world(), self.profile)
             self._sound()
         with self.profile.part("ui"):
             self.status.update(frame_time)
             self.documents.update()
             if self.gallery is not None:
-                self.gallery.update(self.preparation.is_ready, frame_time)
+                self.gallery.update(frame_time)
             self.guide.update(frame_time)
             self.sharing.update(frame_time)
             self.share_page.update()
@@ -380,7 +365,7 @@ class App:
     def moves(self) -> bool:
         """Whether something in the window changes by itself, or works in its frames at what it will show."""
         parts = (self.screen, self.gallery, self.status, self.guide, self.sharing)
-        return not self.ready or any(part is not None and part.moves for part in parts)
+        return any(part is not None and part.moves for part in parts)
 
     @property
     def calm_rate(self) -> int:
@@ -390,27 +375,13 @@ class App:
     def _sound(self) -> None:
         play, covered = self.play, self.ui.has_sheet or self.gallery is not None or self.display.hidden
         clock = None if play is None else play.playback.clock
-        is_heard = clock is not None and self.ready and not covered and not clock.paused and clock.speed > 0.0
+        is_heard = clock is not None and not covered and not clock.paused and clock.speed > 0.0
         with self.profile.part("sound"):
             self.sounds.update(play, is_heard)
 
     @property
     def _tick(self) -> int:
         return self.play.playback.session.tick if self.play is not None else 0
-
-    def _prepare(self, frame_time: float) -> None:
-        play = self.play
-        contacts = play is not None and play.has_contacts
-        # A run is tried out beside its second picture, not before its first, which takes longest.
-        is_seen = play is not None and self._seen is play
-        self.preparation.update(play.playback.level if play is not None and is_seen else None, contacts)
-        self.ready = self.preparation.may_play(contacts)
-        self._waited = 0.0 if self.ready else self._waited + frame_time
-
-    def _switched(self) -> None:
-        if self.play is not None:
-            self.play.drop_caches()
-        self.sharing.drop_caches()
 
     def _draw(self) -> None:
         surface = self.display.surface
@@ -421,8 +392,6 @@ class App:
         with self.profile.part("ui"):
             if self.screen is not None:
                 parts = self.sharing.status() + self.screen.status(self._figures)
-                if not self.ready and self.mode == "edit":
-                    parts.append(("preparing the physics", WARNING))
                 self.status.draw(surface, parts)
                 if self.gallery is None:
                     is_under = False if self.ui.has_sheet else None
@@ -435,17 +404,6 @@ class App:
                 # What was said before lies under the page; a gallery covers all.
                 place = 16.0, -STATUS_HEIGHT, self.ui.units[0]
                 self.status.draw_notices(surface, place, over_page=True if self.gallery is None else None)
-            # A level can be drawn before the physics is there.
-            if self._waited > WAIT_UNSEEN and self.play is not None:
-                self._draw_waiting(surface)
-
-    def _draw_waiting(self, surface: pygame.Surface) -> None:
-        done, total = self.preparation.progress
-        if total and done < total:
-            draw_bar(surface, self.ui, done / total, f"Warming up: {done} of {total} parts of the physics")
-        else:
-            detail = "Only the first start takes some seconds."
-            draw_spinner(surface, self.ui, self._seconds, "Warming up", detail)
 
     def _count(self, frame_time: float, spent: float) -> None:
         counted = self._counted
@@ -467,7 +425,6 @@ class App:
         words = [self.screen.title()]
         if self.says_states:
             words += [*self.screen.states(), *(["dialog"] if self.ui.has_sheet else [])]
-            words += [] if self.ready else ["preparing"]
         return " - ".join([*words, "Spring Sandbox"])
 
 
@@ -513,7 +470,7 @@ def run_app(
             if app.play is not None and app.play.playback.session.tick:
                 profile.reached("the first tick")
             if not app.calm.has_come:
-                clock.tick(FRAME_RATE if app.ready or app.play is None else WAITING_RATE)
+                clock.tick(FRAME_RATE)
                 continue
             if wait_for_event(1.0 / app.calm_rate):
                 # Time that passed asleep is not made up for by what the event sets going.

@@ -3,7 +3,6 @@
 Nothing that is imported here needs numpy, numba, pydantic or pygame_gui.
 """
 
-import contextlib
 import math
 import threading
 import time
@@ -35,11 +34,6 @@ class _Work(threading.Thread):
 
     def run(self) -> None:
         try:
-            from sandbox.physics import jit
-
-            # A process that has compiled kernels already goes on with them.
-            with contextlib.suppress(RuntimeError):
-                jit.start_interpreted()
             # What numpy's median imports when it is first asked for one, which the first page does.
             import numpy.ma  # noqa: F401
 

@@ -1,11 +1,12 @@
-"""The only place that knows numba.
+"""The only place that knows libraries of kernels, and numba.
 
-Kernels are compiled with a disk cache, uncached where none can be written, and interpreted where numba is missing or
-does not work with this Python or numpy, where NUMBA_DISABLE_JIT is set, and after `start_interpreted` until
-`switch_to_compiled`. Which it is, COMPILED says; modules that hold it by name see it change.
+Kernels run from the library of this platform. Where there is none, or the sources of kernels were edited, numba
+compiles them, with a disk cache; where numba is missing or does not work with this Python or numpy, they are
+interpreted. One line says so. SANDBOX_KERNELS chooses: library, numba or interpreted; where NUMBA_DISABLE_JIT is set,
+and after `start_interpreted`, they are interpreted. COMPILED says whether they are not.
 
 A kernel costs nothing until it is called: before the first call of one, or the first question for COMPILED, nothing is
-made of any, and numba is not imported.
+made of any, and neither a library nor numba is opened.
 """
 
 import importlib
@@ -15,7 +16,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from types import FunctionType, ModuleType
+from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 from sandbox.physics.jit import interpreted
@@ -30,9 +31,13 @@ unsigned: Any = interpreted.unsigned
 contents: Any = interpreted.contents
 
 _ENTRIES = ("kernel", "waiting_kernel")
-# How kernels are made: the module `interpreted` or `compiled`.
+# Functions, of which it is looked up which kernel they run.
+_PLAIN = (FunctionType, BuiltinFunctionType)
+# Which way kernels are made, by its name for people, and the module that makes them.
+_WAYS = {"library": "library", "numba": "compiled", "interpreted": "interpreted"}
+_WISH = "SANDBOX_KERNELS"
 _way: Any = None
-_recording: str | None = None
+_recording = False
 _making = threading.RLock()
 
 
@@ -41,14 +46,13 @@ class Kernel:
     """One kernel of this process.
 
     held: what modules hold of it: an `Entry`, or what runs it; of what only kernels call, the function itself.
-    signatures: types of arguments, by their text, that calls were noted with, of an interpreted one. group: under which
-    name they were noted first. part: what other kernels are compiled with, once one is that calls it.
+    signatures: types of arguments, by their text, that calls were noted with, of an interpreted one. part: what other
+    kernels are compiled with, once one is that calls it.
     """
 
     role: str
     function: Callable[..., Any]
     held: Any = None
-    group: str = ""
     signatures: dict[str, tuple[Any, ...]] = field(default_factory=dict)
     part: Any = None
 
@@ -59,9 +63,8 @@ class Kernel:
 
     def note(self, *arguments: Any) -> None:
         """While calls are recorded: remember the types of these arguments."""
-        if _recording is not None:
+        if _recording:
             types = importlib.import_module(f"{__name__}.compiled").types_of(arguments)
-            self.group = self.group or _recording
             self.signatures[str(types)] = types
 
     def ready(self) -> Any:
@@ -71,6 +74,8 @@ class Kernel:
         with _making:
             if isinstance(self.held, Entry):
                 made = _chosen().make(self)
+                if type(made) in _PLAIN:
+                    _BY_FUNCTION[made] = self
                 for module in _modules(self.function.__module__):
                     if vars(module).get(self.function.__name__) is self.held:
                         setattr(module, self.function.__name__, made)
@@ -94,7 +99,7 @@ _BY_FUNCTION: dict[Any, Kernel] = {}
 
 def kernel_of(held: Any) -> Kernel | None:
     """The kernel that this is, or what runs it; None for anything else."""
-    return _BY_FUNCTION.get(held) if type(held) is FunctionType else getattr(held, "_kernel", None)
+    return _BY_FUNCTION.get(held) if type(held) in _PLAIN else getattr(held, "_kernel", None)
 
 
 def _modules(*homes: str) -> list[ModuleType]:
@@ -105,8 +110,6 @@ def _modules(*homes: str) -> list[ModuleType]:
 
 
 def _can_compile() -> bool:
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        return False
     try:
         importlib.import_module("numba")
     except ImportError:  # also what an installed numba raises that is too old for this numpy
@@ -114,15 +117,49 @@ def _can_compile() -> bool:
     return True
 
 
-def _choose(compiled: bool) -> Any:
+def _best() -> str:
+    """The way that is wished for; else the best that there is, with one line if that is no library."""
+    wish = os.environ.get(_WISH, "")
+    if wish == "interpreted" or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return "interpreted"
+    if wish and wish not in _WAYS:
+        _say(f"{_WISH} is {', '.join(_WAYS)}, not {wish!r}")
+    why = f"{_WISH} is {wish}"
+    if wish != "numba":
+        library = importlib.import_module(f"{__name__}.library")
+        try:
+            library.open_library()
+        except library.NoLibrary as fault:
+            why = str(fault)
+        else:
+            return "library"
+    way = "numba" if _can_compile() else "interpreted"
+    if way != wish:
+        does = "numba compiles kernels, once" if way == "numba" else "kernels are interpreted, a hundred times slower"
+        _say(f"{why}: {does}")
+    return way
+
+
+def _say(line: str) -> None:
+    if sys.stderr is not None:  # a program without a console has none
+        print(line, file=sys.stderr)
+
+
+def _choose(way: str) -> Any:
     global _way, COMPILED
-    _way = importlib.import_module(f"{__name__}.{'compiled' if compiled else 'interpreted'}")
-    COMPILED = compiled
+    _way = importlib.import_module(f"{__name__}.{_WAYS[way]}")
+    COMPILED = _way.COMPILED
     return _way
 
 
 def _chosen() -> Any:
-    return _way or _choose(_can_compile())
+    return _way or _choose(_best())
+
+
+def way() -> str:
+    """How kernels run in this process: "library", "numba" or "interpreted"."""
+    chosen = _chosen().__name__.rpartition(".")[2]
+    return next(name for name, module in _WAYS.items() if module == chosen)
 
 
 def __getattr__(name: str) -> Any:
@@ -132,57 +169,25 @@ def __getattr__(name: str) -> Any:
 
 
 def start_interpreted() -> None:
-    """Interpret kernels, and import no numba, until `switch_to_compiled`.
+    """Interpret kernels in this process.
 
     Raises:
-        RuntimeError: where kernels are compiled already.
+        RuntimeError: where they run in another way already.
     """
     if _way is not None and _way.COMPILED:
         raise RuntimeError("kernels are compiled already")
-    _choose(False)
-
-
-def switch_to_compiled() -> bool:
-    """Compile kernels from now on, in every module that holds one, between two ticks; whether numba can.
-
-    The bits stay the same. A world that goes on drops what it derived: `World.drop_caches`.
-    """
-    if _chosen().COMPILED:
-        return True
-    if not _can_compile():
-        return False
-    with _making:
-        _choose(True)
-        new: dict[int, Any] = {}
-        old = [kernel.held for kernel in KERNELS]  # so that no new one has the identity of one before
-        for kernel in entries():
-            new[id(kernel.held)] = Entry(kernel)
-            kernel.held = new[id(kernel.held)]
-        for module in _modules(*(kernel.function.__module__ for kernel in KERNELS)):
-            _rebind(module, new)
-        del old
-    return True
-
-
-def _rebind(module: ModuleType, new: dict[int, Any]) -> None:
-    if module.__name__.startswith(f"{__name__}."):
-        return
-    for name, value in list(vars(module).items()):
-        if id(value) in new:
-            setattr(module, name, new[id(value)])
-        elif name == "COMPILED":
-            setattr(module, name, True)
+    _choose("interpreted")
 
 
 @contextmanager
-def recorded(group: str) -> Iterator[None]:
-    """While this lasts, interpreted kernels that are called note the types of their arguments, under a group's name."""
+def recorded() -> Iterator[None]:
+    """While this lasts, interpreted kernels that are called note the types of their arguments."""
     global _recording
-    _recording = group
+    _recording = True
     try:
         yield
     finally:
-        _recording = None
+        _recording = False
 
 
 def entries() -> list[Kernel]:
@@ -192,16 +197,12 @@ def entries() -> list[Kernel]:
 
 def precompile(held: Any, *arguments: Any) -> None:
     """Compile a kernel for such arguments, or load it, as a call would, which is not made."""
-    kernel = cast(Kernel, kernel_of(held))
-    if _chosen().COMPILED:
-        kernel.ready().compile(_way.types_of(arguments))
-    else:
-        kernel.note(*arguments)
+    _chosen().precompile(cast(Kernel, kernel_of(held)), arguments)
 
 
 def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:
-    """Compile an entry for some types of arguments and keep it, or load it; after `switch_to_compiled`."""
-    kernel.ready().compile(signature)
+    """Let numba compile an entry for some types of arguments and keep it in its cache, however kernels run here."""
+    importlib.import_module(f"{__name__}.compiled").make(kernel).compile(signature)
 
 
 def interpreter_function(name: str, result: str, *arguments: str) -> Any:

@@ -40,12 +40,12 @@ _FORGOTTEN = 60 * _DAY
 def cache_folders() -> list[Path]:
     """The folders in which compiled kernels are looked for; they are written to the first that is writable.
 
-    That of NUMBA_CACHE_DIR, else one next to the source, the shipped one, and the user's own.
+    That of NUMBA_CACHE_DIR, else one next to the source and the user's own.
     """
     if numba.config.CACHE_DIR:
         return [Path(numba.config.CACHE_DIR) / "kernels"]
     physics = Path(__file__).parents[1]
-    return [physics / "__pycache__" / "kernels", physics.parent / "_shipped" / "kernels", _user_folder()]
+    return [physics / "__pycache__" / "kernels", _user_folder()]
 
 
 def _user_folder() -> Path:
@@ -116,19 +116,9 @@ class KernelCache(caching.NullCache):
             _keep(begin, begin + end, content)
 
     def _find(self, sig: Any, target_context: Any) -> Any:
-        for processor in _processors(target_context):
-            name = "".join(self._file_names(sig, processor))
-            for folder in cache_folders():
-                result = _load(folder / name, target_context)
-                if result is not None:
-                    return result
-        return None
-
-
-def _processors(target_context: Any) -> list[tuple[Any, ...]]:
-    # Shipped kernels are for any processor of the platform.
-    own = target_context.codegen().magic_tuple()
-    return list(dict.fromkeys((own, (own[0], "generic", ""))))
+        name = "".join(self._file_names(sig, target_context.codegen().magic_tuple()))
+        found = (_load(folder / name, target_context) for folder in cache_folders())
+        return next((result for result in found if result is not None), None)
 
 
 def keep(dispatcher: Any, function: FunctionType, before: Callable[[Any], object]) -> bool:

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 
 from sandbox.physics import jit
-from sandbox.physics.jit import interpreted
+from sandbox.physics.jit import bundles, interpreted
 from sandbox.physics.jit.needs import is_own, named, names_in
 
 COMPILED = True
@@ -57,6 +57,21 @@ def _part(kernel: Any) -> Any:
         if kernel.role != "inlined_kernel" and _lending is not None:
             _lending.lend_to(kernel.part)
     return kernel.part
+
+
+def lowered(kernel: Any, signature: tuple[Any, ...]) -> Any:
+    """What numba gives for an entry that is lowered as a part is: neither optimised nor made machine code.
+
+    Raises:
+        RuntimeError: where this numba has other inner parts.
+    """
+    if _linking is None or _lending is None or not _linking.links_once():
+        raise RuntimeError("this numba has other inner parts than the maker of libraries knows")
+    options = _PART | _OPTIONS[kernel.role] | {"pipeline_class": _linking.PartCompiler}
+    dispatcher = _dispatcher(kernel, options)
+    _name_parts(dispatcher)
+    dispatcher.compile(signature)
+    return dispatcher.overloads[signature]
 
 
 def _dispatcher(kernel: Any, options: dict[str, Any]) -> Any:
@@ -115,9 +130,14 @@ def _known(value: Any, function: FunctionType) -> Any:
     return value
 
 
+def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
+    """Compile a kernel for such arguments, or load it."""
+    kernel.ready().compile(types_of(arguments))
+
+
 def bundle(items: tuple[Any, ...]) -> Any:
     """Arrays and named tuples as one argument; where numba's inner parts are unknown, as many as they are."""
-    return items if _lending is None else _lending.bundle(items)
+    return items if _lending is None else bundles.bundle(items)
 
 
 def _contents(bundle: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Kernels that the interpreter runs: without numba, and until compiled ones are ready."""
+"""Kernels that the interpreter runs: where there is neither a library nor numba."""
 
 import functools
 from collections.abc import Callable
@@ -34,9 +34,16 @@ class InterpreterFunction:
     arguments: tuple[str, ...]
 
 
+def _made_of(bundle: Any) -> Any:
+    """The objects that a bundle for compiled kernels was made of."""
+    base: Any = bundle.base
+    owner: Any = base.obj if isinstance(base, memoryview) else base
+    return owner.items
+
+
 def _viewed(item: Any) -> Any:
     if isinstance(item, np.ndarray):
-        return memoryview(cast(Any, item))
+        return memoryview(cast(Any, item)) if item.dtype.fields is None else Bundle(_made_of(item))
     if isinstance(item, tuple) and hasattr(item, "_make"):
         return cast(Any, item)._make(map(_viewed, item))
     return item
@@ -62,6 +69,11 @@ def make(kernel: Any) -> Callable[..., Any]:
     made: Any = interpreted(kernel.function, kernel.note)
     made._kernel = kernel
     return cast(Callable[..., Any], made)
+
+
+def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
+    """While calls are recorded: remember the types of such arguments."""
+    kernel.note(*arguments)
 
 
 def bundle(items: tuple[Any, ...]) -> Any:

@@ -1,4 +1,4 @@
-"""Named tuples of arrays as one pointer: bundles that Python makes once, and what kernels lend to those they call.
+"""Named tuples of arrays as one pointer: numba's view of bundles, and what kernels lend to those they call.
 
 numba hands a named tuple on as the words of all its arrays, some hundred arguments at every call. A lent one is the
 address of these words: whoever made it keeps it, nobody writes to it, and an attribute is read where it is used.
@@ -6,7 +6,6 @@ address of these words: whoever made it keeps it, nobody writes to it, and an at
 
 from __future__ import annotations
 
-import ctypes
 import functools
 import hashlib
 from collections.abc import Sequence
@@ -27,14 +26,17 @@ from numba.extending import (
     register_model,
 )
 
+from sandbox.physics.jit.bundles import HAS_KNOWN_ARRAYS, HEAD_WORDS, SIGNATURES, WORD, Signature
+
 types: Any = numba.types
 
-_WORD = 8
 _CHAR = ir.IntType(8)
 # As numba lays an array out; shape and strides have a word for each dimension.
 _ARRAY_WORDS = ("meminfo", "parent", "nitems", "itemsize", "data", "shape", "strides")
 if default_manager.lookup(types.Array(types.float64, 1, "C"))._fields != _ARRAY_WORDS:
     raise ImportError("this numba lays arrays out in another way")
+if not HAS_KNOWN_ARRAYS:
+    raise ImportError("this numpy lays arrays out in another way")
 
 
 class Lent(types.Type):
@@ -55,11 +57,11 @@ class Lent(types.Type):
 
 def _size(kind: Any) -> int:
     if isinstance(kind, types.Array):
-        return _WORD * (5 + 2 * kind.ndim)
+        return WORD * (HEAD_WORDS + 2 * kind.ndim)
     if isinstance(kind, Lent):
         return kind.offsets[-1]
-    if isinstance(kind, (types.Integer, types.Float)) and kind.bitwidth == 8 * _WORD:
-        return _WORD
+    if isinstance(kind, (types.Integer, types.Float)) and kind.bitwidth == 8 * WORD:
+        return WORD
     raise TypeError(f"a named tuple for kernels holds arrays, named tuples, int64 and float64, not {kind}")
 
 
@@ -67,7 +69,8 @@ def lent(kind: Any) -> Any:
     """The type that a part of a kernel gets for an argument of some type."""
     if isinstance(kind, types.BaseNamedTuple):
         return Lent(kind.instance_class.__name__, kind.fields, [lent(part) for part in kind.types])
-    return _BUNDLES.get(_bundle_name(kind), kind)
+    signature = _signature_of(kind)
+    return kind if signature is None else _kind_of(signature)
 
 
 @register_model(Lent)
@@ -82,7 +85,7 @@ def mark_arguments(module: Any) -> None:
     for function in module.functions:
         for argument in function.args if function.blocks else ():
             pointed = getattr(argument.type, "pointee", None)
-            if isinstance(pointed, ir.IntType) and pointed.width > 1 and pointed.width % _WORD == 1:
+            if isinstance(pointed, ir.IntType) and pointed.width > 1 and pointed.width % WORD == 1:
                 argument.attributes.dereferenceable = pointed.width - 1
                 known = argument.attributes._known
                 for attribute in ("noalias", "captures(none)" if "captures(none)" in known else "nocapture"):
@@ -134,13 +137,20 @@ def lend_to(part: Any) -> None:
     part.get_call_template = get_call_template
 
 
-# The bundles of this process, by the name that their arrays have for what lies in them.
-_BUNDLES: dict[str | None, Lent] = {}
+@functools.cache
+def _kind_of(signature: Signature) -> Any:
+    """The numba type of what has this signature."""
+    first, *others = signature
+    if isinstance(first, str):
+        return types.Array(numba.np.numpy_support.from_dtype(np.dtype(first)), others[0], "C")
+    fields = getattr(first, "_fields", None)
+    return Lent(first.__name__ if fields else "", fields or ("",) * len(others), tuple(map(_kind_of, others)))
 
 
-def _bundle_name(kind: Any) -> str | None:
+def _signature_of(kind: Any) -> Signature | None:
+    """What lies in a bundle, by the numba type of its array; None for the type of anything else."""
     fields = getattr(getattr(kind, "dtype", None), "fields", None) if isinstance(kind, types.Array) else None
-    return next(iter(fields)) if fields else None
+    return SIGNATURES.get(next(iter(fields))) if fields else None
 
 
 @lower_cast(types.Array, Lent)
@@ -164,56 +174,3 @@ def contents(typing_context: Any, bundle: Any) -> Any:
         return context.make_tuple(builder, result, items)
 
     return result(bundle), generate
-
-
-# Where an array keeps the address of its data: first thing after the head of every object. What numpy says of it comes
-# as a dictionary, at four times the cost.
-_ADDRESS = object.__basicsize__
-_address_at = ctypes.c_size_t.from_address
-_probe = np.zeros(1)
-if _address_at(id(_probe) + _ADDRESS).value != _probe.ctypes.data:
-    raise ImportError("this numpy lays arrays out in another way")
-
-
-class _Words(bytearray):
-    """What a bundle points to, and the arrays that its words are the addresses of, which live as long."""
-
-    items: Any
-
-
-def _add_words(item: Any, words: list[int]) -> tuple[Any, ...]:
-    """Add the words of what lies in a bundle; what decides its numba type, quicker to compare than that type."""
-    if isinstance(item, np.ndarray):
-        if not item.flags.c_contiguous:
-            raise TypeError("arrays in a bundle are contiguous")
-        address = _address_at(id(item) + _ADDRESS).value
-        words += (0, 0, item.size, item.itemsize, address, *item.shape, *item.strides)
-        return item.dtype.str, item.ndim
-    if not isinstance(item, tuple):
-        raise TypeError(f"a bundle holds arrays and tuples of them, not {type(item).__name__}")
-    return type(item), *[_add_words(part, words) for part in item]
-
-
-@functools.cache
-def _kind_of(signature: tuple[Any, ...]) -> Any:
-    """The numba type of what has this signature."""
-    first, *others = signature
-    if isinstance(first, str):
-        return types.Array(numba.np.numpy_support.from_dtype(np.dtype(first)), others[0], "C")
-    fields = getattr(first, "_fields", None)
-    return Lent(first.__name__ if fields else "", fields or ("",) * len(others), tuple(map(_kind_of, others)))
-
-
-@functools.cache
-def _dtype(kind: Lent) -> np.dtype[Any]:
-    _BUNDLES[kind.name] = kind
-    return np.dtype([(kind.name, np.int64, (kind.offsets[-1] // _WORD,))])
-
-
-def bundle(items: tuple[Any, ...]) -> Any:
-    """One array with the addresses of all the arrays in `items`, which a kernel takes at the cost of one."""
-    words: list[int] = []
-    kind = _kind_of(_add_words(items, words))
-    owner = _Words(np.array(words, dtype=np.int64).tobytes())
-    owner.items = items
-    return np.frombuffer(owner, dtype=_dtype(kind))

@@ -62,7 +62,7 @@ class _EntryLibrary(JITCodeLibrary):
     def finalize(self) -> None:
         self._raise_if_finalized()
         self._codegen._check_llvm_bugs()
-        for library in self._below():
+        for library in libraries_below(self):
             if hasattr(self, "_reload_init"):  # from numba 0.62 on
                 self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
@@ -85,15 +85,17 @@ class _EntryLibrary(JITCodeLibrary):
         except AttributeError:
             return super().serialize_using_object_code()
 
-    def _below(self) -> list[Any]:
-        found, waiting = {}, list(self._linking_libraries)
-        while waiting:
-            library = waiting.pop(0)
-            if library not in found:
-                found[library] = True
-                if isinstance(library, _PartLibrary):
-                    waiting.extend(library._linking_libraries)
-        return list(found)
+
+def libraries_below(library: Any) -> list[Any]:
+    """The code of all that a part or an entry calls, in the order in which it is linked."""
+    found, waiting = {}, list(library._linking_libraries)
+    while waiting:
+        one = waiting.pop(0)
+        if one not in found:
+            found[one] = True
+            if isinstance(one, _PartLibrary):
+                waiting.extend(one._linking_libraries)
+    return list(found)
 
 
 def _outline(module: Any) -> bytes:

@@ -16,7 +16,7 @@ import numpy as np
 from sandbox.physics.jit import kernel_of
 
 # Files of this folder that no machine code follows from.
-_ASIDE = ("__init__.py", "cache.py", "interpreted.py", "needs.py")
+_ASIDE = ("__init__.py", "cache.py", "interpreted.py", "library.py", "needs.py", "sources.py")
 
 
 @functools.cache

@@ -108,7 +108,7 @@ class SelectionMasks(NamedTuple):
 
 
 class ScenePainter:
-    """Draws scenes on a surface; `compiled`: whether the kernels are ready; scale: pixels per layout unit."""
+    """Draws scenes on a surface; `compiled`: whether kernels may be used; scale: pixels per layout unit."""
 
     def __init__(self, scale: float) -> None:
         self.scale = scale

@@ -48,9 +48,9 @@ class View:
         """Whether a place is circled for a moment, or a smooth picture is being made."""
         return self._spot is not None or self._painter.moves
 
-    def update(self, frame_time: float, ready: bool) -> None:
-        """Let frame_time [s] pass; ready: whether the kernels are there."""
-        self._painter.compiled, self._painter.scale = ready, self._screen.scale
+    def update(self, frame_time: float) -> None:
+        """Let frame_time [s] pass."""
+        self._painter.scale = self._screen.scale
         self._painter.lattice, self._painter.grid_step = self._screen.shows_lattice, self._screen.grid_step
         if self._spot is not None:
             place, age = self._spot

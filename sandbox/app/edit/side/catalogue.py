@@ -157,7 +157,7 @@ class CataloguePage:
             if self._is_low and part.level is not None:
                 card.set_tooltip(escape(f"{part.name}. {part.level.description}".strip(), quote=False))
             self.cards.append(card)
-            self._unfilled.add(fill_card(card, lambda: self._screen.ready))
+            self._unfilled.add(fill_card(card))
         return end
 
     def _describe(self) -> None:

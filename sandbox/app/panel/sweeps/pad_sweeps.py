@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import platformdirs
 
-from sandbox.app.kernels.compiling import usual_processes
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
 from sandbox.app.panel.sweeps.sweep_measures import measure_of
 from sandbox.app.widgets.coefficient_scale import PLAIN
@@ -26,6 +25,8 @@ from sandbox.session.sweep.table import Rows, read_table
 
 # Values on each axis of the pad, and how long each run is [s].
 SIDE, SECONDS = 13, 10.0
+# Processes of the machine that are counted on, but for that of the window.
+MOST_PROCESSES = 4
 # Sweeps that are kept, those used last.
 KEPT = 60
 SOLVER, SUBSTEPS = "settings.solver", "settings.substeps"
@@ -129,7 +130,7 @@ class PadSweeps:
             self._file, self._grid, self._journal, self._rows = found
             if found.journal is not None:
                 numbers = [number for number in coarse_first(SIDE) if number not in found.rows]
-                self._work = BackgroundSweep(found.grid, numbers, max(1, usual_processes() - 1))
+                self._work = BackgroundSweep(found.grid, numbers, max(1, min(os.cpu_count() or 1, MOST_PROCESSES) - 1))
         except (SweepError, LevelError, OSError) as error:
             self.error = str(error)
 

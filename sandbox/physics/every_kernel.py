@@ -1,6 +1,4 @@
-"""warm_up(): every kernel of a tick is compiled, or loaded from the cache, before the first tick needs it."""
-
-from collections.abc import Sequence
+"""Every kernel of a tick is called once: so that it is known with which types, or that none is compiled later on."""
 
 import numpy as np
 
@@ -18,12 +16,9 @@ from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
 
 
-def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> None:
-    """Compile every kernel of a tick with these solvers, or load it from the cache, on a world of two particles.
-
-    contacts: also those that a world alone needs in which things touch.
-    """
-    for solver in solvers:
+def call_every_kernel() -> None:
+    """Call every kernel of a tick with each solver, on worlds of a few particles."""
+    for solver in SOLVERS:
         world = World(WorldSettings(solver=solver, substeps=AUTO, drag=1.0))
         world.add_particles(["a", "b", "c"], np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
         world.add_springs(["s", "t"], [0, 0], [1, 1], law=[0, 1])
@@ -37,20 +32,18 @@ def warm_up(solvers: Sequence[str] = tuple(SOLVERS), contacts: bool = True) -> N
         motors = Motors(one, np.ones(1), np.ones(1), one, np.array([0, 1]), one + 1)
         world.fit(Actuators(("a",), muscles, hydraulics, motors), [1.0])
         step(world)
-        if contacts:
-            # Two free ones that touch, and two on a spring, out of their reach.
-            places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
-            world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
-            world.add_springs(["u"], [5], [6])
-            world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
-            step(world)
-            # And a world of free ones alone, which takes a way of its own.
-            free = World(world.settings)
-            free.add_particles(["a", "b"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
-            step(free)
-    if "direct" in solvers:
-        # That is too small a body to be dissected by itself, or to need a second thread.
-        dissect(np.array([0]), np.array([1]), world.position)
-        system = layout_of(world).system
-        parallel.warm_up(system.fronts, system.rows.delta_v)
-        lowest_mode.warm_up()
+        # Two free ones that touch, and two on a spring, out of their reach.
+        places = np.array([[0.0, 0.0], [0.0, 0.0], [0.5, 0.0], [0.7, 0.0]])
+        world.add_particles(["d", "e", "f", "g"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+        world.add_springs(["u"], [5], [6])
+        world.terrain = make_terrain([Chain([[-1.0, 0.0], [1.0, 0.0]])])
+        step(world)
+        # And a world of free ones alone, which takes a way of its own.
+        free = World(world.settings)
+        free.add_particles(["a", "b"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
+        step(free)
+    # Those are too small to be dissected by themselves, or to need a second thread.
+    dissect(np.array([0]), np.array([1]), world.position)
+    system = layout_of(world).system
+    parallel.warm_up(system.fronts, system.rows.delta_v)
+    lowest_mode.warm_up()

@@ -1,0 +1,81 @@
+"""Bundles: many arrays as one array of the words that say where they lie, which compiled kernels take as one argument.
+
+An array is the words that numba gives it: two of 0, number of items, bytes of an item, address, and a word of shape and
+one of strides for each dimension. A named tuple is the words of its fields, one after another.
+"""
+
+import ctypes
+import functools
+import hashlib
+from typing import Any
+
+import numpy as np
+
+WORD = 8
+# Words of an array beside those of its shape and strides.
+HEAD_WORDS = 5
+# Where an array keeps the address of its data: first thing after the head of every object. What numpy says of it comes
+# as a dictionary, at four times the cost.
+_ADDRESS = object.__basicsize__
+_address_at = ctypes.c_size_t.from_address
+_probe = np.zeros(1)
+HAS_KNOWN_ARRAYS = _address_at(id(_probe) + _ADDRESS).value == _probe.ctypes.data
+
+# What lies in a bundle: of an array its dtype and dimensions, of a tuple its class and what lies in it.
+Signature = tuple[Any, ...]
+# What lies in the bundles of this process, by the name that their arrays have for it.
+SIGNATURES: dict[str, Signature] = {}
+
+
+class _Words(bytearray):
+    """What a bundle points to, and the arrays that its words are the addresses of, which live as long."""
+
+    items: Any
+
+
+def _add_words(item: Any, words: list[int]) -> Signature:
+    """Add the words of what lies in a bundle; its signature, quicker to compare than a type of numba."""
+    if isinstance(item, np.ndarray):
+        if not item.flags.c_contiguous:
+            raise TypeError("arrays in a bundle are contiguous")
+        address = _address_at(id(item) + _ADDRESS).value
+        words += (0, 0, item.size, item.itemsize, address, *item.shape, *item.strides)
+        return item.dtype.str, item.ndim
+    if not isinstance(item, tuple):
+        raise TypeError(f"a bundle holds arrays and tuples of them, not {type(item).__name__}")
+    return type(item), *[_add_words(part, words) for part in item]
+
+
+def signature_text(signature: Signature) -> str:
+    """What lies in a bundle in words that stay the same from process to process."""
+    first, *others = signature
+    if isinstance(first, str):
+        return f"{first}{others[0]}"
+    return f"{first.__name__}{getattr(first, '_fields', '')}({', '.join(map(signature_text, others))})"
+
+
+@functools.cache
+def dtype_of(name: str, words: int) -> np.dtype[Any]:
+    """The dtype of a bundle of so many words: one and the same object for every bundle of a name."""
+    return np.dtype([(name, np.int64, (words,))])
+
+
+@functools.cache
+def _dtype(signature: Signature, words: int) -> np.dtype[Any]:
+    digest = hashlib.blake2b(signature_text(signature).encode(), digest_size=6).hexdigest()
+    name = f"{'' if signature[0] is tuple else signature[0].__name__}{digest}"
+    SIGNATURES[name] = signature
+    return dtype_of(name, words)
+
+
+def bundle(items: tuple[Any, ...]) -> Any:
+    """One array with the addresses of all the arrays in `items`, which a kernel takes at the cost of one.
+
+    Raises:
+        TypeError: for what is neither array nor tuple, and for arrays that are not contiguous.
+    """
+    words: list[int] = []
+    signature = _add_words(items, words)
+    owner = _Words(np.array(words, dtype=np.int64).tobytes())
+    owner.items = items
+    return np.frombuffer(owner, dtype=_dtype(signature, len(words)))

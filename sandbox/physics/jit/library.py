@@ -1,0 +1,200 @@
+"""Kernels of the libraries that are shipped: machine code for each platform, which needs no compiler.
+
+`make libraries` makes them from the sources. The manifest beside them says of which sources, and what their entries
+take. A library is called by one C function, `making/calling.c`, which Python sees as builtin functions.
+"""
+
+import ctypes
+import hashlib
+import importlib
+import json
+import os
+import sys
+import sysconfig
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sandbox.physics.jit import bundles, interpreted
+from sandbox.physics.jit.sources import edited
+
+COMPILED = True
+FOLDER = Path(__file__).with_name("libraries")
+MANIFEST = FOLDER / "manifest.json"
+# Of file digests [bytes].
+DIGEST_SIZE = 16
+
+# As in calling.c.
+_FORMS = {"integer": 0, "float": 1, "flag": 2, "array": 3, "bundle": 3, "tuple": 4}
+_GIVES = {"nothing": 0, "integer": 1, "float": 2, "flag": 3}
+_MOST_WORDS = 448
+_FUNCTIONS = (
+    "PyFloat_AsDouble", "PyLong_AsLongLong", "PyObject_IsTrue", "PyLong_AsVoidPtr", "PyTuple_Size", "PyTuple_GetItem",
+    "PyObject_RichCompareBool", "PyErr_Occurred", "PyErr_Format", "PyFloat_FromDouble", "PyLong_FromLongLong",
+    "PyBool_FromLong", "Py_IncRef", "PyEval_SaveThread", "PyEval_RestoreThread", "PyThread_acquire_lock",
+    "PyThread_release_lock",
+)  # fmt: skip
+_CONTIGUOUS_WRITEABLE = 0x401
+_FASTCALL = 0x80
+
+
+class _Method(ctypes.Structure):
+    """Python's own description of a builtin function."""
+
+    _fields_ = [("name", ctypes.c_char_p), ("call", ctypes.c_void_p), ("flags", ctypes.c_int), ("doc", ctypes.c_char_p)]
+
+
+class NoLibrary(Exception):
+    """There is none here that can be used; says in one line why."""
+
+
+def library_name() -> str:
+    """The file name of the library for this platform, whether there is one or not."""
+    suffix = {"darwin": "dylib", "win32": "dll"}.get(sys.platform, "so")
+    system = {"darwin": "macos", "win32": "windows"}.get(sys.platform, sys.platform)
+    machine = sysconfig.get_platform().rpartition("-")[2] if sys.platform == "win32" else os.uname().machine
+    usual = {"amd64": "x86_64", "aarch64": "arm64"}
+    return f"{system}-{usual.get(machine.lower(), machine.lower())}.{suffix}"
+
+
+def file_digest(content: bytes) -> str:
+    """The digest of a library's file, as the manifest has it."""
+    return hashlib.blake2b(content, digest_size=DIGEST_SIZE).hexdigest()
+
+
+def _has_known_layout() -> bool:
+    """Whether arrays lie in memory as calling.c reads them."""
+    probe = np.zeros((2, 3))
+    head = ctypes.sizeof(ctypes.c_void_p) * 2
+    if object.__basicsize__ != head or not bundles.HAS_KNOWN_ARRAYS:
+        return False
+    words = (ctypes.c_int64 * 7).from_address(id(probe) + head)
+    shape = (ctypes.c_int64 * 2).from_address(words[2])
+    return (
+        words[1] & 0xFFFFFFFF == 2
+        and tuple(shape) == (2, 3)
+        and words[5] == id(probe.dtype)
+        and words[6] & _CONTIGUOUS_WRITEABLE == _CONTIGUOUS_WRITEABLE
+    )
+
+
+def read_manifest() -> dict[str, Any]:
+    """The manifest of the libraries. Raises NoLibrary."""
+    try:
+        manifest = json.loads(MANIFEST.read_text(encoding="utf-8"))
+        if not all(isinstance(manifest[key], dict) for key in ("files", "sources", "entries")):
+            raise ValueError("no manifest")
+    except OSError as error:
+        raise NoLibrary("the manifest of the libraries cannot be read") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise NoLibrary("the manifest of the libraries is damaged") from error
+    return dict(manifest)
+
+
+class Library:
+    """The library of this platform, opened. Raises NoLibrary."""
+
+    def __init__(self) -> None:
+        name = library_name()
+        if sys.implementation.name != "cpython" or not _has_known_layout():
+            raise NoLibrary("this Python or numpy lays objects out in another way than the library for it knows")
+        manifest = read_manifest()
+        if name not in manifest["files"]:
+            raise NoLibrary(f"there is no library for this platform, {name.partition('.')[0]}")
+        changed = edited(manifest["sources"])
+        if changed:
+            others = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+            raise NoLibrary(f"kernels were edited in {changed[0]}{others}")
+        self.entries: dict[str, Any] = manifest["entries"]
+        self._kept: list[Any] = []
+        self._open(FOLDER / name, manifest["files"][name])
+
+    def _open(self, path: Path, digest: str) -> None:
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise NoLibrary(f"the library {path.name} is missing") from error
+        if file_digest(content) != digest:
+            raise NoLibrary(f"the library {path.name} is damaged, or not the one of its manifest")
+        try:
+            self._code = ctypes.CDLL(str(path))
+            self._call = ctypes.cast(self._code.call, ctypes.c_void_p).value
+            self._connect()
+        except (OSError, AttributeError) as error:
+            raise NoLibrary(f"the library {path.name} cannot be opened: {error}") from error
+
+    def _connect(self) -> None:
+        """Tell the library where it finds Python."""
+        functions = [ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p).value for name in _FUNCTIONS]
+        words = [id(np.ndarray), id(None), id(TypeError), id(RuntimeError), *functions]
+        self._code.connect((ctypes.c_void_p * len(words))(*words))
+
+    def function(self, name: str) -> Any:
+        """A builtin function that runs an entry.
+
+        It takes the types that the entry was compiled for, arrays contiguous and writeable.
+
+        Raises:
+            TypeError: when it is called with others.
+        """
+        entry = self.entries[name]
+        words: list[int] = []
+        size = sum(self._add_kind(form, words) for form in entry["takes"])
+        assert size <= _MOST_WORDS, name
+        title = name.rpartition(".")[2].encode()
+        code = ctypes.cast(getattr(self._code, entry["symbol"]), ctypes.c_void_p).value
+        head = [code, ctypes.cast(ctypes.c_char_p(title), ctypes.c_void_p).value, _GIVES[entry["gives"]]]
+        table = np.array([*head, int(entry.get("waits", False)), len(entry["takes"]), *words], dtype=np.int64)
+        method = _Method(title, self._call, _FASTCALL, None)
+        make = ctypes.pythonapi.PyCFunction_NewEx
+        make.restype, make.argtypes = ctypes.py_object, (ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p)
+        self._kept += (title, table, method)
+        return make(ctypes.addressof(method), int(table.ctypes.data), None)
+
+    def _add_kind(self, form: Any, words: list[int]) -> int:
+        """Add what calling.c is told of an argument; how many words it is in a block."""
+        if isinstance(form, str):
+            words += (_FORMS[form], 0, 0, 0)
+            return 1
+        kind, *details = form
+        if kind == "tuple":
+            words += (_FORMS[kind], 0, len(details), 0)
+            return sum(self._add_kind(part, words) for part in details)
+        dtype = bundles.dtype_of(*details) if kind == "bundle" else np.dtype(details[0])
+        dimensions = 1 if kind == "bundle" else details[1]
+        self._kept.append(dtype)
+        words += (_FORMS[kind], id(dtype), dimensions, dtype.itemsize)
+        return bundles.HEAD_WORDS + 2 * dimensions
+
+
+_opened: Library | None = None
+
+
+def open_library() -> Library:
+    """The library of this platform. Raises NoLibrary."""
+    global _opened
+    _opened = _opened or Library()
+    return _opened
+
+
+def make(kernel: Any) -> Any:
+    """What modules hold of a kernel that Python calls.
+
+    One that the library does not hold, of a program of its own, numba compiles; without numba it is interpreted.
+    """
+    library = open_library()
+    if kernel.name in library.entries:
+        return library.function(kernel.name)
+    try:
+        return importlib.import_module("sandbox.physics.jit.compiled").make(kernel)
+    except ImportError:
+        return interpreted.make(kernel)
+
+
+def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
+    """Make a kernel ready to be called."""
+    kernel.ready()
+
+
+bundle = bundles.bundle

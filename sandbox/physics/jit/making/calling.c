@@ -1,0 +1,167 @@
+/* How Python calls the entries of a library: one C function for all of them, which Python sees as a builtin function.
+
+   An entry takes the address of its argument block: the words of its arguments one after another, as bundles.py lays
+   them out; its result is the first word afterwards. This function fills such a block from Python's objects. It knows
+   the layout of a numpy array, which numpy never changes; for the rest it calls Python by addresses that `connect` is
+   told, so that a library needs no header of Python, fits every version, and has no undefined symbols. */
+
+typedef long long Word;
+typedef struct Object { Word references; void *type; } Object;
+typedef struct Array {
+    Object head;
+    void *data;
+    int dimensions;
+    Word *shape, *strides;
+    Object *base, *dtype;
+    int flags;
+} Array;
+
+/* What an argument is to be. Of an array: its dtype, dimensions and bytes of an item; of a tuple: how many items. */
+enum { INTEGER, FLOAT, FLAG, ARRAY, TUPLE };
+typedef struct Kind { Word form; Object *dtype; Word count, item_size; } Kind;
+enum { NOTHING, GIVES_INTEGER, GIVES_FLOAT, GIVES_FLAG };
+typedef struct Entry {
+    int (*run)(Word *block);
+    const char *name;
+    Word gives, waits, arguments;
+    Kind kinds[];
+} Entry;
+
+/* In the order of library.py. */
+typedef struct Interpreter {
+    void *array_type;
+    void *none;
+    Object *type_error, *runtime_error;
+    double (*as_float)(Object *);
+    Word (*as_integer)(Object *);
+    int (*as_flag)(Object *);
+    void *(*as_address)(Object *);
+    Word (*tuple_size)(Object *);
+    Object *(*tuple_item)(Object *, Word);
+    int (*is_equal)(Object *, Object *, int);
+    Object *(*occurred)(void);
+    Object *(*format)(Object *, const char *, ...);
+    Object *(*from_float)(double);
+    Object *(*from_integer)(Word);
+    Object *(*from_flag)(long);
+    void (*keep)(Object *);
+    void *(*save_thread)(void);
+    void (*restore_thread)(void *);
+    int (*acquire_lock)(void *, int);
+    void (*release_lock)(void *);
+} Interpreter;
+
+#if defined(_WIN32)
+#define SHARED __declspec(dllexport)
+#else
+#define SHARED __attribute__((visibility("default")))
+#endif
+#define HIDDEN __attribute__((visibility("hidden")))
+/* At most so many words has a block; library.py refuses an entry with more. */
+#define BLOCK 448
+enum { EQUAL = 2, CONTIGUOUS = 0x1, WRITEABLE = 0x400 };
+
+static Interpreter python;
+
+SHARED void connect(const Interpreter *interpreter) { python = *interpreter; }
+
+/* What kernels call of Python: locks for threads. */
+HIDDEN int PyThread_acquire_lock(void *lock, int wait) { return python.acquire_lock(lock, wait); }
+HIDDEN void PyThread_release_lock(void *lock) { python.release_lock(lock); }
+
+/* Whole numbers next to a number: processors of the oldest kind have no instruction for it, and a call of the system's
+   library is not needed. The same bits as theirs, the sign of 0 included. */
+#define WHOLE_FROM 4503599627370496.0
+HIDDEN double floor(double x) {
+    if (!(x > -WHOLE_FROM && x < WHOLE_FROM)) return x;
+    double whole = (double)(Word)x;
+    return __builtin_copysign(whole > x ? whole - 1.0 : whole, x);
+}
+HIDDEN double ceil(double x) {
+    if (!(x > -WHOLE_FROM && x < WHOLE_FROM)) return x;
+    double whole = (double)(Word)x;
+    return __builtin_copysign(whole < x ? whole + 1.0 : whole, x);
+}
+
+#if defined(_WIN32)
+/* Called when the library is loaded: nothing is to be done. */
+int DllMainCRTStartup(void *library, unsigned reason, void *reserved) { return 1; }
+#endif
+
+/* The words of an array; where they end, 0 if it is another than wanted. */
+static Word *array_words(Object *object, const Kind *kind, Word *word) {
+    const Array *array = (const Array *)object;
+    if (object->type != python.array_type || array->dimensions != kind->count) return 0;
+    if (!(array->flags & CONTIGUOUS) || !(array->flags & WRITEABLE)) return 0;
+    if (array->dtype != kind->dtype && python.is_equal(array->dtype, kind->dtype, EQUAL) != 1) return 0;
+    Word items = 1;
+    for (Word k = 0; k < kind->count; k++) items *= array->shape[k];
+    *word++ = 0;
+    *word++ = 0;
+    *word++ = items;
+    *word++ = kind->item_size;
+    *word++ = (Word)array->data;
+    for (Word k = 0; k < kind->count; k++) *word++ = array->shape[k];
+    for (Word k = 0; k < kind->count; k++) *word++ = array->strides[k];
+    return word;
+}
+
+/* The words of an argument, and the kind of the next one; where they end, 0 if it is another than wanted. */
+static Word *argument_words(Object *object, const Kind **next, Word *word) {
+    const Kind *kind = (*next)++;
+    if (kind->form == ARRAY) return array_words(object, kind, word);
+    if (kind->form == TUPLE) {
+        if (python.tuple_size(object) != kind->count) return 0;
+        for (Word k = 0; k < kind->count; k++) {
+            word = argument_words(python.tuple_item(object, k), next, word);
+            if (!word) return 0;
+        }
+        return word;
+    }
+    if (kind->form == FLOAT) {
+        double value = python.as_float(object);
+        if (value == -1.0 && python.occurred()) return 0;
+        *(double *)word = value;
+    } else if (kind->form == INTEGER) {
+        *word = python.as_integer(object);
+        if (*word == -1 && python.occurred()) return 0;
+    } else {
+        int value = python.as_flag(object);
+        if (value < 0) return 0;
+        *word = value;
+    }
+    return word + 1;
+}
+
+static Object *result_of(const Entry *entry, const Word *block) {
+    if (entry->gives == GIVES_FLOAT) return python.from_float(*(const double *)block);
+    if (entry->gives == GIVES_INTEGER) return python.from_integer(*block);
+    if (entry->gives == GIVES_FLAG) return python.from_flag(*block & 1);
+    python.keep(python.none);
+    return python.none;
+}
+
+/* A builtin function of Python, METH_FASTCALL; self: the address of an Entry, as an int. */
+SHARED Object *call(Object *self, Object *const *arguments, Word count) {
+    const Entry *entry = python.as_address(self);
+    Word block[BLOCK];
+    Word *word = block;
+    const Kind *next = entry->kinds;
+    if (count != entry->arguments)
+        return python.format(
+            python.type_error, "%s takes %d arguments, not %d", entry->name, (int)entry->arguments, (int)count);
+    for (Word k = 0; k < count; k++) {
+        word = argument_words(arguments[k], &next, word);
+        if (!word) {
+            if (python.occurred()) return 0;
+            return python.format(
+                python.type_error, "argument %d of %s has not the type that it was compiled for", (int)k + 1,
+                entry->name);
+        }
+    }
+    void *thread = entry->waits ? python.save_thread() : 0;
+    int status = entry->run(block);
+    if (entry->waits) python.restore_thread(thread);
+    if (status) return python.format(python.runtime_error, "%s failed with code %d", entry->name, status);
+    return result_of(entry, block);
+}

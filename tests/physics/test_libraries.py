@@ -1,0 +1,187 @@
+"""Libraries of kernels: what is taken where there is none that can be used, with one line each; how they are called."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sandbox.physics.integrate import integrate
+from sandbox.physics.jit import library
+from sandbox.physics.jit.making.platforms import LIBRARIES, WEB
+from tests.support.package_copy import copy_of_the_package
+
+pytestmark = pytest.mark.skipif(
+    library.library_name() not in {platform.file for platform in LIBRARIES},
+    reason="no library is made for this platform",
+)
+STEPS = """
+import sys
+{before}
+from sandbox.physics import jit
+from sandbox.physics.snapshot import state_hash
+from tests.determinism.kernel_script import busy_world
+from sandbox.physics.step import step
+world = busy_world("single_pass", 1)
+step(world)
+print(jit.way(), state_hash(world))
+"""
+WITHOUT_NUMBA = 'sys.modules["numba"] = None'
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def outcome(package, before=WITHOUT_NUMBA, **variables):
+    """How kernels run in a fresh process with this copy of the package, the hash of a tick, and the lines of errors."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(package.parent), str(ROOT)]), **variables}
+    environment.pop("NUMBA_DISABLE_JIT", None)
+    command = [sys.executable, "-P", "-c", STEPS.replace("{before}", before)]
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr
+    way, state = ended.stdout.split()
+    return way, state, ended.stderr.splitlines()
+
+
+@pytest.fixture(scope="module")
+def untouched(tmp_path_factory):
+    package = copy_of_the_package(tmp_path_factory.mktemp("untouched"))
+    return outcome(package)
+
+
+@pytest.fixture
+def package(tmp_path):
+    return copy_of_the_package(tmp_path)
+
+
+def own_library(package):
+    return package / "physics" / "jit" / "libraries" / library.library_name()
+
+
+def test_a_clone_runs_from_its_library_without_numba_and_says_nothing(untouched):
+    way, _, lines = untouched
+    assert (way, lines) == ("library", [])
+
+
+def damage(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+def forget_platform(path):
+    manifest = json.loads(path.with_name("manifest.json").read_text())
+    del manifest["files"][path.name]
+    path.with_name("manifest.json").write_text(json.dumps(manifest))
+
+
+def write_manifest(text):
+    return lambda path: path.with_name("manifest.json").write_text(text)
+
+
+OWN = f"the library {library.library_name()}"
+NOT_THE_ONE = "is damaged, or not the one of its manifest"
+DAMAGED = "the manifest of the libraries is damaged"
+CHANGES = {
+    "missing": (Path.unlink, f"{OWN} is missing"),
+    "damaged": (damage, f"{OWN} {NOT_THE_ONE}"),
+    "cut off": (lambda path: path.write_bytes(path.read_bytes()[:999]), NOT_THE_ONE),
+    "of another": (lambda path: shutil.copy(path.with_name(WEB.file), path), NOT_THE_ONE),
+    "platform": (forget_platform, "there is no library for this platform, "),
+    "no manifest": (lambda path: path.with_name("manifest.json").unlink(), "of the libraries cannot be read"),
+    "half a manifest": (write_manifest('{"files"'), DAMAGED),
+    "a list": (write_manifest("[]"), DAMAGED),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_without_a_sound_library_one_line_says_why_and_the_bits_stay(change, package, untouched):
+    break_it, why = CHANGES[change]
+    break_it(own_library(package))
+    way, state, lines = outcome(package)
+    assert (way, state) == ("interpreted", untouched[1])
+    assert len(lines) == 1 and why in lines[0]
+    assert lines[0].endswith(": kernels are interpreted, a hundred times slower")
+
+
+def test_an_edited_kernel_is_not_run_from_the_library(package, untouched):
+    file = package / "physics" / "integrate.py"
+    text = file.read_text()
+    assert text.count("position[p, 0] += velocity[p, 0] * h") == 1
+    file.write_text(text.replace("position[p, 0] += velocity[p, 0] * h", "position[p, 0] += velocity[p, 0] * h * 2.0"))
+    way, state, lines = outcome(package)
+    assert way == "interpreted" and state != untouched[1]
+    assert lines == ["kernels were edited in physics/integrate.py: kernels are interpreted, a hundred times slower"]
+
+
+def test_what_is_no_kernel_may_be_edited(package, untouched):
+    file = package / "physics" / "integrate.py"
+    file.write_text(file.read_text() + "\n\n# a remark\ndef plain(value: int) -> int:\n    return value + 1\n")
+    assert outcome(package) == untouched
+
+
+@pytest.mark.parametrize("wish", ["numba", "interpreted", "library"])
+def test_a_way_can_be_wished_for(wish, package, untouched):
+    way, state, lines = outcome(package, SANDBOX_KERNELS=wish)
+    assert state == untouched[1]
+    assert way == (wish if wish != "numba" else "interpreted")
+    expected = ["SANDBOX_KERNELS is numba: kernels are interpreted, a hundred times slower"] if wish == "numba" else []
+    assert lines == expected
+
+
+def integrated(*arguments):
+    position, velocity, angle, spin = np.zeros((3, 2)), np.ones((3, 2)), np.zeros(3), np.ones(3)
+    given = [position, velocity, np.ones(3, dtype=bool), angle, spin, 0.5]
+    for place, value in arguments:
+        given[place] = value
+    run = library.open_library().function("sandbox.physics.integrate.integrate")
+    run(*given)
+    return position
+
+
+def test_an_entry_takes_whole_numbers_and_numbers_of_numpy_for_a_float():
+    for h in (2, np.float64(2.0), np.float32(2.0), True):
+        assert integrated((5, h))[0, 0] == float(h)
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (0, np.zeros((3, 2), dtype=np.float32)),
+        (0, np.zeros(6)),
+        (0, np.zeros((3, 4))[:, ::2]),
+        (0, np.broadcast_to(0.0, (3, 2))),
+        (0, [[0.0, 0.0]] * 3),
+        (0, None),
+        (2, np.ones(3)),
+        (5, "0.5"),
+        (5, None),
+    ],
+)
+def test_an_entry_refuses_what_it_was_not_compiled_for(place, value):
+    with pytest.raises(TypeError):
+        integrated((place, value))
+
+
+def test_an_entry_refuses_too_few_arguments():
+    with pytest.raises(TypeError, match="integrate takes 6 arguments, not 1"):
+        library.open_library().function("sandbox.physics.integrate.integrate")(np.zeros((3, 2)))
+
+
+def test_kernels_of_the_package_are_builtin_functions_here_once_they_were_called():
+    if library.read_manifest() and os.environ.get("SANDBOX_KERNELS", "library") == "library":
+        from sandbox.physics import jit
+
+        kernel = jit.kernel_of(integrate)
+        assert kernel is not None and jit.kernel_of(kernel.ready()) is kernel
+
+
+def test_the_manifest_names_every_library_and_is_that_of_the_sources():
+    manifest = library.read_manifest()
+    assert set(manifest["files"]) == {platform.file for platform in (*LIBRARIES, WEB)}
+    for name, digest in manifest["files"].items():
+        assert library.file_digest((library.FOLDER / name).read_bytes()) == digest, name
+    assert {path.name for path in library.FOLDER.iterdir()} == {*manifest["files"], "manifest.json"}
+    assert library.edited(manifest["sources"]) == [], "make libraries makes them anew"
