@@ -78,7 +78,7 @@ print(jit.way(), *values)
 
 @pytest.mark.parametrize("way", ["library", "interpreted"])
 def test_a_kernel_that_is_in_no_library_is_interpreted_where_numba_is_missing(way):
-    environment = {**os.environ, "SANDBOX_KERNELS": way}
+    environment = {**os.environ, "SANDBOX_KERNELS": way, "NUMBA_DISABLE_JIT": "0"}
     command = [sys.executable, "-c", OWN]
     ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert ended.stdout.split() == [way, "2.0", "6.0"]
@@ -86,7 +86,7 @@ def test_a_kernel_that_is_in_no_library_is_interpreted_where_numba_is_missing(wa
 
 def test_a_wish_that_is_no_way_is_told_in_one_line():
     script = "from sandbox.physics import jit; print(jit.way())"
-    environment = {**os.environ, "SANDBOX_KERNELS": "fast"}
+    environment = {**os.environ, "SANDBOX_KERNELS": "fast", "NUMBA_DISABLE_JIT": "0"}
     ended = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
     assert ended.stderr.splitlines()[0] == "SANDBOX_KERNELS is library, numba, interpreted, not 'fast'"
     assert ended.stdout.strip() in ("library", "numba", "interpreted")

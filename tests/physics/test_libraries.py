@@ -32,12 +32,14 @@ print(jit.way(), state_hash(world))
 """
 WITHOUT_NUMBA = 'sys.modules["numba"] = None'
 ROOT = Path(__file__).resolve().parents[2]
+# What chooses how kernels run.
+CHOICES = ("SANDBOX_KERNELS", "NUMBA_DISABLE_JIT")
 
 
 def outcome(package, before=WITHOUT_NUMBA, **variables):
     """How kernels run in a fresh process with this copy of the package, the hash of a tick, and the lines of errors."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(package.parent), str(ROOT)]), **variables}
-    environment.pop("NUMBA_DISABLE_JIT", None)
+    environment = {name: value for name, value in os.environ.items() if name not in CHOICES}
+    environment |= {"PYTHONPATH": os.pathsep.join([str(package.parent), str(ROOT)]), **variables}
     command = [sys.executable, "-P", "-c", STEPS.replace("{before}", before)]
     ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
@@ -163,6 +165,12 @@ def test_an_entry_takes_whole_numbers_and_numbers_of_numpy_for_a_float():
 def test_an_entry_refuses_what_it_was_not_compiled_for(place, value):
     with pytest.raises(TypeError):
         integrated((place, value))
+
+
+def test_every_entry_of_the_manifest_is_in_the_library_and_its_arguments_have_room():
+    opened = library.open_library()
+    assert len(opened.entries) > 30
+    assert all(callable(opened.function(name)) for name in opened.entries)
 
 
 def test_an_entry_refuses_too_few_arguments():

@@ -1,0 +1,56 @@
+"""`make libraries` and its check: what they say of libraries that are not those of the sources."""
+
+import json
+
+import pytest
+
+from sandbox.app.kernels import libraries
+from sandbox.physics.jit.library import read_manifest
+
+
+@pytest.fixture
+def makers(monkeypatch):
+    """The makers of the libraries that are there, whoever makes them here."""
+    made_by = read_manifest()["makers"]
+    monkeypatch.setattr(libraries, "makers_here", lambda: made_by)
+    return made_by
+
+
+def test_a_manifest_is_written_with_a_line_for_each_file_source_and_entry():
+    manifest = read_manifest()
+    text = libraries._text(manifest)
+    assert json.loads(text) == manifest
+    for part in ("files", "sources", "entries"):
+        for name in manifest[part]:
+            assert sum(line.startswith(f'  "{name}": ') for line in text.splitlines()) == 1, name
+
+
+def test_a_check_names_files_whose_kernels_were_edited_and_makes_nothing(monkeypatch, makers):
+    monkeypatch.setattr(libraries, "edited", lambda known: ["physics/integrate.py"])
+    monkeypatch.setattr(libraries, "_made", lambda here_only: pytest.fail("nothing is to be made"))
+    (line,) = libraries._differences(True)
+    assert line == "physics/integrate.py: its kernels are not those that the libraries were made of"
+    assert not libraries._are_current()
+
+
+def test_bytes_are_not_compared_where_the_makers_are_others(monkeypatch, capsys):
+    monkeypatch.setattr(libraries, "makers_here", lambda: {"numba": "0.0"})
+    monkeypatch.setattr(libraries, "_made", lambda here_only: pytest.fail("nothing is to be made"))
+    assert libraries._differences(True) == []
+    assert capsys.readouterr().out.startswith("bytes are not compared: made by ")
+
+
+def test_a_check_names_files_whose_bytes_are_others_and_entries_that_are(monkeypatch, makers):
+    entries = read_manifest()["entries"]
+    own = {"kernels.wasm": (libraries.FOLDER / "kernels.wasm").read_bytes()}
+    monkeypatch.setattr(libraries, "_made", lambda here_only: (own, entries))
+    assert libraries._differences(False) == []
+    monkeypatch.setattr(libraries, "_made", lambda here_only: ({"kernels.wasm": b"", "new.so": b""}, {}))
+    said = libraries._differences(False)
+    assert said == [
+        "manifest.json: the entries are others", "kernels.wasm: its bytes are others", "new.so: its bytes are others",
+    ]  # fmt: skip
+
+
+def test_libraries_that_are_current_are_not_made_again(makers):
+    assert libraries._are_current()
