@@ -45,5 +45,5 @@ def call_every_kernel() -> None:
     # Those are too small to be dissected by themselves, or to need a second thread.
     dissect(np.array([0]), np.array([1]), world.position)
     system = layout_of(world).system
-    parallel.warm_up(system.fronts, system.rows.delta_v)
-    lowest_mode.warm_up()
+    parallel.precompile_help(system.fronts, system.rows.delta_v)
+    lowest_mode.precompile_modes()

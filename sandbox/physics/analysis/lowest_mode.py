@@ -110,7 +110,7 @@ def find_lowest_mode(form: StiffForm) -> float:
     return _kept[key]
 
 
-def warm_up() -> None:
+def precompile_modes() -> None:
     """Compile what finding a lowest mode takes, or load it from the cache."""
     none = np.zeros((0, 3), dtype=np.int64)
     _find(StiffForm(np.eye(2), np.ones(2), np.array([[0, 1]]), none, none))

@@ -141,6 +141,6 @@ def _processor_count() -> int:
     return len(allowed(0)) if allowed else os.cpu_count() or 1
 
 
-def warm_up(fronts: Fronts, change: Floats) -> None:
+def precompile_help(fronts: Fronts, change: Floats) -> None:
     """Compile the kernels that a second thread runs."""
     precompile(_help, fronts, change)
