@@ -148,13 +148,26 @@ def test_an_entry_takes_whole_numbers_and_numbers_of_numpy_for_a_float():
         assert integrated((5, h))[0, 0] == float(h)
 
 
+def test_an_entry_takes_arrays_that_are_not_contiguous_and_writes_into_them():
+    wide = np.zeros((3, 4))
+    integrated((0, wide[:, ::2]))
+    assert wide.tolist() == [[0.5, 0.0, 0.5, 0.0]] * 3
+
+
+def test_an_entry_reads_arrays_that_are_read_only_and_leaves_them_as_they_are():
+    velocity = np.full((3, 2), 4.0)
+    velocity.setflags(write=False)
+    assert integrated((1, velocity))[0, 0] == 2.0
+    still = np.broadcast_to(0.0, (3, 2))
+    integrated((0, still))
+    assert not still.any()
+
+
 @pytest.mark.parametrize(
     ("place", "value"),
     [
         (0, np.zeros((3, 2), dtype=np.float32)),
         (0, np.zeros(6)),
-        (0, np.zeros((3, 4))[:, ::2]),
-        (0, np.broadcast_to(0.0, (3, 2))),
         (0, [[0.0, 0.0]] * 3),
         (0, None),
         (2, np.ones(3)),

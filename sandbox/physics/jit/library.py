@@ -31,9 +31,9 @@ _GIVES = {"nothing": 0, "integer": 1, "float": 2, "flag": 3}
 _MOST_WORDS = 448
 _FUNCTIONS = (
     "PyFloat_AsDouble", "PyLong_AsLongLong", "PyObject_IsTrue", "PyLong_AsVoidPtr", "PyTuple_Size", "PyTuple_GetItem",
-    "PyObject_RichCompareBool", "PyErr_Occurred", "PyErr_Format", "PyFloat_FromDouble", "PyLong_FromLongLong",
-    "PyBool_FromLong", "Py_IncRef", "PyEval_SaveThread", "PyEval_RestoreThread", "PyThread_acquire_lock",
-    "PyThread_release_lock",
+    "PyObject_RichCompareBool", "PyErr_Occurred", "PyErr_Format", "PyObject_Vectorcall", "PyFloat_FromDouble",
+    "PyLong_FromLongLong", "PyBool_FromLong", "Py_IncRef", "PyEval_SaveThread", "PyEval_RestoreThread",
+    "PyThread_acquire_lock", "PyThread_release_lock",
 )  # fmt: skip
 _CONTIGUOUS_WRITEABLE = 0x401
 _FASTCALL = 0x80
@@ -133,11 +133,23 @@ class Library:
     def function(self, name: str) -> Any:
         """A builtin function that runs an entry.
 
-        It takes the types that the entry was compiled for, arrays contiguous and writeable.
+        It takes the types that the entry was compiled for. Arrays are taken as they are where they are contiguous and
+        writeable, else by way of a copy.
 
         Raises:
             TypeError: when it is called with others.
         """
+        plain = self._builtin(name, None)
+
+        def otherwise(*arguments: Any) -> Any:
+            fitted = _fitted(arguments)
+            result = plain(*fitted)
+            _bring_back(arguments, fitted)
+            return result
+
+        return self._builtin(name, otherwise)
+
+    def _builtin(self, name: str, otherwise: Any) -> Any:
         entry = self.entries[name]
         words: list[int] = []
         size = sum(self._add_kind(form, words) for form in entry["takes"])
@@ -145,11 +157,12 @@ class Library:
         title = name.rpartition(".")[2].encode()
         code = ctypes.cast(getattr(self._code, entry["symbol"]), ctypes.c_void_p).value
         head = [code, ctypes.cast(ctypes.c_char_p(title), ctypes.c_void_p).value, _GIVES[entry["gives"]]]
-        table = np.array([*head, int(entry.get("waits", False)), len(entry["takes"]), *words], dtype=np.int64)
+        head += [int(entry.get("waits", False)), len(entry["takes"]), 0 if otherwise is None else id(otherwise)]
+        table = np.array([*head, *words], dtype=np.int64)
         method = _Method(title, self._call, _FASTCALL, None)
         make = ctypes.pythonapi.PyCFunction_NewEx
         make.restype, make.argtypes = ctypes.py_object, (ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p)
-        self._kept += (title, table, method)
+        self._kept += (title, table, method, otherwise)
         return make(ctypes.addressof(method), int(table.ctypes.data), None)
 
     def _add_kind(self, form: Any, words: list[int]) -> int:
@@ -166,6 +179,28 @@ class Library:
         self._kept.append(dtype)
         words += (_FORMS[kind], id(dtype), dimensions, dtype.itemsize)
         return bundles.HEAD_WORDS + 2 * dimensions
+
+
+def _fitted(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Arguments with copies of arrays that are not contiguous or not writeable, those in tuples too."""
+    fitted: list[Any] = []
+    for argument in arguments:
+        if isinstance(argument, tuple):
+            fitted.append(_fitted(argument))
+        elif isinstance(argument, np.ndarray) and not (argument.flags.c_contiguous and argument.flags.writeable):
+            fitted.append(np.array(argument, order="C"))
+        else:
+            fitted.append(argument)
+    return tuple(fitted)
+
+
+def _bring_back(arguments: tuple[Any, ...], fitted: tuple[Any, ...]) -> None:
+    """Give arrays what a kernel wrote into copies of them; what is read-only stays as it is."""
+    for argument, copy in zip(arguments, fitted, strict=True):
+        if isinstance(argument, tuple):
+            _bring_back(argument, copy)
+        elif copy is not argument and argument.flags.writeable:
+            argument[...] = copy
 
 
 _opened: Library | None = None

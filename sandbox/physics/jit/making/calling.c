@@ -24,6 +24,8 @@ typedef struct Entry {
     int (*run)(Word *block);
     const char *name;
     Word gives, waits, arguments;
+    /* Called in its place with arguments of other types; 0: that is an error. */
+    Object *otherwise;
     Kind kinds[];
 } Entry;
 
@@ -41,6 +43,7 @@ typedef struct Interpreter {
     int (*is_equal)(Object *, Object *, int);
     Object *(*occurred)(void);
     Object *(*format)(Object *, const char *, ...);
+    Object *(*call)(Object *, Object *const *, Word, Object *);
     Object *(*from_float)(double);
     Object *(*from_integer)(Word);
     Object *(*from_flag)(long);
@@ -154,6 +157,7 @@ SHARED Object *call(Object *self, Object *const *arguments, Word count) {
         word = argument_words(arguments[k], &next, word);
         if (!word) {
             if (python.occurred()) return 0;
+            if (entry->otherwise) return python.call(entry->otherwise, arguments, count, 0);
             return python.format(
                 python.type_error, "argument %d of %s has not the type that it was compiled for", (int)k + 1,
                 entry->name);
