@@ -10,9 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sandbox.level.format.quantities import replaced
+from sandbox.level.reading.files import load_level
+from sandbox.physics.analysis.energy import spring_forces
 from sandbox.physics.integrate import integrate
 from sandbox.physics.jit import library
 from sandbox.physics.jit.making.platforms import LIBRARIES, WEB
+from sandbox.session.session import Session
 from tests.support.package_copy import copy_of_the_package
 
 pytestmark = pytest.mark.skipif(
@@ -206,3 +210,13 @@ def test_the_manifest_names_every_library_and_is_that_of_the_sources():
         assert library.file_digest((library.FOLDER / name).read_bytes()) == digest, name
     assert {path.name for path in library.FOLDER.iterdir()} == {*manifest["files"], "manifest.json"}
     assert library.edited(manifest["sources"]) == [], "make libraries makes them anew"
+
+
+@pytest.mark.parametrize("solver", ["single_pass", "iterative", "direct"])
+def test_a_snapshot_whose_arrays_are_read_only_has_the_forces_of_its_world(solver):
+    level = load_level("rope")
+    settings = replaced(level.settings, solver=solver, substeps=4)
+    session = Session(replaced(level, settings=settings))
+    for _ in range(20):
+        session.advance()
+    assert np.array_equal(spring_forces(session.snapshot()), spring_forces(session.world))
