@@ -9,7 +9,7 @@ from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
 from sandbox.tools.parts import COLOURS, PARTS, in_pace
 from sandbox.tools.play_tool import PlayTool
-from sandbox.tools.sizing import SMALLEST, resized
+from sandbox.tools.sizing import SMALLEST, Sized, resized
 from sandbox.tools.tool import (
     CLICK_SHARE,
     NOTHING,
@@ -81,7 +81,7 @@ class ThrowTool(PlacedTool):
         return NOTHING
 
 
-class DropTool(ThrowTool):
+class DropTool(Sized, ThrowTool):
     """Drop the part of that name; size [m]. Parts take the toys' colours in turn."""
 
     def __init__(self, new_gesture: Callable[[], int], part: str) -> None:
@@ -99,20 +99,6 @@ class DropTool(ThrowTool):
     def colour(self) -> str:
         """The colour of what is dropped next."""
         return COLOURS[self.count % len(COLOURS)]
-
-    def take_up(self, size: float, height: float) -> None:
-        """The part has a size that the view has room for."""
-        self.size = size
-
-    @property
-    def size_to_share(self) -> float | None:
-        """The size of the part [m]."""
-        return self.size
-
-    def resize(self, steps: float) -> bool:
-        """Make the part larger."""
-        self.size = resized(self.size, steps)
-        return True
 
     @property
     def preview(self) -> DropPicture | None:

@@ -8,7 +8,7 @@ from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Push, SetAir
 from sandbox.tools.parts import ROUND
 from sandbox.tools.play_tool import PlayTool
-from sandbox.tools.sizing import resized
+from sandbox.tools.sizing import Sized
 from sandbox.tools.tool import CLICK_SHARE, NOTHING, Loop, PlacedTool, Point, PointerEvent, Response, Submission
 
 # Speed [m/s] that a click gives what is near, on the average, and a push for each radius that its arrow is long.
@@ -31,7 +31,7 @@ def arrow(start: Point, end: Point) -> list[Loop]:
     return [[start, end], [tips[0], end, tips[1]]]
 
 
-class PushTool(PlacedTool):
+class PushTool(Sized, PlacedTool):
     """Push what is within the ring; size [m] is its radius. Each push is a gesture.
 
     A click drives all that is near away from the place; a drag pushes along its arrow, the harder the longer it is.
@@ -63,20 +63,6 @@ class PushTool(PlacedTool):
             speed = ARROW_SPEED / self.size
             command = Push(at, self.size, (speed * dx * mass, speed * dy * mass))
         return Response((Submission(command, self._new_gesture()),))
-
-    def take_up(self, size: float, height: float) -> None:
-        """The ring has a size that the view has room for."""
-        self.size = size
-
-    @property
-    def size_to_share(self) -> float | None:
-        """The radius of the ring [m]."""
-        return self.size
-
-    def resize(self, steps: float) -> bool:
-        """Make the ring larger."""
-        self.size = resized(self.size, steps)
-        return True
 
     @property
     def ghost(self) -> list[Loop]:

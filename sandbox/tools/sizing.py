@@ -4,6 +4,26 @@
 SIZE_STEP, SMALLEST, LARGEST = 1.1, 0.02, 100.0
 
 
+class Sized:
+    """A tool that works at a size [m], which it hands on to the next such tool."""
+
+    size: float
+
+    def take_up(self, size: float, height: float) -> None:
+        """Begin at a size that the view has room for."""
+        self.size = size
+
+    @property
+    def size_to_share(self) -> float | None:
+        """The size [m]."""
+        return self.size
+
+    def resize(self, steps: float) -> bool:
+        """Make it larger, by steps of the wheel."""
+        self.size = resized(self.size, steps)
+        return True
+
+
 def resized(size: float, steps: float) -> float:
     """A size made larger by this many steps of the wheel."""
     return min(max(size * SIZE_STEP**steps, SMALLEST), LARGEST)
