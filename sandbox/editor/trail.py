@@ -39,6 +39,7 @@ class Trail:
         self.is_done = False
         self.fault = ""
         self._work = self._run(run)
+        self._found: tuple[object, list[Floats]] = (None, [])
 
     def advance(self, seconds: float) -> bool:
         """Work for about that long, at least one tick; whether it is done."""
@@ -74,25 +75,31 @@ class Trail:
                 session.advance()
             yield None
 
+    def lines(self, selection: Selection, most: int) -> list[Floats]:
+        """The ways [m] (notes, 2) of what is selected, a group's as one, of no more than `most` things.
+
+        They are kept until more is known or something else is asked for: each frame draws them.
+        """
+        asked = (selection, most, len(self.places))
+        if self._found[0] != asked:
+            self._found = asked, self._lines(selection)[:most] if self.places else []
+        return self._found[1]
+
+    def _lines(self, selection: Selection) -> list[Floats]:
+        index = {item: number for number, item in enumerate(self.scene.items)}
+        groups = groups_of(self.level)
+        units: dict[object, list[Item]] = {}
+        for item in sorted(selection.intersection(index), key=index.__getitem__):
+            units.setdefault(groups.get(item, item), []).append(item)
+        places = np.stack(self.places)
+        found = [_middle(places, [index[item] for item in items]) for items in units.values()]
+        return [line for line in found if line is not None]
+
 
 def _means(position: Floats, owner: NDArray[np.int64], count: NDArray[np.int64]) -> Floats:
     with np.errstate(invalid="ignore", divide="ignore"):
         sums = [np.bincount(owner, position[:, axis], len(count)) / count for axis in (0, 1)]
     return np.stack(sums, axis=1)
-
-
-def lines_of(trail: Trail, selection: Selection, most: int) -> list[Floats]:
-    """The ways [m] (notes, 2) of what is selected, a group's as one, of no more than `most` things."""
-    level, index = trail.level, {item: number for number, item in enumerate(trail.scene.items)}
-    groups = groups_of(level)
-    units: dict[object, list[Item]] = {}
-    for item in sorted(selection.intersection(index), key=index.__getitem__):
-        units.setdefault(groups.get(item, item), []).append(item)
-    if not trail.places:
-        return []
-    places = np.stack(trail.places)
-    found = [_middle(places, [index[item] for item in items]) for items in units.values()]
-    return [line for line in found if line is not None][:most]
 
 
 def _middle(places: Floats, items: Sequence[int]) -> Floats | None:

@@ -7,7 +7,6 @@ import pytest
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item
 from sandbox.editor.range_trial import MOST, RangeTrial, between, numbers
-from sandbox.editor.trail import lines_of
 from tests.app.conftest import small_level
 from tests.support.zoo import zoo
 
@@ -36,7 +35,7 @@ def test_each_value_has_the_way_and_the_checks_that_it_makes():
     trial = done(RangeTrial(document, number(document, "Velocity x [m/s]"), between(2, 6, 5, whole=False)))
     assert [attempt.value for attempt in trial.attempts] == [2, 3, 4, 5, 6]
     for attempt in trial.attempts:
-        (line,) = lines_of(attempt.trail, document.selection, 8)
+        (line,) = attempt.trail.lines(document.selection, 8)
         second = round(attempt.trail.per_second)
         assert line[second, 0] == pytest.approx(attempt.value, rel=1e-9)
         assert [result.passed for result in attempt.results.values()] == [2 * attempt.value >= 7.9]

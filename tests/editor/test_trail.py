@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sandbox.editor.items import Item
-from sandbox.editor.trail import SECONDS, Trail, lines_of
+from sandbox.editor.trail import SECONDS, Trail
 from sandbox.level.reading.files import level_data, load_level, parse_level
 from sandbox.session.commands import Pin
 from sandbox.session.session import Session
@@ -29,7 +29,7 @@ def done(trail):
 
 def test_the_trail_of_a_thrown_stone_is_its_parabola():
     trail = done(Trail(thrown()))
-    (line,) = lines_of(trail, frozenset([STONE]), 8)
+    (line,) = trail.lines(frozenset([STONE]), 8)
     t = np.arange(len(line)) / trail.per_second
     assert t[-1] == pytest.approx(SECONDS)
     wanted = np.stack([3 * t, 5 + 4 * t - 5 * t * t], axis=1)
@@ -41,9 +41,9 @@ def test_a_group_has_one_trail_and_springs_alone_have_none():
     level = load_level("suspension_car")
     trail = done(Trail(level))
     springs = frozenset(item for item in trail.scene.items if item.kind == "spring")
-    assert lines_of(trail, springs, 8) == []
+    assert trail.lines(springs, 8) == []
     bodies = frozenset(item for item in trail.scene.items if item.kind == "body")
-    assert len(lines_of(trail, bodies, 8)) == len(bodies) and len(lines_of(trail, bodies, 2)) == 2
+    assert len(trail.lines(bodies, 8)) == len(bodies) and len(trail.lines(bodies, 2)) == 2
 
 
 def test_the_trail_of_a_run_goes_where_that_run_went_and_changes_nothing_of_it():
@@ -54,7 +54,7 @@ def test_the_trail_of_a_run_goes_where_that_run_went_and_changes_nothing_of_it()
         session.advance()
     before = session.snapshot()
     trail = done(Trail(session.level, session.retold(0)))
-    (line,) = lines_of(trail, frozenset([STONE]), 8)
+    (line,) = trail.lines(frozenset([STONE]), 8)
     assert len(line) - 1 == 2 * trail.per_second
     assert np.allclose(line, line[0]) and session.snapshot() is not before
     assert session.tick == 240 and np.array_equal(
@@ -67,14 +67,13 @@ def test_keys_that_a_check_holds_are_held_for_the_trail():
     held = {"name": "throws", "metric": "x", "particle": "arm.0", "at_least": -100, "after": 1,
             "hold": [{"key": "d", "during": [0.0, 1.0]}]}  # fmt: skip
     arm = frozenset([Item("body", "arm")])
-    still = lines_of(done(Trail(level)), arm, 8)[0]
-    moved = lines_of(
-        done(Trail(parse_level(json.dumps({**level_data(level), "checks": [held]}).encode(), "a test"))), arm, 8
-    )[0]
+    still = done(Trail(level)).lines(arm, 8)[0]
+    level = parse_level(json.dumps({**level_data(level), "checks": [held]}).encode(), "a test")
+    moved = done(Trail(level)).lines(arm, 8)[0]
     assert np.abs(still - moved).max() > 0.5
 
 
 def test_too_many_particles_have_no_trail_but_a_line_that_says_so():
     body = {"type": "jelly", "id": "block", "position": [0, 0], "shape": {"box": [20, 20]}, "spacing": 0.25}
     trail = done(Trail(small_level(bodies=[body])))
-    assert "too many for a trail" in trail.fault and lines_of(trail, frozenset([Item("body", "block")]), 8) == []
+    assert "too many for a trail" in trail.fault and trail.lines(frozenset([Item("body", "block")]), 8) == []

@@ -11,7 +11,7 @@ from sandbox.app.draw.colours import ACCENT, BACKGROUND, MUTED, TEXT, WARNING, C
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.items import Selection
 from sandbox.editor.range_trial import RangeTrial
-from sandbox.editor.trail import Trail, lines_of
+from sandbox.editor.trail import Trail
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ def draw_trails(
     """Draw the trails of a selection, each with whether it is of the last run."""
     for trail, is_last in trails:
         colour = mixed(BACKGROUND, MUTED, 0.8) if is_last else ACCENT
-        for line in lines_of(trail, selection, MOST):
+        for line in trail.lines(selection, MOST):
             draw_way(surface, ui, camera, line, trail.per_second, colour)
 
 
@@ -48,7 +48,7 @@ def draw_attempts(surface: pygame.Surface, ui: Ui, camera: Camera, trial: RangeT
         if chosen is not None and number != chosen:
             colour = mixed(BACKGROUND, colour, 0.45)
         if trail is not None:
-            for line in lines_of(trail, selection, MOST):
+            for line in trail.lines(selection, MOST):
                 draw_way(surface, ui, camera, line, trail.per_second, colour)
 
 

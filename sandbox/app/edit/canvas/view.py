@@ -91,7 +91,8 @@ class View:
         # What stays where it is would only lie over itself.
         moved = np.abs(position - scene.position).max(axis=1) * self._screen.camera.zoom > MOVED
         springs = moved[scene.particle_a] | moved[scene.particle_b]
-        away = SelectionMasks.of(scene, frozenset(), self._screen.visibility.hidden)
+        assert self._chosen is not None
+        away = self._chosen[3]
         moved, springs = moved & ~away.hidden_particles, springs & ~away.hidden_springs
         self._painter.paint(surface, self._screen.camera, Part(self._hanging[2], moved, springs, ghost=True))
 

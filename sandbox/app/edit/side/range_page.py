@@ -15,7 +15,6 @@ from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.panel.typed import number_text, read_integer, read_number
 from sandbox.editor.range_trial import Attempt, Number, RangeTrial, between, numbers
-from sandbox.editor.trail import lines_of
 
 CHOOSE = "Choose the number to try. The level runs once for each value, with its checks."
 NO_NUMBERS = "There is no number to try here."
@@ -186,7 +185,7 @@ def _checks_text(attempt: Attempt) -> str:
 
 def _way_text(attempt: Attempt, document: Document) -> str:
     """Where the first thing that was selected got to, from its beginning."""
-    lines = [] if attempt.trail is None else lines_of(attempt.trail, document.selection, MOST)
+    lines = [] if attempt.trail is None else attempt.trail.lines(document.selection, MOST)
     if not lines:
         return "" if attempt.trail is None else attempt.trail.fault
     way = lines[0] - lines[0][0]
