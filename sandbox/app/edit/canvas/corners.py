@@ -56,17 +56,58 @@ class Corners:
             draw_corner(surface, place, self._scale, CORNER, is_chosen=number == chosen)
 
 
-class CornerMoving:
-    """Moves a corner of terrain, or a new one, to what it snaps to."""
+class Placing:
+    """A drag of one point of an item to what it snaps to; the item is shown as it would be.
+
+    anchor: what directions are measured from. A kind of it says what it changes, and how that is called.
+    """
 
     matrix: np.ndarray | None = None
 
-    def __init__(self, screen: Editing, corners: Corners, number: int, *, is_new: bool) -> None:
-        self._screen, self._item, self._number, self._is_new = screen, corners.item, number, is_new
-        self._anchor = corners.points[number - 1]
-        self._snap = screen.snapped(corners.points[number % len(corners.points)], pygame.KMOD_ALT)
+    def __init__(self, screen: Editing, item: Item, start: Point, anchor: Point, label: str) -> None:
+        self._screen, self._item, self._anchor, self._label = screen, item, anchor, label
+        self._snap = screen.snapped(start, pygame.KMOD_ALT)
         self._ghost: Document | None = None
         self._moved = False
+
+    def _placed(self, document: Document) -> Document:
+        """The document with the point where it is now. Raises EditError."""
+        raise NotImplementedError
+
+    def _changed(self, document: Document) -> Document:
+        """The document once the drag has ended. Raises EditError."""
+        return self._placed(document)
+
+    def to(self, point: Point, modifiers: int) -> None:
+        """Alt snaps to nothing."""
+        self._moved = True
+        self._snap = self._screen.snapped(point, modifiers, self._anchor, frozenset({self._item}))
+        try:
+            self._ghost = self._placed(self._screen.document)
+        except EditError:
+            self._ghost = None
+
+    def ghost(self) -> Document | None:
+        """The item as it would be."""
+        return self._ghost
+
+    def end(self) -> None:
+        """Put it there."""
+        if self._moved:
+            self._screen.edit(self._label, self._changed)
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """What it snaps to."""
+        self._screen.draw_snap(surface, self._snap)
+
+
+class CornerMoving(Placing):
+    """Moves a corner of terrain, or a new one, to what it snaps to."""
+
+    def __init__(self, screen: Editing, corners: Corners, number: int, *, is_new: bool) -> None:
+        start, anchor = corners.points[number % len(corners.points)], corners.points[number - 1]
+        super().__init__(screen, corners.item, start, anchor, "Add a corner" if is_new else "Move a corner")
+        self._number, self._is_new = number, is_new
 
     @property
     def measure(self) -> str:
@@ -74,36 +115,14 @@ class CornerMoving:
         x, y = self._snap.point
         return f"{x:.4g}, {y:.4g} m"
 
-    def to(self, point: Point, modifiers: int) -> None:
-        """Alt snaps to nothing."""
-        self._moved = True
-        self._snap = self._screen.snapped(point, modifiers, self._anchor, frozenset({self._item}))
-        try:
-            self._ghost = self._changed(self._screen.document)
-        except EditError:
-            self._ghost = None
-
     @property
     def chosen(self) -> tuple[Item, int] | None:
         """The corner, once there is one."""
         return (self._item, self._number) if self._moved or not self._is_new else None
 
-    def _changed(self, document: Document) -> Document:
+    def _placed(self, document: Document) -> Document:
         change = insert_corner if self._is_new else move_corner
         return change(document, str(self._item.key), self._number, self._snap.point)
-
-    def ghost(self) -> Document | None:
-        """The piece as it would be."""
-        return self._ghost
-
-    def end(self) -> None:
-        """Move it, or put it in."""
-        if self._moved:
-            self._screen.edit("Add a corner" if self._is_new else "Move a corner", self._changed)
-
-    def draw(self, surface: pygame.Surface) -> None:
-        """What it snaps to."""
-        self._screen.draw_snap(surface, self._snap)
 
 
 def _middle(a: Point, b: Point) -> Point:

@@ -3,12 +3,11 @@
 import contextlib
 import math
 
-import numpy as np
 import pygame
 
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Camera, Point
-from sandbox.app.edit.canvas.corners import REACH
+from sandbox.app.edit.canvas.corners import REACH, Placing
 from sandbox.app.edit.canvas.overlay import CORNER, draw_corner
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_field
@@ -49,32 +48,19 @@ class BodyEnds:
             draw_corner(surface, place, self._scale, CORNER, is_chosen=False)
 
 
-class EndMoving:
+class EndMoving(Placing):
     """Moves one end of a body to what it snaps to, off what it was joined to, and joins it to the particle there."""
 
-    matrix: np.ndarray | None = None
-
     def __init__(self, screen: Editing, ends: BodyEnds, field: str) -> None:
-        self._screen, self._item, self._field = screen, ends.item, field
-        self._anchor = ends.points["start" if field == "end" else "end"]
-        self._snap = screen.snapped(ends.points[field], pygame.KMOD_ALT)
-        self._ghost: Document | None = None
-        self._moved = False
+        other = ends.points["start" if field == "end" else "end"]
+        super().__init__(screen, ends.item, ends.points[field], other, f"Move the {field}")
+        self._field = field
 
     @property
     def measure(self) -> str:
         """How long it is, and at which angle."""
         dx, dy = self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1]
         return f"{math.hypot(dx, dy):.3g} m, {math.degrees(math.atan2(dy, dx)):.3g}°"
-
-    def to(self, point: Point, modifiers: int) -> None:
-        """Alt snaps to nothing."""
-        self._moved = True
-        self._snap = self._screen.snapped(point, modifiers, self._anchor, frozenset({self._item}))
-        try:
-            self._ghost = self._placed(self._screen.document)
-        except EditError:
-            self._ghost = None
 
     def _placed(self, document: Document) -> Document:
         return set_field(document, frozenset({self._item}), self._field, self._snap.point)
@@ -91,16 +77,3 @@ class EndMoving:
         except EditError as error:
             self._screen.say(f"Not joined: {error}")
             return document
-
-    def ghost(self) -> Document | None:
-        """The body as it would be."""
-        return self._ghost
-
-    def end(self) -> None:
-        """Move it."""
-        if self._moved:
-            self._screen.edit(f"Move the {self._field}", self._changed)
-
-    def draw(self, surface: pygame.Surface) -> None:
-        """What it snaps to."""
-        self._screen.draw_snap(surface, self._snap)
