@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.equation import SHORTEST
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
+from sandbox.physics.state import Floats, StateArrays
 
 AREA = 0
 BEND = 1
@@ -31,8 +32,6 @@ FLOOR = 0.25
 # every number of substeps. Weaker lets loads through, stronger makes what lands on its floors rebound.
 FLOOR_STRENGTH = 100.0
 FLOOR_RATE = 60.0
-
-Floats = NDArray[np.float64]
 
 
 class ConstraintArrays(NamedTuple):
@@ -50,6 +49,15 @@ class ConstraintArrays(NamedTuple):
     active: NDArray[np.bool_]
     particle: NDArray[np.int32]
     weight: Floats
+
+
+@inlined_kernel
+def constraints_of(state: StateArrays) -> ConstraintArrays:
+    """The constraints among the arrays of a world."""
+    return ConstraintArrays(
+        state.constraint_kind, state.constraint_first, state.constraint_corners, state.constraint_rest,
+        state.constraint_active, state.corner_particle, state.corner_weight,
+    )  # fmt: skip
 
 
 @inner_kernel

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.collision.outline import Outline, outline_of
 from sandbox.physics.components import body_of
-from sandbox.physics.pipeline import collisions_of
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.world import BANK_UNOPENED, World
 
@@ -34,9 +34,9 @@ def overlapping(world: World) -> list[tuple[int, int]]:
 
     Lines that cross lines do not count.
     """
-    collisions = collisions_of(world)
-    if collisions is None:
+    if not world.has_contacts:
         return []
+    collisions = block_of(world).arrays.collisions
     outline, colliders = collisions.outline, collisions.colliders
     shapes = colliders.parted[: colliders.parted_count[0], :2]
     first = outline.member[outline.member_start[:-1]]

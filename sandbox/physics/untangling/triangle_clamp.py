@@ -9,7 +9,7 @@ are jellies that are inverted already (inversion.py), until they have found back
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import STOPS, stopped
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.components import root_of, united
-from sandbox.physics.jit import bundle, contents, inlined_kernel, inner_kernel, kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.untangling.inversion import (
@@ -441,29 +441,29 @@ def _let_go(triangles: ClampedTriangles, of_world: Triangles, found: Inversions,
                 found.is_inverted[triangles.group[k]] = True
 
 
-@kernel
-def _clamp_world(items: Any, matches: bool, h: float) -> None:
-    triangles, of_world, found, marked = contents(items)
-    count = triangles.group.shape[0]
-    for g in range(triangles.inverted.shape[0]):
-        triangles.inverted[g] = False
-    # A solver that has done this itself may have gone as far as to the last share.
-    if _any_missing(0, count, triangles, LAST_SHARE if matches else 1.0, h):
-        _let_go(triangles, of_world, found, marked, matches)
-        clamp_triangles(0, triangles.rest.shape[0], 0, triangles.position.shape[0], triangles, h)
+class WorldTriangles(NamedTuple):
+    """The triangles of a world, over its particles: as they are clamped, and their jellies; marked (n,): scratch."""
+
+    clamped: ClampedTriangles
+    of_world: Triangles
+    found: Inversions
+    marked: Flags
 
 
-def has_triangles(world: World) -> bool:
-    """Whether a world has triangles of areas, which are not to turn over."""
-    return world.derived(_make_items) is not None
-
-
-def clamp_world(world: World, matches: bool, h: float) -> None:
-    """Let the velocities of a world that has triangles turn none over in the coming h [s]; terrain's clamp was before.
+@inner_kernel
+def clamp_world(triangles: WorldTriangles, matches: bool, h: float) -> None:
+    """Let the velocities of a world turn no triangle over in the coming h [s]; terrain's clamp was before.
 
     matches: whether the solver draws inverted jellies to their form, and has held triangles already.
     """
-    _clamp_world(world.derived(_make_items), matches, h)
+    clamped = triangles.clamped
+    count = clamped.group.shape[0]
+    for g in range(clamped.inverted.shape[0]):
+        clamped.inverted[g] = False
+    # A solver that has done this itself may have gone as far as to the last share.
+    if _any_missing(0, count, clamped, LAST_SHARE if matches else 1.0, h):
+        _let_go(clamped, triangles.of_world, triangles.found, triangles.marked, matches)
+        clamp_triangles(0, clamped.rest.shape[0], 0, clamped.position.shape[0], clamped, h)
 
 
 def new_triangles(
@@ -487,13 +487,16 @@ def new_triangles(
     )  # fmt: skip
 
 
-def _make_items(world: World) -> Any:
+def world_triangles(world: World) -> WorldTriangles:
+    """The triangles of a world, made again after a change of topology."""
+    return world.derived(_make_world_triangles)
+
+
+def _make_world_triangles(world: World) -> WorldTriangles:
     triangles = world.derived(triangles_of)
-    if not len(triangles.constraint):
-        return None
     motion, found = (world.position, world.velocity, world.mass, world.inverse_mass), new_inversions(triangles)
     clamped = new_triangles(
         triangles.constraint, triangles.corners, triangles.jellies, world.constraint_rest, motion, world.collides,
         found.is_inverted, world.terrain,
     )  # fmt: skip
-    return bundle((clamped, triangles, found, np.zeros(world.particle_count, np.bool_)))
+    return WorldTriangles(clamped, triangles, found, np.zeros(world.particle_count, np.bool_))

@@ -8,11 +8,10 @@ and all that rests have their say in the sweeps.
 """
 
 import math
-from typing import Any
 
 from sandbox.physics.collision.restitution import SLOWEST_PASSED
 from sandbox.physics.collision.types import Contacts
-from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
     Delassus,
@@ -25,7 +24,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     solve_contacts,
     store_spins,
 )
-from sandbox.physics.world import Floats
+from sandbox.physics.state import Floats, State
 
 # Passes at most; a row of n balls takes n - 1. Sweeps of each at most, which end where no hit changed its velocity by
 # more [m/s].
@@ -154,17 +153,22 @@ def pass_on(
         change[p, 1] = 0.0
 
 
-@kernel
+@inner_kernel
 def sweep_masses(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats, spin: Floats,
-    radius: Floats, lent_masses: Any, sweeps: int, h: float,
+    contacts: Contacts, terms: ContactConstraints, state: State, change: Floats, delassus: Delassus, sweeps: int,
+    h: float,
 ) -> None:  # fmt: skip
-    """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step."""
-    (delassus,) = contents(lent_masses)
-    load_surfaces(terms, spin, radius)
+    """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step.
+
+    change (n, 2): scratch.
+    """
+    for p in range(change.shape[0]):
+        change[p, 0] = 0.0
+        change[p, 1] = 0.0
+    load_surfaces(terms, state.spin, state.radius)
     load_biases(contacts, terms, h)
-    load_responses(contacts, terms, inverse_mass, delassus)
-    pass_on(contacts, terms, velocity, change, inverse_mass, delassus, h)
-    solve_contacts(contacts, terms, velocity, change, inverse_mass, delassus, sweeps, sweeps, True)
-    add_change(velocity, change, inverse_mass)
-    store_spins(terms, spin, radius)
+    load_responses(contacts, terms, state.inverse_mass, delassus)
+    pass_on(contacts, terms, state.velocity, change, state.inverse_mass, delassus, h)
+    solve_contacts(contacts, terms, state.velocity, change, state.inverse_mass, delassus, sweeps, sweeps, True)
+    add_change(state.velocity, change, state.inverse_mass)
+    store_spins(terms, state.spin, state.radius)

@@ -7,24 +7,23 @@ start with the impulses of the last step, so a body at rest is at rest from the 
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import Contacts, Flags, weight_of
 from sandbox.physics.equation import implicit_update
-from sandbox.physics.jit import bundle, inner_kernel
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import (
     Joints,
     go_on_with_joints,
-    no_joints,
     push_at,
     start_joints,
     sweep_joints,
     swept_by,
 )
-from sandbox.physics.world import Floats, Slots, World
+from sandbox.physics.world import Floats, Slots
 
 # Cs / Cd of a contact that penetrates: the part of the penetration that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
@@ -111,11 +110,6 @@ def no_blocks(particle_count: int, joints: Joints) -> Delassus:
     return Delassus(
         np.full(particle_count, -1, dtype=np.int64), none, np.zeros(1, np.int64), none, none, numbers, numbers, joints
     )
-
-
-def lent_masses(world: World) -> Any:
-    """The same of a world without its joints, for kernels."""
-    return bundle((no_blocks(world.particle_count, no_joints()),))
 
 
 @inner_kernel

@@ -12,7 +12,9 @@ where it is foreseen to push, and has the same strength whatever Cs and Cd are: 
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, area_of, evaluate
 from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.solvers.direct.system import Constraints, Inputs, Span, State, System
+from sandbox.physics.solvers.direct.system import Constraints, Span, System
+from sandbox.physics.solvers.inputs import Inputs
+from sandbox.physics.state import State
 from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE, Floats
 
 # beta of the floor: the part of what is missing to it that a step wants back.

@@ -4,7 +4,8 @@ from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.families import potential, start_potential
 from sandbox.physics.solvers.direct.motion import kinetic
 from sandbox.physics.solvers.direct.rigid_turn import kinetic_at_end
-from sandbox.physics.solvers.direct.system import Span, State, System
+from sandbox.physics.solvers.direct.system import Span, System
+from sandbox.physics.state import State
 from sandbox.physics.world import BANK_UNOPENED, Floats
 
 # A body's bank holds at most this share of its energy: where every spring has Cs <= Cd, and where one has not (its

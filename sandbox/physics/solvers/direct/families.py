@@ -29,8 +29,10 @@ from sandbox.physics.solvers.direct.spring_terms import (
     spring_slope,
     update_springs,
 )
-from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
+from sandbox.physics.solvers.direct.system import Span, System
+from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import clear_fronts
+from sandbox.physics.state import State
 from sandbox.physics.world import Floats
 
 # The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of

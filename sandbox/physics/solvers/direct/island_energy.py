@@ -38,10 +38,10 @@ from sandbox.physics.solvers.direct.system import (
     SPIN_Y,
     Rows,
     Span,
-    State,
     System,
     span_of,
 )
+from sandbox.physics.state import State
 from sandbox.physics.untangling.overlaps import DEEP
 from sandbox.physics.untangling.parting import PARTING_SPEED
 from sandbox.physics.world import BANK_UNOPENED, Floats

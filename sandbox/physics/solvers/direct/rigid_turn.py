@@ -32,10 +32,10 @@ from sandbox.physics.solvers.direct.system import (
     SPIN_Y,
     Rows,
     Span,
-    State,
     System,
     span_of,
 )
+from sandbox.physics.state import State
 from sandbox.physics.world import Floats
 
 # Below this angle [rad] in a step the turn of a body is not foreseen, so that what falls without turning falls without

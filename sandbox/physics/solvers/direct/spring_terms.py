@@ -19,8 +19,10 @@ from sandbox.physics.equation import (
     reduced_mass,
 )
 from sandbox.physics.jit import inner_kernel, scalar_kernel
-from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
+from sandbox.physics.solvers.direct.system import Span, System
+from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import add_block
+from sandbox.physics.state import State
 from sandbox.physics.world import Floats
 
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A

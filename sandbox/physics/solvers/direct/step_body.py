@@ -31,7 +31,9 @@ from sandbox.physics.solvers.direct.rigid_turn import (
 )
 from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
 from sandbox.physics.solvers.direct.slow_motion import AHEAD
-from sandbox.physics.solvers.direct.system import Inputs, Span, State, System, span_of
+from sandbox.physics.solvers.direct.system import Span, System, span_of
+from sandbox.physics.solvers.inputs import Inputs
+from sandbox.physics.state import State
 from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, JOINED
 
 # A body of which a spring, after a linear solve, misses the length that was predicted by more than this share of it
