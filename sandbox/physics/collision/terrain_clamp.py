@@ -61,6 +61,19 @@ def _cut(p: int, stops: int, dx: float, dy: float, velocity: Floats, ahead: Floa
 
 
 @inner_kernel
+def stop_at_terrain(p: int, position: Floats, velocity: Floats, terrain: Terrain, h: float) -> bool:
+    """Cut the velocity [m/s] of row p, which moves by that alone, if it would cross terrain in the coming h [s].
+
+    Returned: whether it would.
+    """
+    wx = h * velocity[p, 0]
+    wy = h * velocity[p, 1]
+    stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
+    _cut(p, stops, x - wx, y - wy, velocity, velocity, h)
+    return stops > 0
+
+
+@inner_kernel
 def clamp_at_pins(
     position: Floats, velocity: Floats, ahead: Floats, inverse_mass: Floats, outline: Outline, colliders: Colliders,
     box: Floats, near_start: Slots, h: float,

@@ -11,10 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
-from sandbox.physics.collision.edge_geometry import closest, winds
+from sandbox.physics.collision.edge_geometry import winds
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
+from sandbox.physics.geometry.segment import closest_on_segment, nearest_share, segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.untangling.crossing_candidates import (
@@ -215,7 +216,7 @@ def _is_crossed_deep(pair: int, colliders: Colliders, found: Overlaps) -> bool:
             f = found.edge[c, 1 - side]
             for end in range(2):
                 p = colliders.edge_a[e] if end == 0 else colliders.edge_b[e]
-                _, distance, _, _ = closest(p, colliders.edge_a[f], colliders.edge_b[f], colliders.position)
+                _, distance, _, _ = closest_on_segment(p, colliders.edge_a[f], colliders.edge_b[f], colliders.position)
                 least = min(least, distance)
         if least > DEEP * colliders.radius[colliders.edge_a[found.edge[c, 0]]]:
             return True
@@ -240,16 +241,8 @@ def _is_deep_at(
         return False
     for e in range(outline.solid[k, 0], outline.solid[k, 1]):
         if colliders.side[e] != 0:
-            a = colliders.edge_a[e]
-            b = colliders.edge_b[e]
-            ax = colliders.position[a, 0]
-            ay = colliders.position[a, 1]
-            dx = colliders.position[b, 0] - ax
-            dy = colliders.position[b, 1] - ay
-            squared = dx * dx + dy * dy
-            share = 0.0
-            if squared > 0.0:
-                share = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / squared))
+            ax, ay, dx, dy = segment_of(colliders.edge_a[e], colliders.edge_b[e], colliders.position)
+            share = nearest_share(x - ax, y - ay, dx, dy)
             qx = x - ax - share * dx
             qy = y - ay - share * dy
             if not qx * qx + qy * qy > deep * deep:

@@ -8,7 +8,7 @@ is stored, up to a limit, in the energy banks of bodies and particles; to push a
 import math
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.terrain_clamp import STOPS, stopped
+from sandbox.physics.collision.terrain_clamp import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
@@ -60,15 +60,8 @@ def clamp_rows(span: Span, rows: Rows, state: State, h: float) -> bool:
     """Cut the velocities of one body's particles that would cross terrain; whether any does."""
     found = False
     for r in range(span.first_row, span.last_row):
-        if not state.collides[rows.particle[r]] & TERRAIN_GROUP:
-            continue
-        wx = h * rows.v[r, 0]
-        wy = h * rows.v[r, 1]
-        stops, x, y = stopped(rows.position[r, 0], rows.position[r, 1], wx, wy, state.terrain)
-        if stops > 0:
-            found = True
-            rows.v[r, 0] = 0.0 if stops > STOPS else rows.v[r, 0] + (x - wx) / h
-            rows.v[r, 1] = 0.0 if stops > STOPS else rows.v[r, 1] + (y - wy) / h
+        if state.collides[rows.particle[r]] & TERRAIN_GROUP:
+            found = stop_at_terrain(r, rows.position, rows.v, state.terrain, h) or found
     return found
 
 
