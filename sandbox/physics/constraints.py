@@ -17,6 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.equation import SHORTEST
+from sandbox.physics.geometry.polygon import polygon_area
+from sandbox.physics.geometry.segment import doubled_areas
 from sandbox.physics.jit import inner_kernel, kernel
 
 AREA = 0
@@ -50,19 +52,6 @@ class ConstraintArrays(NamedTuple):
     active: NDArray[np.bool_]
     particle: NDArray[np.int32]
     weight: Floats
-
-
-@inner_kernel
-def area_of(place: Floats, first: int, last: int) -> float:
-    """Signed area of the polygon of the corners first..last at place (q, 2)."""
-    total = 0.0
-    x = place[first, 0]
-    y = place[first, 1]
-    for c in range(first + 1, last - 1):
-        total += 0.5 * (
-            (place[c, 0] - x) * (place[c + 1, 1] - y) - (place[c, 1] - y) * (place[c + 1, 0] - x)
-        )  # fmt: skip
-    return total
 
 
 @inner_kernel
@@ -120,7 +109,7 @@ def evaluate(
     """C of the constraint of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
     if kind == AREA:
         _area_slope(place, first, last, slope)
-        return area_of(place, first, last) - rest[at, 0]
+        return polygon_area(place, first, last) - rest[at, 0]
     return _bend(place, first, rest[at, 0], rest[at, 1], weight, slope)
 
 
@@ -212,11 +201,9 @@ def _sides(a: NDArray[np.int32], b: NDArray[np.int32]) -> NDArray[np.int64]:
 
 def rest_of_area(places: Floats, inflation: ArrayLike) -> tuple[Floats, Floats]:
     """Rest (t, 2) and weights (t, k) of areas; sums are in a written order, as those of a tick are."""
-    apart = places - places[:, :1]
     area = np.zeros(len(places))
     for corner in range(1, places.shape[1] - 1):
-        x, y = apart[:, corner], apart[:, corner + 1]
-        area = area + 0.5 * (x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0])
+        area = area + 0.5 * doubled_areas(places[:, 0], places[:, corner], places[:, corner + 1])
     across = np.roll(places, -1, axis=1) - np.roll(places, 1, axis=1)
     weight = 0.25 * (across[..., 0] * across[..., 0] + across[..., 1] * across[..., 1])
     return np.stack([np.broadcast_to(inflation, len(places)) * area, area], axis=1), weight

@@ -9,8 +9,9 @@ J = max(0, -K (u' + b)), b = x / h above it and beta x / h below. It stands in t
 where it is foreseen to push, and has the same strength whatever Cs and Cd are: the softest jelly lies on its floors.
 """
 
-from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, area_of, evaluate
+from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, evaluate
 from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
+from sandbox.physics.geometry.polygon import polygon_area
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.direct.system import Constraints, Inputs, Span, State, System
 from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE, Floats
@@ -110,7 +111,7 @@ def _growth(k: int, system: System, h: float) -> float:
     first = constraints.first[k]
     last = constraints.first[k + 1]
     _look(k, constraints, rows.v, rows.v, 0.0)
-    growth = h * area_of(constraints.place, first, last)
+    growth = h * polygon_area(constraints.place, first, last)
     base = constraints.row[first]
     before = constraints.row[last - 1]
     here = base

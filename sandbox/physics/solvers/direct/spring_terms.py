@@ -18,6 +18,7 @@ from sandbox.physics.equation import (
     implicit_masses,
     reduced_mass,
 )
+from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
 from sandbox.physics.solvers.linear.fronts import add_block
@@ -62,15 +63,13 @@ def load_springs(
         rest = state.rest_length[s]
         springs.rest[k] = rest
         springs.start_rest[k] = inputs.start_length[s]
-        dx = rows.position[b, 0] - rows.position[a, 0]
-        dy = rows.position[b, 1] - rows.position[a, 1]
+        dx, dy = difference(a, b, rows.position)
         length = math.sqrt(dx * dx + dy * dy)
         springs.length[k] = length
         springs.error[k] = length - rest
         springs.tension[k] = state.tension[s]
         if a >= free_count or b >= free_count:
-            dx = rows.x_moved[b, 0] - rows.x_moved[a, 0]
-            dy = rows.x_moved[b, 1] - rows.x_moved[a, 1]
+            dx, dy = difference(a, b, rows.x_moved)
             length = math.sqrt(dx * dx + dy * dy)
         error = (length - rest) / h
         moved += 0.5 * springs.k_h2[k] * error * error
@@ -88,10 +87,8 @@ def linearise_springs(span: Span, system: System, h: float, ahead: float, behind
     for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
-        dx = rows.position[b, 0] - rows.position[a, 0]
-        dy = rows.position[b, 1] - rows.position[a, 1]
-        ux = rows.v[b, 0] - rows.v[a, 0]
-        uy = rows.v[b, 1] - rows.v[a, 1]
+        dx, dy = difference(a, b, rows.position)
+        ux, uy = difference(a, b, rows.v)
         px = dx + h * (ahead * ux - behind * (rows.slow[b, 0] - rows.slow[a, 0]))
         py = dy + h * (ahead * uy - behind * (rows.slow[b, 1] - rows.slow[a, 1]))
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
@@ -262,10 +259,8 @@ def spring_objective(span: Span, system: System, h: float) -> float:
     for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
-        dx = rows.position[b, 0] - rows.position[a, 0]
-        dy = rows.position[b, 1] - rows.position[a, 1]
-        ux = rows.v[b, 0] - rows.v[a, 0]
-        uy = rows.v[b, 1] - rows.v[a, 1]
+        dx, dy = difference(a, b, rows.position)
+        ux, uy = difference(a, b, rows.v)
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
         error = springs.error[k] / h
         after = error + growth
