@@ -16,6 +16,7 @@ import numpy as np
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.forms import StiffForm
+from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.jit import kernel
 from sandbox.physics.solvers.direct.layout import lay_out_matrix, order_small
 from sandbox.physics.solvers.linear.dissection import make_fronts
@@ -161,7 +162,7 @@ def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> HeldCorners
         if len(corners):
             world.add_constraints(kind, corners)
     apart = world.position[pairs[:, 1]] - world.position[pairs[:, 0]]
-    length = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
+    length = lengths(apart)
     # A spring of no length holds nothing.
     normal = np.divide(apart, length[:, None], out=np.zeros_like(apart), where=length[:, None] > 0.0)
     _, of_constraints, slope = measure_constraints(world)
