@@ -49,7 +49,7 @@ class HeldCorners(NamedTuple):
 
 @kernel
 def _iterate_inversely(
-    matrix: Matrix, rows: HeldCorners, mass: Floats, rigid: Floats, vector: Floats, change: Floats, rounds: int,
+    matrix: Matrix, rows: HeldCorners, mass: Floats, rigid: Floats, vector: Floats, right_side: Floats, rounds: int,
     converged: float,
 ) -> float:  # fmt: skip
     # x -> (S + SHIFT M)^-1 M x without its motions as a whole; the Rayleigh quotient x S x / x M x of the last x.
@@ -76,8 +76,8 @@ def _iterate_inversely(
         for i in range(count):
             vector[i, 0] *= size
             vector[i, 1] *= size
-            change[i, 0] = mass[i] * vector[i, 0]
-            change[i, 1] = mass[i] * vector[i, 1]
+            right_side[i, 0] = mass[i] * vector[i, 0]
+            right_side[i, 1] = mass[i] * vector[i, 1]
         before = quotient
         quotient = 0.0
         for k in range(rows.mass.shape[0]):
@@ -88,10 +88,10 @@ def _iterate_inversely(
             quotient += rows.mass[k] * rate * rate
         if abs(quotient - before) <= converged * quotient:
             break
-        back_substitute(0, count, matrix, change)
+        back_substitute(0, count, matrix, right_side)
         for i in range(count):
-            vector[i, 0] = change[i, 0]
-            vector[i, 1] = change[i, 1]
+            vector[i, 0] = right_side[i, 0]
+            vector[i, 1] = right_side[i, 1]
     return quotient
 
 

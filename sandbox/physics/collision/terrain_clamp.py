@@ -197,22 +197,22 @@ def _meet_line(
     # When the way w of a centre crosses a line from a to b (2: never), the distance from it and the normal towards it.
     dx, dy = bx - ax, by - ay
     px, py = x - ax, y - ay
-    # Signed area, above 0 on the right of the line; it changes by `change` on the way.
-    before = px * dy - py * dx
-    change = wx * dy - wy * dx
-    if before < 0.0 and not is_solid:
-        before, change, dx, dy = -before, -change, -dx, -dy
+    # Twice the area between line and centre, above 0 on the right of the line; it grows by `growth` on the way.
+    area = px * dy - py * dx
+    growth = wx * dy - wy * dx
+    if area < 0.0 and not is_solid:
+        area, growth, dx, dy = -area, -growth, -dx, -dy
         px, py = x - bx, y - by
     squared = dx * dx + dy * dy
     skin = SKIN * math.sqrt(squared)
-    if not (change < 0.0 and before > -skin and before + change < 0.5 * skin):
+    if not (growth < 0.0 and area > -skin and area + growth < 0.5 * skin):
         return 2.0, 0.0, 0.0, 0.0
-    when = max(0.0, before / -change)
+    when = max(0.0, area / -growth)
     share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
     if not -1e-9 <= share <= 1.0 + 1e-9:
         return 2.0, 0.0, 0.0, 0.0
     length = math.sqrt(squared)
-    return when, before / length, dy / length, -dx / length
+    return when, area / length, dy / length, -dx / length
 
 
 @inner_kernel

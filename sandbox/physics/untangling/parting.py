@@ -205,17 +205,15 @@ def _spend(s: int, cost: float, outline: Outline, particles: MovedParticles) -> 
 
 
 @inner_kernel
-def _push(
-    s: int, nx: float, ny: float, change: float, outline: Outline, particles: MovedParticles, flags: Flags
-) -> None:
+def _push(s: int, nx: float, ny: float, dv: float, outline: Outline, particles: MovedParticles, flags: Flags) -> None:
     # Add to the velocities of what of a shape is flagged.
     for i in range(outline.member_start[s], outline.member_start[s + 1]):
         p = outline.member[i]
         if flags[p] and particles.inverse_mass[p] > 0.0:
-            particles.velocity[p, 0] += change * nx
-            particles.velocity[p, 1] += change * ny
-            particles.start[p, 0] += change * nx
-            particles.start[p, 1] += change * ny
+            particles.velocity[p, 0] += dv * nx
+            particles.velocity[p, 1] += dv * ny
+            particles.start[p, 0] += dv * nx
+            particles.start[p, 1] += dv * ny
 
 
 @inner_kernel

@@ -235,19 +235,19 @@ def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
 
 
 @inner_kernel
-def gradient_dot(k: int, constraints: Constraints, change: Floats, free_count: int) -> float:
-    """g . change of a constraint."""
+def gradient_dot(k: int, constraints: Constraints, delta_v: Floats, free_count: int) -> float:
+    """g . delta_v of a constraint."""
     total = 0.0
     for c in range(constraints.first[k], constraints.first[k + 1]):
         r = constraints.row[c]
         if r < free_count:
-            total += constraints.gradient[c, 0] * change[r, 0] + constraints.gradient[c, 1] * change[r, 1]
+            total += constraints.gradient[c, 0] * delta_v[r, 0] + constraints.gradient[c, 1] * delta_v[r, 1]
     return total
 
 
 @inner_kernel
 def push_constraints(span: Span, system: System) -> None:
-    """Add the impulses of a body's constraints to the right side, in `change`."""
+    """Add the impulses of a body's constraints to the right side, in `delta_v`."""
     rows, constraints = system.rows, system.constraints
     free_count = system.matrix.diagonal.shape[0]
     for k in range(span.first_constraint, span.last_constraint):

@@ -175,7 +175,7 @@ def begin_turn(body: int, span: Span, system: System, state: State, arc: float, 
 @inner_kernel
 def _turn_on(span: Span, rows: Rows, state: State, sine: float, cosine: float) -> None:
     # The slow part of a body's velocities, beside that of the whole, and of their change turns as the body does.
-    slow, change = state.slow_velocity, state.slow_change
+    slow, slow_change = state.slow_velocity, state.slow_change
     sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for r in range(span.first_row, span.last_row):
         p = rows.particle[r]
@@ -186,7 +186,7 @@ def _turn_on(span: Span, rows: Rows, state: State, sine: float, cosine: float) -
         x, y = rotated(cosine, sine, slow[p, 0] - centre.u, slow[p, 1] - centre.v)
         slow[p, 0] = centre.u + x
         slow[p, 1] = centre.v + y
-        change[p, 0], change[p, 1] = rotated(cosine, sine, change[p, 0], change[p, 1])
+        slow_change[p, 0], slow_change[p, 1] = rotated(cosine, sine, slow_change[p, 0], slow_change[p, 1])
 
 
 @inner_kernel

@@ -181,7 +181,7 @@ def assemble_springs_in_fronts(span: Span, system: System) -> None:
 
 @inner_kernel
 def push_springs(span: Span, system: System) -> None:
-    """Add the impulses of a body's springs to the right side, in `change`."""
+    """Add the impulses of a body's springs to the right side, in `delta_v`."""
     rows, springs = system.rows, system.springs
     free_count = system.matrix.diagonal.shape[0]
     for k in range(span.first_spring, span.last_spring):
