@@ -58,10 +58,10 @@ class ConstraintArrays(NamedTuple):
 def _area_slope(place: Floats, first: int, last: int, slope: Floats) -> None:
     # dA / dx_i = the vector between its two neighbours, turned, over 2
     for c in range(first, last):
-        before = c - 1 if c > first else last - 1
-        after = c + 1 if c + 1 < last else first
-        slope[c, 0] = 0.5 * (place[after, 1] - place[before, 1])
-        slope[c, 1] = 0.5 * (place[before, 0] - place[after, 0])
+        previous = c - 1 if c > first else last - 1
+        following = c + 1 if c + 1 < last else first
+        slope[c, 0] = 0.5 * (place[following, 1] - place[previous, 1])
+        slope[c, 1] = 0.5 * (place[previous, 0] - place[following, 0])
 
 
 @inner_kernel
@@ -188,10 +188,10 @@ def sides_gone(
     loose = np.setdiff1d(cut, _sides(particle_a[spring_active], particle_b[spring_active]))
     owner = np.repeat(np.arange(len(constraints.kind)), constraints.corners)
     corner, first = np.arange(len(owner)), constraints.first[owner]
-    before = np.where(corner == first, first + constraints.corners[owner] - 1, corner - 1)
+    previous = np.where(corner == first, first + constraints.corners[owner] - 1, corner - 1)
     # A bend's two outer corners are no side of it.
     is_side = (constraints.kind[owner] == AREA) | (corner != first)
-    return owner[is_side & np.isin(_sides(constraints.particle[before], constraints.particle), loose)]
+    return owner[is_side & np.isin(_sides(constraints.particle[previous], constraints.particle), loose)]
 
 
 def _sides(a: NDArray[np.int32], b: NDArray[np.int32]) -> NDArray[np.int64]:

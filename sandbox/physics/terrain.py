@@ -213,10 +213,10 @@ def _polar(ways: Floats) -> Floats:
 
 def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats) -> bool:
     """Whether what is solid lies around a vertex by more than half a turn."""
-    before, after = np.flatnonzero(pairs[:, 1] == v), np.flatnonzero(pairs[:, 0] == v)
-    if not len(before) or not len(after) or not solid[before[0]]:
+    incoming, outgoing = np.flatnonzero(pairs[:, 1] == v), np.flatnonzero(pairs[:, 0] == v)
+    if not len(incoming) or not len(outgoing) or not solid[incoming[0]]:
         return False
-    one, two = along[before[0]], along[after[0]]
+    one, two = along[incoming[0]], along[outgoing[0]]
     return bool(one[0] * two[1] - one[1] * two[0] <= 0.0)
 
 

@@ -78,7 +78,7 @@ def _iterate_inversely(
             vector[i, 1] *= size
             right_side[i, 0] = mass[i] * vector[i, 0]
             right_side[i, 1] = mass[i] * vector[i, 1]
-        before = quotient
+        last_quotient = quotient
         quotient = 0.0
         for k in range(rows.mass.shape[0]):
             rate = 0.0
@@ -86,7 +86,7 @@ def _iterate_inversely(
                 i = rows.node[c]
                 rate += rows.gradient[c, 0] * vector[i, 0] + rows.gradient[c, 1] * vector[i, 1]
             quotient += rows.mass[k] * rate * rate
-        if abs(quotient - before) <= converged * quotient:
+        if abs(quotient - last_quotient) <= converged * quotient:
             break
         back_substitute(0, count, matrix, right_side)
         for i in range(count):

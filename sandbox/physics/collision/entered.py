@@ -92,8 +92,8 @@ def find_entered(
     share, distance, _, region = closest_on_segment(
         p, colliders.edge_a[chosen], colliders.edge_b[chosen], colliders.position
     )  # fmt: skip
-    before = count
+    added = count
     count = push_out(p, chosen, share, distance, region, colliders, outline.dynamic[0], contacts, count)
-    if before < contacts.particle.shape[0]:
-        contacts.feature[before] = KINDS * colliders.number[chosen] + INSIDE
+    if added < contacts.particle.shape[0]:
+        contacts.feature[added] = KINDS * colliders.number[chosen] + INSIDE
     return count, colliders.edge_a[chosen]

@@ -113,16 +113,16 @@ def _growth(k: int, system: System, h: float) -> float:
     _look(k, constraints, rows.v, rows.v, 0.0)
     growth = h * polygon_area(constraints.place, first, last)
     base = constraints.row[first]
-    before = constraints.row[last - 1]
+    previous = constraints.row[last - 1]
     here = base
     for c in range(first, last):
-        after = constraints.row[c + 1] if c + 1 < last else base
+        following = constraints.row[c + 1] if c + 1 < last else base
         growth += 0.5 * (
-            (rows.position[after, 1] - rows.position[before, 1]) * (rows.v[here, 0] - rows.v[base, 0])
-            - (rows.position[after, 0] - rows.position[before, 0]) * (rows.v[here, 1] - rows.v[base, 1])
+            (rows.position[following, 1] - rows.position[previous, 1]) * (rows.v[here, 0] - rows.v[base, 0])
+            - (rows.position[following, 0] - rows.position[previous, 0]) * (rows.v[here, 1] - rows.v[base, 1])
         )
-        before = here
-        here = after
+        previous = here
+        here = following
     return growth
 
 

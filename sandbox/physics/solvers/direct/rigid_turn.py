@@ -125,14 +125,14 @@ def _find_spin(body: int, span: Span, system: System) -> float:
         motion = centre_of(sums)
     else:
         return 0.0
-    before = 0.0
+    momentum0 = 0.0
     for r in range(span.first_row, span.last_row):
         m, x, y = rows.mass[r], rows.position[r, 0], rows.position[r, 1]
-        before += momentum_about(motion, m, x, y, rows.start[r, 0], rows.start[r, 1])
+        momentum0 += momentum_about(motion, m, x, y, rows.start[r, 0], rows.start[r, 1])
         motion = with_turn(motion, m, x, y, rows.v_star[r, 0], rows.v_star[r, 1])
     for k in range(SPIN_X, MOMENTUM + 1):
         spin[body, k] = motion[k - SPIN_X]
-    return before
+    return momentum0
 
 
 @inner_kernel
@@ -145,10 +145,10 @@ def begin_turn(body: int, span: Span, system: System, state: State, arc: float, 
     # v += (1 - cos) r / h - (L - I sin / h) / I x r:  of what turns as a whole, v' = (R - 1) r / h is a chord
     rows, bodies = system.rows, system.bodies
     bodies.spared[body] = 0.0
-    before = _find_spin(body, span, system)
+    momentum0 = _find_spin(body, span, system)
     bodies.spin[body, BY_ARC] = arc
     spin = spin_of_body(body, system)
-    rate = _inward(before, spin.inertia, arc, h)
+    rate = _inward(momentum0, spin.inertia, arc, h)
     bodies.spin[body, INWARD] = rate
     for k in range(END_INWARD, END_Y + 1):
         bodies.spin[body, k] = 0.0

@@ -208,8 +208,8 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
     """
     rows, springs = system.rows, system.springs
     free_count = system.matrix.diagonal.shape[0]
-    before = 0.0
-    after = 0.0
+    taken_away = 0.0
+    left = 0.0
     energy = 0.0
     misfit = 0.0
     for k in range(span.first_spring, span.last_spring):
@@ -231,8 +231,8 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         taken = springs.K[k] * u
         springs.impulse[k] -= taken
         springs.tangential[k] -= springs.transverse[k] * (nx * uy - ny * ux)
-        before += abs(taken)
-        after += abs(springs.impulse[k])
+        taken_away += abs(taken)
+        left += abs(springs.impulse[k])
         dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.v[b, 0] - rows.v[a, 0])
         dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.v[b, 1] - rows.v[a, 1])
         rest = springs.rest[k]
@@ -244,7 +244,7 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         # One of rest length 0 has no strain to be spared.
         if rest > 0.0 and extent > SHORTEST and missed > misfit * extent:
             misfit = missed / extent
-    return energy, 2.0 * misfit, before > CANCELLATION * after and 2.0 * misfit < ROUNDING_MISFIT
+    return energy, 2.0 * misfit, taken_away > CANCELLATION * left and 2.0 * misfit < ROUNDING_MISFIT
 
 
 @inner_kernel
