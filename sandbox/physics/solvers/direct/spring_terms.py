@@ -5,8 +5,8 @@ minimum over v' of
 
     f(v') = 1/2 |v' - v*|^2_M + sum over springs of [K (x' - x)^2 + K beta (x'^2 - (x' - x)^2)] / (2 h^2)
 
-v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here K is `stiff`, K beta is `restoring`, v* is
-`v_star`, v' is `v`. The Jacobian of a spring's length is its direction n, at its ends with opposite signs.
+v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here v* is `v_star`, v' is `v`. The
+Jacobian of a spring's length is its direction n, at its ends with opposite signs.
 """
 
 import math
