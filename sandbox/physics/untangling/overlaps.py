@@ -36,7 +36,7 @@ class Overlaps(NamedTuple):
     """The overlaps of a step: crossings of edges, and the pairs of shapes that overlap; there is room for more.
 
     Of crossings: edge (k, 2), that of the lower shape first; share (k, 2) along them; following = the next one of the
-    same pair, -1: none. Of pairs: shape (q, 2), the lower first; first = of its crossings, -1: none; parts: whether
+    same pair, -1: none. Of pairs: shape (q, 2), the lower first; first = of its crossings, -1: none; separates: whether
     they do; next_pair = of the same lower shape. first_pair = by shape.
     """
 
@@ -45,7 +45,7 @@ class Overlaps(NamedTuple):
     following: Slots
     shape: Slots
     first: Slots
-    parts: Flags
+    separates: Flags
     next_pair: Slots
     first_pair: Slots
     counts: Slots
@@ -354,17 +354,17 @@ def pair_overlaps(
         s = found.shape[at, 0]
         t = found.shape[at, 1]
         both = outline.solid_of[s] >= 0 and outline.solid_of[t] >= 0
-        found.parts[at] = not both or _is_crossed_deep(at, colliders, found)
-        if not found.parts[at] and s != t:
-            found.parts[at] = _is_inside_deep(s, t, outline, bounds, colliders) or _is_inside_deep(
+        found.separates[at] = not both or _is_crossed_deep(at, colliders, found)
+        if not found.separates[at] and s != t:
+            found.separates[at] = _is_inside_deep(s, t, outline, bounds, colliders) or _is_inside_deep(
                 t, s, outline, bounds, colliders
             )
         # What parts goes on until nothing crosses: contacts that hold what they are to push out would take it back.
-        if not found.parts[at] and kept_count > 0:
-            found.parts[at] = not _touched(s, t, colliders, outline, kept, kept_count)
+        if not found.separates[at] and kept_count > 0:
+            found.separates[at] = not _touched(s, t, colliders, outline, kept, kept_count)
     # Only now, as nobody may be left out while others are looked at.
     for at in range(pairs):
-        if found.parts[at]:
+        if found.separates[at]:
             colliders.parted[colliders.parted_count[0], 0] = found.shape[at, 0]
             colliders.parted[colliders.parted_count[0], 1] = found.shape[at, 1]
             alone = outline.solid_of[found.shape[at, 0]] < 0 and outline.solid_of[found.shape[at, 1]] < 0

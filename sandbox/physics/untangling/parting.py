@@ -24,8 +24,8 @@ PARTING_SPEED = 1.0
 # Where what is inside of both outlines looks to all sides alike, less than this share of its length, the one goes right
 # through the other, and they part along the line of their centres of mass.
 ONE_SIDED = 0.3
-# Parts of an edge whose middles are looked at for whether they are inside.
-PARTS = 4
+# Places of an edge that are looked at for whether they are inside.
+SAMPLES = 4
 # Lengths [m] below this have no direction.
 LEAST_LENGTH = 1e-12
 
@@ -81,12 +81,12 @@ def _inside_normal(k: int, other: int, outline: Outline, colliders: Colliders) -
             continue
         ax, ay, dx, dy = segment_of(colliders.edge_a[e], colliders.edge_b[e], colliders.position)
         length = math.sqrt(dx * dx + dy * dy)
-        for part in range(PARTS):
-            share = (part + 0.5) / PARTS
+        for sample in range(SAMPLES):
+            share = (sample + 0.5) / SAMPLES
             if winds(ax + share * dx, ay + share * dy, first, last, colliders) > 0:
-                nx += dy / PARTS
-                ny -= dx / PARTS
-                total += length / PARTS
+                nx += dy / SAMPLES
+                ny -= dx / SAMPLES
+                total += length / SAMPLES
     return nx, ny, total
 
 
@@ -267,7 +267,7 @@ def part_overlaps(
         # What has come through itself its own springs restore; lines cross lines as they like.
         s = found.shape[pair, 0]
         t = found.shape[pair, 1]
-        if not found.parts[pair] or s == t or (outline.solid_of[s] < 0 and outline.solid_of[t] < 0):
+        if not found.separates[pair] or s == t or (outline.solid_of[s] < 0 and outline.solid_of[t] < 0):
             continue
         for side in range(2):
             k = found.shape[pair, side]
