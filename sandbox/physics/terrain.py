@@ -128,14 +128,14 @@ def _grid(a: Floats, b: Floats) -> tuple[Floats, Floats, Slots, Slots, Slots]:
     cell = max(float(np.quantile(length, 0.25)), float((high - low).max()) / (MOST_CELLS - 2), 1e-3)
     corner = low - cell
     size = ((high - corner) / cell).astype(np.int64) + 2
-    held: list[list[int]] = [[] for _ in range(int(size[0] * size[1]))]
+    in_cell: list[list[int]] = [[] for _ in range(int(size[0] * size[1]))]
     for edge, (start, end) in enumerate(
         zip(((a - corner) / cell).tolist(), ((b - corner) / cell).tolist(), strict=True)
     ):
         for column, row in _cells(start, end):
-            held[row * int(size[0]) + column].append(edge)
-    first = np.append(0, np.cumsum([len(edges) for edges in held]))
-    return corner, np.array([cell]), size, first, np.array([e for edges in held for e in edges], dtype=np.int64)
+            in_cell[row * int(size[0]) + column].append(edge)
+    first = np.append(0, np.cumsum([len(edges) for edges in in_cell]))
+    return corner, np.array([cell]), size, first, np.array([e for edges in in_cell for e in edges], dtype=np.int64)
 
 
 def _cells(start: list[float], end: list[float]) -> list[tuple[int, int]]:

@@ -38,7 +38,7 @@ KEPT = 256
 _kept: dict[bytes, float] = {}
 
 
-class HeldCorners(NamedTuple):
+class ConstraintRows(NamedTuple):
     """Springs, areas and bends alike: first (k+1,) = where corners begin, mass (k,); node (q,), gradient (q, 2)."""
 
     first: Slots
@@ -49,7 +49,7 @@ class HeldCorners(NamedTuple):
 
 @kernel
 def _iterate_inversely(
-    matrix: Matrix, rows: HeldCorners, mass: Floats, rigid: Floats, vector: Floats, right_side: Floats, rounds: int,
+    matrix: Matrix, rows: ConstraintRows, mass: Floats, rigid: Floats, vector: Floats, right_side: Floats, rounds: int,
     converged: float,
 ) -> float:  # fmt: skip
     # x -> (S + SHIFT M)^-1 M x without its motions as a whole; the Rayleigh quotient x S x / x M x of the last x.
@@ -155,7 +155,7 @@ class _CornerPairs(NamedTuple):
     owner: Slots
 
 
-def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> HeldCorners:
+def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> ConstraintRows:
     """What holds the particles of a world, at their places."""
     world.add_springs([str(k) for k in range(len(pairs))], pairs[:, 0], pairs[:, 1])
     for kind, corners in ((AREA, areas), (BEND, bends)):
@@ -167,7 +167,7 @@ def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> HeldCorners
     normal = np.divide(apart, length[:, None], out=np.zeros_like(apart), where=length[:, None] > 0.0)
     _, of_constraints, slope = measure_constraints(world)
     sizes = np.concatenate([np.full(len(pairs), 2), world.constraint_corners.astype(np.int64)])
-    return HeldCorners(
+    return ConstraintRows(
         np.append(0, np.cumsum(sizes)),
         np.concatenate([pairs.reshape(-1), world.corner_particle]).astype(np.int64),
         np.concatenate([np.stack([-normal, normal], axis=1).reshape(-1, 2), slope]),
@@ -176,7 +176,7 @@ def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> HeldCorners
 
 
 def _assemble(
-    matrix: Matrix, rows: HeldCorners, joined: _CornerPairs, mass: Floats, rank: Slots,
+    matrix: Matrix, rows: ConstraintRows, joined: _CornerPairs, mass: Floats, rank: Slots,
     place: Callable[[Slots, Slots], Slots],
 ) -> None:  # fmt: skip
     """Write S + SHIFT M into the matrix; place: the block that two rows share."""

@@ -190,7 +190,7 @@ def collide_edges(
 ) -> int:
     """Contacts of a particle with the edges noted, owner by owner; the number of contacts then."""
     begun = count
-    way_x, way_y = _held_way(p, h, colliders, near, edges)
+    way_x, way_y = _allowed_way(p, h, colliders, near, edges)
     for i in range(edges):
         owner = colliders.owner[colliders.edge_a[near.edge[i]]]
         nearest = i
@@ -275,14 +275,14 @@ def _is_known(p: int, e: int, begun: int, count: int, dynamic: int, colliders: C
 
 
 @inlined_kernel
-def _held_way(p: int, h: float, colliders: Colliders, near: Near, edges: int) -> tuple[float, float]:
+def _allowed_way(p: int, h: float, colliders: Colliders, near: Near, edges: int) -> tuple[float, float]:
     # The way of a particle in a step of h [s], as edges on which it lies let it go, or the corner that is nearest.
     wx = h * colliders.velocity[p, 0]
     wy = h * colliders.velocity[p, 1]
     nearest = -1
     lies = False
     for _ in range(2):
-        held = False
+        was_cut = False
         for j in range(edges):
             a = colliders.edge_a[near.edge[j]]
             reach = colliders.radius[p] + colliders.radius[a]
@@ -295,18 +295,18 @@ def _held_way(p: int, h: float, colliders: Colliders, near: Near, edges: int) ->
             if colliders.side[near.edge[j]] != 0 and near.signed[j] < 0.0:
                 continue
             lies = True
-            ux, uy = _hold_way(p, j, wx, wy, h, colliders, near)
-            held = held or ux != wx or uy != wy
+            ux, uy = _cut_way(p, j, wx, wy, h, colliders, near)
+            was_cut = was_cut or ux != wx or uy != wy
             wx, wy = ux, uy
-        if not held:
+        if not was_cut:
             break
     if not lies and nearest >= 0:
-        wx, wy = _hold_way(p, nearest, wx, wy, h, colliders, near)
+        wx, wy = _cut_way(p, nearest, wx, wy, h, colliders, near)
     return wx, wy
 
 
 @inlined_kernel
-def _hold_way(p: int, j: int, wx: float, wy: float, h: float, colliders: Colliders, near: Near) -> tuple[float, float]:
+def _cut_way(p: int, j: int, wx: float, wy: float, h: float, colliders: Colliders, near: Near) -> tuple[float, float]:
     e = near.edge[j]
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
