@@ -1,7 +1,7 @@
 """The families of a body's network through one interface: its rows, springs and constraints.
 
 Each family loops over its own arrays; what calls them knows spans alone. Another family is called here, and nowhere
-else in this room.
+else in this folder.
 """
 
 from sandbox.physics.integrate import SLOW_SHARE
