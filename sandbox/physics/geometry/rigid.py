@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.geometry.sums import sum_in_order
-from sandbox.physics.jit import inlined_kernel, inner_kernel, scalar_kernel
+from sandbox.physics.jit import inlined_kernel, scalar_kernel
 from sandbox.physics.state import Floats
 
 
@@ -39,32 +39,32 @@ class RigidMotion(NamedTuple):
     momentum: float
 
 
-@inner_kernel
+@inlined_kernel
 def with_point(sums: WeightedSums, m: float, x: float, y: float, u: float, v: float) -> WeightedSums:
     """Sums with one more weight and its vectors."""
     return WeightedSums(sums.weight + m, sums.x + m * x, sums.y + m * y, sums.u + m * u, sums.v + m * v)
 
 
-@inner_kernel
+@inlined_kernel
 def centre_of(sums: WeightedSums) -> RigidMotion:
     """The means of both vectors, about which inertia and angular momentum are still to be summed up."""
     m = sums.weight
     return RigidMotion(sums.x / m, sums.y / m, sums.u / m, sums.v / m, 0.0, 0.0)
 
 
-@inner_kernel
+@inlined_kernel
 def momentum_about(motion: RigidMotion, m: float, x: float, y: float, u: float, v: float) -> float:
     """The angular momentum [kg m^2/s] of a mass at (x, y), of the velocity (u, v), beside a motion of its centre."""
     return m * ((x - motion.x) * (v - motion.v) - (y - motion.y) * (u - motion.u))
 
 
-@inner_kernel
+@inlined_kernel
 def with_spin(motion: RigidMotion, inertia: float, momentum: float) -> RigidMotion:
     """A motion with so much more inertia [kg m^2] and angular momentum [kg m^2/s]."""
     return RigidMotion(motion.x, motion.y, motion.u, motion.v, motion.inertia + inertia, motion.momentum + momentum)
 
 
-@inner_kernel
+@inlined_kernel
 def with_turn(motion: RigidMotion, m: float, x: float, y: float, u: float, v: float) -> RigidMotion:
     """A motion with the inertia and angular momentum of one more mass at (x, y), of the velocity (u, v)."""
     dx = x - motion.x
@@ -72,13 +72,13 @@ def with_turn(motion: RigidMotion, m: float, x: float, y: float, u: float, v: fl
     return with_spin(motion, m * (dx * dx + dy * dy), momentum_about(motion, m, x, y, u, v))
 
 
-@inner_kernel
+@inlined_kernel
 def turn_rate(motion: RigidMotion) -> float:
     """The spin [rad/s] of a rigid body of this motion; 0 for a point."""
     return motion.momentum / motion.inertia if motion.inertia > 0.0 else 0.0
 
 
-@inner_kernel
+@inlined_kernel
 def velocity_at(motion: RigidMotion, x: float, y: float) -> tuple[float, float]:
     """The velocity [m/s] at (x, y) of a rigid body of this motion."""
     turn = turn_rate(motion)
