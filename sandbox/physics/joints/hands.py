@@ -25,6 +25,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.components import label_joined
+from sandbox.physics.geometry.rigid import best_turn, rotated, with_pair
+from sandbox.physics.geometry.segment import difference, lengths
 from sandbox.physics.geometry.sums import sum_in_order
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, shortened
@@ -130,8 +132,7 @@ def _gripped(world: World, body: Slots, held: int, radius: float) -> tuple[Slots
         return chosen, world.mass[chosen]
     # What else is joined to the body, a rope or a weight, is not gripped with it.
     chosen = body[world.owner[body] == world.owner[held]]
-    away = world.origin[chosen] - world.origin[held]
-    near = 1.0 - np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1]) / radius
+    near = 1.0 - lengths(world.origin[chosen] - world.origin[held]) / radius
     return chosen[near > 0.0], (near * world.mass[chosen])[near > 0.0]
 
 
@@ -159,14 +160,10 @@ def _load_gradients(rows: JointRows, hands: HandRows, position: Floats, i: int) 
     for k in range(first, last):
         dx = position[grips.particle[k], 0] - x
         dy = position[grips.particle[k], 1] - y
-        along += grips.share[k] * (grips.form[k, 0] * dx + grips.form[k, 1] * dy)
-        across += grips.share[k] * (grips.form[k, 0] * dy - grips.form[k, 1] * dx)
+        along, across = with_pair(along, across, grips.share[k], grips.form[k, 0], grips.form[k, 1], dx, dy)
         spread += grips.share[k] * (dx * dx + dy * dy)
-    size = math.sqrt(along * along + across * across)
-    cosine = along / size if size > 0.0 else 1.0
-    sine = across / size if size > 0.0 else 0.0
-    rx = cosine * grips.arm[i, 0] - sine * grips.arm[i, 1]
-    ry = sine * grips.arm[i, 0] + cosine * grips.arm[i, 1]
+    cosine, sine = best_turn(along, across)
+    rx, ry = rotated(cosine, sine, grips.arm[i, 0], grips.arm[i, 1])
     along_x, along_y = rows.first[hands.row[i]], rows.first[hands.row[i] + 1]
     turns = 1.0 / spread if spread > LEAST_SPREAD else 0.0
     for k in range(first, last):
@@ -188,8 +185,7 @@ def _wanted(hands: HandRows, state: State, i: int, x: float, y: float, h: float)
     held = hands.grips.held[i]
     wx = state.velocity[cursor, 0]
     wy = state.velocity[cursor, 1]
-    dx = state.position[cursor, 0] - state.position[held, 0]
-    dy = state.position[cursor, 1] - state.position[held, 1]
+    dx, dy = difference(held, cursor, state.position)
     bent_x = x - state.position[held, 0]
     bent_y = y - state.position[held, 1]
     beyond = 1.0 - shortened(bent_x, bent_y, hands.grips.lead[i])

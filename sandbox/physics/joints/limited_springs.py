@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.equation import direction, implicit_masses, reduced_mass
+from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, clamped
 from sandbox.physics.settings import DIRECT, SINGLE_PASS
@@ -85,8 +86,7 @@ def load_limited(
     for i in range(limited.spring.shape[0]):
         s, k = limited.spring[i], limited.first[0] + i
         a, b = state.particle_a[s], state.particle_b[s]
-        du = velocity[b, 0] - velocity[a, 0]
-        dv = velocity[b, 1] - velocity[a, 1]
+        du, dv = difference(a, b, velocity)
         nx, ny, length = direction(position[b, 0] - position[a, 0], position[b, 1] - position[a, 1], du, dv)
         for e in range(rows.first[k], rows.first[k + 1]):
             sign = 1.0 if rows.particle[e] == b else -1.0

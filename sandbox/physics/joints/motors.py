@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.components import label_bodies
+from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, clamped
 from sandbox.physics.state import Floats, Slots, State
@@ -64,18 +65,13 @@ def _turn_of(rows: JointRows, first: int, last: int, sign: float, state: State) 
     # The gradient of a group's angular velocity about its centre of mass, times a sign, and 1/I; -1: it has none.
     # omega = sum m r x v / I,  I = sum m r^2,  g = m perp(r) / I;  sum m r = 0, so that sum g = 0
     position, mass = state.position, state.mass
-    total = 0.0
-    x = 0.0
-    y = 0.0
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for e in range(first, last):
         p = rows.particle[e]
-        total += mass[p]
-        x += mass[p] * position[p, 0]
-        y += mass[p] * position[p, 1]
-    if not total > 0.0:
+        sums = with_point(sums, mass[p], position[p, 0], position[p, 1], 0.0, 0.0)
+    if not sums.weight > 0.0:
         return 0.0
-    x /= total
-    y /= total
+    x, y, _, _, _, _ = centre_of(sums)
     inertia = 0.0
     for e in range(first, last):
         p = rows.particle[e]

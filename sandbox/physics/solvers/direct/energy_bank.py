@@ -68,12 +68,12 @@ def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float,
     if not bodies.underdamped[body]:
         return saved
     kinetic_after = kinetic(span, rows.mass, rows.v_star)
-    before = kinetic(span, rows.mass, rows.start)
+    kinetic0 = kinetic(span, rows.mass, rows.start)
     present = start_potential(span, system, h)
     if not begun:
-        saved += UNDERDAMPED_BANK_SHARE * (before + present)
+        saved += UNDERDAMPED_BANK_SHARE * (kinetic0 + present)
     # Work done by forces, grabs and drives since then counts as energy of the start.
-    return max(0.0, saved + UNDERDAMPED_BANK_SHARE * (kinetic_after - before + moved - present))
+    return max(0.0, saved + UNDERDAMPED_BANK_SHARE * (kinetic_after - kinetic0 + moved - present))
 
 
 @inner_kernel

@@ -80,8 +80,8 @@ class Springs(NamedTuple):
     """The springs of the matrix by body: ends as rows, the block they share (-1: one end is pinned), and scratch.
 
     rest, start_rest [m]: rest length, and at the start of the step; K, K_beta [kg]: K and K beta of the equation,
-    transverse [kg] = the geometric stiffness h T / l; k_h2 [kg]: k h^2 of their energy, that of a tick in one part
-    where ticks choose their parts; length, error, predicted [m]; normal; impulse, tangential, tension [N s].
+    transverse [kg] = the geometric stiffness h T / l; k_h2 [kg]: k h^2 of their energy, that of a tick in one step
+    where ticks choose their substeps; length, error, predicted [m]; normal; impulse, tangential, tension [N s].
     """
 
     slot: Slots
