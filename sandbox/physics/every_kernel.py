@@ -5,6 +5,7 @@ import numpy as np
 from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.analysis import lowest_mode
 from sandbox.physics.collision.filter import TERRAIN_GROUP
+from sandbox.physics.collision.pinned_edges import pinned_edges
 from sandbox.physics.constraints import AREA
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
@@ -47,3 +48,7 @@ def call_every_kernel() -> None:
     system = layout_of(world).system
     parallel.precompile_help(system.fronts, system.rows.delta_v)
     lowest_mode.precompile_modes()
+    # Nor has any an edge that is pinned at both ends.
+    for particle in (0, 1):
+        world.pin(particle)
+    pinned_edges(world, np.array([0]), np.array([1]), np.array([0]))
