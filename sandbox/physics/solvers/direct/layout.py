@@ -356,7 +356,12 @@ def _triangles_among(constraints: Constraints, world: World) -> _Triangles:
     chosen = np.flatnonzero((constraints.kind == AREA) & (constraints.wide < 0))
     corners = constraints.first[:-1][chosen, None] + np.array([0, 1, 2])
     rows = constraints.row[corners]
-    return _Triangles(chosen, corners, rows, group_triangles(rows, world.constraint_rest[constraints.slot[chosen], 1]))
+    return _Triangles(
+        chosen,
+        corners,
+        rows,
+        group_triangles(rows, world.constraint_rest[constraints.slot[chosen], 1] > 0.0, world.particle_count),
+    )
 
 
 def _lay_out_goals(
