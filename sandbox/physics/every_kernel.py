@@ -11,7 +11,6 @@ from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.linear import parallel
-from sandbox.physics.solvers.linear.dissection import dissect
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
@@ -43,8 +42,7 @@ def call_every_kernel() -> None:
         free = World(world.settings)
         free.add_particles(["a", "b"], np.zeros((2, 2)), group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
         step(free)
-    # Those are too small to be dissected by themselves, or to need a second thread.
-    dissect(np.array([0]), np.array([1]), world.position)
+    # Those are too small to need a second thread.
     system = layout_of(world).system
     parallel.precompile_help(system.fronts, system.rows.delta_v)
     lowest_mode.precompile_modes()

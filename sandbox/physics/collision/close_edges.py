@@ -113,7 +113,7 @@ def _sort_closest(count: int, wanted: int, work: PairScratch) -> int:
         if math.floor(work.distance[k] * per_class) <= last:
             work.order[found] = k
             found += 1
-    sort_by_value(work.distance, work.order, found, work.spare)
+    sort_by_value(work.distance, work.order, 0, found, work.spare)
     return found
 
 

@@ -101,7 +101,7 @@ def _rank_owners(given: EdgeSources, owner: Slots, work: OutlineScratch) -> int:
         owner[particles + given.edge_b[e]] = TERRAIN_OWNER - given.chain[e]
     for v in range(owner.shape[0]):
         work.one[v] = v
-    sort_by_value(owner, work.one, owner.shape[0], work.other)
+    sort_by_value(owner, work.one, 0, owner.shape[0], work.other)
     count = 0
     for at in range(owner.shape[0]):
         v = work.one[at]

@@ -85,7 +85,7 @@ def _size_grid(count: int, pins: Terrain, work: PinScratch) -> None:
     # As that of terrain: cells about as large as the shorter edges, of which a quarter is below.
     for k in range(count):
         work.order[k] = k
-    sort_by_value(work.length, work.order, count, work.spare)
+    sort_by_value(work.length, work.order, 0, count, work.spare)
     place = 0.25 * (count - 1)
     below = math.floor(place)
     share = place - below

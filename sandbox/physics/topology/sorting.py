@@ -100,18 +100,18 @@ def list_neighbours(
 
 
 @inner_kernel
-def sort_by_value(value: Any, order: Slots, count: int, spare: Slots) -> None:
-    """Sort the first `count` of order by the value of each, integers or floats; equal ones stay as they are.
+def sort_by_value(value: Any, order: Slots, begin: int, end: int, spare: Slots) -> None:
+    """Sort order[begin:end] by the value of each, integers or floats; equal ones stay as they are.
 
-    spare: scratch of that many. By merging runs, from the shortest up.
+    spare: scratch of that length. By merging runs, from the shortest up.
     """
     width = 1
-    while width < count:
-        first = 0
-        while first + width < count:
+    while width < end - begin:
+        first = begin
+        while first + width < end:
             middle = first + width
             if value[order[middle]] < value[order[middle - 1]]:
-                _merge(value, order, first, middle, min(middle + width, count), spare)
+                _merge(value, order, first, middle, min(middle + width, end), spare)
             first += 2 * width
         width *= 2
 
@@ -120,11 +120,11 @@ def sort_by_value(value: Any, order: Slots, count: int, spare: Slots) -> None:
 def _merge(value: Any, order: Slots, first: int, middle: int, last: int, spare: Slots) -> None:
     # Two sorted runs as one.
     for at in range(first, middle):
-        spare[at] = order[at]
-    left = first
+        spare[at - first] = order[at]
+    left = 0
     right = middle
     at = first
-    while left < middle and right < last:
+    while left < middle - first and right < last:
         if value[order[right]] < value[spare[left]]:
             order[at] = order[right]
             right += 1
@@ -132,7 +132,19 @@ def _merge(value: Any, order: Slots, first: int, middle: int, last: int, spare: 
             order[at] = spare[left]
             left += 1
         at += 1
-    while left < middle:
+    while left < middle - first:
         order[at] = spare[left]
         left += 1
         at += 1
+
+
+@inner_kernel
+def place_among(value: int, ascending: Slots, begin: int, end: int) -> int:
+    """Where in ascending[begin:end] a value is, or would be put before what is larger."""
+    while begin < end:
+        middle = (begin + end) // 2
+        if ascending[middle] < value:
+            begin = middle + 1
+        else:
+            end = middle
+    return begin

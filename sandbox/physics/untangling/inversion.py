@@ -65,7 +65,7 @@ class TriangleScratch(NamedTuple):
     lies_flat: Flags
     begin: Slots
     end: Slots
-    count: Slots
+    number: Slots
 
 
 # Of `begin` and `end`: no side of the rim begins or ends there; several do.
@@ -119,8 +119,8 @@ def _number_corners(corners: Slots, bound: int, groups: int, jellies: Jellies, w
     for i in range(count):
         work.begin[i] = corners[i // 3, i % 3]
         work.end[i] = jellies.group[i // 3]
-    list_by_key(work.begin, count, bound, work.start, work.count)
-    sort_by_key(work.end, work.count, count, groups, work.start, work.other)
+    list_by_key(work.begin, count, bound, work.start, work.number)
+    sort_by_key(work.end, work.number, count, groups, work.start, work.other)
     members = 0
     jellies.start[0] = 0
     for at in range(count):
@@ -150,18 +150,18 @@ def _find_inner(members: int, groups: int, jellies: Jellies, is_left: Flags, wor
         work.lies_flat[g] = work.end[g] % work.begin[g] == 0
     # Triangles less neighbours, and triangles.
     for i in range(members):
-        work.count[i] = 0
+        work.number[i] = 0
         work.begin[i] = 0
     for at in range(3 * triangles):
         side = work.one[at]
-        work.count[jellies.member[side // 3, side % 3]] += 1
+        work.number[jellies.member[side // 3, side % 3]] += 1
         work.begin[jellies.member[side // 3, side % 3]] += 1
         if at == 0 or not _is_same(work.one[at - 1], side, work):
-            work.count[jellies.member[side // 3, side % 3]] -= 1
-            work.count[jellies.member[side // 3, (side + 1) % 3]] -= 1
+            work.number[jellies.member[side // 3, side % 3]] -= 1
+            work.number[jellies.member[side // 3, (side + 1) % 3]] -= 1
     for g in range(groups):
         for i in range(jellies.start[g], jellies.start[g + 1]):
-            jellies.inner[i] = work.lies_flat[g] and work.count[i] == 0 and work.begin[i] > 2
+            jellies.inner[i] = work.lies_flat[g] and work.number[i] == 0 and work.begin[i] > 2
 
 
 @inner_kernel
@@ -256,10 +256,10 @@ def room_for_jellies(triangles: int) -> Jellies:
 def new_triangle_scratch(triangles: int, bound: int) -> TriangleScratch:
     """Scratch for triangles of particles below a bound."""
     corners = 3 * triangles
-    low, high, one, other, begin, end, count = np.zeros((7, corners), np.int64)
+    low, high, one, other, begin, end, number = np.zeros((7, corners), np.int64)
     return TriangleScratch(
         np.zeros(triangles, np.int64), np.zeros(max(bound, corners) + 1, np.int64), low, high, one, other,
-        np.zeros(corners, np.bool_), np.zeros(triangles, np.bool_), begin, end, count,
+        np.zeros(corners, np.bool_), np.zeros(triangles, np.bool_), begin, end, number,
     )  # fmt: skip
 
 
