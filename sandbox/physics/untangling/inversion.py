@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.components import root_of, united
+from sandbox.physics.components import join, root_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
 from sandbox.physics.state import Floats, Slots
@@ -91,10 +91,7 @@ def _group(corners: Slots, bound: int, jellies: Jellies, work: TriangleScratch) 
         if at > 0 and _is_same(work.one[at - 1], side, work):
             before = work.one[at - 1]
             work.at_rim[side] = work.at_rim[before] = False
-            first = root_of(work.label, before // 3)
-            other = root_of(work.label, side // 3)
-            if first != other:
-                united(work.label, first, other)
+            join(work.label, before // 3, side // 3)
     groups = 0
     for t in range(triangles):
         label = root_of(work.label, t)
