@@ -11,7 +11,7 @@ from sandbox.physics.joints.limited_springs import unlimited_active
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
 
-# Corners of a constraint that is added to the matrix; one of more is wide.
+# Corners at most of a constraint that is added to the matrix; one of more is wide.
 NARROW = 3
 # Places in `counts`: springs of the matrix, constraints and their corners, free particles, pinned ones, links between
 # free ones, springs of Hooke's law.
@@ -132,7 +132,7 @@ def _link(p: int, q: int, count: int, nodes: int, chosen: Chosen) -> int:
 
 
 @inner_kernel
-def _find_links(given: MatrixSources, chosen: Chosen, counts: Slots) -> None:
+def _find_links(given: MatrixSources, chosen: Chosen, narrow: int, counts: Slots) -> None:
     nodes = counts[NODES]
     count = 0
     for k in range(counts[SPRINGS]):
@@ -140,10 +140,10 @@ def _find_links(given: MatrixSources, chosen: Chosen, counts: Slots) -> None:
         count = _link(given.particle_a[s], given.particle_b[s], count, nodes, chosen)
     for k in range(counts[CONSTRAINTS]):
         first, last = chosen.start[k], chosen.start[k + 1]
-        if last - first == NARROW:
-            for c in range(NARROW):
+        if last - first <= narrow:
+            for c in range(3):
                 p = given.corner_particle[chosen.corner[first + c]]
-                q = given.corner_particle[chosen.corner[first + (c + 1) % NARROW]]
+                q = given.corner_particle[chosen.corner[first + (c + 1) % 3]]
                 count = _link(p, q, count, nodes, chosen)
         else:
             before = -1
@@ -157,19 +157,19 @@ def _find_links(given: MatrixSources, chosen: Chosen, counts: Slots) -> None:
 
 
 @inner_kernel
-def choose_for_matrix(given: MatrixSources, chosen: Chosen, counts: Slots) -> None:
-    """Choose what is in the matrix, and say in counts (COUNTS,) how much it is."""
+def choose_for_matrix(given: MatrixSources, chosen: Chosen, narrow: int, counts: Slots) -> None:
+    """Choose what is in the matrix, and say in counts (COUNTS,) how much it is; narrow: see NARROW."""
     for p in range(chosen.number.shape[0]):
         chosen.number[p] = -1
     _choose_springs(given, chosen, counts)
     _choose_constraints(given, chosen, counts)
     _number_particles(given, chosen, counts)
-    _find_links(given, chosen, counts)
+    _find_links(given, chosen, narrow, counts)
 
 
 @kernel
-def _choose_for_matrix(given: MatrixSources, chosen: Chosen, counts: Slots) -> None:
-    choose_for_matrix(given, chosen, counts)
+def _choose_for_matrix(given: MatrixSources, chosen: Chosen, narrow: int, counts: Slots) -> None:
+    choose_for_matrix(given, chosen, narrow, counts)
 
 
 def chosen_of(world: World) -> tuple[MatrixSources, Chosen, list[int]]:
@@ -186,5 +186,5 @@ def chosen_of(world: World) -> tuple[MatrixSources, Chosen, list[int]]:
         np.zeros(springs, np.int64), np.zeros(constraints, np.int64), np.zeros(constraints + 1, np.int64),
         np.zeros(corners, np.int64), particle, number, link_a, link_b, x, y, np.zeros(springs, np.bool_),
     )  # fmt: skip
-    _choose_for_matrix(given, chosen, counts)
+    _choose_for_matrix(given, chosen, NARROW, counts)
     return given, chosen, counts.tolist()

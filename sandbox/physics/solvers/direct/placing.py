@@ -6,11 +6,11 @@ import numpy as np
 
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.solvers.direct import choosing
 from sandbox.physics.solvers.direct.choosing import (
     ANCHORS,
     CONSTRAINTS,
     CORNERS,
-    NARROW,
     NODES,
     SPRINGS,
     Chosen,
@@ -152,7 +152,7 @@ def _sort_constraints(
 
 @inner_kernel
 def _place_constraints(
-    count: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places, work: PlaceScratch
+    count: int, narrow: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places, work: PlaceScratch
 ) -> int:
     # Body by body; how many wide ones a body has at most.
     nodes = lying.elimination.rank.shape[0]
@@ -173,10 +173,10 @@ def _place_constraints(
             places.corner[top + corner - first] = chosen.corner[corner]
             places.row[top + corner - first] = row
             _anchor(b, row, nodes, places)
-        is_narrow = last - first == NARROW
-        for side in range(NARROW):
+        is_narrow = last - first <= narrow
+        for side in range(3):
             row = places.row[top + side]
-            following = places.row[top + (side + 1) % NARROW]
+            following = places.row[top + (side + 1) % 3]
             places.block[at, side] = _block_of(row, following, lying) if is_narrow else -1
         places.wide[at] = -1 if is_narrow else number
         if not is_narrow:
@@ -189,9 +189,13 @@ def _place_constraints(
 
 @inner_kernel
 def place_all(
-    counts: Slots, bodies: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places, work: PlaceScratch
-) -> int:
-    """Find where all lies; counts: of what was chosen. How many wide constraints a body has at most."""
+    counts: Slots, bodies: int, narrow: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places,
+    work: PlaceScratch,
+) -> int:  # fmt: skip
+    """Find where all lies; how many wide constraints a body has at most.
+
+    counts: of what was chosen; narrow: see NARROW.
+    """
     nodes = lying.elimination.rank.shape[0]
     for row in range(nodes):
         places.particle[row] = chosen.particle[lying.elimination.order[row]]
@@ -200,14 +204,15 @@ def place_all(
     _place_bodies(bodies, chosen, lying, places)
     _place_springs(counts[SPRINGS], bodies, given, chosen, lying, places, work)
     _sort_constraints(counts[CONSTRAINTS], bodies, given, chosen, lying, places, work)
-    return _place_constraints(counts[CONSTRAINTS], given, chosen, lying, places, work)
+    return _place_constraints(counts[CONSTRAINTS], narrow, given, chosen, lying, places, work)
 
 
 @kernel
 def _place_all(
-    counts: Slots, bodies: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places, work: PlaceScratch
-) -> int:
-    return place_all(counts, bodies, given, chosen, lying, places, work)
+    counts: Slots, bodies: int, narrow: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places,
+    work: PlaceScratch,
+) -> int:  # fmt: skip
+    return place_all(counts, bodies, narrow, given, chosen, lying, places, work)
 
 
 def places_of(counts: list[int], bodies: int, given: MatrixSources, chosen: Chosen, lying: Lying) -> tuple[Places, int]:
@@ -221,9 +226,11 @@ def places_of(counts: list[int], bodies: int, given: MatrixSources, chosen: Chos
     places = Places(
         np.zeros(rows + counts[ANCHORS], np.int64), row_start, spring_start, constraint_start, lowest, pivot,
         np.zeros(bodies, np.bool_), spring, row_a, row_b, spring_block, constraint, kind,
-        np.zeros(constraints + 1, np.int64), row, corner, np.zeros((constraints, NARROW), np.int64), wide,
+        np.zeros(constraints + 1, np.int64), row, corner, np.zeros((constraints, 3), np.int64), wide,
     )  # fmt: skip
     key, low, order, items = np.zeros((4, max(springs, constraints)), np.int64)
     work = PlaceScratch(key, low, order, items, np.zeros(rows + 1, np.int64))
-    most = _place_all(np.array(counts, np.int64), bodies, given, chosen, lying, places, work)
+    most = _place_all(
+        np.array(counts, np.int64), bodies, choosing.NARROW, given, chosen, lying, places, work
+    )  # fmt: skip
     return places, most
