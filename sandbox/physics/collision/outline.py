@@ -302,23 +302,46 @@ def _room(particles: int, springs: int, vertices: int, edges: int) -> Outline:
     )  # fmt: skip
 
 
+@inner_kernel
+def fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
+    """Fill in the vertices of terrain, and the groups of all vertices as those are."""
+    particles = colliders.owner.shape[0] - terrain.vertex.shape[0]
+    for v in range(colliders.owner.shape[0]):
+        colliders.group[v] = TERRAIN_GROUP
+        colliders.collides[v] = ALL_GROUPS
+    for v in range(terrain.vertex.shape[0]):
+        for axis in range(2):
+            colliders.position[particles + v, axis] = terrain.vertex[v, axis]
+            colliders.origin[particles + v, axis] = terrain.vertex[v, axis]
+    # A vertex between two edges is like the one that it ends.
+    for e in range(terrain.edge_a.shape[0]):
+        colliders.friction[particles + terrain.edge_a[e]] = terrain.friction[e]
+        colliders.restitution[particles + terrain.edge_a[e]] = terrain.restitution[e]
+    for e in range(terrain.edge_b.shape[0]):
+        colliders.friction[particles + terrain.edge_b[e]] = terrain.friction[e]
+        colliders.restitution[particles + terrain.edge_b[e]] = terrain.restitution[e]
+
+
+@kernel
+def _fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
+    fill_in_terrain(terrain, colliders)
+
+
 def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
     """The colliders of an outline: terrain is filled in; each tick and step fills in the particles.
 
     pairs: room for this many pairs of shapes that are separated.
     """
-    terrain, count = world.terrain, world.particle_count
-    total = count + len(terrain.vertex)
+    total = len(outline.owner)
     position, velocity, origin = np.zeros((3, total, 2))
     radius, friction, restitution, inverse_mass, turning, rolling = np.zeros((6, total))
-    group, collides = np.full(total, TERRAIN_GROUP), np.full(total, ALL_GROUPS)
+    group, collides = np.zeros((2, total), np.int64)
     inverted, parting, caught = np.zeros((3, total), np.bool_)
-    position[count:] = origin[count:] = terrain.vertex
-    for ends in (terrain.edge_a, terrain.edge_b):
-        friction[count + ends], restitution[count + ends] = terrain.friction, terrain.restitution
-    return Colliders(
+    colliders = Colliders(
         position, velocity, origin, radius, friction, restitution, outline.owner, group, collides, inverse_mass,
         turning, rolling, outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start,
         outline.edge_of, outline.near_start, outline.near_of, outline.shielded, inverted, outline.shape, parting,
         caught, np.zeros((pairs, 3), np.int64), np.zeros(1, np.int64),
     )  # fmt: skip
+    _fill_in_terrain(world.terrain, colliders)
+    return colliders
