@@ -43,7 +43,7 @@ class JoinSources(NamedTuple):
 
 
 @inner_kernel
-def label_by_joints(given: JoinSources, springs: Flags, particles: Flags, label: Slots) -> None:
+def find_joined(given: JoinSources, springs: Flags, particles: Flags, label: Slots) -> None:
     """Label every particle (n,) with the lowest one that it is joined to: see label_joined."""
     for p in range(label.shape[0]):
         label[p] = p
@@ -67,8 +67,8 @@ def label_by_joints(given: JoinSources, springs: Flags, particles: Flags, label:
 
 
 @kernel
-def _label_by_joints(given: JoinSources, springs: Flags, particles: Flags, label: Slots) -> None:
-    label_by_joints(given, springs, particles, label)
+def _find_joined(given: JoinSources, springs: Flags, particles: Flags, label: Slots) -> None:
+    find_joined(given, springs, particles, label)
 
 
 def label_joined(world: StateArrays, springs: Flags, particles: Flags) -> Slots:
@@ -78,7 +78,7 @@ def label_joined(world: StateArrays, springs: Flags, particles: Flags) -> Slots:
     """
     label = np.zeros(len(particles), np.int64)
     given = JoinSources._make([getattr(world, name) for name in JoinSources._fields])
-    _label_by_joints(given, springs, particles, label)
+    _find_joined(given, springs, particles, label)
     return label
 
 

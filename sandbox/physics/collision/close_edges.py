@@ -167,6 +167,8 @@ def _find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) ->
 def close_edges(form: Floats, a: Slots, b: Slots, shape: Slots, solid_of: Slots) -> CloseEdges:
     """The close edges, a[k] to b[k], of forms [m] (n, 2); shape (n,): of each place; solid_of (s,): -1: looked at."""
     edges, shapes = len(a), len(solid_of)
+    if not edges:
+        return NO_CLOSE_EDGES
     longest = min(edges, MOST_EDGES)
     pairs, room = max(longest * longest // 2, CLASSES), KEPT * edges
     key, listed = np.zeros((2, edges), np.int64)

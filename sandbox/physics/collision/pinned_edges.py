@@ -160,6 +160,8 @@ def _fill_cells(count: int, pins: Terrain) -> int:
 def pinned_edges(world: World, edge_a: Slots, edge_b: Slots, side: Slots) -> Terrain:
     """Those of the edges a to b of bodies that pins hold at both ends, as terrain; chain = the edge."""
     room = len(edge_a)
+    if not room:
+        return NO_PINS
     a, b, solid, chain, order, spare = np.zeros((6, room), np.int64)
     friction, restitution, length = np.zeros((3, room))
     pins = NO_PINS._replace(

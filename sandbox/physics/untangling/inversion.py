@@ -250,6 +250,9 @@ def room_for_jellies(triangles: int) -> Jellies:
     )  # fmt: skip
 
 
+NO_JELLIES = room_for_jellies(0)
+
+
 def new_triangle_scratch(triangles: int, bound: int) -> TriangleScratch:
     """Scratch for triangles of particles below a bound."""
     corners = 3 * triangles
@@ -265,6 +268,8 @@ def group_triangles(corners: Slots, is_left: Flags, bound: int) -> Jellies:
 
     is_left (t,): whether their forms have them run counter-clockwise.
     """
+    if not len(corners):
+        return NO_JELLIES
     room, counts = room_for_jellies(len(corners)), np.zeros(COUNTS, np.int64)
     _derive_jellies(corners, is_left, bound, room, counts, new_triangle_scratch(len(corners), bound))
     groups, members, fans, gaps = counts.tolist()
@@ -331,6 +336,9 @@ class Triangles(NamedTuple):
     constraint: Slots
     corners: Slots
     jellies: Jellies
+
+
+NO_TRIANGLES = Triangles(np.zeros(0, np.int64), np.zeros((0, 3), np.int64), NO_JELLIES)
 
 
 class Inversions(NamedTuple):
@@ -408,6 +416,8 @@ def _choose_triangles(given: AreaSources, constraint: Slots, corners: Slots, is_
 def triangles_of(world: World) -> Triangles:
     """The triangles of a world, as its constraints are now."""
     room = world.constraint_count
+    if not room:
+        return NO_TRIANGLES
     constraint, corners, is_left = np.zeros(room, np.int64), np.zeros((room, 3), np.int64), np.zeros(room, np.bool_)
     given = AreaSources._make([getattr(world, name) for name in AreaSources._fields])
     count = _choose_triangles(given, constraint, corners, is_left)

@@ -33,7 +33,7 @@ class MatrixSources(NamedTuple):
     unlimited: Flags
 
 
-class Chosen(NamedTuple):
+class MatrixContents(NamedTuple):
     """What is in the matrix, slots ascending, in arrays with room for all there is.
 
     spring; constraint, those with a free corner, k of them: corners corner[start[k]:start[k + 1]]. particle: free ones,
@@ -56,7 +56,7 @@ class Chosen(NamedTuple):
 
 
 @inner_kernel
-def _choose_springs(given: MatrixSources, chosen: Chosen, counts: Slots) -> None:
+def _choose_springs(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
     springs = 0
     hooke = 0
     for s in range(given.law.shape[0]):
@@ -75,7 +75,7 @@ def _choose_springs(given: MatrixSources, chosen: Chosen, counts: Slots) -> None
 
 
 @inner_kernel
-def _choose_constraints(given: MatrixSources, chosen: Chosen, counts: Slots) -> None:
+def _choose_constraints(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
     constraints = 0
     corners = 0
     last = 0
@@ -100,7 +100,7 @@ def _choose_constraints(given: MatrixSources, chosen: Chosen, counts: Slots) -> 
 
 
 @inner_kernel
-def _number_particles(given: MatrixSources, chosen: Chosen, counts: Slots) -> None:
+def _number_particles(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
     # The free ones that something holds, then the pinned ones.
     count = 0
     for p in range(chosen.number.shape[0]):
@@ -120,7 +120,7 @@ def _number_particles(given: MatrixSources, chosen: Chosen, counts: Slots) -> No
 
 
 @inner_kernel
-def _link(p: int, q: int, count: int, nodes: int, chosen: Chosen) -> int:
+def _link(p: int, q: int, count: int, nodes: int, chosen: MatrixContents) -> int:
     # Join two particles, where both are free; how many links there are then.
     a = chosen.number[p]
     b = chosen.number[q]
@@ -132,7 +132,7 @@ def _link(p: int, q: int, count: int, nodes: int, chosen: Chosen) -> int:
 
 
 @inner_kernel
-def _find_links(given: MatrixSources, chosen: Chosen, narrow: int, counts: Slots) -> None:
+def _find_links(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
     nodes = counts[NODES]
     count = 0
     for k in range(counts[SPRINGS]):
@@ -157,7 +157,7 @@ def _find_links(given: MatrixSources, chosen: Chosen, narrow: int, counts: Slots
 
 
 @inner_kernel
-def choose_for_matrix(given: MatrixSources, chosen: Chosen, narrow: int, counts: Slots) -> None:
+def choose_for_matrix(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
     """Choose what is in the matrix, and say in counts (COUNTS,) how much it is; narrow: see NARROW."""
     for p in range(chosen.number.shape[0]):
         chosen.number[p] = -1
@@ -168,11 +168,11 @@ def choose_for_matrix(given: MatrixSources, chosen: Chosen, narrow: int, counts:
 
 
 @kernel
-def _choose_for_matrix(given: MatrixSources, chosen: Chosen, narrow: int, counts: Slots) -> None:
+def _choose_for_matrix(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
     choose_for_matrix(given, chosen, narrow, counts)
 
 
-def chosen_of(world: World) -> tuple[MatrixSources, Chosen, list[int]]:
+def chosen_of(world: World) -> tuple[MatrixSources, MatrixContents, list[int]]:
     """What is in the matrix of a world, with what that follows from, and how much it is, by place in `counts`."""
     of_world = [getattr(world, name) for name in MatrixSources._fields[:9]]
     given, counts = MatrixSources._make([*of_world, unlimited_active(world)]), np.zeros(COUNTS, np.int64)
@@ -182,7 +182,7 @@ def chosen_of(world: World) -> tuple[MatrixSources, Chosen, list[int]]:
     # Of c corners a narrow constraint has c links, and a wide one fewer.
     link_a, link_b = np.zeros((2, springs + corners), np.int64)
     x, y = np.zeros((2, particles))
-    chosen = Chosen(
+    chosen = MatrixContents(
         np.zeros(springs, np.int64), np.zeros(constraints, np.int64), np.zeros(constraints + 1, np.int64),
         np.zeros(corners, np.int64), particle, number, link_a, link_b, x, y, np.zeros(springs, np.bool_),
     )  # fmt: skip

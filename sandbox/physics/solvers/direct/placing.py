@@ -13,7 +13,7 @@ from sandbox.physics.solvers.direct.choosing import (
     CORNERS,
     NODES,
     SPRINGS,
-    Chosen,
+    MatrixContents,
     MatrixSources,
 )
 from sandbox.physics.solvers.linear.dissection import Dissection
@@ -71,7 +71,7 @@ class PlaceScratch(NamedTuple):
 
 
 @inner_kernel
-def _row_of(p: int, chosen: Chosen, lying: Lying) -> int:
+def _row_of(p: int, chosen: MatrixContents, lying: Lying) -> int:
     k = chosen.number[p]
     nodes = lying.elimination.rank.shape[0]
     return lying.elimination.rank[k] if k < nodes else k
@@ -90,7 +90,7 @@ def _block_of(row_a: int, row_b: int, lying: Lying) -> int:
 
 
 @inner_kernel
-def _place_bodies(bodies: int, chosen: Chosen, lying: Lying, places: Places) -> None:
+def _place_bodies(bodies: int, chosen: MatrixContents, lying: Lying, places: Places) -> None:
     elimination = lying.elimination
     places.row_start[0] = 0
     for b in range(bodies):
@@ -113,7 +113,13 @@ def _anchor(b: int, row: int, nodes: int, places: Places) -> None:
 
 @inner_kernel
 def _place_springs(
-    count: int, bodies: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places, work: PlaceScratch
+    count: int,
+    bodies: int,
+    given: MatrixSources,
+    chosen: MatrixContents,
+    lying: Lying,
+    places: Places,
+    work: PlaceScratch,
 ) -> None:
     # Body by body; those of a large one in the order of its rows: what a step reads together then lies together.
     nodes = lying.elimination.rank.shape[0]
@@ -139,7 +145,13 @@ def _place_springs(
 
 @inner_kernel
 def _sort_constraints(
-    count: int, bodies: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places, work: PlaceScratch
+    count: int,
+    bodies: int,
+    given: MatrixSources,
+    chosen: MatrixContents,
+    lying: Lying,
+    places: Places,
+    work: PlaceScratch,
 ) -> None:
     nodes = lying.elimination.rank.shape[0]
     for k in range(count):
@@ -152,7 +164,13 @@ def _sort_constraints(
 
 @inner_kernel
 def _place_constraints(
-    count: int, narrow: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places, work: PlaceScratch
+    count: int,
+    narrow: int,
+    given: MatrixSources,
+    chosen: MatrixContents,
+    lying: Lying,
+    places: Places,
+    work: PlaceScratch,
 ) -> int:
     # Body by body; how many wide ones a body has at most.
     nodes = lying.elimination.rank.shape[0]
@@ -189,7 +207,7 @@ def _place_constraints(
 
 @inner_kernel
 def place_all(
-    counts: Slots, bodies: int, narrow: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places,
+    counts: Slots, bodies: int, narrow: int, given: MatrixSources, chosen: MatrixContents, lying: Lying, places: Places,
     work: PlaceScratch,
 ) -> int:  # fmt: skip
     """Find where all lies; how many wide constraints a body has at most.
@@ -209,13 +227,15 @@ def place_all(
 
 @kernel
 def _place_all(
-    counts: Slots, bodies: int, narrow: int, given: MatrixSources, chosen: Chosen, lying: Lying, places: Places,
+    counts: Slots, bodies: int, narrow: int, given: MatrixSources, chosen: MatrixContents, lying: Lying, places: Places,
     work: PlaceScratch,
 ) -> int:  # fmt: skip
     return place_all(counts, bodies, narrow, given, chosen, lying, places, work)
 
 
-def places_of(counts: list[int], bodies: int, given: MatrixSources, chosen: Chosen, lying: Lying) -> tuple[Places, int]:
+def places_of(
+    counts: list[int], bodies: int, given: MatrixSources, chosen: MatrixContents, lying: Lying
+) -> tuple[Places, int]:
     """Where all lies in the system of so many bodies, and how many wide constraints a body has at most."""
     springs, constraints, corners, rows = (counts[k] for k in (SPRINGS, CONSTRAINTS, CORNERS, NODES))
     row_start, spring_start, constraint_start = np.zeros((3, bodies + 1), np.int64)
