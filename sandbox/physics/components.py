@@ -1,5 +1,7 @@
 """Connected components of what links join; union-find with path halving (Tarjan 1975)."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,21 +32,53 @@ def label_bodies(link_a: Slots, link_b: Slots, label: Slots) -> None:
         label[node] = label[label[node]]
 
 
+class JoinSources(NamedTuple):
+    """What joins particles: see StateArrays."""
+
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    constraint_corners: NDArray[np.int32]
+    constraint_active: Flags
+    corner_particle: NDArray[np.int32]
+
+
+@inner_kernel
+def find_joined(given: JoinSources, springs: Flags, particles: Flags, label: Slots) -> None:
+    """Label every particle (n,) with the lowest one that it is joined to: see label_joined."""
+    for p in range(label.shape[0]):
+        label[p] = p
+    for s in range(springs.shape[0]):
+        a = given.particle_a[s]
+        b = given.particle_b[s]
+        if springs[s] and particles[a] and particles[b]:
+            join(label, a, b)
+    corner = 0
+    for k in range(given.constraint_corners.shape[0]):
+        before = -1
+        for _ in range(given.constraint_corners[k]):
+            p = given.corner_particle[corner]
+            corner += 1
+            if given.constraint_active[k] and particles[p]:
+                if before >= 0:
+                    join(label, before, p)
+                before = p
+    for p in range(label.shape[0]):
+        label[p] = root_of(label, p)
+
+
+@kernel
+def _find_joined(given: JoinSources, springs: Flags, particles: Flags, label: Slots) -> None:
+    find_joined(given, springs, particles, label)
+
+
 def label_joined(world: StateArrays, springs: Flags, particles: Flags) -> Slots:
     """Label every particle (n,) with the lowest one that it is joined to.
 
     springs (m,), particles (n,): which of them join; constraints do where they are active.
     """
-    joins = springs & particles[world.particle_a] & particles[world.particle_b]
-    owner = np.repeat(np.arange(len(world.constraint_corners)), world.constraint_corners)
-    corner = np.flatnonzero(world.constraint_active[owner] & particles[world.corner_particle])
-    goes_on = owner[corner[:-1]] == owner[corner[1:]]
-    link_a, link_b = (
-        np.concatenate([of_springs[joins], world.corner_particle[corners[goes_on]]]).astype(np.int64)
-        for of_springs, corners in ((world.particle_a, corner[:-1]), (world.particle_b, corner[1:]))
-    )
-    label = np.arange(len(particles))
-    label_bodies(link_a, link_b, label)
+    label = np.zeros(len(particles), np.int64)
+    given = JoinSources._make([getattr(world, name) for name in JoinSources._fields])
+    _find_joined(given, springs, particles, label)
     return label
 
 
@@ -75,3 +109,11 @@ def united(label: Slots, first: int, node: int) -> int:
         return node
     label[node] = first
     return first
+
+
+@inner_kernel
+def join(label: Slots, a: int, b: int) -> None:
+    """Make one set of those that two nodes are in."""
+    first, other = root_of(label, a), root_of(label, b)
+    if first != other:
+        united(label, first, other)

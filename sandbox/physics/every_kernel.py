@@ -5,13 +5,13 @@ import numpy as np
 from sandbox.physics.actuators import Actuators, Muscles
 from sandbox.physics.analysis import lowest_mode
 from sandbox.physics.collision.filter import TERRAIN_GROUP
+from sandbox.physics.collision.pinned_edges import pinned_edges
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.pipeline.tick import find_broken
 from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.linear import parallel
-from sandbox.physics.solvers.linear.dissection import dissect
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 
@@ -27,8 +27,11 @@ def call_every_kernel() -> None:
     drive_muscles(world, 0)
     step(world)
     find_broken(block_of(world).pointer)
-    # It is too small to be dissected by itself, or to need a second thread.
-    dissect(np.array([0]), np.array([1]), world.position)
+    # It is too small to need a second thread.
     system = layout_of(world).system
     parallel.precompile_help(system.fronts, system.rows.delta_v)
     lowest_mode.precompile_modes()
+    # Nor has any an edge that is pinned at both ends.
+    for particle in (0, 1):
+        world.pin(particle)
+    pinned_edges(world, np.array([0]), np.array([1]), np.array([0]))

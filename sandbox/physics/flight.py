@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.components import root_of
+from sandbox.physics.components import join, root_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.settings import DRAG, GRAVITY_X
 from sandbox.physics.state import Floats, Slots, State
@@ -40,15 +40,6 @@ def new_flight(particles: int) -> Flight:
 
 
 @inner_kernel
-def _unite(a: int, b: int, label: Slots) -> None:
-    a, b = root_of(label, a), root_of(label, b)
-    if a < b:
-        label[b] = a
-    else:
-        label[a] = b
-
-
-@inner_kernel
 def label_all_joined(state: State, flight: Flight) -> None:
     """Label every particle with the lowest one that springs and constraints join it to; nothing stays yet."""
     label = flight.label
@@ -60,12 +51,12 @@ def label_all_joined(state: State, flight: Flight) -> None:
         flight.pulled[p] = 0.0
     for s in range(state.spring_active.shape[0]):
         if state.spring_active[s]:
-            _unite(state.particle_a[s], state.particle_b[s], label)
+            join(label, state.particle_a[s], state.particle_b[s])
     for k in range(state.constraint_active.shape[0]):
         if state.constraint_active[k]:
             first = state.constraint_first[k]
             for c in range(first + 1, first + state.constraint_corners[k]):
-                _unite(state.corner_particle[c - 1], state.corner_particle[c], label)
+                join(label, state.corner_particle[c - 1], state.corner_particle[c])
     for p in range(label.shape[0]):
         label[p] = root_of(label, p)
 

@@ -17,6 +17,8 @@ Slots = NDArray[np.int64]
 
 # Cells of the grid along its longer side, at most: more cost memory, fewer make particles look at edges far away.
 MOST_CELLS = 256
+# Side of a cell [m], at least.
+LEAST_CELL = 1e-3
 # Share by which a cell is left wider than it must be, so that rounding puts no edge into the wrong one.
 CELL_SLACK = 1e-6
 # Corners of pieces of terrain that are so near [m] to another piece meet it; 1 - cosine of the angle by which ways must
@@ -125,7 +127,7 @@ def _grid(a: Floats, b: Floats) -> tuple[Floats, Floats, Slots, Slots, Slots]:
     low, high = np.minimum(a, b).min(axis=0), np.maximum(a, b).max(axis=0)
     length = lengths(b - a)
     # Cells are about as large as the shorter edges, so that a cell holds few and an edge lies in few.
-    cell = max(float(np.quantile(length, 0.25)), float((high - low).max()) / (MOST_CELLS - 2), 1e-3)
+    cell = max(float(np.quantile(length, 0.25)), float((high - low).max()) / (MOST_CELLS - 2), LEAST_CELL)
     corner = low - cell
     size = ((high - corner) / cell).astype(np.int64) + 2
     in_cell: list[list[int]] = [[] for _ in range(int(size[0] * size[1]))]

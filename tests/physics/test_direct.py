@@ -13,8 +13,8 @@ from sandbox.physics.jit import COMPILED
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers.direct import layout
 from sandbox.physics.solvers.direct.layout import layout_of
+from sandbox.physics.solvers.linear import matrix_layout
 from sandbox.physics.step import step
 from sandbox.physics.world import LAW_HOOKE, World
 from tests.bench import energy_gate, scenes
@@ -352,8 +352,8 @@ def test_the_stability_report_says_what_the_energy_test_proves():
 
 def test_a_matrix_too_large_for_its_table_of_updates_gives_the_same_bits(monkeypatch):
     ends = []
-    for largest in (layout.LARGEST_TABLE, 1):
-        monkeypatch.setattr(layout, "LARGEST_TABLE", largest)
+    for largest in (matrix_layout.LARGEST_TABLE, 1):
+        monkeypatch.setattr(matrix_layout, "LARGEST_TABLE", largest)
         ends.append(state_hash(run(scenes.lattice(6).world(), 10)))
     assert ends[0] == ends[1]
 

@@ -75,11 +75,12 @@ def test_halves_wait_for_what_is_above_them_in_places_of_their_own(build):
 
 
 def test_the_second_half_is_the_one_that_leaves_the_least_to_do_in_turn():
-    first, last = np.arange(0, 70, 10), np.arange(10, 80, 10)
     child = np.array([[-1, -1], [-1, -1], [0, 1], [-1, -1], [-1, -1], [3, 4], [2, 5]])
-    assert parallel.find_fork(first, last, child, np.zeros(8, dtype=np.int64)) == (3, 6)
-    narrow = np.array([1, 2, 3, 13, 23, 33, 43])
-    assert parallel.find_fork(np.append(0, narrow[:-1]), narrow, child, np.zeros(8, dtype=np.int64)) == (4, 5)
+    before = np.zeros(8, dtype=np.int64)
+    fronts = dissection.room_for_fronts(7, 0)._replace(child=child)
+    for last, halves in (np.arange(10, 80, 10), (3, 6)), (np.array([1, 2, 3, 13, 23, 33, 43]), (4, 5)):
+        fronts = fronts._replace(first=np.append(0, last[:-1]), last=last)
+        assert parallel.find_fork(0, 7, fronts, before, 1) == halves
 
 
 def test_a_body_that_gains_too_little_has_one_half_only(monkeypatch):

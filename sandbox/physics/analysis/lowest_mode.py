@@ -8,7 +8,6 @@ no unit: neither size, nor mass, nor Cs, Cd and h are in it.
 
 import hashlib
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -18,8 +17,8 @@ from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.forms import StiffForm
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.jit import kernel
-from sandbox.physics.solvers.direct.layout import lay_out_matrix, order_small
-from sandbox.physics.solvers.linear.dissection import make_fronts
+from sandbox.physics.solvers.linear.matrix_layout import find_blocks, new_matrix
+from sandbox.physics.solvers.linear.minimum_degree import order_by_degree
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix, back_substitute, factorise
 from sandbox.physics.world import Floats, Slots, World
 
@@ -134,11 +133,11 @@ def _find(form: StiffForm) -> float:
                 owner.append(chosen)
     joined = _CornerPairs(*(np.concatenate([np.zeros(0, np.int64), *part]) for part in (one, other, owner)))
     apart = np.flatnonzero(rows.node[joined.one] != rows.node[joined.other])
-    order, columns = order_small(count, rows.node[joined.one[apart]], rows.node[joined.other[apart]])
+    order, columns = order_by_degree(count, rows.node[joined.one[apart]], rows.node[joined.other[apart]])
     rank = np.empty(count, dtype=np.int64)
     rank[order] = np.arange(count)
-    matrix, place = lay_out_matrix(count, columns, rank, make_fronts(count, []))
-    _assemble(matrix, rows, joined, mass, rank, place)
+    matrix = new_matrix(count, order, columns, rank)
+    _assemble(matrix, rows, joined, mass, rank)
     vector, rigid = _start(points[order], mass[order])
     rows = rows._replace(node=rank[rows.node])
     found = _iterate_inversely(
@@ -175,11 +174,8 @@ def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> ConstraintR
     )
 
 
-def _assemble(
-    matrix: Matrix, rows: ConstraintRows, joined: _CornerPairs, mass: Floats, rank: Slots,
-    place: Callable[[Slots, Slots], Slots],
-) -> None:  # fmt: skip
-    """Write S + SHIFT M into the matrix; place: the block that two rows share."""
+def _assemble(matrix: Matrix, rows: ConstraintRows, joined: _CornerPairs, mass: Floats, rank: Slots) -> None:
+    """Write S + SHIFT M into the matrix."""
     a, b = rank[rows.node[joined.one]], rank[rows.node[joined.other]]
     # The row of the block is the later of the two.
     later, earlier = np.where(a >= b, joined.one, joined.other), np.where(a >= b, joined.other, joined.one)
@@ -194,7 +190,9 @@ def _assemble(
     matrix.diagonal[rank] = SHIFT * mass[:, None] * np.array([1.0, 0.0, 1.0])
     np.add.at(matrix.diagonal, a[own], np.stack([xx, xy, yy], axis=1)[own])
     shared = np.flatnonzero(a != b)
-    np.add.at(matrix.lower, place(a[shared], b[shared]), np.stack([xx, xy, yx, yy], axis=1)[shared])
+    block = np.zeros(len(shared), np.int64)
+    find_blocks(a[shared], b[shared], matrix.column_start, matrix.row, block)
+    np.add.at(matrix.lower, block, np.stack([xx, xy, yx, yy], axis=1)[shared])
 
 
 def _start(points: Floats, mass: Floats) -> tuple[Floats, Floats]:

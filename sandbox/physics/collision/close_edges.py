@@ -1,17 +1,20 @@
 """Which edges of a form lie close to each other without meeting: what may cross first when the form is bent."""
 
-import functools
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.collision.types import Flags
 from sandbox.physics.equation import SHORTEST
+from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.state import Floats, Slots
+from sandbox.physics.topology.sorting import list_by_key, sort_by_value
 
 # Forms of more edges are not looked at, their pairs are too many; of the others so many pairs for each edge are kept.
 MOST_EDGES = 160
 KEPT = 8
+# Classes of distance by which pairs are sorted out before they are sorted.
+CLASSES = 64
 
 
 class CloseEdges(NamedTuple):
@@ -27,47 +30,150 @@ class CloseEdges(NamedTuple):
     beyond: Floats
 
 
-def close_edges(form: Floats, a: Slots, b: Slots, shape: Slots, looked_at: Flags) -> CloseEdges:
-    """The close edges, a[k] to b[k], of forms (n, 2), by shape (k,) of each edge; looked_at (s,): of which."""
-    edges, distances = [np.zeros((0, 2), np.int64)], [np.zeros(0)]
-    start, beyond = np.zeros(len(looked_at) + 1, np.int64), np.zeros(len(looked_at))
-    for s, looks in enumerate(looked_at.tolist()):
-        own = np.flatnonzero(shape == s)
-        if looks and len(own) <= MOST_EDGES:
-            pairs, distance = _by_distance(form, a[own], b[own])
-            kept = KEPT * len(own)
-            beyond[s] = distance[kept] if kept < len(distance) else np.inf
-            edges.append(own[pairs[:kept]])
-            distances.append(distance[:kept])
-        else:
-            edges.append(edges[0])
-        start[s + 1] = start[s] + len(edges[-1])
-    return CloseEdges(start, np.concatenate(edges), np.concatenate(distances), beyond)
+class FormEdges(NamedTuple):
+    """Edges a to b (e,) between places of a form [m] (n, 2); shape (n,) of each place; solid_of: see Outline."""
+
+    form: Floats
+    a: Slots
+    b: Slots
+    shape: Slots
+    solid_of: Slots
 
 
-def _by_distance(form: Floats, a: Slots, b: Slots) -> tuple[Slots, Floats]:
-    # Places as complex numbers: one product has both how far a place is along an edge, and on which side.
-    place = form[:, 0] + 1j * form[:, 1]
-    first, second = _pairs(len(a))
-    start, way = place[a], place[b] - place[a]
-    per_square = 1.0 / np.maximum(np.abs(way) ** 2, SHORTEST)
-    sides, squares = [], []
-    for edge, other in ((first, second), (second, first)):
-        for end in (a, b):
-            away = place[end[other]] - start[edge]
-            along = np.conj(way[edge]) * away
-            away -= np.clip(along.real * per_square[edge], 0.0, 1.0) * way[edge]
-            sides.append(along.imag > 0.0)
-            squares.append(away.real * away.real + away.imag * away.imag)
-    distance = np.sqrt(np.minimum(np.minimum(squares[0], squares[1]), np.minimum(squares[2], squares[3])))
-    chosen = (a[first] != a[second]) & (a[first] != b[second]) & (b[first] != a[second]) & (b[first] != b[second])
-    chosen &= (sides[0] == sides[1]) | (sides[2] == sides[3])
-    distance = distance[chosen]
-    order = np.argsort(distance, kind="stable")
-    return np.stack([first[chosen][order], second[chosen][order]], axis=1), distance[order]
+class PairScratch(NamedTuple):
+    """Scratch. Of edges (e,): key, listed; start (s+1,). Of pairs of one form: one, other, order, spare, distance."""
+
+    key: Slots
+    listed: Slots
+    start: Slots
+    one: Slots
+    other: Slots
+    order: Slots
+    spare: Slots
+    distance: Floats
 
 
-@functools.lru_cache(maxsize=16)
-def _pairs(count: int) -> tuple[Slots, Slots]:
-    first, second = np.triu_indices(count, 1)
-    return first, second
+NO_CLOSE_EDGES = CloseEdges(np.zeros(1, np.int64), np.zeros((0, 2), np.int64), np.zeros(0), np.zeros(0))
+
+
+@inner_kernel
+def _end_from(edge: int, p: int, given: FormEdges) -> tuple[bool, float]:
+    # On which side of the line along an edge a place is, and the square of how far it is from the edge.
+    a = given.a[edge]
+    form = given.form
+    wx = form[given.b[edge], 0] - form[a, 0]
+    wy = form[given.b[edge], 1] - form[a, 1]
+    x = form[p, 0] - form[a, 0]
+    y = form[p, 1] - form[a, 1]
+    share = (wx * x + wy * y) * (1.0 / max(wx * wx + wy * wy, SHORTEST))
+    is_left = wx * y - wy * x > 0.0
+    share = min(max(share, 0.0), 1.0)
+    x -= share * wx
+    y -= share * wy
+    return is_left, x * x + y * y
+
+
+@inner_kernel
+def _apart(one: int, other: int, given: FormEdges) -> float:
+    # How far apart two edges are that have no common end and do not cross; -1: they have, or do.
+    a = given.a[one]
+    b = given.b[one]
+    c = given.a[other]
+    d = given.b[other]
+    if a in (c, d) or b in (c, d):
+        return -1.0
+    c_left, of_c = _end_from(one, c, given)
+    d_left, of_d = _end_from(one, d, given)
+    a_left, of_a = _end_from(other, a, given)
+    b_left, of_b = _end_from(other, b, given)
+    if c_left != d_left and a_left != b_left:
+        return -1.0
+    return math.sqrt(min(min(of_c, of_d), min(of_a, of_b)))
+
+
+@inner_kernel
+def _sort_closest(count: int, wanted: int, work: PairScratch) -> int:
+    # The order of so many of `count` pairs, the closest first, or of more; how many. Only those are sorted that lie in
+    # the classes of distance, all alike, that hold the wanted ones.
+    farthest = 0.0
+    for k in range(count):
+        farthest = max(farthest, work.distance[k])
+    per_class = (CLASSES - 1.0) / farthest if farthest > 0.0 else 0.0
+    for c in range(CLASSES):
+        work.spare[c] = 0
+    for k in range(count):
+        work.spare[math.floor(work.distance[k] * per_class)] += 1
+    last = 0
+    found = work.spare[0]
+    while found < wanted and last + 1 < CLASSES:
+        last += 1
+        found += work.spare[last]
+    found = 0
+    for k in range(count):
+        if math.floor(work.distance[k] * per_class) <= last:
+            work.order[found] = k
+            found += 1
+    sort_by_value(work.distance, work.order, 0, found, work.spare)
+    return found
+
+
+@inner_kernel
+def _find_pairs(first: int, last: int, given: FormEdges, work: PairScratch) -> int:
+    # The pairs of edges that may come to cross, of one form, whose edges are listed[first:last]; how many there are.
+    count = 0
+    for i in range(first, last):
+        for j in range(i + 1, last):
+            distance = _apart(work.listed[i], work.listed[j], given)
+            if distance >= 0.0:
+                work.one[count] = work.listed[i]
+                work.other[count] = work.listed[j]
+                work.distance[count] = distance
+                count += 1
+    return count
+
+
+@inner_kernel
+def find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) -> int:
+    """Find the close edges of the forms that are lines alone, solid_of below 0; how many pairs there are."""
+    shapes = given.solid_of.shape[0]
+    for e in range(given.a.shape[0]):
+        work.key[e] = given.shape[given.a[e]]
+    list_by_key(work.key, given.a.shape[0], shapes, work.start, work.listed)
+    top = 0
+    found.start[0] = 0
+    for s in range(shapes):
+        edges = work.start[s + 1] - work.start[s]
+        found.beyond[s] = 0.0
+        if given.solid_of[s] < 0 and edges <= MOST_EDGES:
+            pairs = _find_pairs(work.start[s], work.start[s + 1], given, work)
+            kept = KEPT * edges
+            sorted_out = _sort_closest(pairs, kept + 1, work)
+            found.beyond[s] = work.distance[work.order[kept]] if kept < pairs else math.inf
+            for k in range(min(kept, sorted_out)):
+                pair = work.order[k]
+                found.edge[top, 0] = work.one[pair]
+                found.edge[top, 1] = work.other[pair]
+                found.distance[top] = work.distance[pair]
+                top += 1
+        found.start[s + 1] = top
+    return top
+
+
+@kernel
+def _find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) -> int:
+    return find_close_edges(given, found, work)
+
+
+def close_edges(form: Floats, a: Slots, b: Slots, shape: Slots, solid_of: Slots) -> CloseEdges:
+    """The close edges, a[k] to b[k], of forms [m] (n, 2); shape (n,): of each place; solid_of (s,): -1: looked at."""
+    edges, shapes = len(a), len(solid_of)
+    if not edges:
+        return NO_CLOSE_EDGES
+    longest = min(edges, MOST_EDGES)
+    pairs, room = max(longest * longest // 2, CLASSES), KEPT * edges
+    key, listed = np.zeros((2, edges), np.int64)
+    one, other, order, spare = np.zeros((4, pairs), np.int64)
+    work = PairScratch(key, listed, np.zeros(shapes + 1, np.int64), one, other, order, spare, np.zeros(pairs))
+    found = CloseEdges(np.zeros(shapes + 1, np.int64), np.zeros((room, 2), np.int64), np.zeros(room), np.zeros(shapes))
+    count = _find_close_edges(FormEdges(form, a, b, shape, solid_of), found, work)
+    return found._replace(edge=found.edge[:count], distance=found.distance[:count])

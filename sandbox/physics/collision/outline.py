@@ -3,16 +3,22 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sandbox.physics.collision.close_edges import CloseEdges, close_edges
+from sandbox.physics.collision.close_edges import NO_CLOSE_EDGES, CloseEdges, close_edges
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
+from sandbox.physics.collision.pinned_edges import pinned_edges
 from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.state import Slots
-from sandbox.physics.terrain import Chain, Terrain, make_terrain
+from sandbox.physics.terrain import NO_TERRAIN, Terrain
+from sandbox.physics.topology.sorting import list_by_key, list_ends, list_neighbours, sort_by_key, sort_by_value
 from sandbox.physics.world import GRAB_MATERIAL, World
 
 # Owner of the first chain of terrain, the others below it; particles and bodies are above.
 TERRAIN_OWNER = -2_000_000_000
+# Places in `counts`: edges of bodies, of those and terrain, springs that join, rows of solid, shapes, their members.
+EDGES, ALL_EDGES, JOINED, SPANS, SHAPES, MEMBERS, COUNTS = range(7)
 
 
 class Outline(NamedTuple):
@@ -49,109 +55,276 @@ class Outline(NamedTuple):
     pins: Terrain
 
 
+class EdgeSources(NamedTuple):
+    """What an outline follows from: see StateArrays and Terrain, whose edges are edge_a, edge_b, chain and solid."""
+
+    owner: NDArray[np.int32]
+    particle_active: Flags
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    spring_active: Flags
+    edge: NDArray[np.int8]
+    material: NDArray[np.int32]
+    constraint_active: Flags
+    constraint_corners: NDArray[np.int32]
+    corner_particle: NDArray[np.int32]
+    edge_a: Slots
+    edge_b: Slots
+    chain: Slots
+    solid: Slots
+
+
+class OutlineScratch(NamedTuple):
+    """Scratch: rank (v,) = the number of a vertex's owner, ascending; by owner: start (v+1,), ways, flag; others long
+    enough for twice the springs and all vertices."""
+
+    rank: Slots
+    start: Slots
+    ways: Slots
+    flag: Flags
+    one: Slots
+    other: Slots
+    third: Slots
+
+
+@inner_kernel
+def _rank_owners(given: EdgeSources, owner: Slots, work: OutlineScratch) -> int:
+    # The owner of each vertex, and its number among them, ascending; how many owners there are.
+    particles = given.owner.shape[0]
+    for p in range(particles):
+        owner[p] = given.owner[p]
+    for v in range(particles, owner.shape[0]):
+        owner[v] = 0
+    for e in range(given.edge_a.shape[0]):
+        owner[particles + given.edge_a[e]] = TERRAIN_OWNER - given.chain[e]
+    for e in range(given.edge_b.shape[0]):
+        owner[particles + given.edge_b[e]] = TERRAIN_OWNER - given.chain[e]
+    for v in range(owner.shape[0]):
+        work.one[v] = v
+    sort_by_value(owner, work.one, 0, owner.shape[0], work.other)
+    count = 0
+    for at in range(owner.shape[0]):
+        v = work.one[at]
+        if at > 0 and owner[v] != owner[work.one[at - 1]]:
+            count += 1
+        work.rank[v] = count
+    return count + 1 if owner.shape[0] > 0 else 0
+
+
+@inner_kernel
+def _choose_edges(given: EdgeSources, owners: int, outline: Outline, work: OutlineScratch) -> int:
+    # Edges of one owner lie together, so that a whole outline can be walked through. How many bodies have.
+    chosen = 0
+    for s in range(given.spring_active.shape[0]):
+        work.other[s] = -1
+        if given.spring_active[s] and given.edge[s] != NO_EDGE:
+            work.one[chosen] = s
+            work.other[s] = work.rank[given.particle_a[s]]
+            chosen += 1
+    sort_by_key(work.other, work.one, chosen, owners, work.start, outline.number)
+    for e in range(chosen):
+        s = outline.number[e]
+        swapped = given.edge[s] == SOLID_RIGHT
+        outline.edge_a[e] = given.particle_b[s] if swapped else given.particle_a[s]
+        outline.edge_b[e] = given.particle_a[s] if swapped else given.particle_b[s]
+    for e in range(given.edge_a.shape[0]):
+        outline.edge_a[chosen + e] = given.owner.shape[0] + given.edge_a[e]
+        outline.edge_b[chosen + e] = given.owner.shape[0] + given.edge_b[e]
+        outline.side[chosen + e] = given.solid[e]
+        outline.number[chosen + e] = e
+    return chosen
+
+
+@inner_kernel
+def _find_sides(given: EdgeSources, chosen: int, outline: Outline, work: OutlineScratch) -> None:
+    # An outline that is torn open encloses nothing, so all its edges have two sides.
+    for v in range(outline.owner.shape[0]):
+        work.ways[v] = 0
+        work.flag[v] = False
+    for e in range(chosen):
+        if given.edge[outline.number[e]] != LINE:
+            work.ways[outline.edge_a[e]] += 1
+            work.ways[outline.edge_b[e]] -= 1
+    for v in range(outline.owner.shape[0]):
+        if work.ways[v] != 0:
+            work.flag[work.rank[v]] = True
+    for e in range(chosen):
+        whole = given.edge[outline.number[e]] != LINE and not work.flag[work.rank[outline.edge_a[e]]]
+        outline.side[e] = 1 if whole else 0
+
+
+@inner_kernel
+def _find_neighbours(given: EdgeSources, outline: Outline, work: OutlineScratch) -> int:
+    # What each particle is joined to, and which ones a spring or a constraint holds; how many springs there are.
+    joined = 0
+    for s in range(given.spring_active.shape[0]):
+        if given.spring_active[s]:
+            work.one[joined] = given.particle_a[s]
+            work.other[joined] = given.particle_b[s]
+            joined += 1
+    particles = given.owner.shape[0]
+    list_neighbours(work.one, work.other, joined, particles, outline.near_start, outline.near_of, work.third, work.ways)
+    for p in range(particles):
+        outline.attached[p] = outline.near_start[p + 1] > outline.near_start[p]
+    corner = 0
+    for k in range(given.constraint_active.shape[0]):
+        for _ in range(given.constraint_corners[k]):
+            if given.constraint_active[k]:
+                outline.attached[given.corner_particle[corner]] = True
+            corner += 1
+    return joined
+
+
+@inner_kernel
+def _find_spans(count: int, outline: Outline) -> int:
+    # First edge and one past the last of each owner that has solid ones; how many there are.
+    spans = 0
+    first = 0
+    any_solid = False
+    for e in range(count):
+        any_solid = any_solid or outline.side[e] != 0
+        if e + 1 == count or outline.owner[outline.edge_a[e + 1]] != outline.owner[outline.edge_a[e]]:
+            if any_solid:
+                outline.solid[spans, 0] = first
+                outline.solid[spans, 1] = e + 1
+                spans += 1
+            first = e + 1
+            any_solid = False
+    return spans
+
+
+@inner_kernel
+def _find_shapes(given: EdgeSources, chosen: int, spans: int, outline: Outline, work: OutlineScratch) -> int:
+    # Number the owners of edges in the order of those, and list their particles; how many there are.
+    shape, rank, number = outline.shape, work.rank, work.ways
+    for v in range(shape.shape[0]):
+        number[v] = -1
+    shapes = 0
+    for e in range(chosen):
+        if number[rank[outline.edge_a[e]]] < 0:
+            number[rank[outline.edge_a[e]]] = shapes
+            outline.solid_of[shapes] = -1
+            shapes += 1
+    for v in range(shape.shape[0]):
+        shape[v] = number[rank[v]]
+    for k in range(spans):
+        if outline.solid[k, 0] < chosen:
+            outline.solid_of[shape[outline.edge_a[outline.solid[k, 0]]]] = k
+            outline.dynamic[1] = k + 1
+    for p in range(given.owner.shape[0]):
+        work.one[p] = shape[p] if given.particle_active[p] else -1
+    list_by_key(work.one, given.owner.shape[0], shapes, outline.member_start, outline.member)
+    return shapes
+
+
+@inner_kernel
+def _find_shielded(given: EdgeSources, chosen: int, outline: Outline, work: OutlineScratch) -> None:
+    # A grab that holds nothing tears nothing.
+    shielded = outline.shielded
+    for v in range(outline.owner.shape[0]):
+        work.flag[v] = False
+    for e in range(chosen):
+        if given.edge[outline.number[e]] != LINE:
+            work.flag[work.rank[given.particle_a[outline.number[e]]]] = True
+    for p in range(shielded.shape[0]):
+        shielded[p] = work.flag[work.rank[p]]
+    for s in range(given.spring_active.shape[0]):
+        bare = not given.spring_active[s] or given.edge[s] != NO_EDGE
+        if bare and given.material[s] != GRAB_MATERIAL:
+            shielded[given.particle_a[s]] = False
+            shielded[given.particle_b[s]] = False
+
+
+@inner_kernel
+def derive_edges(given: EdgeSources, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
+    """Fill in an outline, all but its close edges and pins, and say in counts (COUNTS,) how much of it."""
+    owners = _rank_owners(given, outline.owner, work)
+    chosen = _choose_edges(given, owners, outline, work)
+    count = chosen + given.edge_a.shape[0]
+    _find_sides(given, chosen, outline, work)
+    list_ends(outline.edge_a, outline.edge_b, count, outline.owner.shape[0], outline.edge_start, outline.edge_of)
+    counts[JOINED] = _find_neighbours(given, outline, work)
+    outline.dynamic[0] = chosen
+    outline.dynamic[1] = 0
+    counts[EDGES] = chosen
+    counts[ALL_EDGES] = count
+    counts[SPANS] = _find_spans(count, outline)
+    counts[SHAPES] = _find_shapes(given, chosen, counts[SPANS], outline, work)
+    counts[MEMBERS] = outline.member_start[counts[SHAPES]]
+    _find_shielded(given, chosen, outline, work)
+    for s in range(outline.spring_end.shape[0]):
+        outline.spring_end[s] = given.particle_a[s]
+
+
+@kernel
+def _derive_edges(given: EdgeSources, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
+    derive_edges(given, outline, counts, work)
+
+
 def outline_of(world: World) -> Outline:
     """The outline of a world's bodies, made again after a change of topology."""
     return world.derived(_make_outline)
 
 
 def _make_outline(world: World) -> Outline:
-    terrain, count = world.terrain, world.particle_count
-    chosen = np.flatnonzero(world.spring_active & (world.edge != NO_EDGE))
-    # Edges of one owner lie together, so that a whole outline can be walked through.
-    chosen = chosen[np.argsort(world.owner[world.particle_a[chosen]], kind="stable")]
-    a, b = world.particle_a[chosen].astype(np.int64), world.particle_b[chosen].astype(np.int64)
-    swapped = world.edge[chosen] == SOLID_RIGHT
-    a, b = np.where(swapped, b, a), np.where(swapped, a, b)
-    edge_a, edge_b = np.append(a, count + terrain.edge_a), np.append(b, count + terrain.edge_b)
-    owner = np.append(world.owner.astype(np.int64), _owners(terrain))
-    side = np.append(_sides(world.edge[chosen] != LINE, a, b, owner), terrain.solid)
-    joined = np.flatnonzero(world.spring_active)
-    ends = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
-    edges = np.arange(len(edge_a))
-    near_start, near_of = _listed(np.append(*ends), np.append(*ends[::-1]), count)
-    attached = np.diff(near_start) > 0
-    attached[world.corner_particle[np.repeat(world.constraint_active, world.constraint_corners)]] = True
-    solid = _solid(owner[edge_a] if len(edge_a) else edge_a, side)
-    shape, solid_of, member_start, member = _shapes(world, owner, a, solid)
+    terrain, counts = world.terrain, np.zeros(COUNTS, np.int64)
+    of_world = [getattr(world, name) for name in EdgeSources._fields[:10]]
+    given = EdgeSources._make([*of_world, terrain.edge_a, terrain.edge_b, terrain.chain, terrain.solid])
+    room = _room(world.particle_count, world.spring_count, len(terrain.vertex), len(terrain.edge_a))
+    vertices = len(room.owner)
+    longest = max(vertices, 2 * world.spring_count)
+    rank, start, ways = np.zeros((3, vertices + 1), np.int64)
+    work = OutlineScratch(rank, start, ways, np.zeros(vertices, np.bool_), *np.zeros((3, longest), np.int64))
+    _derive_edges(given, room, counts, work)
+    edges, all_edges, joined, spans, shapes, members = counts.tolist()
+    a, b, side = room.edge_a[:edges], room.edge_b[:edges], room.side[:all_edges]
+    return room._replace(
+        edge_a=room.edge_a[:all_edges], edge_b=room.edge_b[:all_edges], side=side, number=room.number[:all_edges],
+        near_of=room.near_of[: 2 * joined], solid=room.solid[:spans], edge_of=room.edge_of[: 2 * all_edges],
+        solid_of=room.solid_of[:shapes], member_start=room.member_start[: shapes + 1], member=room.member[:members],
+        close=close_edges(world.origin, a, b, room.shape, room.solid_of[:shapes]),
+        pins=pinned_edges(world, a, b, side),
+    )  # fmt: skip
+
+
+def _room(particles: int, springs: int, vertices: int, edges: int) -> Outline:
+    """An outline to be filled in, with room for edges of all springs; vertices, edges: of terrain."""
+    every, total = springs + edges, particles + vertices
+    edge_a, edge_b, side, number = np.zeros((4, every), np.int64)
+    owner, shape = np.zeros((2, total), np.int64)
+    shielded, attached = np.zeros((2, particles), np.bool_)
     return Outline(
-        edge_a,
-        edge_b,
-        side,
-        np.append(chosen, np.arange(len(terrain.edge_a))),
-        *_listed(np.append(edge_a, edge_b), np.append(edges, edges), len(owner)),
-        near_start,
-        near_of,
-        solid,
-        owner,
-        _shielded(world, chosen),
-        attached,
-        np.array([len(chosen), np.count_nonzero(solid[:, 0] < len(chosen))]),
-        shape,
-        solid_of,
-        member_start,
-        member,
-        close_edges(world.origin, a, b, shape[a], solid_of < 0),
-        world.particle_a.astype(np.int64),
-        _pins(world, a, b, side),
-    )
+        edge_a, edge_b, side, number, np.zeros(total + 1, np.int64), np.zeros(2 * every, np.int64),
+        np.zeros(particles + 1, np.int64), np.zeros(2 * springs, np.int64), np.zeros((every, 2), np.int64), owner,
+        shielded, attached, np.zeros(2, np.int64), shape, np.zeros(springs, np.int64),
+        np.zeros(springs + 1, np.int64), np.zeros(particles, np.int64), NO_CLOSE_EDGES, np.zeros(springs, np.int64),
+        NO_TERRAIN,
+    )  # fmt: skip
 
 
-def _pins(world: World, a: Slots, b: Slots, side: Slots) -> Terrain:
-    """The edges a to b that pins hold at both ends, as terrain."""
-    still = (world.inverse_mass[a] == 0.0) & (world.inverse_mass[b] == 0.0)
-    still &= ~world.velocity[a].any(axis=1) & ~world.velocity[b].any(axis=1)
-    edges = np.flatnonzero(still & (world.position[a] != world.position[b]).any(axis=1))
-    made = make_terrain([Chain(world.position[[a[e], b[e]]]) for e in edges.tolist()], tips=False)
-    return made._replace(solid=side[edges].astype(np.int64), chain=edges.astype(np.int64))
+@inner_kernel
+def fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
+    """Fill in the vertices of terrain, and the groups of all vertices as those are."""
+    particles = colliders.owner.shape[0] - terrain.vertex.shape[0]
+    for v in range(colliders.owner.shape[0]):
+        colliders.group[v] = TERRAIN_GROUP
+        colliders.collides[v] = ALL_GROUPS
+    for v in range(terrain.vertex.shape[0]):
+        for axis in range(2):
+            colliders.position[particles + v, axis] = terrain.vertex[v, axis]
+            colliders.origin[particles + v, axis] = terrain.vertex[v, axis]
+    # A vertex between two edges is like the one that it ends.
+    for e in range(terrain.edge_a.shape[0]):
+        colliders.friction[particles + terrain.edge_a[e]] = terrain.friction[e]
+        colliders.restitution[particles + terrain.edge_a[e]] = terrain.restitution[e]
+    for e in range(terrain.edge_b.shape[0]):
+        colliders.friction[particles + terrain.edge_b[e]] = terrain.friction[e]
+        colliders.restitution[particles + terrain.edge_b[e]] = terrain.restitution[e]
 
 
-def _shapes(world: World, owner: Slots, edge_a: Slots, solid: Slots) -> tuple[Slots, Slots, Slots, Slots]:
-    """The shapes of an outline whose edges of bodies begin at edge_a: see Outline."""
-    owners = owner[edge_a][np.sort(np.unique(owner[edge_a], return_index=True)[1])] if len(edge_a) else edge_a
-    order = np.argsort(owners, kind="stable")
-    found = np.searchsorted(owners[order], owner)
-    found = np.append(order, -1)[np.minimum(found, len(owners))]
-    shape = np.where(np.append(owners, 0)[found] == owner, found, -1) if len(owners) else np.full(len(owner), -1)
-    solid_of = np.full(len(owners), -1)
-    first = solid[solid[:, 0] < len(edge_a), 0]
-    solid_of[shape[edge_a[first]]] = np.arange(len(first))
-    members = np.flatnonzero(world.particle_active & (shape[: world.particle_count] >= 0))
-    return shape, solid_of, *_listed(shape[members], members, len(owners))
-
-
-def _sides(solid: Flags, a: Slots, b: Slots, owner: Slots) -> Slots:
-    """Side of each edge a to b: an outline that is torn open encloses nothing, so all its edges have two sides."""
-    ways = np.bincount(a[solid], minlength=len(owner)) != np.bincount(b[solid], minlength=len(owner))
-    return (solid & ~np.isin(owner[a], owner[ways])).astype(np.int64)
-
-
-def _shielded(world: World, edges: Slots) -> Flags:
-    solid = edges[world.edge[edges] != LINE]
-    shielded = np.isin(world.owner, world.owner[world.particle_a[solid]])
-    for bare in (edges, np.flatnonzero(~world.spring_active)):
-        # A grab that holds nothing tears nothing.
-        bare = bare[world.material[bare] != GRAB_MATERIAL]
-        shielded[world.particle_a[bare]] = shielded[world.particle_b[bare]] = False
-    return shielded
-
-
-def _owners(terrain: Terrain) -> Slots:
-    owner = np.zeros(len(terrain.vertex), dtype=np.int64)
-    owner[terrain.edge_a] = TERRAIN_OWNER - terrain.chain
-    owner[terrain.edge_b] = TERRAIN_OWNER - terrain.chain
-    return owner
-
-
-def _listed(keys: Slots, values: Slots, count: int) -> tuple[Slots, Slots]:
-    """Where the values of each of `count` keys begin, and the values by key."""
-    order = np.lexsort((values, keys))
-    return np.append(0, np.cumsum(np.bincount(keys, minlength=count))).astype(np.int64), values[order]
-
-
-def _solid(owner: Slots, side: Slots) -> Slots:
-    starts = np.flatnonzero(np.diff(owner, prepend=owner[:1] - 1))
-    spans = np.stack([starts, np.append(starts[1:], len(owner))], axis=1) if len(owner) else np.zeros((0, 2), np.int64)
-    return spans[[bool(side[first:last].any()) for first, last in spans.tolist()]] if len(spans) else spans
+@kernel
+def _fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
+    fill_in_terrain(terrain, colliders)
 
 
 def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
@@ -159,18 +332,16 @@ def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
 
     pairs: room for this many pairs of shapes that are separated.
     """
-    terrain, count = world.terrain, world.particle_count
-    total = count + len(terrain.vertex)
+    total = len(outline.owner)
     position, velocity, origin = np.zeros((3, total, 2))
     radius, friction, restitution, inverse_mass, turning, rolling = np.zeros((6, total))
-    group, collides = np.full(total, TERRAIN_GROUP), np.full(total, ALL_GROUPS)
+    group, collides = np.zeros((2, total), np.int64)
     inverted, parting, caught = np.zeros((3, total), np.bool_)
-    position[count:] = origin[count:] = terrain.vertex
-    for ends in (terrain.edge_a, terrain.edge_b):
-        friction[count + ends], restitution[count + ends] = terrain.friction, terrain.restitution
-    return Colliders(
+    colliders = Colliders(
         position, velocity, origin, radius, friction, restitution, outline.owner, group, collides, inverse_mass,
         turning, rolling, outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start,
         outline.edge_of, outline.near_start, outline.near_of, outline.shielded, inverted, outline.shape, parting,
         caught, np.zeros((pairs, 3), np.int64), np.zeros(1, np.int64),
     )  # fmt: skip
+    _fill_in_terrain(world.terrain, colliders)
+    return colliders

@@ -1,12 +1,14 @@
 """Motors: each a row between the turning of a wheel and of what its hub is mounted on."""
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sandbox.physics.components import label_bodies
+from sandbox.physics.components import Flags, join, root_of
 from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.joints.rows import JointRows, clamped
 from sandbox.physics.state import Floats, Slots, State
 from sandbox.physics.world import World
@@ -15,6 +17,8 @@ from sandbox.physics.world import World
 LEAST_INERTIA = 1e-150
 # 1 - Cd of a motor, as of a spring at its cap: 0 would leave two motors of one wheel without a definite share.
 MOTOR_SOFTNESS = 1e-7
+# In place of where a side ends: the ground holds it.
+GROUNDED = -1
 
 
 class MotorRows(NamedTuple):
@@ -30,6 +34,126 @@ class MotorRows(NamedTuple):
     part: Slots
 
 
+class MotorSources(NamedTuple):
+    """What the sides of motors follow from: see StateArrays; hub, rim_start and rim: see Motors."""
+
+    inverse_mass: Floats
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    spring_active: Flags
+    material: NDArray[np.int32]
+    hub: Slots
+    rim_start: Slots
+    rim: Slots
+
+
+class MotorSides(NamedTuple):
+    """The two sides of each motor k: its wheel, particle[first[2 k]:first[2 k + 1]], and its mount, the next ones.
+
+    By particle, scratch: label, of what springs join; on_rim; at_hub, what springs join to the hub; turns, by label.
+    """
+
+    first: Slots
+    particle: Slots
+    label: Slots
+    on_rim: Flags
+    at_hub: Flags
+    turns: Flags
+
+
+@inner_kernel
+def _label_free(given: MotorSources, label: Slots) -> None:
+    for p in range(label.shape[0]):
+        label[p] = p
+    for s in range(given.spring_active.shape[0]):
+        a = given.particle_a[s]
+        b = given.particle_b[s]
+        both_free = given.inverse_mass[a] > 0.0 and given.inverse_mass[b] > 0.0
+        if both_free and given.spring_active[s] and given.material[s] >= 0:
+            join(label, a, b)
+    for p in range(label.shape[0]):
+        label[p] = root_of(label, p)
+
+
+@inner_kernel
+def _mark_wheel(k: int, given: MotorSources, sides: MotorSides) -> bool:
+    # Mark the rim, what springs join to the hub, and what turns with it; whether anything holds the rim to the hub.
+    hub = given.hub[k]
+    for p in range(sides.label.shape[0]):
+        sides.on_rim[p] = sides.at_hub[p] = sides.turns[p] = False
+    for at in range(given.rim_start[k], given.rim_start[k + 1]):
+        sides.on_rim[given.rim[at]] = True
+    for s in range(given.spring_active.shape[0]):
+        if given.spring_active[s] and given.material[s] >= 0:
+            if given.particle_a[s] == hub:
+                sides.at_hub[given.particle_b[s]] = True
+            if given.particle_b[s] == hub:
+                sides.at_hub[given.particle_a[s]] = True
+    held = False
+    for p in range(sides.label.shape[0]):
+        if sides.at_hub[p] and sides.on_rim[p]:
+            held = True
+            sides.turns[sides.label[p]] = True
+    if given.inverse_mass[hub] > 0.0:
+        for p in range(sides.label.shape[0]):
+            sides.turns[p] = p == sides.label[hub]
+    return held
+
+
+@inner_kernel
+def _list_side(hub: int, of_wheel: bool, top: int, given: MotorSources, sides: MotorSides) -> int:
+    # List the particles of a side, the hub apart, from `top` on; where it ends, which may be beyond the room, or
+    # GROUNDED.
+    for p in range(sides.label.shape[0]):
+        is_free = given.inverse_mass[p] > 0.0
+        if of_wheel:
+            belongs = sides.on_rim[p] and (sides.turns[sides.label[p]] or not is_free)
+        else:
+            belongs = sides.at_hub[p] and not sides.on_rim[p] and p != hub
+        if belongs:
+            if not is_free:
+                return GROUNDED
+            _enter(p, top, sides)
+            top += 1
+    return top
+
+
+@inner_kernel
+def _enter(p: int, top: int, sides: MotorSides) -> None:
+    if top < sides.particle.shape[0]:
+        sides.particle[top] = p
+
+
+@inner_kernel
+def list_motor_sides(given: MotorSources, sides: MotorSides) -> int:
+    """List the sides of all motors; how many particles they have, which may be more than there is room for."""
+    _label_free(given, sides.label)
+    top = 0
+    sides.first[0] = 0
+    for k in range(given.hub.shape[0]):
+        hub = given.hub[k]
+        idle = not _mark_wheel(k, given, sides)
+        middle = _list_side(hub, True, top, given, sides)
+        middle = top if middle == GROUNDED else middle
+        end = _list_side(hub, False, middle, given, sides)
+        if end == GROUNDED or not given.inverse_mass[hub] > 0.0:
+            end = middle
+        else:
+            idle = idle or end == middle
+            _enter(hub, end, sides)
+            end += 1
+        if not idle:
+            top = end
+        sides.first[2 * k + 1] = top if idle else middle
+        sides.first[2 * k + 2] = top
+    return top
+
+
+@kernel
+def _list_motor_sides(given: MotorSources, sides: MotorSides) -> int:
+    return list_motor_sides(given, sides)
+
+
 def motor_groups(world: World) -> list[tuple[Slots, Slots]]:
     """The two sides that each motor turns against each other: particles of its wheel and of its mount; a side that the
     ground holds has none.
@@ -38,26 +162,23 @@ def motor_groups(world: World) -> list[tuple[Slots, Slots]]:
     hub, or nothing but the wheel, both are empty: there is nothing to turn, or to push against. What has come off the
     wheel is no part of it.
     """
-    motors = world.actuators.motors
-    joined = world.spring_active & (world.material >= 0)
-    a, b = world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64)
-    free = world.inverse_mass > 0.0
-    label = np.arange(world.particle_count)
-    both = free[a] & free[b]
-    label_bodies(a[both], b[both], label)
-    none = np.zeros(0, dtype=np.int64)
-    groups = []
-    for k, hub in enumerate(motors.hub.tolist()):
-        rim = motors.rim[motors.rim_start[k] : motors.rim_start[k + 1]]
-        ends = np.unique(np.concatenate([b[a == hub], a[b == hub]]))
-        spokes, mount = np.intersect1d(ends, rim), np.setdiff1d(ends, rim)
-        bodies = label[[hub]] if free[hub] else label[spokes]
-        wheel = np.unique(rim[np.isin(label[rim], bodies) | ~free[rim]])
-        mount = np.append(mount[mount != hub], hub)
-        wheel, mount = (none if not np.all(free[group]) else group for group in (wheel, mount))
-        idle = not len(spokes) or len(mount) == 1
-        groups.append((none, none) if idle else (wheel, mount))
-    return groups
+    motors, count = world.actuators.motors, world.particle_count
+    if not len(motors.hub):
+        return []
+    of_world = [getattr(world, name) for name in MotorSources._fields[:5]]
+    given = MotorSources._make([*of_world, motors.hub, motors.rim_start, motors.rim])
+    on_rim, at_hub, turns = np.zeros((3, count), np.bool_)
+    sides = MotorSides(
+        np.zeros(2 * len(motors.hub) + 1, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64), on_rim,
+        at_hub, turns,
+    )  # fmt: skip
+    needed = _list_motor_sides(given, sides)
+    if needed > len(sides.particle):
+        sides = sides._replace(particle=np.zeros(needed, np.int64))
+        _list_motor_sides(given, sides)
+    first = sides.first.tolist()
+    groups = [sides.particle[begin:end] for begin, end in itertools.pairwise(first)]
+    return list(zip(groups[::2], groups[1::2], strict=True))
 
 
 @inner_kernel

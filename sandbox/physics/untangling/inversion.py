@@ -8,26 +8,25 @@ Where a jelly lies folded over in its own form, some of its triangles counter-cl
 counted: there is no number of them that is right.
 """
 
-import functools
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.components import label_bodies
+from sandbox.physics.components import join, root_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.geometry.polygon import winding_of_side
 from sandbox.physics.geometry.segment import doubled_area, doubled_area_of
-from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
 from sandbox.physics.state import Floats, Slots
+from sandbox.physics.topology.sorting import list_by_key, sort_by_key
 from sandbox.physics.world import World
 
 # A jelly of which a triangle is drawn out to so many times its area wants to be back in a step, and cannot be without
 # turning others over on its way: held from that, it would stand still. The softest jelly comes to a hundredth of it
 # when it is stirred at 80 m/s.
 LARGEST = 1e4
-# A run needs two of them, of particles and of the rows of the direct solver; a person takes some steps back and forth.
-KEPT_GROUPINGS = 6
 
 
 class Jellies(NamedTuple):
@@ -53,65 +52,234 @@ class Jellies(NamedTuple):
     gap: Slots
 
 
-def group_triangles(corners: Slots, areas: Floats) -> Jellies:
-    """The jellies that triangles of these particles (t, 3) make, in the order of their first triangles; to be read.
-
-    areas (t,) [m^2]: of their forms. Those of the same triangles are the same, since pins, hands and cuts leave
-    triangles as they are.
+class TriangleScratch(NamedTuple):
+    """Scratch of 3 t sides and corners of t triangles: label (t,), start (b+1,) with one number for each of b
+    particles, or corner; at sides whether they lie at the rim, by corner of a jelly its first and its last side there.
     """
-    return _grouped(corners.tobytes(), (areas > 0.0).tobytes())
+
+    label: Slots
+    start: Slots
+    low: Slots
+    high: Slots
+    one: Slots
+    other: Slots
+    at_rim: Flags
+    lies_flat: Flags
+    begin: Slots
+    end: Slots
+    number: Slots
 
 
-@functools.lru_cache(maxsize=KEPT_GROUPINGS)
-def _grouped(content: bytes, signs: bytes) -> Jellies:
-    corners, is_left = np.frombuffer(content, dtype=np.int64).reshape(-1, 3), np.frombuffer(signs, dtype=np.bool_)
-    sides = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)
-    keys = sides.min(axis=1) << 32 | sides.max(axis=1)
-    order = np.argsort(keys, kind="stable")
-    shared = np.flatnonzero(keys[order][1:] == keys[order][:-1])
-    label = np.arange(len(corners))
-    label_bodies(order[shared] // 3, order[shared + 1] // 3, label)
-    first, group = np.unique(label, return_inverse=True)
-    particles, corner, member = np.unique(group[:, None] << 32 | corners, return_index=True, return_inverse=True)
-    member = member.reshape(-1, 3)
-    # Once round: as many triangles as neighbours.
-    pairs = np.stack([member, np.roll(member, -1, axis=1)], axis=-1).reshape(-1, 2)
-    ends = np.unique(np.append(pairs[:, 0] << 32 | pairs[:, 1], pairs[:, 1] << 32 | pairs[:, 0])) >> 32
-    neighbours, triangles = (np.bincount(each, minlength=len(particles)) for each in (ends, member.reshape(-1)))
-    start = np.searchsorted(particles >> 32, np.arange(len(first) + 1))
-    # The same triangle twice is round nothing.
-    lies_flat = np.bincount(group, is_left, len(first)) % np.bincount(group) == 0
-    inner = lies_flat[particles >> 32] & (neighbours == triangles) & (triangles > 2)
-    fan, fan_start, gap = _fans(corners, keys, group, lies_flat)
-    return Jellies(group, member, first, start, particles & 0xFFFFFFFF, corner, inner, fan, fan_start, gap)
+# Of `begin` and `end`: no side of the rim begins or ends there; several do.
+NO_SIDE, SEVERAL = -1, -2
 
 
-def _fans(corners: Slots, keys: Slots, group: Slots, lies_flat: Flags) -> tuple[Slots, Slots, Slots]:
-    """The fans of triangles about particles of outlines and their gaps, see Jellies, of jellies g that lie flat (g,).
+@inner_kernel
+def _group(corners: Slots, bound: int, jellies: Jellies, work: TriangleScratch) -> int:
+    # Find the sides that triangles share, work.one in the order of their ends, and number what hangs together.
+    triangles = corners.shape[0]
+    for t in range(triangles):
+        work.label[t] = t
+        for c in range(3):
+            p = corners[t, c]
+            q = corners[t, (c + 1) % 3]
+            work.low[3 * t + c] = min(p, q)
+            work.high[3 * t + c] = max(p, q)
+    list_by_key(work.high, 3 * triangles, bound, work.start, work.other)
+    sort_by_key(work.low, work.other, 3 * triangles, bound, work.start, work.one)
+    for at in range(3 * triangles):
+        side = work.one[at]
+        work.at_rim[side] = True
+        if at > 0 and _is_same(work.one[at - 1], side, work):
+            before = work.one[at - 1]
+            work.at_rim[side] = work.at_rim[before] = False
+            join(work.label, before // 3, side // 3)
+    groups = 0
+    for t in range(triangles):
+        label = root_of(work.label, t)
+        if label == t:
+            jellies.first[groups] = t
+            jellies.group[t] = groups
+            groups += 1
+        else:
+            jellies.group[t] = jellies.group[label]
+    return groups
 
-    keys (3 t,): of sides, the same where shared.
+
+@inlined_kernel
+def _is_same(side: int, other: int, work: TriangleScratch) -> bool:
+    return work.low[side] == work.low[other] and work.high[side] == work.high[other]
+
+
+@inner_kernel
+def _number_corners(corners: Slots, bound: int, groups: int, jellies: Jellies, work: TriangleScratch) -> int:
+    # Number the particles of jellies by jelly and slot; how many there are. work.other becomes corners in that order.
+    count = 3 * corners.shape[0]
+    for i in range(count):
+        work.begin[i] = corners[i // 3, i % 3]
+        work.end[i] = jellies.group[i // 3]
+    list_by_key(work.begin, count, bound, work.start, work.number)
+    sort_by_key(work.end, work.number, count, groups, work.start, work.other)
+    members = 0
+    jellies.start[0] = 0
+    for at in range(count):
+        i = work.other[at]
+        before = work.other[at - 1] if at > 0 else i
+        if at == 0 or work.begin[i] != work.begin[before] or work.end[i] != work.end[before]:
+            jellies.particle[members] = work.begin[i]
+            jellies.corner[members] = i
+            members += 1
+        jellies.member[i // 3, i % 3] = members - 1
+        jellies.start[work.end[i] + 1] = members
+    return members
+
+
+@inner_kernel
+def _find_inner(members: int, groups: int, jellies: Jellies, is_left: Flags, work: TriangleScratch) -> None:
+    # Once round: as many triangles as neighbours. The same triangle twice is round nothing.
+    triangles = jellies.group.shape[0]
+    for g in range(groups):
+        work.begin[g] = 0
+        work.end[g] = 0
+    for t in range(triangles):
+        work.begin[jellies.group[t]] += 1
+        if is_left[t]:
+            work.end[jellies.group[t]] += 1
+    for g in range(groups):
+        work.lies_flat[g] = work.end[g] % work.begin[g] == 0
+    # Triangles less neighbours, and triangles.
+    for i in range(members):
+        work.number[i] = 0
+        work.begin[i] = 0
+    for at in range(3 * triangles):
+        side = work.one[at]
+        work.number[jellies.member[side // 3, side % 3]] += 1
+        work.begin[jellies.member[side // 3, side % 3]] += 1
+        if at == 0 or not _is_same(work.one[at - 1], side, work):
+            work.number[jellies.member[side // 3, side % 3]] -= 1
+            work.number[jellies.member[side // 3, (side + 1) % 3]] -= 1
+    for g in range(groups):
+        for i in range(jellies.start[g], jellies.start[g + 1]):
+            jellies.inner[i] = work.lies_flat[g] and work.number[i] == 0 and work.begin[i] > 2
+
+
+@inner_kernel
+def _find_rims(members: int, jellies: Jellies, work: TriangleScratch) -> None:
+    # By corner of a jelly, the side of the rim that begins there, and the one that ends there. Where two fans meet in a
+    # particle, neither is told from the other.
+    for i in range(members):
+        work.begin[i] = NO_SIDE
+        work.end[i] = NO_SIDE
+    for side in range(3 * jellies.group.shape[0]):
+        if not work.at_rim[side]:
+            continue
+        t = side // 3
+        i = jellies.member[t, side % 3]
+        if work.lies_flat[jellies.group[t]]:
+            work.begin[i] = side if work.begin[i] == NO_SIDE else SEVERAL
+        i = jellies.member[t, (side + 1) % 3]
+        work.end[i] = side if work.end[i] == NO_SIDE else SEVERAL
+
+
+@inner_kernel
+def _find_fans(corners: Slots, members: int, groups: int, jellies: Jellies, work: TriangleScratch) -> tuple[int, int]:
+    # The fans of triangles about particles of outlines, and their gaps; how many rows there are of both.
+    _find_rims(members, jellies, work)
+    gaps = 0
+    for i in range(members):
+        begin = work.begin[i]
+        # What begins with one side ends with one, but where triangles lie over each other.
+        if begin >= 0 and work.end[i] >= 0:
+            jellies.gap[gaps, 0] = begin // 3
+            jellies.gap[gaps, 1] = jellies.particle[i]
+            jellies.gap[gaps, 2] = corners[work.end[i] // 3, work.end[i] % 3]
+            jellies.gap[gaps, 3] = corners[begin // 3, (begin + 1) % 3]
+            gaps += 1
+    list_by_key(jellies.group, jellies.group.shape[0], groups, work.start, work.label)
+    fans = 0
+    jellies.fan_start[0] = 0
+    for g in range(groups):
+        for at in range(work.start[g], work.start[g + 1]):
+            t = work.label[at]
+            for c in range(3):
+                begin = work.begin[jellies.member[t, c]]
+                if begin < 0 or corners[t, (c + 1) % 3] == corners[begin // 3, (begin + 1) % 3]:
+                    continue
+                jellies.fan[fans, 0] = corners[t, c]
+                jellies.fan[fans, 1] = corners[begin // 3, (begin + 1) % 3]
+                jellies.fan[fans, 2] = corners[t, (c + 1) % 3]
+                jellies.fan[fans, 3] = corners[t, (c + 2) % 3]
+                fans += 1
+        jellies.fan_start[g + 1] = fans
+    return fans, gaps
+
+
+# Places in `counts`: jellies, their particles, rows of fans and of gaps.
+GROUPS, PARTICLES, FANS, GAPS, COUNTS = range(5)
+
+
+@inner_kernel
+def derive_jellies(
+    corners: Slots, is_left: Flags, bound: int, jellies: Jellies, counts: Slots, work: TriangleScratch
+) -> None:
+    """Fill in the jellies of triangles of particles below a bound, and say in counts (COUNTS,) how much of them."""
+    groups = _group(corners, bound, jellies, work)
+    members = _number_corners(corners, bound, groups, jellies, work)
+    _find_inner(members, groups, jellies, is_left, work)
+    fans, gaps = _find_fans(corners, members, groups, jellies, work)
+    counts[GROUPS] = groups
+    counts[PARTICLES] = members
+    counts[FANS] = fans
+    counts[GAPS] = gaps
+
+
+@kernel
+def _derive_jellies(
+    corners: Slots, is_left: Flags, bound: int, jellies: Jellies, counts: Slots, work: TriangleScratch
+) -> None:
+    derive_jellies(corners, is_left, bound, jellies, counts, work)
+
+
+def room_for_jellies(triangles: int) -> Jellies:
+    """Jellies of so many triangles, to be filled in."""
+    corners = 3 * triangles
+    group, first = np.zeros((2, triangles), np.int64)
+    particle, corner = np.zeros((2, corners), np.int64)
+    start, fan_start = np.zeros((2, triangles + 1), np.int64)
+    member, fan, gap = (np.zeros(shape, np.int64) for shape in ((triangles, 3), (corners, 4), (corners, 4)))
+    return Jellies(
+        group, member, first, start, particle, corner, np.zeros(corners, np.bool_), fan, fan_start, gap
+    )  # fmt: skip
+
+
+NO_JELLIES = room_for_jellies(0)
+
+
+def new_triangle_scratch(triangles: int, bound: int) -> TriangleScratch:
+    """Scratch for triangles of particles below a bound."""
+    corners = 3 * triangles
+    low, high, one, other, begin, end, number = np.zeros((7, corners), np.int64)
+    return TriangleScratch(
+        np.zeros(triangles, np.int64), np.zeros(max(bound, corners) + 1, np.int64), low, high, one, other,
+        np.zeros(corners, np.bool_), np.zeros(triangles, np.bool_), begin, end, number,
+    )  # fmt: skip
+
+
+def group_triangles(corners: Slots, is_left: Flags, bound: int) -> Jellies:
+    """The jellies that triangles of particles below a bound (t, 3) make, in the order of their first triangles.
+
+    is_left (t,): whether their forms have them run counter-clockwise.
     """
-    _, side, count = np.unique(keys, return_inverse=True, return_counts=True)
-    about = np.stack([np.roll(corners, -k, axis=1) for k in range(3)], axis=-1).reshape(-1, 3)
-    owner = np.repeat(group, 3) << 32 | about[:, 0]
-    begins = np.flatnonzero((count[side] == 1) & np.repeat(lies_flat[group], 3))
-    # Where two fans meet in a particle, neither is told from the other.
-    begun, at, fans = np.unique(owner[begins], return_index=True, return_counts=True)
-    begins = begins[at[fans == 1]]
-    begun, following = owner[begins], about[begins, 1]
-    # What begins with one side ends with one, but where triangles lie over each other.
-    ends = np.flatnonzero((count[side].reshape(-1, 3)[:, [2, 0, 1]] == 1).reshape(-1))
-    ended, at, sides = np.unique(owner[ends], return_index=True, return_counts=True)
-    whole, of_begun, of_ended = np.intersect1d(begun, ended[sides == 1], assume_unique=True, return_indices=True)
-    last = about[ends[at[sides == 1][of_ended]], 2]
-    gap = np.stack([begins[of_begun] // 3, whole & 0xFFFFFFFF, last, following[of_begun]], axis=1)
-    chosen = np.flatnonzero(np.isin(owner, begun))
-    chosen = chosen[np.argsort(group[chosen // 3], kind="stable")]
-    following = following[np.searchsorted(begun, owner[chosen])]
-    beyond = following != about[chosen, 1]
-    chosen, following = chosen[beyond], following[beyond]
-    fan = np.stack([about[chosen, 0], following, about[chosen, 1], about[chosen, 2]], axis=1)
-    return fan, np.searchsorted(group[chosen // 3], np.arange(len(lies_flat) + 1)), gap
+    if not len(corners):
+        return NO_JELLIES
+    room, counts = room_for_jellies(len(corners)), np.zeros(COUNTS, np.int64)
+    _derive_jellies(corners, is_left, bound, room, counts, new_triangle_scratch(len(corners), bound))
+    groups, members, fans, gaps = counts.tolist()
+    return room._replace(
+        first=room.first[:groups], start=room.start[: groups + 1], particle=room.particle[:members],
+        corner=room.corner[:members], inner=room.inner[:members], fan=room.fan[:fans],
+        fan_start=room.fan_start[: groups + 1], gap=room.gap[:gaps],
+    )  # fmt: skip
 
 
 @inlined_kernel
@@ -157,6 +325,9 @@ class Triangles(NamedTuple):
     jellies: Jellies
 
 
+NO_TRIANGLES = Triangles(np.zeros(0, np.int64), np.zeros((0, 3), np.int64), NO_JELLIES)
+
+
 class Inversions(NamedTuple):
     """By corner of a jelly: turns of triangles round it; by jelly: whether it is inverted. Filled in by each step."""
 
@@ -199,12 +370,46 @@ def find_inverted(
                 inverted[jellies.particle[i]] = True
 
 
+class AreaSources(NamedTuple):
+    """The constraints of a world and their corners, see StateArrays."""
+
+    constraint_kind: NDArray[np.int8]
+    constraint_first: NDArray[np.int32]
+    constraint_corners: NDArray[np.int32]
+    constraint_active: Flags
+    constraint_rest: Floats
+    corner_particle: NDArray[np.int32]
+
+
+@inner_kernel
+def choose_triangles(given: AreaSources, constraint: Slots, corners: Slots, is_left: Flags) -> int:
+    """Choose the constraints that are triangles; how many there are."""
+    count = 0
+    for k in range(given.constraint_kind.shape[0]):
+        if given.constraint_kind[k] == AREA and given.constraint_corners[k] == 3 and given.constraint_active[k]:
+            constraint[count] = k
+            for c in range(3):
+                corners[count, c] = given.corner_particle[given.constraint_first[k] + c]
+            is_left[count] = given.constraint_rest[k, 1] > 0.0
+            count += 1
+    return count
+
+
+@kernel
+def _choose_triangles(given: AreaSources, constraint: Slots, corners: Slots, is_left: Flags) -> int:
+    return choose_triangles(given, constraint, corners, is_left)
+
+
 def triangles_of(world: World) -> Triangles:
     """The triangles of a world, as its constraints are now."""
-    kept = (world.constraint_kind == AREA) & (world.constraint_corners == 3) & world.constraint_active
-    constraint = np.flatnonzero(kept)
-    corners = world.corner_particle[world.constraint_first[constraint, None] + np.arange(3)].astype(np.int64)
-    return Triangles(constraint, corners, group_triangles(corners, world.constraint_rest[constraint, 1]))
+    room = world.constraint_count
+    if not room:
+        return NO_TRIANGLES
+    constraint, corners, is_left = np.zeros(room, np.int64), np.zeros((room, 3), np.int64), np.zeros(room, np.bool_)
+    given = AreaSources._make([getattr(world, name) for name in AreaSources._fields])
+    count = _choose_triangles(given, constraint, corners, is_left)
+    jellies = group_triangles(corners[:count], is_left[:count], world.particle_count)
+    return Triangles(constraint[:count], corners[:count], jellies)
 
 
 def new_inversions(triangles: Triangles) -> Inversions:

@@ -9,10 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.solvers.linear.fronts import PANEL, Fronts, Scratch
-from sandbox.physics.solvers.linear.parallel import CALL_LENGTH, find_fork
-from sandbox.physics.world import Floats, Slots
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.topology.sorting import sort_by_value
 
 # Particles that are not split further. Fewer make many small fronts, more make needless zeros; measured best of 12..48.
 LEAF_SIZE = 16
@@ -22,28 +21,17 @@ SMALLEST_BODY = 400
 NARROWEST_BORDER = 15.0
 # Halvings that no body exceeds: 2^60 particles.
 DEEPEST = 64
-
-
-class Dissection(NamedTuple):
-    """One body of n particles: order (n,) and its fronts, children before parents.
-
-    first, last (f,): the rows that a front eliminates; border_start (f+1), border: the later rows that they are joined
-    to by then, ascending; child (f, 2): fronts, or -1; place (f, 2): level and side, which no other front that is still
-    waiting for its parent shares; to_parent: for each border row its place among the parent's rows.
-    """
-
-    order: Slots
-    first: Slots
-    last: Slots
-    child: Slots
-    place: Slots
-    border_start: Slots
-    border: Slots
-    to_parent: Slots
+# In place of a number of fronts: the room for borders is too short.
+TOO_SHORT = -1
 
 
 class Halving(NamedTuple):
-    """Nodes (n,) while they are split: neighbours near[start[k]:start[k + 1]], place, order by each; part; scratch."""
+    """Nodes (n,) while they are split: neighbours near[start[k]:start[k + 1]], place [m].
+
+    by_x, by_y: the nodes of one body after another, each in the order of that coordinate; by_x becomes the elimination
+    order. part, spare; same (n,) = 0..n-1; mark, where; stack: first and last row, level, side, where the separator
+    begins, -1: not split yet; waiting: the fronts whose parent is yet to come, by level and side: scratch.
+    """
 
     start: Slots
     near: Slots
@@ -53,15 +41,28 @@ class Halving(NamedTuple):
     by_y: Slots
     part: Slots
     spare: Slots
+    same: Slots
+    mark: Slots
+    where: Slots
+    stack: Slots
+    waiting: Slots
 
 
-class FoundFronts(NamedTuple):
-    """The fronts as they are found: see Dissection."""
+class Dissection(NamedTuple):
+    """The fronts of dissected bodies, children before parents.
+
+    first, last (f,): the rows that a front eliminates; border_start (f+1), border: the later rows that they are joined
+    to by then, ascending; child (f, 2): fronts, or -1; place (f, 2): level and side, which no other front of the body
+    that is still waiting for its parent shares; to_parent: for each border row its place among the parent's rows.
+    """
 
     first: Slots
     last: Slots
     child: Slots
     place: Slots
+    border_start: Slots
+    border: Slots
+    to_parent: Slots
 
 
 @inner_kernel
@@ -111,12 +112,14 @@ def _split(first: int, last: int, left: int, nodes: Halving) -> int:
     return apart
 
 
-@kernel
-def _dissect(nodes: Halving, stack: Slots, waiting: Slots, fronts: FoundFronts, leaf: int) -> int:
-    # by_x becomes the elimination order. stack: first and last row, level, side, where the separator begins (-1: not
-    # split yet). waiting: the fronts whose parent is yet to come, by level and side.
-    count = 0
+@inner_kernel
+def _dissect(begin: int, end: int, count: int, nodes: Halving, fronts: Dissection, leaf: int) -> int:
+    # Split the nodes of a body, whose rows are begin..end, into fronts from number `count` on; how many there are then.
+    stack, waiting = nodes.stack, nodes.waiting
+    for level in range(DEEPEST):
+        waiting[level, 0] = waiting[level, 1] = -1
     left = 0
+    _push(stack, 0, begin, end, 0, 0)
     top = 1
     while top > 0:
         top -= 1
@@ -158,177 +161,102 @@ def _push(stack: Slots, top: int, begin: int, end: int, level: int, side: int) -
     stack[top, 4] = -1
 
 
-@kernel
-def _find_neighbours(link_a: Slots, link_b: Slots, start: Slots, near: Slots) -> None:
-    # start (n+1) begins as 0. A pair that two springs join is there twice.
-    for k in range(link_a.shape[0]):
-        start[link_a[k]] += 1
-        start[link_b[k]] += 1
-    total = 0
-    for node in range(start.shape[0]):
-        total += start[node]
-        start[node] = total
-    for k in range(link_a.shape[0]):
-        a = link_a[k]
-        b = link_b[k]
-        start[a] -= 1
-        near[start[a]] = b
-        start[b] -= 1
-        near[start[b]] = a
+@inner_kernel
+def _border(front: int, other: int, top: int, fronts: Dissection, mark: Slots) -> int:
+    # Add a row to the border of a front that ends there, once; how long all borders are then, or TOO_SHORT.
+    if other < fronts.last[front] or mark[other] == front:
+        return top
+    if top == fronts.border.shape[0]:
+        return TOO_SHORT
+    mark[other] = front
+    fronts.border[top] = other
+    return top + 1
 
 
-@kernel
-def _find_borders(
-    start: Slots, near: Slots, order: Slots, rank: Slots, first: Slots, last: Slots, child: Slots, border_start: Slots,
-    border: Slots, mark: Slots,
-) -> bool:  # fmt: skip
-    # False where `border` is too short.
-    for front in range(first.shape[0]):
-        top = border_start[front]
-        for row in range(first[front], last[front]):
-            node = order[row]
-            for at in range(start[node], start[node + 1]):
-                other = rank[near[at]]
-                if other >= last[front] and mark[other] != front:
-                    if top == border.shape[0]:
-                        return False
-                    mark[other] = front
-                    border[top] = other
-                    top += 1
-        for side in range(2):
-            below = child[front, side]
-            if below >= 0:
-                for at in range(border_start[below], border_start[below + 1]):
-                    other = border[at]
-                    if other >= last[front] and mark[other] != front:
-                        if top == border.shape[0]:
-                            return False
-                        mark[other] = front
-                        border[top] = other
-                        top += 1
-        border_start[front + 1] = top
+@inner_kernel
+def _find_border(front: int, rank: Slots, nodes: Halving, fronts: Dissection) -> bool:
+    # The border of a front; False: it is too short.
+    top = fronts.border_start[front]
+    for row in range(fronts.first[front], fronts.last[front]):
+        node = nodes.by_x[row]
+        for at in range(nodes.start[node], nodes.start[node + 1]):
+            top = _border(front, rank[nodes.near[at]], top, fronts, nodes.mark)
+            if top < 0:
+                return False
+    for side in range(2):
+        below = fronts.child[front, side]
+        if below >= 0:
+            for at in range(fronts.border_start[below], fronts.border_start[below + 1]):
+                top = _border(front, fronts.border[at], top, fronts, nodes.mark)
+                if top < 0:
+                    return False
+    fronts.border_start[front + 1] = top
+    sort_by_value(nodes.same, fronts.border, fronts.border_start[front], top, nodes.spare)
     return True
 
 
-@kernel
-def _find_places(
-    first: Slots, last: Slots, child: Slots, border_start: Slots, border: Slots, where: Slots, to_parent: Slots
-) -> None:
-    for front in range(first.shape[0]):
-        for row in range(first[front], last[front]):
-            where[row] = row - first[front]
+@inner_kernel
+def _find_places(first_front: int, last_front: int, nodes: Halving, fronts: Dissection) -> None:
+    where, border_start, border = nodes.where, fronts.border_start, fronts.border
+    for front in range(first_front, last_front):
+        eliminated = fronts.last[front] - fronts.first[front]
+        for k in range(eliminated):
+            where[fronts.first[front] + k] = k
         for at in range(border_start[front], border_start[front + 1]):
-            where[border[at]] = last[front] - first[front] + at - border_start[front]
+            where[border[at]] = eliminated + at - border_start[front]
         for side in range(2):
-            below = child[front, side]
+            below = fronts.child[front, side]
             if below >= 0:
                 for at in range(border_start[below], border_start[below + 1]):
-                    to_parent[at] = where[border[at]]
+                    fronts.to_parent[at] = where[border[at]]
 
 
-def dissect(link_a: Slots, link_b: Slots, position: Floats) -> Dissection:
-    """Dissect one body, given the pairs of its n particles that springs join and where they were created (n, 2) [m]."""
-    count = len(position)
-    start, near = np.zeros(count + 1, dtype=np.int64), np.zeros(2 * len(link_a), dtype=np.int64)
-    _find_neighbours(link_a, link_b, start, near)
-    x, y = np.ascontiguousarray(position[:, 0]), np.ascontiguousarray(position[:, 1])
-    order, by_y = np.argsort(x, kind="stable"), np.argsort(y, kind="stable")
-    first, last = np.zeros((2, count), dtype=np.int64)
-    child, place = np.zeros((2, count, 2), dtype=np.int64)
-    part, spare = np.full(count, -1, dtype=np.int64), np.zeros(count, dtype=np.int64)
-    stack, waiting = np.zeros((3 * DEEPEST, 5), dtype=np.int64), np.full((DEEPEST, 2), -1, dtype=np.int64)
-    stack[0] = 0, count, 0, 0, -1
-    nodes = Halving(start, near, x, y, order, by_y, part, spare)
-    fronts = _dissect(nodes, stack, waiting, FoundFronts(first, last, child, place), LEAF_SIZE)
-    first, last, child, place = (array[:fronts].copy() for array in (first, last, child, place))
-    rank = np.zeros(count, dtype=np.int64)
-    rank[order] = np.arange(count)
-    border_start, border = np.zeros(fronts + 1, dtype=np.int64), np.zeros(8 * count, dtype=np.int64)
-    while not _find_borders(
-        start, near, order, rank, first, last, child, border_start, border, np.full(count, -1, dtype=np.int64)
-    ):
-        border = np.zeros(2 * len(border), dtype=np.int64)
-    owner = np.repeat(np.arange(fronts), np.diff(border_start))
-    border = np.sort(owner * count + border[: border_start[-1]]) % count
-    to_parent = np.zeros_like(border)
-    _find_places(first, last, child, border_start, border, spare, to_parent)
-    return Dissection(order, first, last, child, place, border_start, border, to_parent)
+@inner_kernel
+def begin_dissections(nodes: Halving, fronts: Dissection) -> None:
+    """Prepare for `dissect`."""
+    fronts.border_start[0] = 0
+    for node in range(nodes.part.shape[0]):
+        nodes.part[node] = -1
+        nodes.mark[node] = -1
+        nodes.same[node] = node
 
 
-def dissect_bodies(label: Slots, link_a: Slots, link_b: Slots, position: Floats) -> dict[int, Dissection]:
-    """The dissections, by label, of those bodies of n free particles that are factored by fronts.
+@inner_kernel
+def dissect(
+    first_row: int, last_row: int, first_front: int, rank: Slots, nodes: Halving, fronts: Dissection, leaf: int,
+    narrowest: float,
+) -> int:  # fmt: skip
+    """Dissect a body with these rows, into fronts from first_front on; how many fronts there are then.
 
-    label, position (n,), (n, 2): the body of each and where it was created [m]; link_a, link_b: pairs that are joined.
+    rank (n,): the rows of its nodes, of which the order is found. As many as before: it is better off without, since
+    its borders have fewer rows than `narrowest` on average. TOO_SHORT: there is too little room for borders.
     """
-    chosen = {}
-    index = np.zeros(len(label), dtype=np.int64)
-    for body in np.flatnonzero(np.bincount(label) >= SMALLEST_BODY).tolist() if len(label) else []:
-        nodes = np.flatnonzero(label == body)
-        index[nodes] = np.arange(len(nodes))
-        links = np.flatnonzero(label[link_a] == body)
-        dissection = dissect(index[link_a[links]], index[link_b[links]], position[nodes])
-        if len(dissection.border) >= NARROWEST_BORDER * len(dissection.first):
-            chosen[body] = dissection
-    return chosen
+    spare = nodes.spare
+    sort_by_value(nodes.x, nodes.by_x, first_row, last_row, spare)
+    sort_by_value(nodes.y, nodes.by_y, first_row, last_row, spare)
+    last_front = _dissect(first_row, last_row, first_front, nodes, fronts, leaf)
+    for row in range(first_row, last_row):
+        rank[nodes.by_x[row]] = row
+    for front in range(first_front, last_front):
+        if not _find_border(front, rank, nodes, fronts):
+            return TOO_SHORT
+    borders = fronts.border_start[last_front] - fronts.border_start[first_front]
+    if not borders >= narrowest * (last_front - first_front):
+        return first_front
+    _find_places(first_front, last_front, nodes, fronts)
+    return last_front
 
 
-def make_fronts(count: int, dissections: list[tuple[int, Dissection]]) -> Fronts:
-    """Lay out the fronts of bodies in a matrix of `count` rows, each with the first row of its body."""
-    rows = [first_row for first_row, _ in dissections]
-    fronts_before = np.append(0, np.cumsum([len(one.first) for _, one in dissections])).astype(np.int64)
-    borders_before = np.append(0, np.cumsum([len(one.border) for _, one in dissections])).astype(np.int64)
-
-    def joined(name: str, shifts: list[int] | Slots) -> Slots:
-        parts = [getattr(one, name) + shift for (_, one), shift in zip(dissections, shifts, strict=False)]
-        return np.concatenate(parts) if parts else np.zeros(0, dtype=np.int64)
-
-    none = [0] * len(rows)
-    first, last, border = joined("first", rows), joined("last", rows), joined("border", rows)
-    child = [
-        np.where(one.child < 0, -1, one.child + k) for (_, one), k in zip(dissections, fronts_before, strict=False)
-    ]
-    starts = [one.border_start[:-1] + k for (_, one), k in zip(dissections, borders_before, strict=False)]
-    border_start = np.concatenate([*starts, borders_before[-1:]])
-    pivots, borders = 2 * (last - first), 2 * np.diff(border_start)
-    width = pivots + borders
-    ends = np.cumsum(pivots * width)
-    of_row, diagonal, row_width = np.full((3, count), -1, dtype=np.int64)
-    owned = np.repeat(np.arange(len(first)), last - first)
-    eliminated = np.arange(len(owned)) - np.repeat(np.cumsum(last - first) - (last - first), last - first)
-    of_row[first[owned] + eliminated] = owned
-    row_width[first[owned] + eliminated] = width[owned]
-    diagonal[first[owned] + eliminated] = (ends - pivots * width)[owned] + 2 * eliminated * (width[owned] + 1)
-    widest = int(width.max(initial=0))
-    levels = joined("place", none).reshape(-1, 2) if rows else np.zeros((0, 2), dtype=np.int64)
-    size = np.zeros(DEEPEST, dtype=np.int64)
-    np.maximum.at(size, levels[:, 0], borders * borders)
-    # Two fronts of a level wait at most, one per side, of each half; nothing lies below the widest front.
-    before = widest + 2 * (np.cumsum(size) - size)
-    remains = before[levels[:, 0]] + levels[:, 1] * size[levels[:, 0]]
-    fork = np.zeros((len(first), 2), dtype=np.int64)
-    for (_, one), k in zip(dissections, fronts_before, strict=False):
-        begin, end = find_fork(one.first, one.last, one.child, one.border_start)
-        fork[k + len(one.first) - 1] = k + begin, k + end
-        remains[k + begin : k + end] += 2 * int(size.sum())
-    return Fronts(
-        of_row, diagonal, row_width, first, last, np.concatenate(child) if child else np.zeros((0, 2), dtype=np.int64),
-        border_start, border, joined("to_parent", none), width, ends - pivots * width, remains,
-        np.zeros(int(ends[-1]) if len(ends) else 0), np.zeros(widest + (4 if fork.any() else 2) * int(size.sum())),
-        np.zeros(2 * count), fork, _scratch(widest), _scratch(widest), np.zeros((count, 2)),
-        np.zeros(CALL_LENGTH, dtype=np.int64),
-    )  # fmt: skip
+def new_halving(start: Slots, near: Slots, x: Floats, y: Floats, nodes: int) -> Halving:
+    """Scratch for the dissection of bodies of n nodes in all, 0 where none is large enough: see Halving."""
+    by_x, by_y, part, spare, same, mark, where = np.zeros((7, nodes), np.int64)
+    stack, waiting = np.zeros((3 * DEEPEST, 5), np.int64), np.zeros((DEEPEST + 1, 2), np.int64)
+    return Halving(start, near, x, y, by_x, by_y, part, spare, same, mark, where, stack, waiting)
 
 
-def _scratch(widest: int) -> Scratch:
-    return Scratch(np.zeros(int(PANEL) * widest), np.zeros(int(PANEL)), np.zeros(widest))
-
-
-def spring_places(fronts: Fronts, low: Slots, high: Slots) -> Slots:
-    """Where the blocks between the rows low < high of large bodies begin in fronts.numbers."""
-    front = fronts.of_row[low]
-    count = len(fronts.of_row)
-    keys = np.repeat(np.arange(len(fronts.first)), np.diff(fronts.border_start)) * count + fronts.border
-    eliminated = fronts.last[front] - fronts.first[front]
-    outside = eliminated + np.searchsorted(keys, front * count + high) - fronts.border_start[front]
-    column = np.where(high < fronts.last[front], high - fronts.first[front], outside)
-    return fronts.base[front] + 2 * (low - fronts.first[front]) * fronts.width[front] + 2 * column
+def room_for_fronts(nodes: int, borders: int) -> Dissection:
+    """A dissection of so many nodes to be filled in, with room for borders of so many rows in all."""
+    first, last, border_start = np.zeros((3, nodes + 1), np.int64)
+    child, place = np.zeros((2, nodes, 2), np.int64)
+    border, to_parent = np.zeros((2, borders), np.int64)
+    return Dissection(first[:nodes], last[:nodes], child, place, border_start, border, to_parent)

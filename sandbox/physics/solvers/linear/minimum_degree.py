@@ -1,4 +1,4 @@
-"""Elimination order of the direct solver: connected bodies, minimum degree, and where each update of a factor lands.
+"""Elimination order of the direct solver: minimum degree, and where each update of a factor lands.
 
 Everything here is integer work, a pure function of which particles the springs join: no state, no history, and no
 library's choice enters, because the order decides the last bits of a tick.
@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.state import Slots
+from sandbox.physics.topology.sorting import list_neighbours
+
+# First guess of blocks in the factor per node; too low costs one more pass, too high memory.
+FILL_GUESS = 24
 
 
 class QuotientGraph(NamedTuple):
@@ -164,20 +168,21 @@ def _bound_degrees(step: int, left: int, graph: QuotientGraph, columns: Columns,
             _sift_down(queue, queue.place[node], left)
 
 
-@kernel
-def minimum_degree(graph: QuotientGraph, order: Slots, columns: Columns, marks: Marks, queue: Heap) -> bool:
-    """Order the nodes by approximate minimum degree, ties by lowest index; False where columns are too short.
+@inner_kernel
+def minimum_degree(
+    size: int, graph: QuotientGraph, order: Slots, columns: Columns, marks: Marks, queue: Heap
+) -> bool:  # fmt: skip
+    """Order `size` nodes by approximate minimum degree, ties by lowest index; False where columns are too short.
 
     graph: of n nodes, without elements; it is changed on the way. order (n,): nodes as they are eliminated; columns:
     for each of them, the nodes still present that it is joined to by then. mark and counted hold -1.
     Source: Amestoy, Davis, Duff 1996, without their merging of like nodes.
     """
-    size = order.shape[0]
     for node in range(size):
         queue.degree[node] = graph.near_count[node]
         queue.node[node] = node
         _sift_up(queue, node)
-    for step in range(order.shape[0]):
+    for step in range(size):
         pivot = queue.node[0]
         size -= 1
         queue.node[0] = queue.node[size]
@@ -191,6 +196,74 @@ def minimum_degree(graph: QuotientGraph, order: Slots, columns: Columns, marks: 
         _prune(step, graph, columns, marks)
         _bound_degrees(step, size, graph, columns, marks, queue)
     return True
+
+
+class Ordering(NamedTuple):
+    """Room for ordering a graph of up to n nodes: see the parts; order (n,)."""
+
+    graph: QuotientGraph
+    order: Slots
+    columns: Columns
+    marks: Marks
+    queue: Heap
+
+
+@inner_kernel
+def order_graph(start: Slots, near: Slots, number: Slots, made: Ordering) -> bool:
+    """Order those nodes of a graph that have a number, 0, 1, 2 ... in their order; False: columns are too short.
+
+    Their neighbours, near[start[k]:start[k + 1]], ascending, have numbers too, and may be there several times.
+    """
+    graph = made.graph
+    count = 0
+    top = 0
+    graph.start[0] = 0
+    for node in range(number.shape[0]):
+        if number[node] < 0:
+            continue
+        for at in range(start[node], start[node + 1]):
+            other = number[near[at]]
+            if top == graph.start[count] or graph.near[top - 1] != other:
+                graph.near[top] = other
+                top += 1
+        graph.near_count[count] = top - graph.start[count]
+        graph.element_count[count] = 0
+        made.marks.absorbed[count] = False
+        made.marks.mark[count] = made.marks.counted[count] = -1
+        count += 1
+        graph.start[count] = top
+    made.columns.start[0] = 0
+    return minimum_degree(count, graph, made.order, made.columns, made.marks, made.queue)
+
+
+def room_to_order(nodes: int, links: int, blocks: int) -> Ordering:
+    """Room for ordering a graph; blocks: of the factor, below its diagonal."""
+    order, near_count, element_count, mark, outside, counted, node, place, degree = np.zeros((9, nodes), np.int64)
+    near, element = np.zeros((2, 2 * links), np.int64)
+    start, column_start = np.zeros((2, nodes + 1), np.int64)
+    return Ordering(
+        QuotientGraph(start, near, near_count, element, element_count), order,
+        Columns(column_start, np.zeros(blocks, np.int64)),
+        Marks(np.zeros(nodes, np.bool_), mark, outside, counted), Heap(node, place, degree),
+    )  # fmt: skip
+
+
+@kernel
+def _order_graph(link_a: Slots, link_b: Slots, start: Slots, near: Slots, number: Slots, made: Ordering) -> bool:
+    list_neighbours(link_a, link_b, link_a.shape[0], number.shape[0], start, near, made.graph.near, number)
+    for node in range(number.shape[0]):
+        number[node] = node
+    return order_graph(start, near, number, made)
+
+
+def order_by_degree(nodes: int, link_a: Slots, link_b: Slots) -> tuple[Slots, Columns]:
+    """The elimination order of a graph (n,), and its columns."""
+    start, near, blocks = np.zeros(nodes + 1, np.int64), np.zeros(2 * len(link_a), np.int64), FILL_GUESS * nodes + 16
+    while True:
+        made = room_to_order(nodes, len(link_a), blocks)
+        if _order_graph(link_a, link_b, start, near, np.zeros(nodes, np.int64), made):
+            return made.order, made.columns
+        blocks *= 2
 
 
 @kernel

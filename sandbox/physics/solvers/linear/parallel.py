@@ -9,9 +9,8 @@ import os
 import weakref
 from threading import Thread
 
-import numpy as np
-
 from sandbox.physics.jit import inner_kernel, precompile, waiting_kernel
+from sandbox.physics.solvers.linear.dissection import Dissection
 from sandbox.physics.solvers.linear.fronts import Fronts, Scratch, eliminate_rows, factorise_fronts, substitute_fronts
 from sandbox.physics.solvers.linear.locks import Lock, give, has_locks, take
 from sandbox.physics.world import Floats, Slots
@@ -25,20 +24,34 @@ OFFERED, DONE, WANTED, BODY, CALL_LENGTH = 0, 1, 2, 3, 4
 NOTHING, FACTOR, ELIMINATE, SUBSTITUTE = 0, 1, 2, 3
 
 
-def find_fork(first: Slots, last: Slots, child: Slots, border_start: Slots) -> tuple[int, int]:
-    """The fronts between which the second half of one body lies, as it has the least to do in turn; equal: nowhere."""
-    width, border = 2 * (last - first + np.diff(border_start)), 2 * np.diff(border_start)
-    # n pivots of a front of width w and border b: a sixth of w^3 - b^3 multiplications
-    before = np.append(0, np.cumsum((width**3 - border**3) // 6))
-    left, right = child[np.all(child >= 0, axis=1)].T
-    if not len(left):
-        return 0, 0
-    begin, end = before[left + 1], before[right + 1]
-    in_turn = np.maximum(begin, end - begin) + before[-1] - end
-    best = int(np.argmin(in_turn))
-    if before[-1] - in_turn[best] < WORTH_HALVING:
-        return 0, 0
-    return int(left[best]) + 1, int(right[best]) + 1
+@inner_kernel
+def find_fork(begin: int, end: int, fronts: Dissection, before: Slots, worth: int) -> tuple[int, int]:
+    """The fronts between which the second half of a body lies, as it has the least to do in turn; equal: nowhere.
+
+    begin, end: its fronts; before (f+1,): scratch; worth: multiplications that are to be spared at least.
+    """
+    total = 0
+    for front in range(begin, end):
+        border = 2 * (fronts.border_start[front + 1] - fronts.border_start[front])
+        width = 2 * (fronts.last[front] - fronts.first[front]) + border
+        before[front] = total
+        # n pivots of a front of width w and border b: a sixth of w^3 - b^3 multiplications
+        total += (width * width * width - border * border * border) // 6
+    before[end] = total
+    best = -1
+    least = total
+    for front in range(begin, end):
+        left = fronts.child[front, 0]
+        right = fronts.child[front, 1]
+        if left >= 0 and right >= 0:
+            first, last = before[left + 1], before[right + 1]
+            in_turn = max(first, last - first) + total - last
+            if in_turn < least or best < 0:
+                best = front
+                least = in_turn
+    if best < 0 or total - least < worth:
+        return begin, begin
+    return fronts.child[best, 0] + 1, fronts.child[best, 1] + 1
 
 
 @inner_kernel

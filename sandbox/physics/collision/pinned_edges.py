@@ -1,0 +1,185 @@
+"""Edges of bodies of which both ends are pinned: terrain of their own, as they stand while topology does not change."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.terrain import CELL_SLACK, LEAST_CELL, MOST_CELLS, Chain, Terrain, make_terrain
+from sandbox.physics.topology.sorting import sort_by_value
+from sandbox.physics.world import World
+
+FRICTION, RESTITUTION = Chain.friction, Chain.restitution
+NO_PINS = make_terrain([])
+
+
+class PinSources(NamedTuple):
+    """Particles (n,), see StateArrays, and the edges of bodies: edge_a to edge_b, side."""
+
+    position: Floats
+    velocity: Floats
+    inverse_mass: Floats
+    edge_a: Slots
+    edge_b: Slots
+    side: Slots
+
+
+class PinScratch(NamedTuple):
+    """Scratch, as long as the edges."""
+
+    length: Floats
+    order: Slots
+    spare: Slots
+
+
+@inner_kernel
+def _is_still(p: int, given: PinSources) -> bool:
+    return given.inverse_mass[p] == 0.0 and given.velocity[p, 0] == 0.0 and given.velocity[p, 1] == 0.0
+
+
+@inner_kernel
+def find_pinned(given: PinSources, pins: Terrain, work: PinScratch) -> int:
+    """Fill in the edges that are pinned, and corner, cell and size of their grid; how many there are."""
+    count = 0
+    for e in range(given.edge_a.shape[0]):
+        a = given.edge_a[e]
+        b = given.edge_b[e]
+        if not (_is_still(a, given) and _is_still(b, given)):
+            continue
+        dx = given.position[b, 0] - given.position[a, 0]
+        dy = given.position[b, 1] - given.position[a, 1]
+        if dx == 0.0 and dy == 0.0:
+            continue
+        for axis in range(2):
+            # -0.0 becomes 0.0
+            pins.vertex[2 * count, axis] = given.position[a, axis] + 0.0
+            pins.vertex[2 * count + 1, axis] = given.position[b, axis] + 0.0
+        pins.edge_a[count] = 2 * count
+        pins.edge_b[count] = 2 * count + 1
+        pins.solid[count] = given.side[e]
+        pins.chain[count] = e
+        pins.friction[count] = FRICTION
+        pins.restitution[count] = RESTITUTION
+        work.length[count] = math.sqrt(dx * dx + dy * dy)
+        count += 1
+    if count > 0:
+        _size_grid(count, pins, work)
+    return count
+
+
+@inner_kernel
+def _reach(count: int, axis: int, pins: Terrain) -> tuple[float, float]:
+    # The lowest and the highest coordinate of the edges.
+    low = pins.vertex[0, axis]
+    high = low
+    for v in range(1, 2 * count):
+        low = min(low, pins.vertex[v, axis])
+        high = max(high, pins.vertex[v, axis])
+    return low, high
+
+
+@inner_kernel
+def _size_grid(count: int, pins: Terrain, work: PinScratch) -> None:
+    # As that of terrain: cells about as large as the shorter edges, of which a quarter is below.
+    for k in range(count):
+        work.order[k] = k
+    sort_by_value(work.length, work.order, 0, count, work.spare)
+    place = 0.25 * (count - 1)
+    below = math.floor(place)
+    share = place - below
+    shorter = work.length[work.order[below]]
+    longer = work.length[work.order[min(below + 1, count - 1)]]
+    apart = longer - shorter
+    cell = longer - apart * (1.0 - share) if share >= 0.5 else shorter + apart * share
+    left, right = _reach(count, 0, pins)
+    bottom, top = _reach(count, 1, pins)
+    cell = max(cell, max(right - left, top - bottom) / (MOST_CELLS - 2), LEAST_CELL)
+    pins.cell[0] = cell
+    pins.corner[0] = left - cell
+    pins.corner[1] = bottom - cell
+    pins.size[0] = math.floor((right - pins.corner[0]) / cell) + 2
+    pins.size[1] = math.floor((top - pins.corner[1]) / cell) + 2
+
+
+@inner_kernel
+def _enter(k: int, pins: Terrain, fills: bool) -> None:
+    # Count edge k in every cell that it crosses or comes close to, or enter it there, from the ends of their lists.
+    corner, cell, start = pins.corner, pins.cell[0], pins.cell_start
+    ax = (pins.vertex[2 * k, 0] - corner[0]) / cell
+    ay = (pins.vertex[2 * k, 1] - corner[1]) / cell
+    bx = (pins.vertex[2 * k + 1, 0] - corner[0]) / cell
+    by = (pins.vertex[2 * k + 1, 1] - corner[1]) / cell
+    if by < ay:
+        ax, ay, bx, by = bx, by, ax, ay
+    for row in range(math.floor(ay - CELL_SLACK), math.floor(by + CELL_SLACK) + 1):
+        # The part of the edge that lies in this row.
+        one = (min(max(row, ay), by) - ay) / (by - ay) if by > ay else 0.0
+        other = (min(max(row + 1.0, ay), by) - ay) / (by - ay) if by > ay else 1.0
+        one = ax + (bx - ax) * one
+        other = ax + (bx - ax) * other
+        last = math.floor(max(one, other) + CELL_SLACK)
+        for column in range(math.floor(min(one, other) - CELL_SLACK), last + 1):
+            at = row * pins.size[0] + column
+            if fills:
+                start[at] -= 1
+                pins.cell_edge[start[at]] = k
+            else:
+                start[at] += 1
+
+
+@inner_kernel
+def fill_cells(count: int, pins: Terrain) -> int:
+    """Enter `count` pinned edges in the cells of their grid; how many entries there are, which may lack room."""
+    start = pins.cell_start
+    for at in range(start.shape[0]):
+        start[at] = 0
+    for k in range(count):
+        _enter(k, pins, False)
+    total = 0
+    for at in range(start.shape[0]):
+        total += start[at]
+        start[at] = total
+    if total <= pins.cell_edge.shape[0]:
+        for back in range(count):
+            _enter(count - 1 - back, pins, True)
+    return total
+
+
+@kernel
+def _find_pinned(given: PinSources, pins: Terrain, work: PinScratch) -> int:
+    return find_pinned(given, pins, work)
+
+
+@kernel
+def _fill_cells(count: int, pins: Terrain) -> int:
+    return fill_cells(count, pins)
+
+
+def pinned_edges(world: World, edge_a: Slots, edge_b: Slots, side: Slots) -> Terrain:
+    """Those of the edges a to b of bodies that pins hold at both ends, as terrain; chain = the edge."""
+    room = len(edge_a)
+    if not room:
+        return NO_PINS
+    a, b, solid, chain, order, spare = np.zeros((6, room), np.int64)
+    friction, restitution, length = np.zeros((3, room))
+    pins = NO_PINS._replace(
+        vertex=np.zeros((2 * room, 2)), edge_a=a, edge_b=b, solid=solid, chain=chain, friction=friction,
+        restitution=restitution, corner=np.zeros(2), cell=np.ones(1), size=np.zeros(2, np.int64),
+    )  # fmt: skip
+    given = PinSources(world.position, world.velocity, world.inverse_mass, edge_a, edge_b, side)
+    count = _find_pinned(given, pins, PinScratch(length, order, spare))
+    cells = int(pins.size[0] * pins.size[1])
+    if not count:
+        return NO_PINS
+    pins = pins._replace(
+        vertex=pins.vertex[: 2 * count], edge_a=a[:count], edge_b=b[:count], solid=solid[:count], chain=chain[:count],
+        friction=friction[:count], restitution=restitution[:count], cell_start=np.zeros(cells + 1, np.int64),
+        cell_edge=np.zeros(4 * count, np.int64), tip_start=np.zeros(cells + 1, np.int64),
+    )  # fmt: skip
+    entries = _fill_cells(count, pins)
+    if entries > len(pins.cell_edge):
+        pins = pins._replace(cell_edge=np.zeros(entries, np.int64))
+        _fill_cells(count, pins)
+    return pins._replace(cell_edge=pins.cell_edge[:entries])

@@ -1,0 +1,190 @@
+"""What the matrix of the direct solver is made of: which springs, constraints and particles, and what those join."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.collision.types import Flags
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.joints.limited_springs import unlimited_active
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
+
+# Corners at most of a constraint that is added to the matrix; one of more is wide.
+NARROW = 3
+# Places in `counts`: springs of the matrix, constraints and their corners, free particles, pinned ones, links between
+# free ones, springs of Hooke's law.
+SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, HOOKE, COUNTS = range(8)
+
+
+class MatrixSources(NamedTuple):
+    """What the matrix follows from: see StateArrays; unlimited (m,): springs that act and are no joints."""
+
+    origin: Floats
+    inverse_mass: Floats
+    particle_a: NDArray[np.int32]
+    particle_b: NDArray[np.int32]
+    law: NDArray[np.int8]
+    constraint_kind: NDArray[np.int8]
+    constraint_corners: NDArray[np.int32]
+    constraint_active: Flags
+    corner_particle: NDArray[np.int32]
+    unlimited: Flags
+
+
+class MatrixContents(NamedTuple):
+    """What is in the matrix, slots ascending, in arrays with room for all there is.
+
+    spring; constraint, those with a free corner, k of them: corners corner[start[k]:start[k + 1]]. particle: free ones,
+    the nodes, then pinned ones; number (n,): place of each in that, -1: none. link_a, link_b: nodes that are joined, of
+    a narrow constraint all, of a wide one each free corner and the next free one, past the pinned. x, y [m]: where
+    nodes were created. hooke (m,): springs of Hooke's law, which are no part of it.
+    """
+
+    spring: Slots
+    constraint: Slots
+    start: Slots
+    corner: Slots
+    particle: Slots
+    number: Slots
+    link_a: Slots
+    link_b: Slots
+    x: Floats
+    y: Floats
+    hooke: Flags
+
+
+@inner_kernel
+def _choose_springs(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
+    springs = 0
+    hooke = 0
+    for s in range(given.law.shape[0]):
+        a = given.particle_a[s]
+        b = given.particle_b[s]
+        chosen.hooke[s] = given.unlimited[s] and given.law[s] == LAW_HOOKE
+        if chosen.hooke[s]:
+            hooke += 1
+        moves = given.inverse_mass[a] > 0.0 or given.inverse_mass[b] > 0.0
+        if moves and given.unlimited[s] and given.law[s] == LAW_NISSEN:
+            chosen.spring[springs] = s
+            chosen.number[a] = chosen.number[b] = 0
+            springs += 1
+    counts[SPRINGS] = springs
+    counts[HOOKE] = hooke
+
+
+@inner_kernel
+def _choose_constraints(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
+    constraints = 0
+    corners = 0
+    last = 0
+    chosen.start[0] = 0
+    for k in range(given.constraint_kind.shape[0]):
+        first = last
+        last = first + given.constraint_corners[k]
+        moves = False
+        for corner in range(first, last):
+            moves = moves or given.inverse_mass[given.corner_particle[corner]] > 0.0
+        if not (moves and given.constraint_active[k]):
+            continue
+        for corner in range(first, last):
+            chosen.corner[corners] = corner
+            chosen.number[given.corner_particle[corner]] = 0
+            corners += 1
+        chosen.constraint[constraints] = k
+        constraints += 1
+        chosen.start[constraints] = corners
+    counts[CONSTRAINTS] = constraints
+    counts[CORNERS] = corners
+
+
+@inner_kernel
+def _number_particles(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
+    # The free ones that something holds, then the pinned ones.
+    count = 0
+    for p in range(chosen.number.shape[0]):
+        if chosen.number[p] == 0 and given.inverse_mass[p] > 0.0:
+            chosen.particle[count] = p
+            chosen.x[count] = given.origin[p, 0]
+            chosen.y[count] = given.origin[p, 1]
+            count += 1
+    counts[NODES] = count
+    for p in range(chosen.number.shape[0]):
+        if chosen.number[p] == 0 and not given.inverse_mass[p] > 0.0:
+            chosen.particle[count] = p
+            count += 1
+    counts[ANCHORS] = count - counts[NODES]
+    for k in range(count):
+        chosen.number[chosen.particle[k]] = k
+
+
+@inner_kernel
+def _link(p: int, q: int, count: int, nodes: int, chosen: MatrixContents) -> int:
+    # Join two particles, where both are free; how many links there are then.
+    a = chosen.number[p]
+    b = chosen.number[q]
+    if a >= nodes or b >= nodes:
+        return count
+    chosen.link_a[count] = a
+    chosen.link_b[count] = b
+    return count + 1
+
+
+@inner_kernel
+def _find_links(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
+    nodes = counts[NODES]
+    count = 0
+    for k in range(counts[SPRINGS]):
+        s = chosen.spring[k]
+        count = _link(given.particle_a[s], given.particle_b[s], count, nodes, chosen)
+    for k in range(counts[CONSTRAINTS]):
+        first, last = chosen.start[k], chosen.start[k + 1]
+        if last - first <= narrow:
+            for c in range(3):
+                p = given.corner_particle[chosen.corner[first + c]]
+                q = given.corner_particle[chosen.corner[first + (c + 1) % 3]]
+                count = _link(p, q, count, nodes, chosen)
+        else:
+            before = -1
+            for at in range(first, last):
+                p = given.corner_particle[chosen.corner[at]]
+                if given.inverse_mass[p] > 0.0:
+                    if before >= 0:
+                        count = _link(before, p, count, nodes, chosen)
+                    before = p
+    counts[LINKS] = count
+
+
+@inner_kernel
+def choose_for_matrix(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
+    """Choose what is in the matrix, and say in counts (COUNTS,) how much it is; narrow: see NARROW."""
+    for p in range(chosen.number.shape[0]):
+        chosen.number[p] = -1
+    _choose_springs(given, chosen, counts)
+    _choose_constraints(given, chosen, counts)
+    _number_particles(given, chosen, counts)
+    _find_links(given, chosen, narrow, counts)
+
+
+@kernel
+def _choose_for_matrix(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
+    choose_for_matrix(given, chosen, narrow, counts)
+
+
+def chosen_of(world: World) -> tuple[MatrixSources, MatrixContents, list[int]]:
+    """What is in the matrix of a world, with what that follows from, and how much it is, by place in `counts`."""
+    of_world = [getattr(world, name) for name in MatrixSources._fields[:9]]
+    given, counts = MatrixSources._make([*of_world, unlimited_active(world)]), np.zeros(COUNTS, np.int64)
+    particles, springs, constraints = world.particle_count, world.spring_count, world.constraint_count
+    corners = len(world.corner_particle)
+    particle, number = np.zeros((2, particles), np.int64)
+    # Of c corners a narrow constraint has c links, and a wide one fewer.
+    link_a, link_b = np.zeros((2, springs + corners), np.int64)
+    x, y = np.zeros((2, particles))
+    chosen = MatrixContents(
+        np.zeros(springs, np.int64), np.zeros(constraints, np.int64), np.zeros(constraints + 1, np.int64),
+        np.zeros(corners, np.int64), particle, number, link_a, link_b, x, y, np.zeros(springs, np.bool_),
+    )  # fmt: skip
+    _choose_for_matrix(given, chosen, NARROW, counts)
+    return given, chosen, counts.tolist()

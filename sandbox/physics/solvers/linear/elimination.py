@@ -1,0 +1,183 @@
+"""Elimination order of a whole system: body by body, large ones dissected, the others by minimum degree."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.components import label_bodies
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.solvers.linear import dissection
+from sandbox.physics.solvers.linear.dissection import (
+    LEAF_SIZE,
+    TOO_SHORT,
+    Dissection,
+    Halving,
+    begin_dissections,
+    dissect,
+    new_halving,
+    room_for_fronts,
+)
+from sandbox.physics.solvers.linear.minimum_degree import FILL_GUESS, Ordering, order_graph, room_to_order
+from sandbox.physics.state import Floats, Slots
+from sandbox.physics.topology.sorting import list_by_key, list_neighbours
+
+# First guess of rows in borders per node; too low costs one more pass, too high memory.
+BORDER_GUESS = 8
+# Places in `counts`: bodies, fronts, rows in borders, nodes that are ordered by minimum degree, blocks of their factor.
+BODIES, FRONTS, BORDERS, SMALL, BLOCKS, COUNTS = range(6)
+# What ordering comes to.
+DONE, BORDERS_TOO_SHORT, BLOCKS_TOO_SHORT = range(3)
+
+
+class Links(NamedTuple):
+    """Pairs of n nodes that are joined, a and b (l,); x, y (n,): where nodes were created [m]."""
+
+    a: Slots
+    b: Slots
+    x: Floats
+    y: Floats
+
+
+class Elimination(NamedTuple):
+    """The order of n nodes, which are the rows of the matrix from then on: order (n,) by row, rank (n,) by node.
+
+    body (n,) by row: the number of its body. Of b bodies in the order of their lowest nodes: first_row (b+1,), lowest
+    (b,) node, first_front (b+1,). row_of: the row of each of the nodes ordered by minimum degree, by their numbers.
+    label, number, ends (n,) are scratch.
+    """
+
+    order: Slots
+    rank: Slots
+    body: Slots
+    first_row: Slots
+    lowest: Slots
+    first_front: Slots
+    label: Slots
+    number: Slots
+    row_of: Slots
+    ends: Slots
+
+
+@inner_kernel
+def _find_bodies(links: Links, made: Elimination) -> int:
+    # List the nodes by body, ascending, in `order`; how many bodies there are.
+    nodes = made.order.shape[0]
+    for node in range(nodes):
+        made.label[node] = node
+    label_bodies(links.a, links.b, made.label)
+    bodies = 0
+    for node in range(nodes):
+        if made.label[node] == node:
+            made.lowest[bodies] = node
+            made.number[node] = bodies
+            bodies += 1
+        made.ends[node] = made.number[made.label[node]]
+    list_by_key(made.ends, nodes, bodies, made.first_row, made.order)
+    for b in range(bodies):
+        for row in range(made.first_row[b], made.first_row[b + 1]):
+            made.body[row] = b
+    return bodies
+
+
+@inner_kernel
+def _dissect_bodies(
+    bodies: int, smallest: int, narrowest: float, leaf: int, made: Elimination, nodes: Halving, fronts: Dissection
+) -> int:
+    # Dissect large bodies; how many fronts there are, or TOO_SHORT.
+    count = 0
+    made.first_front[0] = 0
+    if nodes.part.shape[0] > 0:
+        begin_dissections(nodes, fronts)
+    for b in range(bodies):
+        first, last = made.first_row[b], made.first_row[b + 1]
+        if last - first >= smallest:
+            for row in range(first, last):
+                nodes.by_x[row] = nodes.by_y[row] = made.order[row]
+            count = dissect(first, last, count, made.rank, nodes, fronts, leaf, narrowest)
+            if count < 0:
+                return TOO_SHORT
+            for row in range(first, last if count > made.first_front[b] else first):
+                made.order[row] = nodes.by_x[row]
+        made.first_front[b + 1] = count
+    return count
+
+
+@inner_kernel
+def _number_small(bodies: int, made: Elimination) -> int:
+    # Number the nodes of bodies without fronts; how many there are. `ends` holds the body of each node.
+    small = 0
+    for node in range(made.number.shape[0]):
+        b = made.ends[node]
+        made.number[node] = -1
+        if made.first_front[b] == made.first_front[b + 1]:
+            made.number[node] = small
+            made.row_of[small] = node
+            small += 1
+    return small
+
+
+@inner_kernel
+def eliminate(
+    links: Links, smallest: int, narrowest: float, leaf: int, made: Elimination, nodes: Halving, fronts: Dissection,
+    small: Ordering, counts: Slots,
+) -> int:  # fmt: skip
+    """Order the nodes for elimination; counts (COUNTS,): how much there is of all; one of the codes above.
+
+    Bodies of `smallest` nodes or more are dissected, unless their borders have fewer rows than `narrowest` on average.
+    nodes.start and near: filled in with the neighbours of each node. small: the order of all others, in numbers of
+    their own.
+    """
+    size = made.order.shape[0]
+    list_neighbours(links.a, links.b, links.a.shape[0], size, nodes.start, nodes.near, small.graph.near, made.ends)
+    bodies = _find_bodies(links, made)
+    count = _dissect_bodies(bodies, smallest, narrowest, leaf, made, nodes, fronts)
+    if count < 0:
+        return BORDERS_TOO_SHORT
+    counts[BODIES] = bodies
+    counts[FRONTS] = count
+    counts[BORDERS] = fronts.border_start[count]
+    counts[SMALL] = _number_small(bodies, made)
+    if not order_graph(nodes.start, nodes.near, made.number, small):
+        return BLOCKS_TOO_SHORT
+    counts[BLOCKS] = small.columns.start[counts[SMALL]]
+    body_of = made.ends
+    for k in range(counts[SMALL]):
+        # From the first row of its body on: where the next one goes is kept at the body's lowest node.
+        node = made.row_of[small.order[k]]
+        lowest = made.lowest[body_of[node]]
+        made.order[made.first_row[body_of[node]] + made.label[lowest] - lowest] = node
+        made.label[lowest] += 1
+    for row in range(size):
+        made.rank[made.order[row]] = row
+    for k in range(counts[SMALL]):
+        made.row_of[k] = made.rank[made.row_of[k]]
+    return DONE
+
+
+@kernel
+def _eliminate(
+    links: Links, smallest: int, narrowest: float, leaf: int, made: Elimination, nodes: Halving, fronts: Dissection,
+    small: Ordering, counts: Slots,
+) -> int:  # fmt: skip
+    return eliminate(links, smallest, narrowest, leaf, made, nodes, fronts, small, counts)
+
+
+def order_for_elimination(links: Links) -> tuple[Elimination, Dissection, Ordering, list[int]]:
+    """The elimination order of nodes, with the dissection of large bodies, the order of all others, and `counts`."""
+    nodes, pairs, counts = len(links.x), len(links.a), np.zeros(COUNTS, np.int64)
+    large = nodes if nodes >= dissection.SMALLEST_BODY else 0
+    blocks, borders = FILL_GUESS * nodes + 16, BORDER_GUESS * large
+    order, rank, body, lowest, label, number, row_of, ends = np.zeros((8, nodes), np.int64)
+    first_row, first_front, start = np.zeros((3, nodes + 1), np.int64)
+    made = Elimination(order, rank, body, first_row, lowest, first_front, label, number, row_of, ends)
+    halving = new_halving(start, np.zeros(2 * pairs, np.int64), links.x, links.y, large)
+    while True:
+        fronts, small = room_for_fronts(large, borders), room_to_order(nodes, pairs, blocks)
+        outcome = _eliminate(
+            links, dissection.SMALLEST_BODY, dissection.NARROWEST_BORDER, LEAF_SIZE, made, halving, fronts, small,
+            counts,
+        )  # fmt: skip
+        if outcome == DONE:
+            return made, fronts, small, counts.tolist()
+        blocks *= 2 if outcome == BLOCKS_TOO_SHORT else 1
+        borders *= 2 if outcome == BORDERS_TOO_SHORT else 1

@@ -1,0 +1,148 @@
+"""Where the numbers of fronts lie: those that stay, and those that wait for a parent."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.solvers.linear import parallel
+from sandbox.physics.solvers.linear.dissection import DEEPEST, Dissection
+from sandbox.physics.solvers.linear.fronts import PANEL, Fronts, Scratch
+from sandbox.physics.solvers.linear.parallel import CALL_LENGTH, find_fork
+from sandbox.physics.state import Slots
+from sandbox.physics.topology.sorting import place_among
+
+# Places in `lengths`: of numbers, of what remains, of a row of the widest front.
+NUMBERS, REMAINDER, WIDEST, LENGTHS = range(4)
+
+
+class FrontPlaces(NamedTuple):
+    """Where the fronts lie: see Fronts. By level: size of what the largest front leaves, and what lies before; before
+    (f+1,) is scratch."""
+
+    of_row: Slots
+    diagonal: Slots
+    row_width: Slots
+    width: Slots
+    base: Slots
+    remains: Slots
+    fork: Slots
+    size: Slots
+    beyond: Slots
+    before: Slots
+
+
+@inner_kernel
+def _lay_out_numbers(found: Dissection, places: FrontPlaces, lengths: Slots) -> None:
+    for row in range(places.of_row.shape[0]):
+        places.of_row[row] = places.diagonal[row] = places.row_width[row] = -1
+    total = 0
+    widest = 0
+    for front in range(found.first.shape[0]):
+        first = found.first[front]
+        pivots = found.last[front] - first
+        width = 2 * (pivots + found.border_start[front + 1] - found.border_start[front])
+        places.width[front] = width
+        places.base[front] = total
+        for k in range(pivots):
+            places.of_row[first + k] = front
+            places.diagonal[first + k] = total + 2 * k * (width + 1)
+            places.row_width[first + k] = width
+        total += 2 * pivots * width
+        widest = max(widest, width)
+    lengths[NUMBERS] = total
+    lengths[WIDEST] = widest
+
+
+@inner_kernel
+def _lay_out_remainders(found: Dissection, places: FrontPlaces, lengths: Slots) -> int:
+    # Two fronts of a level wait at most, one per side, of each half; nothing lies below the widest front. How much one
+    # half has in all.
+    for level in range(DEEPEST):
+        places.size[level] = 0
+    for front in range(found.first.shape[0]):
+        border = 2 * (found.border_start[front + 1] - found.border_start[front])
+        level = found.place[front, 0]
+        places.size[level] = max(places.size[level], border * border)
+    total = 0
+    for level in range(DEEPEST):
+        places.beyond[level] = lengths[WIDEST] + 2 * total
+        total += places.size[level]
+    for front in range(found.first.shape[0]):
+        level = found.place[front, 0]
+        places.remains[front] = places.beyond[level] + found.place[front, 1] * places.size[level]
+    return 2 * total
+
+
+@inner_kernel
+def lay_out_fronts(
+    first_front: Slots, bodies: int, found: Dissection, places: FrontPlaces, worth: int, lengths: Slots
+) -> None:
+    """Lay out the fronts of dissected bodies, and say in lengths (LENGTHS,) what they need.
+
+    first_front (b+1,): of each body. worth: multiplications that halves must spare.
+    """
+    _lay_out_numbers(found, places, lengths)
+    half = _lay_out_remainders(found, places, lengths)
+    forks = False
+    for front in range(found.first.shape[0]):
+        places.fork[front, 0] = places.fork[front, 1] = 0
+    for b in range(bodies):
+        first = first_front[b]
+        last = first_front[b + 1]
+        if first < last:
+            begin, end = find_fork(first, last, found, places.before, worth)
+            places.fork[last - 1, 0] = begin
+            places.fork[last - 1, 1] = end
+            forks = forks or end > 0
+            for front in range(begin, end):
+                places.remains[front] += half
+    lengths[REMAINDER] = lengths[WIDEST] + (2 * half if forks else half)
+
+
+@kernel
+def _lay_out_fronts(
+    first_front: Slots, bodies: int, found: Dissection, places: FrontPlaces, worth: int, lengths: Slots
+) -> None:
+    lay_out_fronts(first_front, bodies, found, places, worth, lengths)
+
+
+@inner_kernel
+def block_in_front(low: int, high: int, found: Dissection, places: FrontPlaces) -> int:
+    """Where the block between the rows low < high of a large body begins in the numbers of its fronts."""
+    front = places.of_row[low]
+    first = found.first[front]
+    column = high - first
+    if high >= found.last[front]:
+        begin = found.border_start[front]
+        at = place_among(high, found.border, begin, found.border_start[front + 1])
+        column = found.last[front] - first + at - begin
+    return places.base[front] + 2 * (low - first) * places.width[front] + 2 * column
+
+
+def new_fronts(
+    rows: int, first_front: Slots, bodies: int, room: Dissection, fronts: int, borders: int
+) -> tuple[Dissection, FrontPlaces, Fronts]:
+    """The fronts of a matrix of so many rows, of those found in room; first_front (b+1,): of each body."""
+    found = Dissection(
+        room.first[:fronts], room.last[:fronts], room.child[:fronts], room.place[:fronts],
+        room.border_start[: fronts + 1], room.border[:borders], room.to_parent[:borders],
+    )  # fmt: skip
+    of_row, diagonal, row_width = np.zeros((3, rows), np.int64)
+    width, base, remains = np.zeros((3, fronts), np.int64)
+    size, beyond = np.zeros((2, DEEPEST), np.int64)
+    fork, lengths = np.zeros((fronts, 2), np.int64), np.zeros(LENGTHS, np.int64)
+    places = FrontPlaces(
+        of_row, diagonal, row_width, width, base, remains, fork, size, beyond, np.zeros(fronts + 1, np.int64)
+    )  # fmt: skip
+    _lay_out_fronts(first_front, bodies, found, places, parallel.WORTH_HALVING, lengths)
+    numbers, remainder, widest = lengths.tolist()
+    return found, places, Fronts(
+        of_row, diagonal, row_width, found.first, found.last, found.child, found.border_start, found.border,
+        found.to_parent, width, base, remains, np.zeros(numbers), np.zeros(remainder), np.zeros(2 * rows), fork,
+        _scratch(widest), _scratch(widest), np.zeros((rows, 2)), np.zeros(CALL_LENGTH, np.int64),
+    )  # fmt: skip
+
+
+def _scratch(widest: int) -> Scratch:
+    return Scratch(np.zeros(int(PANEL) * widest), np.zeros(int(PANEL)), np.zeros(widest))
