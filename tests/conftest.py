@@ -89,21 +89,21 @@ def nothing_is_derived_from_a_topology_that_was_changed_behind_a_worlds_back():
     """What a world keeps derived is made for the topology that it has: nobody writes those arrays but its methods."""
     derived = World.derived
 
-    def checked(world, make):
+    def checked(world, make, of_hands=True):
         seen = world.__dict__.get(SEEN)
         if seen is None or seen[0] < FIRST_LOOKS:
             look(world, *(seen or (0, -1, ())))
         elif world.tick % LATER == 0 and world.tick != seen[3]:
             look(world, *seen)
-        return derived(world, make)
+        return derived(world, make, of_hands)
 
     def look(world, looks, version, arrays, _=0):
         # Kept on the world: every tick asks some ten times, and a weak dictionary would cost more than the answers.
         present = [getattr(world, name).tobytes() for name in TOPOLOGY]
-        if version == world.topology_version:
+        if version == world.topology_version + world.hand_version:
             changed = [name for name, now, then in zip(TOPOLOGY, present, arrays, strict=True) if now != then]
             assert not changed, f"{', '.join(changed)} written in place: use World.change"
-        world.__dict__[SEEN] = looks + 1, world.topology_version, present, world.tick
+        world.__dict__[SEEN] = looks + 1, world.topology_version + world.hand_version, present, world.tick
 
     World.derived = checked
     yield

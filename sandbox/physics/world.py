@@ -70,9 +70,11 @@ class World(StateArrays):
     """
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
-        # Never state: counts the changes of what solvers and collision derive from; whether any may be `unmoved`.
-        self.topology_version, self.may_fly = 0, True
+        # Never state: counts the changes of what solvers and collision derive from, those by hands apart; whether any
+        # may be `unmoved`.
+        self.topology_version, self.hand_version, self.may_fly = 0, 0, True
         self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
+        self._lasting: dict[Callable[[World], Any], Any] = {}
         self._room = Capacity()
         for column in COLUMNS:
             setattr(self, column.name, column.empty())
@@ -109,18 +111,26 @@ class World(StateArrays):
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy starts from: all but what was derived, which may hold a thread."""
-        return self.__dict__ | {"_derived": {}, "_room": Capacity()}
+        return self.__dict__ | {"_derived": {}, "_lasting": {}, "_room": Capacity()}
 
-    def derived(self, make: Callable[["World"], Derived]) -> Derived:
-        """The result of `make` for this world, kept until `topology_version` rises or an array is replaced.
+    def derived(self, make: Callable[["World"], Derived], of_hands: bool = True) -> Derived:
+        """The result of `make` for this world, kept until topology changes or an array is replaced.
 
-        For layouts, scratch and pointers that outlive a step; they follow from the arrays, so they are no state.
+        of_hands: whether it also follows from what hands hold, which changes far more often. For layouts and scratch
+        that outlive a step; they follow from the arrays, so they are no state.
         """
+        present = self.topology_version + self.hand_version if of_hands else self.topology_version
         version, kept = self._derived.get(make, (-1, None))
-        if version != self.topology_version:
+        if version != present:
             kept = make(self)
-            self._derived[make] = self.topology_version, kept
+            self._derived[make] = present, kept
         return kept
+
+    def lasting(self, make: Callable[["World"], Derived]) -> Derived:
+        """The result of `make` for this world, made once; who made it follows changes of topology itself."""
+        if make not in self._lasting:
+            self._lasting[make] = make(self)
+        return self._lasting[make]
 
     def change(self, name: str, values: ArrayLike, slots: Any = slice(None)) -> None:
         """Write values into slots of the state array of that attribute, in place, topology or not, and trust them."""
@@ -193,7 +203,7 @@ class World(StateArrays):
     @property
     def has_contacts(self) -> bool:
         """Whether anything in the world can touch anything."""
-        return self.derived(_collides)
+        return self.derived(_collides, of_hands=False)
 
     @property
     def equipment(self) -> Equipment:
@@ -536,18 +546,23 @@ class World(StateArrays):
         are nearer to this one share the force; 0: it bears all of it.
         """
         self.reserve_grabs()
-        cursor, spring = self.grab_particle + grab, self.grab_spring + grab
-        self.change("particle_active", True, cursor)
+        cursor = self._set_hand(grab, particle, True)
         self.position[cursor] = target
         self.velocity[cursor] = 0.0
         self.slow_velocity[cursor] = 0.0
-        self.change("particle_b", particle, spring)
-        self.change("spring_active", True, spring)
-        self.change("law", LAW_HAND, spring)
         self.hand_strength[grab], self.hand_radius[grab] = strength, radius
         self.hand_force[grab] = 0.0
         self.spin[particle] = 0.0
         self.disturb(particle)
+
+    def _set_hand(self, grab: int, particle: int, holds: bool) -> int:
+        """Let a hand hold a particle, or nothing; its cursor."""
+        cursor, spring = self.grab_particle + grab, self.grab_spring + grab
+        self.particle_active[cursor] = self.spring_active[spring] = holds
+        self.particle_b[spring] = particle
+        self.law[spring] = LAW_HAND if holds else LAW_NISSEN
+        self.hand_version += 1
+        return cursor
 
     def is_held(self, grab: int) -> bool:
         """Whether a grab holds a particle."""
@@ -568,15 +583,11 @@ class World(StateArrays):
 
     def release(self, grab: int) -> None:
         """Let go; the hand's slots wait for its next use. No bank keeps energy that the hand's work put into it."""
-        cursor, spring = self.grab_particle + grab, self.grab_spring + grab
-        self.change("particle_active", False, cursor)
         # Not begun anew: what overlaps where a hand lets go is no start, at which parting costs nothing.
-        held = np.arange(self.particle_count) == self.particle_b[spring]
+        held = np.arange(self.particle_count) == self.particle_b[self.grab_spring + grab]
         self.energy_bank[(self.energy_bank > 0.0) | (held & (self.energy_bank == 0.0))] = BANK_EMPTIED
+        cursor = self._set_hand(grab, 0, False)
         self.position[cursor] = self.velocity[cursor] = self.slow_velocity[cursor] = 0.0
-        self.change("particle_b", 0, spring)
-        self.change("spring_active", False, spring)
-        self.change("law", LAW_NISSEN, spring)
         self.hand_strength[grab] = self.hand_radius[grab] = 0.0
         self.hand_force[grab] = 0.0
 

@@ -155,10 +155,11 @@ def _find_sides(given: EdgeSources, chosen: int, outline: Outline, work: Outline
 
 @inner_kernel
 def _find_neighbours(given: EdgeSources, outline: Outline, work: OutlineScratch) -> int:
-    # What each particle is joined to, and which ones a spring or a constraint holds; how many springs there are.
+    # What each particle is joined to, and which ones a spring or a constraint holds; how many springs there are. Hands
+    # are told apart, in every tick.
     joined = 0
     for s in range(given.spring_active.shape[0]):
-        if given.spring_active[s]:
+        if given.spring_active[s] and given.material[s] != GRAB_MATERIAL:
             work.one[joined] = given.particle_a[s]
             work.other[joined] = given.particle_b[s]
             joined += 1
@@ -263,7 +264,7 @@ def _derive_edges(given: EdgeSources, outline: Outline, counts: Slots, work: Out
 
 def outline_of(world: World) -> Outline:
     """The outline of a world's bodies, made again after a change of topology."""
-    return world.derived(_make_outline)
+    return world.derived(_make_outline, of_hands=False)
 
 
 def _make_outline(world: World) -> Outline:

@@ -28,9 +28,19 @@ SIGNATURES: dict[str, Signature] = {}
 
 
 class _Words(bytearray):
-    """What a bundle points to, and the arrays that its words are the addresses of, which live as long."""
+    """What a bundle points to, and the arrays that its words are the addresses of, which live as long.
+
+    parts: the words and the signature of each item.
+    """
 
     items: Any
+    parts: list[tuple[bytes, Signature]]
+
+
+def owner_of(bundle: Any) -> Any:
+    """The object that holds what a bundle was made of, as `items`."""
+    base: Any = bundle.base
+    return base.obj if isinstance(base, memoryview) else base
 
 
 def _add_words(item: Any, words: list[int]) -> Signature:
@@ -68,14 +78,25 @@ def _dtype(signature: Signature, words: int) -> np.dtype[Any]:
     return dtype_of(name, words)
 
 
-def bundle(items: tuple[Any, ...]) -> Any:
+def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
     """One array with the addresses of all the arrays in `items`, which a kernel takes at the cost of one.
+
+    like: a bundle whose items some of these are; their addresses are taken from there.
 
     Raises:
         TypeError: for what is neither array nor tuple, and for arrays that are not contiguous.
     """
+    last = None if like is None else owner_of(like)
+    parts = [
+        last.parts[k] if last is not None and item is last.items[k] else _part(item) for k, item in enumerate(items)
+    ]
+    owner = _Words(b"".join(words for words, _ in parts))
+    owner.items, owner.parts = items, parts
+    signature = type(items), *(signature for _, signature in parts)
+    return np.frombuffer(owner, dtype=_dtype(signature, len(owner) // WORD))
+
+
+def _part(item: Any) -> tuple[bytes, Signature]:
     words: list[int] = []
-    signature = _add_words(items, words)
-    owner = _Words(np.array(words, dtype=np.int64).tobytes())
-    owner.items = items
-    return np.frombuffer(owner, dtype=_dtype(signature, len(words)))
+    signature = _add_words(item, words)
+    return np.array(words, dtype=np.int64).tobytes(), signature

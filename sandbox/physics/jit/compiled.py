@@ -135,9 +135,9 @@ def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
     kernel.ready().compile(types_of(arguments))
 
 
-def bundle(items: tuple[Any, ...]) -> Any:
+def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
     """Arrays and named tuples as one argument; where numba's inner parts are unknown, as many as they are."""
-    return items if _lending is None else bundles.bundle(items)
+    return items if _lending is None else bundles.bundle(items, like)
 
 
 def _contents(bundle: Any) -> Any:

@@ -7,6 +7,8 @@ from typing import Any, cast
 
 import numpy as np
 
+from sandbox.physics.jit.bundles import owner_of
+
 COMPILED = False
 
 
@@ -20,9 +22,13 @@ unsigned: Any = Unsigned
 class Bundle:
     """A bundle: what kernels get, and the objects that it was made of."""
 
-    def __init__(self, items: tuple[Any, ...]) -> None:
+    def __init__(self, items: tuple[Any, ...], like: "Bundle | None" = None) -> None:
         self.given = items
-        self.items = tuple(map(_viewed, items)) if not hasattr(items, "_make") else _viewed(items)
+        views = [
+            like.items[k] if like is not None and item is like.given[k] else _viewed(item)
+            for k, item in enumerate(items)
+        ]
+        self.items: Any = items._make(views) if hasattr(items, "_make") else tuple(views)
 
 
 @dataclass(frozen=True)
@@ -34,16 +40,9 @@ class InterpreterFunction:
     arguments: tuple[str, ...]
 
 
-def _made_of(bundle: Any) -> Any:
-    """The objects that a bundle for compiled kernels was made of."""
-    base: Any = bundle.base
-    owner: Any = base.obj if isinstance(base, memoryview) else base
-    return owner.items
-
-
 def _viewed(item: Any) -> Any:
     if isinstance(item, np.ndarray):
-        return memoryview(cast(Any, item)) if item.dtype.fields is None else Bundle(_made_of(item))
+        return memoryview(cast(Any, item)) if item.dtype.fields is None else Bundle(owner_of(item).items)
     if isinstance(item, tuple) and hasattr(item, "_make"):
         return cast(Any, item)._make(map(_viewed, item))
     return item
@@ -76,9 +75,9 @@ def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
     kernel.note(*arguments)
 
 
-def bundle(items: tuple[Any, ...]) -> Any:
-    """Arrays and named tuples as one argument, viewed once."""
-    return Bundle(items)
+def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
+    """Arrays and named tuples as one argument, viewed once; like: a bundle whose items some of these are."""
+    return Bundle(items, like)
 
 
 def contents(bundle: Any) -> Any:

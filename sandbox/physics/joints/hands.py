@@ -75,7 +75,7 @@ class Grips(NamedTuple):
 
 def bodies_of(world: World) -> Slots:
     """A label for each particle (n,): what springs and constraints join by free particles has the same."""
-    return world.derived(_label_bodies)
+    return world.derived(_label_bodies, of_hands=False)
 
 
 def _label_bodies(world: World) -> Slots:

@@ -35,7 +35,7 @@ class LimitedRows(NamedTuple):
 
 def force_limits(world: World) -> Floats:
     """The force [N] (m,) that each spring gives at most; infinite: without a limit."""
-    return world.derived(_find_limits)
+    return world.derived(_find_limits, of_hands=False)
 
 
 def _find_limits(world: World) -> Floats:
@@ -54,7 +54,7 @@ def limited_springs(world: World) -> Slots:
 
 def unlimited_active(world: World) -> NDArray[np.bool_]:
     """Which springs (m,) are active and no rows."""
-    return world.derived(_find_unlimited)
+    return world.derived(_find_unlimited, of_hands=False)
 
 
 def _find_unlimited(world: World) -> NDArray[np.bool_]:

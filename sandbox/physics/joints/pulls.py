@@ -45,7 +45,7 @@ def pulls_of(world: World) -> list[Pull]:
 
 
 def _joined_to_pins(world: World) -> frozenset[int]:
-    return world.derived(_find_joined)
+    return world.derived(_find_joined, of_hands=False)
 
 
 def _find_joined(world: World) -> frozenset[int]:

@@ -24,6 +24,7 @@ from sandbox.physics.untangling.crossing_candidates import ShapeBounds
 from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted
 from sandbox.physics.untangling.overlaps import CROSSINGS, OVERLAPS, Overlaps, find_crossings, pair_overlaps
 from sandbox.physics.untangling.parting import MovedParticles, part_overlaps
+from sandbox.physics.world import GRAB_COUNT
 
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
 # crossings of outlines, pairs of shapes that overlap; contacts that are left to a solver.
@@ -36,7 +37,8 @@ class Collisions(NamedTuple):
     """What topology decides of a world's collisions, and arrays that a step fills in.
 
     bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver. kept: those of the last step, the
-    first counts[KEPT] of which are the world's own. moved (n,): scratch.
+    first counts[KEPT] of which are the world's own. By particle (n,): attached to springs, constraints or hands; moved:
+    scratch.
     """
 
     outline: Outline
@@ -56,7 +58,21 @@ class Collisions(NamedTuple):
     shape_bounds: ShapeBounds
     overlaps: Overlaps
     moved: Flags
+    attached: Flags
     counts: Slots
+
+
+@inner_kernel
+def _find_attached(state: State, collisions: Collisions, grab_spring: int) -> None:
+    # Mark what springs, constraints or hands hold.
+    attached = collisions.attached
+    for p in range(attached.shape[0]):
+        attached[p] = collisions.outline.attached[p]
+    if grab_spring >= 0:
+        for s in range(grab_spring, grab_spring + GRAB_COUNT):
+            if state.spring_active[s]:
+                attached[state.particle_a[s]] = True
+                attached[state.particle_b[s]] = True
 
 
 @inner_kernel
@@ -101,13 +117,14 @@ def _find_overlaps(collisions: Collisions, larges: int) -> bool:
 
 
 @inner_kernel
-def detect(state: State, collisions: Collisions, tick: int, h: float) -> bool:
+def detect(state: State, collisions: Collisions, grab_spring: int, tick: int, h: float) -> bool:
     """Broad and narrow phase of a step of h [s]: its contacts, and which are left to a solver; whether there is room.
 
-    Bounces and impulses come later.
+    Bounces and impulses come later. grab_spring: the first spring of a hand, -1: there is none.
     """
     outline, colliders, counts, boxes = collisions.outline, collisions.colliders, collisions.counts, collisions.boxes
-    _load_particles(state, outline.attached, colliders)
+    _find_attached(state, collisions, grab_spring)
+    _load_particles(state, collisions.attached, colliders)
     if collisions.triangles.constraint.shape[0] > 0:
         find_inverted(
             state.position, state.constraint_rest, collisions.triangles, collisions.inversions, colliders.inverted
@@ -134,7 +151,7 @@ def detect(state: State, collisions: Collisions, tick: int, h: float) -> bool:
     if count > collisions.contacts.particle.shape[0]:
         return False
     counts[BOUND] = find_islands(
-        collisions.contacts, count, state.inverse_mass, outline.attached, collisions.islands
+        collisions.contacts, count, state.inverse_mass, collisions.attached, collisions.islands
     )  # fmt: skip
     _copy_bound(collisions.contacts, count, collisions.islands.bound, collisions.bound)
     return True
@@ -176,8 +193,7 @@ def separate_overlaps(state: State, start: Floats, collisions: Collisions) -> No
 def prepare_contacts(state: State, start: Floats, collisions: Collisions, h: float) -> None:
     """Find what bounces in a step of h [s], and give contacts the impulses that they begin with."""
     contacts, counts, bound = collisions.contacts, collisions.counts, collisions.bound
-    attached = collisions.outline.attached
-    find_bounces(contacts, counts[CONTACTS], start, state.velocity, attached, h, h / small_steps(h))
+    find_bounces(contacts, counts[CONTACTS], start, state.velocity, collisions.attached, h, h / small_steps(h))
     carry_over(contacts, counts[CONTACTS], collisions.kept, counts[KEPT])
     k = 0
     for c in range(counts[CONTACTS]):

@@ -1,7 +1,6 @@
 """Makes the block of a world, and makes it larger where a step wants more room."""
 
 import functools
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,13 +14,13 @@ from sandbox.physics.flight import new_flight
 from sandbox.physics.jit import bundle, contents, kernel
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.joints.joint_sweep import joints_by_mass, new_joints, no_joints
+from sandbox.physics.joints.rows import JointRows
 from sandbox.physics.pipeline.block import COUNT, MAY_FLY, TICK, Coefficients, WorldBlock
 from sandbox.physics.pipeline.collide import (
     BOUND,
-    CROSSED,
+    CONTACTS,
     ENTRIES,
     KEPT,
-    OVERLAPPING,
     Collisions,
     bound_terrain,
 )
@@ -53,28 +52,74 @@ def _bound_terrain(lent: Any) -> None:
     bound_terrain(world.collisions)
 
 
-@dataclass(eq=False)
 class Block:
-    """The block of a world, and the pointer that kernels take.
+    """The block of a world, which follows its topology and settings, and the pointer that kernels take.
 
-    settings: those that it holds. wanted: the largest counts of collisions so far. kept: the contacts of the last tick,
-    the first of those in the block; they are the world's own, which so has them without a copy.
+    wanted: the largest counts of collisions so far. kept: the contacts of the last tick, the first of those in the
+    block; they are the world's own, which so has them without a copy.
     """
 
     arrays: WorldBlock
-    settings: WorldSettings
-    wanted: Slots
     pointer: Any = None
-    kept: KeptContacts = NOTHING_KEPT
+
+    def __init__(self, world: World) -> None:
+        self.wanted = np.zeros(BOUND, np.int64)
+        self._room = _Room(0, 0)
+        self._make(world)
+
+    def _make(self, world: World) -> None:
+        self._topology, self._hands, self._settings = world.topology_version, world.hand_version, world.settings
+        self.wanted[[CONTACTS, KEPT]] = np.maximum(self.wanted[[CONTACTS, KEPT]], len(world.contact_particle))
+        self.wanted[ENTRIES] = max(self.wanted[ENTRIES], world.particle_count)
+        springs, constraints = world.spring_count, world.constraint_count
+        collisions, joints = _make_collisions(world, self.wanted), joints_of(world)
+        solving = _for_solver(world, joints.rows, len(collisions.bound.particle), self._room)
+        self.arrays = WorldBlock(
+            state=state_of(world),
+            good=good_of(world),
+            numbers=np.zeros(7),
+            choices=np.zeros(5, np.int64),
+            plan=_plan_of(world),
+            progress=np.zeros(5, np.int64),
+            start=np.zeros((world.particle_count, 2)),
+            start_length=np.zeros(springs),
+            shortest=np.zeros(GRAB_COUNT),
+            coefficients=Coefficients(*np.zeros((2, springs)), *np.zeros((2, constraints))),
+            drives=drives_of(world.actuators),
+            limits=_limits_of(world),
+            flight=new_flight(world.particle_count),
+            collisions=collisions,
+            joints=joints,
+            triangles=world_triangles(world),
+            **solving._asdict(),
+        )
+        self.kept = NOTHING_KEPT
+        _load_settings(world.settings, self.arrays)
+        self._point()
+        _bound_terrain(self.pointer)
+
+    def follow(self, world: World) -> None:
+        """Follow what has changed of a world's topology."""
+        if self._topology != world.topology_version:
+            self._make(world)
+        elif self._hands != world.hand_version:
+            self._hands = world.hand_version
+            arrays, joints = self.arrays, joints_of(world)
+            solving = _Solving(arrays.system, arrays.workspace, arrays.iteration, arrays.explicit)
+            solving = _with_joints(solving, world, joints.rows)
+            self.arrays = arrays._replace(joints=joints, **solving._asdict())
+            self._point()
 
     def begin(self, world: World) -> None:
         """Take over a world's settings and tick, and the contacts of its last step, where they are not those here."""
-        if self.settings is not world.settings:
-            if self.settings.solver != world.settings.solver:
-                self.arrays = _with_solver(world, self.arrays)
-                self.point()
-            self.settings = world.settings
-            _load_settings(self.settings, self.arrays)
+        if self._settings is not world.settings:
+            if self._settings.solver != world.settings.solver:
+                contacts = len(self.arrays.collisions.bound.particle)
+                solving = _for_solver(world, self.arrays.joints.rows, contacts, self._room)
+                self.arrays = self.arrays._replace(plan=_plan_of(world), **solving._asdict())
+                self._point()
+            self._settings = world.settings
+            _load_settings(world.settings, self.arrays)
         if world.contact_impulse is not self.kept.impulse and self._has_other_contacts(world):
             self._take_contacts(world)
         progress = self.arrays.progress
@@ -91,13 +136,17 @@ class Block:
 
     def grow(self, world: World) -> None:
         """Make the room that a step has found to be too little; the contacts of the last step stay."""
-        counts, delassus = self.arrays.workspace.islands.counts, self.arrays.workspace.delassus
-        numbers, columns = int(counts[NUMBERS]), int(counts[COLUMNS])
-        if numbers > len(delassus.numbers) or columns > len(delassus.columns):
-            numbers, columns = max(len(delassus.numbers), numbers), max(len(delassus.columns), columns)
-            delassus = delassus._replace(numbers=np.zeros(MORE_ROOM * numbers), columns=np.zeros(MORE_ROOM * columns))
-            self.arrays = self.arrays._replace(workspace=self.arrays.workspace._replace(delassus=delassus))
-            self.point()
+        workspace = self.arrays.workspace
+        numbers, columns = int(workspace.islands.counts[NUMBERS]), int(workspace.islands.counts[COLUMNS])
+        if numbers > self._room.numbers or columns > self._room.columns:
+            self._room = _Room(
+                max(MORE_ROOM * numbers, self._room.numbers), max(MORE_ROOM * columns, self._room.columns)
+            )
+            delassus = workspace.delassus._replace(
+                numbers=np.zeros(self._room.numbers), columns=np.zeros(self._room.columns)
+            )
+            self.arrays = self.arrays._replace(workspace=workspace._replace(delassus=delassus))
+            self._point()
         else:
             self._grow_collisions(world)
 
@@ -111,12 +160,11 @@ class Block:
         terms = new_contact_constraints(len(made.bound.particle), workspace.terms.surface)
         self.arrays = self.arrays._replace(collisions=made, workspace=workspace._replace(terms=terms))
         self.kept = NOTHING_KEPT
-        self.point()
-
-    def point(self) -> None:
-        """Make the pointer anew, once arrays are others."""
-        self.pointer = bundle(self.arrays)
+        self._point()
         _bound_terrain(self.pointer)
+
+    def _point(self) -> None:
+        self.pointer = bundle(self.arrays, self.pointer)
 
     def end(self, world: World) -> None:
         """Make the contacts of a tick's last step those of the world's state."""
@@ -136,42 +184,17 @@ class Block:
 
 
 def block_of(world: World) -> Block:
-    """The block of a world, made again after a change of topology."""
-    return world.derived(_make_block)
+    """The block of a world, as its topology is now."""
+    block = world.lasting(Block)
+    block.follow(world)
+    return block
 
 
-def _make_block(world: World) -> Block:
-    wanted = np.full(BOUND, len(world.contact_particle))
-    wanted[[CROSSED, OVERLAPPING]] = 0
-    wanted[ENTRIES] = world.particle_count
-    nothing, springs, constraints = _nothing(), world.spring_count, world.constraint_count
-    collisions = _make_collisions(world, wanted)
-    arrays = WorldBlock(
-        state=state_of(world),
-        good=good_of(world),
-        numbers=np.zeros(7),
-        choices=np.zeros(5, np.int64),
-        plan=np.zeros(5, np.int64),
-        progress=np.zeros(5, np.int64),
-        start=np.zeros((world.particle_count, 2)),
-        start_length=np.zeros(springs),
-        shortest=np.zeros(GRAB_COUNT),
-        coefficients=Coefficients(*np.zeros((2, springs)), *np.zeros((2, constraints))),
-        drives=drives_of(world.actuators),
-        limits=_limits_of(world),
-        flight=new_flight(world.particle_count),
-        collisions=collisions,
-        joints=joints_of(world),
-        triangles=world_triangles(world),
-        system=nothing.system,
-        workspace=nothing.workspace,
-        iteration=nothing.iteration,
-        explicit=nothing.explicit,
-    )
-    made = Block(_with_solver(world, arrays), world.settings, wanted)
-    _load_settings(world.settings, made.arrays)
-    made.point()
-    return made
+class _Room(NamedTuple):
+    """Room for the Delassus blocks of bodies: for their numbers, and for the columns of the largest."""
+
+    numbers: int
+    columns: int
 
 
 class _Solving(NamedTuple):
@@ -194,32 +217,44 @@ def _nothing() -> _Solving:
     return _Solving(system, workspace, iteration_of(world), explicit)
 
 
-def _with_solver(world: World, arrays: WorldBlock) -> WorldBlock:
-    """A block with what the present solver of its world needs, and no other."""
+def _for_solver(world: World, rows: JointRows, contacts: int, room: _Room) -> _Solving:
+    """What the present solver of a world needs, and no other, with room for so many contacts; rows: of its joints."""
     system, workspace, iteration, explicit = _nothing()
-    rows, count, hooke = arrays.joints.rows, world.particle_count, world.spring_active & (world.law == LAW_HOOKE)
+    count, hooke = world.particle_count, world.spring_active & (world.law == LAW_HOOKE)
     if world.settings.solver == "direct":
-        layout = layout_of(world)
-        system = layout.system
-        islands = new_islands(system, count)
-        joints = new_joints(rows, islands.row, system.bodies.row_start, count)
-        workspace = workspace._replace(islands=islands, delassus=new_blocks(count, system, joints))
-    elif world.settings.solver == "iterative":
-        iteration = iteration_of(world)
-        workspace = workspace._replace(delassus=no_blocks(count, joints_by_mass(rows)))
+        system = layout_of(world).system
+        delassus = new_blocks(count, system, room.numbers, room.columns)
+        workspace = workspace._replace(islands=new_islands(system, count), delassus=delassus)
     else:
-        explicit = new_explicit_pass(world, joints_by_mass(rows), world.spring_active)
         workspace = workspace._replace(delassus=no_blocks(count, no_joints()))
-    if world.settings.solver != "single_pass" and hooke.any():
+    if world.settings.solver == "iterative":
+        iteration = iteration_of(world)
+    if world.settings.solver == "single_pass":
+        explicit = new_explicit_pass(world, no_joints(), world.spring_active)
+    elif hooke.any():
         explicit = new_explicit_pass(world, no_joints(), hooke)
-    terms = new_contact_constraints(len(arrays.collisions.bound.particle), np.zeros(count))
-    arrays.plan[:] = (
-        world.has_contacts, hooke.any(), (world.constraint_corners > TRIANGLE).any(), world.grab_particle,
-        world.grab_spring,
-    )  # fmt: skip
-    return arrays._replace(
-        system=system, workspace=workspace._replace(terms=terms), iteration=iteration, explicit=explicit
-    )
+    workspace = workspace._replace(terms=new_contact_constraints(contacts, np.zeros(count)))
+    return _with_joints(_Solving(system, workspace, iteration, explicit), world, rows)
+
+
+def _with_joints(solving: _Solving, world: World, rows: JointRows) -> _Solving:
+    """The same with the rows of joints as the solver takes them."""
+    workspace, explicit = solving.workspace, solving.explicit
+    if world.settings.solver == "single_pass":
+        mass, given = np.zeros((2, len(rows.limit)))
+        return solving._replace(explicit=explicit._replace(joints=joints_by_mass(rows), mass=mass, given=given))
+    if world.settings.solver == "direct":
+        row_of, row_start = workspace.islands.row, solving.system.bodies.row_start
+        joints = new_joints(rows, row_of, row_start, world.particle_count)
+    else:
+        joints = joints_by_mass(rows)
+    return solving._replace(workspace=workspace._replace(delassus=workspace.delassus._replace(joints=joints)))
+
+
+def _plan_of(world: World) -> Slots:
+    has_hooke = bool((world.spring_active & (world.law == LAW_HOOKE)).any())
+    has_rings = bool((world.constraint_corners > TRIANGLE).any())
+    return np.array([world.has_contacts, has_hooke, has_rings, world.grab_particle, world.grab_spring], np.int64)
 
 
 def _load_settings(settings: WorldSettings, arrays: WorldBlock) -> None:
@@ -245,7 +280,7 @@ def _make_collisions(world: World, wanted: Slots) -> Collisions:
     contacts = max(contacts, kept)
     if not world.has_contacts:
         return _no_collisions()._replace(kept=room_to_keep(contacts), counts=np.zeros(BOUND + 1, np.int64))
-    outline, triangles, particles = outline_of(world), world.derived(triangles_of), world.particle_count
+    outline, triangles, particles = outline_of(world), world.derived(triangles_of, of_hands=False), world.particle_count
     objects = particles + int(outline.dynamic[0])
     boxes, shapes = new_boxes(particles, objects), len(outline.solid_of)
     return Collisions(
@@ -266,6 +301,7 @@ def _make_collisions(world: World, wanted: Slots) -> Collisions:
         shape_bounds=new_shape_bounds(shapes),
         overlaps=new_overlaps(shapes, crossings, overlaps),
         moved=np.zeros(particles, np.bool_),
+        attached=np.zeros(particles, np.bool_),
         counts=np.zeros(BOUND + 1, np.int64),
     )
 

@@ -212,7 +212,7 @@ def _inputs(world: WorldBlock) -> Inputs:
 def _find_contacts(world: WorldBlock, touches: bool, drives: bool, h: float) -> bool:
     # And the islands that they make with joints; whether there is room for all.
     collisions, state = world.collisions, world.state
-    if touches and not detect(state, collisions, world.progress[TICK], h):
+    if touches and not detect(state, collisions, world.plan[GRAB_SPRING], world.progress[TICK], h):
         return False
     if world.choices[SOLVER] == DIRECT and (drives or collisions.counts[BOUND] > 0):
         return find_body_islands(bound_contacts(collisions), state.inverse_mass, world.system, world.workspace)

@@ -239,7 +239,7 @@ def solve(
 
 def iteration_of(world: World) -> Iteration:
     """The springs of a world that are iterated, made again after a change of topology, with scratch."""
-    return world.derived(_make_iteration)
+    return world.derived(_make_iteration, of_hands=False)
 
 
 def _make_iteration(world: World) -> Iteration:

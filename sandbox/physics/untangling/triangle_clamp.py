@@ -473,11 +473,11 @@ def new_triangles(
 
 def world_triangles(world: World) -> WorldTriangles:
     """The triangles of a world, made again after a change of topology."""
-    return world.derived(_make_world_triangles)
+    return world.derived(_make_world_triangles, of_hands=False)
 
 
 def _make_world_triangles(world: World) -> WorldTriangles:
-    triangles = world.derived(triangles_of)
+    triangles = world.derived(triangles_of, of_hands=False)
     motion, found = (world.position, world.velocity, world.mass, world.inverse_mass), new_inversions(triangles)
     clamped = new_triangles(
         triangles.constraint, triangles.corners, triangles.jellies, world.constraint_rest, motion, world.collides,

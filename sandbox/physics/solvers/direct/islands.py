@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.joint_sweep import Joints
+from sandbox.physics.joints.joint_sweep import Joints, no_joints
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
 from sandbox.physics.solvers.direct.system import Flags, System
 from sandbox.physics.world import Floats, Slots
@@ -86,13 +86,13 @@ def new_islands(system: System, particle_count: int) -> BodyIslands:
     )  # fmt: skip
 
 
-def new_blocks(particle_count: int, system: System, joints: Joints) -> Delassus:
-    """The Delassus blocks of a system's bodies, without room for their numbers yet."""
+def new_blocks(particle_count: int, system: System, numbers: int, columns: int) -> Delassus:
+    """The Delassus blocks of a system's bodies, with room for so many numbers and columns, and without joints."""
     bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
     block, place = np.full((2, particle_count), -1, dtype=np.int64)
     return Delassus(
         block, place, np.zeros(bodies + 1, dtype=np.int64), np.zeros(free_rows, dtype=np.int64),
-        np.zeros(bodies + 1, dtype=np.int64), np.zeros(0), np.zeros(0), joints,
+        np.zeros(bodies + 1, dtype=np.int64), np.zeros(numbers), np.zeros(columns), no_joints(),
     )  # fmt: skip
 
 

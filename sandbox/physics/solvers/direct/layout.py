@@ -39,7 +39,7 @@ class SystemLayout:
 
 def layout_of(world: World) -> SystemLayout:
     """The layout of a world's system, made again after a change of topology or pins."""
-    return world.derived(_hired_layout)
+    return world.derived(_hired_layout, of_hands=False)
 
 
 def _hired_layout(world: World) -> SystemLayout:
