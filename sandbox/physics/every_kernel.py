@@ -4,6 +4,7 @@ import numpy as np
 
 from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
 from sandbox.physics.analysis import lowest_mode
+from sandbox.physics.collision.close_edges import close_edges
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import pinned_edges
 from sandbox.physics.constraints import AREA
@@ -46,7 +47,8 @@ def call_every_kernel() -> None:
     system = layout_of(world).system
     parallel.precompile_help(system.fronts, system.rows.delta_v)
     lowest_mode.precompile_modes()
-    # Nor has any an edge that is pinned at both ends.
+    # Nor has any an edge, let alone one that is pinned at both ends.
     for particle in (0, 1):
         world.pin(particle)
     pinned_edges(world, np.array([0]), np.array([1]), np.array([0]))
+    close_edges(world.origin, np.array([0]), np.array([1]), np.zeros(2, np.int64), np.array([-1]))
