@@ -7,6 +7,7 @@ from sandbox.physics.analysis import lowest_mode
 from sandbox.physics.collision.close_edges import close_edges
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import pinned_edges
+from sandbox.physics.components import body_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
@@ -51,4 +52,5 @@ def call_every_kernel() -> None:
     for particle in (0, 1):
         world.pin(particle)
     pinned_edges(world, np.array([0]), np.array([1]), np.array([0]))
+    body_of(world, 0)
     close_edges(world.origin, np.array([0]), np.array([1]), np.zeros(2, np.int64), np.array([-1]))
