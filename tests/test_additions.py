@@ -167,18 +167,23 @@ LIFT = PlayTool("lift", ("Shift+I",), "Lift: click throws up", "Parts", LiftTool
 '''
 
 GENTLE = '''
-"""Gentle: half of each impulse of the single pass."""
+"""Gentle: each spring and area gives half of what it gives in the single pass; nothing else acts."""
 
-from sandbox.physics.solvers import single_pass
-from sandbox.physics.solvers.single_pass import spring_constant
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.single_pass import apply_explicit, spring_constant
 
 __all__ = ["solve", "spring_constant"]
 
 
-def solve(world, substep, contacts):
-    before = world.velocity.copy()
-    single_pass.solve(world, substep, contacts)
-    world.velocity[:] = 0.5 * (before + world.velocity)
+@inner_kernel
+def solve(state, step, given, h):
+    for p in range(state.velocity.shape[0]):
+        step.change[p, 0] = state.velocity[p, 0]
+        step.change[p, 1] = state.velocity[p, 1]
+    apply_explicit(state, given, step, True, h)
+    for p in range(state.velocity.shape[0]):
+        state.velocity[p, 0] = 0.5 * (state.velocity[p, 0] + step.change[p, 0])
+        state.velocity[p, 1] = 0.5 * (state.velocity[p, 1] + step.change[p, 1])
 '''
 
 GREET = '''
@@ -426,11 +431,18 @@ print(tip_of("tool_lift", "play"))
     assert changed(package) == ["tools/lifting.py", "tools/play_tools.py"]
 
 
-def test_a_solver_is_one_file_its_line_in_the_table_and_its_name(package):
+def test_a_solver_is_one_file_its_line_in_the_table_its_name_and_its_branch_of_the_tick(package):
     put(package / "physics/solvers/gentle.py", GENTLE)
     table = package / "physics/solvers/__init__.py"
     settings = package / "physics/settings.py"
     settings.write_text(settings.read_text(encoding="utf-8").replace('"direct")\n', '"direct", "gentle")\n', 1))
+    put(settings, "GENTLE = 3\n", before="SINGLE_PASS, ITERATIVE, DIRECT")
+    tick = package / "physics/pipeline/tick.py"
+    put(tick, "from sandbox.physics.settings import GENTLE\n", before="from sandbox.physics.settings import (")
+    solve = "from sandbox.physics.solvers.gentle import solve as solve_gently\n"
+    put(tick, solve, before="from sandbox.physics.solvers.iterative")
+    branch = "    if solver == GENTLE:\n        solve_gently(state, world.explicit, given, h)\n        return\n"
+    put(tick, branch, before="    if solver == SINGLE_PASS:")
     put(table, '    "gentle": Solver("gentle", proven_limit=False, bounded=False),\n', before='    "direct": Solver(')
     script = """
 text = level().replace(b'"iterative"', b'"gentle"')
@@ -442,7 +454,8 @@ except ValueError as error:
     print(error)
 """
     assert "gentle" in play(package, script)
-    assert changed(package) == ["physics/settings.py", "physics/solvers/__init__.py", "physics/solvers/gentle.py"]
+    parts = ["pipeline/tick.py", "settings.py", "solvers/__init__.py", "solvers/gentle.py"]
+    assert changed(package) == [f"physics/{part}" for part in parts]
 
 
 def test_a_command_of_the_shell_is_one_file_and_its_name_in_the_table(package):

@@ -26,7 +26,7 @@ ROOMS_OF_APP = (
     "panel", "play", "edit", "compare", "toy", "gallery", "window",
 )  # fmt: skip
 # Folders that import each other both ways: the table of solvers says where joints bear a load.
-BOTH_WAYS = {"physics": [("joints", "solvers")], "level": []}
+BOTH_WAYS: dict[str, list[tuple[str, str]]] = {"physics": [], "level": []}
 LIBRARIES = {
     "physics": {"numpy", "numba", "llvmlite"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},

@@ -10,6 +10,7 @@ from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import Point
+from sandbox.physics.geometry.segment import distances_from_segments, lengths
 
 Box = tuple[float, float, float, float]
 Ends = tuple[NDArray[np.float64], ...]
@@ -50,8 +51,7 @@ def edge_at(scene: Scene, point: Point, within: float, skip: Selection = frozens
 def corner_at(scene: Scene, item: Item, point: Point, within: float) -> int | None:
     """Number of the corner of a piece of terrain that is nearest to point [m], at most `within` [m] away."""
     mine = np.flatnonzero(scene.chosen(frozenset({item}))[scene.corner_item])
-    apart = scene.corner[mine] - np.array(point)
-    distance = np.sqrt(np.sum(apart * apart, axis=1))
+    distance = lengths(scene.corner[mine] - np.array(point))
     return int(distance.argmin()) if len(mine) and float(distance.min()) <= within else None
 
 
@@ -65,13 +65,8 @@ def _nearest_segment(ends: Ends, left_out: NDArray[np.bool_], point: Point, with
         & (np.maximum(ay, by) >= y - within)
         & ~left_out
     )
-    start = np.stack([ax[near], ay[near]], axis=1)
-    along = np.stack([bx[near], by[near]], axis=1) - start
-    offset = np.array(point) - start
-    squared = np.sum(along * along, axis=1)
-    share = np.divide(np.sum(offset * along, axis=1), squared, out=np.zeros_like(squared), where=squared > 0.0)
-    gap = offset - np.clip(share, 0.0, 1.0)[:, None] * along
-    distance = np.sqrt(np.sum(gap * gap, axis=1))
+    start, end = (np.stack([x[near], y[near]], axis=1) for x, y in ((ax, ay), (bx, by)))
+    distance = distances_from_segments(np.array(point), start, end)
     reached = distance <= within
     if not reached.any():
         return None

@@ -17,7 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.equation import SHORTEST
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.geometry.polygon import polygon_area
+from sandbox.physics.geometry.segment import doubled_areas
+from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
+from sandbox.physics.state import Floats, StateArrays
 
 AREA = 0
 BEND = 1
@@ -31,8 +34,6 @@ FLOOR = 0.25
 # every number of substeps. Weaker lets loads through, stronger makes what lands on its floors rebound.
 FLOOR_STRENGTH = 100.0
 FLOOR_RATE = 60.0
-
-Floats = NDArray[np.float64]
 
 
 class ConstraintArrays(NamedTuple):
@@ -52,27 +53,23 @@ class ConstraintArrays(NamedTuple):
     weight: Floats
 
 
-@inner_kernel
-def area_of(place: Floats, first: int, last: int) -> float:
-    """Signed area of the polygon of the corners first..last at place (q, 2)."""
-    total = 0.0
-    x = place[first, 0]
-    y = place[first, 1]
-    for c in range(first + 1, last - 1):
-        total += 0.5 * (
-            (place[c, 0] - x) * (place[c + 1, 1] - y) - (place[c, 1] - y) * (place[c + 1, 0] - x)
-        )  # fmt: skip
-    return total
+@inlined_kernel
+def constraints_of(state: StateArrays) -> ConstraintArrays:
+    """The constraints among the arrays of a world."""
+    return ConstraintArrays(
+        state.constraint_kind, state.constraint_first, state.constraint_corners, state.constraint_rest,
+        state.constraint_active, state.corner_particle, state.corner_weight,
+    )  # fmt: skip
 
 
 @inner_kernel
 def _area_slope(place: Floats, first: int, last: int, slope: Floats) -> None:
     # dA / dx_i = the vector between its two neighbours, turned, over 2
     for c in range(first, last):
-        before = c - 1 if c > first else last - 1
-        after = c + 1 if c + 1 < last else first
-        slope[c, 0] = 0.5 * (place[after, 1] - place[before, 1])
-        slope[c, 1] = 0.5 * (place[before, 0] - place[after, 0])
+        previous = c - 1 if c > first else last - 1
+        following = c + 1 if c + 1 < last else first
+        slope[c, 0] = 0.5 * (place[following, 1] - place[previous, 1])
+        slope[c, 1] = 0.5 * (place[previous, 0] - place[following, 0])
 
 
 @inner_kernel
@@ -120,7 +117,7 @@ def evaluate(
     """C of the constraint of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
     if kind == AREA:
         _area_slope(place, first, last, slope)
-        return area_of(place, first, last) - rest[at, 0]
+        return polygon_area(place, first, last) - rest[at, 0]
     return _bend(place, first, rest[at, 0], rest[at, 1], weight, slope)
 
 
@@ -199,10 +196,10 @@ def sides_gone(
     loose = np.setdiff1d(cut, _sides(particle_a[spring_active], particle_b[spring_active]))
     owner = np.repeat(np.arange(len(constraints.kind)), constraints.corners)
     corner, first = np.arange(len(owner)), constraints.first[owner]
-    before = np.where(corner == first, first + constraints.corners[owner] - 1, corner - 1)
+    previous = np.where(corner == first, first + constraints.corners[owner] - 1, corner - 1)
     # A bend's two outer corners are no side of it.
     is_side = (constraints.kind[owner] == AREA) | (corner != first)
-    return owner[is_side & np.isin(_sides(constraints.particle[before], constraints.particle), loose)]
+    return owner[is_side & np.isin(_sides(constraints.particle[previous], constraints.particle), loose)]
 
 
 def _sides(a: NDArray[np.int32], b: NDArray[np.int32]) -> NDArray[np.int64]:
@@ -212,11 +209,9 @@ def _sides(a: NDArray[np.int32], b: NDArray[np.int32]) -> NDArray[np.int64]:
 
 def rest_of_area(places: Floats, inflation: ArrayLike) -> tuple[Floats, Floats]:
     """Rest (t, 2) and weights (t, k) of areas; sums are in a written order, as those of a tick are."""
-    apart = places - places[:, :1]
     area = np.zeros(len(places))
     for corner in range(1, places.shape[1] - 1):
-        x, y = apart[:, corner], apart[:, corner + 1]
-        area = area + 0.5 * (x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0])
+        area = area + 0.5 * doubled_areas(places[:, 0], places[:, corner], places[:, corner + 1])
     across = np.roll(places, -1, axis=1) - np.roll(places, 1, axis=1)
     weight = 0.25 * (across[..., 0] * across[..., 0] + across[..., 1] * across[..., 1])
     return np.stack([np.broadcast_to(inflation, len(places)) * area, area], axis=1), weight

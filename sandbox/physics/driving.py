@@ -4,12 +4,53 @@ One of limited force does not wind up: where it is held back its rest length sta
 asks for, so that it does not leap when it is let go.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+import math
+from typing import Any, NamedTuple
 
-from sandbox.physics.jit import kernel, scalar_kernel
-from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.world import LAW_HOOKE, Floats, Slots, World
+import numpy as np
+
+from sandbox.physics.actuators import Actuators
+from sandbox.physics.collision.types import Flags
+from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, reduced_mass
+from sandbox.physics.jit import bundle, contents, inner_kernel, kernel, scalar_kernel
+from sandbox.physics.settings import DIRECT
+from sandbox.physics.state import Floats, GoodValues, Slots, State, good_of, state_of
+from sandbox.physics.world import LAW_HOOKE, World
+
+# How far a wave goes in a part of its period, at its steepest: the slope of its parabolas where they meet.
+STEEPEST = 8.0
+
+
+class Drives(NamedTuple):
+    """The driven springs of a world as kernels read them: k muscles, then j hydraulics, see Muscles and Hydraulics.
+
+    Forces are infinite where there is no limit.
+    """
+
+    muscle: Slots
+    amplitude: Floats
+    period: Slots
+    phase: Floats
+    muscle_force: Floats
+    hydraulic: Slots
+    shortest: Floats
+    longest: Floats
+    rate: Floats
+    part: Slots
+    hydraulic_force: Floats
+    returns: Flags
+
+
+def drives_of(actuators: Actuators) -> Drives:
+    """The driven springs of some actuators."""
+    muscles, hydraulics = actuators.muscles, actuators.hydraulics
+    forces = [
+        driven.force if len(driven.force) else np.full(len(driven.spring), np.inf) for driven in (muscles, hydraulics)
+    ]
+    return Drives(
+        muscles.spring, muscles.amplitude, muscles.period, muscles.phase, forces[0], hydraulics.spring,
+        hydraulics.shortest, hydraulics.longest, hydraulics.rate, hydraulics.part, forces[1], hydraulics.returns,
+    )  # fmt: skip
 
 
 @scalar_kernel
@@ -24,96 +65,81 @@ def wave(tick: int, period: int, phase: float) -> float:
     return -16.0 * (u - 0.5) * (1.0 - u)
 
 
-@kernel
-def _contract(
-    tick: int, spring: Slots, amplitude: Floats, period: Slots, phase: Floats, natural_length: Floats, lengths: Floats
-) -> None:
-    # L = L0 (1 + amplitude wave)
-    for k in range(spring.shape[0]):
-        lengths[k] = natural_length[spring[k]] * (1.0 + amplitude[k] * wave(tick, period[k], phase[k]))
-
-
-@kernel
-def _extend(
-    spring: Slots, shortest: Floats, longest: Floats, rate: Floats, part: Slots, returns: NDArray[np.bool_],
-    actuator_value: Floats, natural_length: Floats, rest_length: Floats, h: float, lengths: Floats,
-) -> None:  # fmt: skip
-    # L += value rate h, within shortest..longest;  where it returns and the value is 0, towards L0 by rate h at most
-    for k in range(spring.shape[0]):
-        value, wanted = actuator_value[part[k]], rest_length[spring[k]]
-        if returns[k] and value == 0.0:
-            first = natural_length[spring[k]]
-            wanted = min(max(first, wanted - rate[k] * h), wanted + rate[k] * h)
-        else:
-            wanted += value * rate[k] * h
-        lengths[k] = min(max(wanted, shortest[k]), longest[k])
-
-
-# How far a wave goes in a part of its period, at its steepest: the slope of its parabolas where they meet.
-STEEPEST = 8.0
-
-
-def _held_back(world: World, springs: Slots, force: Floats, stride: Floats, lengths: Floats) -> Floats:
-    """Rest lengths [m] (k,) of springs, no further from the present ones than asks for force [N] and a tick's stride.
-
-    |L - l| <= F / k + stride max(1, Cd / Cs): the damping resists the stride as well.
-    """
-    h = 1.0 / world.settings.tick_rate
-    a, b = world.particle_a[springs], world.particle_b[springs]
-    total = world.inverse_mass[a] + world.inverse_mass[b]
-    mass = np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0)
-    spring_constant = SOLVERS[world.settings.solver].spring_constant
-    is_hooke = world.law[springs] == LAW_HOOKE
-    constant = spring_constant(world.stiffness[springs], world.damping[springs], mass, h)
-    constant = np.where(is_hooke, world.hooke_stiffness[springs], constant)
-    resists = np.where(is_hooke, world.hooke_damping[springs] / h, world.damping[springs])
-    restores = np.where(is_hooke, world.hooke_stiffness[springs], world.stiffness[springs])
-    never = np.full_like(total, np.inf)
-    ahead = np.divide(resists, restores, out=never.copy(), where=restores > 0.0)
-    asked = np.divide(force, constant, out=never, where=constant > 0.0)
-    # Between two pins no force moves anything.
-    asked[total == 0.0] = 0.0
-    asked += np.multiply(stride, np.maximum(1.0, ahead), out=np.zeros_like(total), where=stride > 0.0)
-    dx, dy = world.position[b, 0] - world.position[a, 0], world.position[b, 1] - world.position[a, 1]
-    present = np.sqrt(dx * dx + dy * dy)
+@inner_kernel
+def _held_back(state: State, s: int, wanted: float, force: float, stride: float, solver: int, h: float) -> float:
+    # The rest length of a spring, no further from the present one than asks for force [N] and a tick's stride:
+    # |L - l| <= F / k + stride max(1, Cd / Cs): the damping resists the stride as well.
+    if not force < math.inf:
+        return wanted
+    a, b = state.particle_a[s], state.particle_b[s]
+    mass = reduced_mass(state.inverse_mass[a], state.inverse_mass[b])
+    restores, resists = state.stiffness[s], state.damping[s]
+    if state.law[s] == LAW_HOOKE:
+        constant = state.hooke_stiffness[s]
+        restores, resists = constant, state.hooke_damping[s] / h
+    elif solver == DIRECT:
+        stiffness, damping = capped(restores, resists, HIGHEST_COEFFICIENT)
+        constant = stiffness * mass / ((1.0 - damping) * h * h)
+    else:
+        constant = restores * mass / (h * h)
+    asked = force / constant if constant > 0.0 else math.inf
+    if mass == 0.0:
+        # Between two pins no force moves anything.
+        asked = 0.0
+    if stride > 0.0:
+        asked += stride * max(1.0, resists / restores if restores > 0.0 else math.inf)
+    dx = state.position[b, 0] - state.position[a, 0]
+    dy = state.position[b, 1] - state.position[a, 1]
+    present = math.sqrt(dx * dx + dy * dy)
     # Never below 0, which no rest length is.
-    near = np.maximum(0.0, present - asked)
-    return np.where(np.isfinite(force), np.minimum(np.maximum(lengths, near), present + asked), lengths)
+    return min(max(wanted, max(0.0, present - asked)), present + asked)
+
+
+@inner_kernel
+def _contract(state: State, good: GoodValues, drives: Drives, tick: int, solver: int, tick_rate: int) -> None:
+    # L = L0 (1 + amplitude wave)
+    for k in range(drives.muscle.shape[0]):
+        s = drives.muscle[k]
+        natural = state.natural_length[s]
+        wanted = natural * (1.0 + drives.amplitude[k] * wave(tick, drives.period[k], drives.phase[k]))
+        stride = STEEPEST * drives.amplitude[k] * natural / drives.period[k]
+        state.rest_length[s] = _held_back(state, s, wanted, drives.muscle_force[k], stride, solver, 1.0 / tick_rate)
+        good.rest_length[s] = state.rest_length[s]
+
+
+@inner_kernel
+def _extend(state: State, good: GoodValues, drives: Drives, solver: int, tick_rate: int) -> None:
+    # L += value rate h, within shortest..longest;  where it returns and the value is 0, towards L0 by rate h at most
+    h = 1.0 / tick_rate
+    for k in range(drives.hydraulic.shape[0]):
+        s = drives.hydraulic[k]
+        value, rate, wanted = state.actuator_value[drives.part[k]], drives.rate[k], state.rest_length[s]
+        if drives.returns[k] and value == 0.0:
+            first = state.natural_length[s]
+            wanted = min(max(first, wanted - rate * h), wanted + rate * h)
+        else:
+            wanted += value * rate * h
+        wanted = min(max(wanted, drives.shortest[k]), drives.longest[k])
+        wanted = _held_back(state, s, wanted, drives.hydraulic_force[k], rate / tick_rate, solver, h)
+        state.rest_length[s] = min(max(wanted, drives.shortest[k]), drives.longest[k])
+        good.rest_length[s] = state.rest_length[s]
+
+
+@inner_kernel
+def drive_springs(state: State, good: GoodValues, drives: Drives, tick: int, solver: int, tick_rate: int) -> None:
+    """Give driven springs the rest lengths that they have at a tick; solver: see settings.py."""
+    _contract(state, good, drives, tick, solver, tick_rate)
+    _extend(state, good, drives, solver, tick_rate)
+
+
+@kernel
+def _drive_muscles(lent: Any, tick: int, solver: int, tick_rate: int) -> None:
+    state, good, drives = contents(lent)
+    _contract(state, good, drives, tick, solver, tick_rate)
 
 
 def drive_muscles(world: World, tick: int) -> None:
     """Give every muscle the rest length that it has at a tick."""
-    muscles = world.actuators.muscles
-    if not len(muscles.spring):
-        return
-    lengths = np.zeros(len(muscles.spring))
-    _contract(
-        tick, muscles.spring, muscles.amplitude, muscles.period, muscles.phase, world.natural_length, lengths
-    )  # fmt: skip
-    if len(muscles.force):
-        stride = STEEPEST * muscles.amplitude * world.natural_length[muscles.spring] / muscles.period
-        lengths = _held_back(world, muscles.spring, muscles.force, stride, lengths)
-    world.set_rest_lengths(muscles.spring, lengths)
-
-
-def drives_springs(world: World) -> bool:
-    """Whether a world has muscles or hydraulics."""
-    return bool(len(world.actuators.muscles.spring) or len(world.actuators.hydraulics.spring))
-
-
-def drive_springs(world: World) -> Floats:
-    """Give driven springs the rest lengths of the coming tick's end; the rest lengths (m,) before, for their work."""
-    before, hydraulics = world.rest_length.copy(), world.actuators.hydraulics
-    drive_muscles(world, world.tick + 1)
-    lengths = np.zeros(len(hydraulics.spring))
-    _extend(
-        hydraulics.spring, hydraulics.shortest, hydraulics.longest, hydraulics.rate, hydraulics.part,
-        hydraulics.returns, world.actuator_value, world.natural_length, world.rest_length,
-        1.0 / world.settings.tick_rate, lengths,
-    )  # fmt: skip
-    if len(hydraulics.force):
-        stride = hydraulics.rate / world.settings.tick_rate
-        lengths = _held_back(world, hydraulics.spring, hydraulics.force, stride, lengths)
-        lengths = np.minimum(np.maximum(lengths, hydraulics.shortest), hydraulics.longest)
-    world.set_rest_lengths(hydraulics.spring, lengths)
-    return before
+    if len(world.actuators.muscles.spring):
+        solver, tick_rate, *_ = world.settings.choices
+        _drive_muscles(bundle((state_of(world), good_of(world), drives_of(world.actuators))), tick, solver, tick_rate)

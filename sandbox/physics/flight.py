@@ -8,38 +8,83 @@ and so in steps of any length. A velocity that somebody gives is that of the tic
 step, unless the body is held or touches something.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from sandbox.physics.components import label_joined
-from sandbox.physics.solvers.contact.small_steps import small_steps
-from sandbox.physics.state import Floats, Slots
-from sandbox.physics.world import World
+from sandbox.physics.collision.types import Flags
+from sandbox.physics.components import join, root_of
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.settings import DRAG, GRAVITY_X
+from sandbox.physics.state import Floats, Slots, State
 
 
-def begin_flight(world: World, touched: Slots, h: float) -> None:
-    """Take back half of the velocity that gravity added in a first step of h [s] to free particles that no contact
-    pushed.
-
-    touched: particles that contacts have pushed.
+class Flight(NamedTuple):
+    """Scratch, by particle: label = the lowest one that it is joined to; by label: whether it stays, its free members,
+    their mass [kg] and that times their gravity scale.
     """
-    label = label_joined(world, world.spring_active, np.ones(world.particle_count, dtype=np.bool_))
-    free = world.inverse_mass > 0.0
-    stays = np.zeros(world.particle_count, dtype=np.bool_)
-    stays[label[~free & world.particle_active]] = True
-    stays[label[touched]] = True
-    stays[label[~world.unmoved & world.particle_active]] = True
-    flies = np.flatnonzero(free & world.particle_active & ~stays[label])
-    if len(flies):
-        count = np.bincount(label[flies], minlength=world.particle_count)
-        mass = np.bincount(label[flies], world.mass[flies], world.particle_count)
-        pulled = np.bincount(label[flies], world.mass[flies] * world.gravity_scale[flies], world.particle_count)
-        alone = count[label[flies]] == 1
-        fall: Floats = np.full(len(flies), h)
-        if world.has_contacts:
-            fall[alone] = h / small_steps(h)
-        scale = (pulled / np.where(mass > 0.0, mass, 1.0))[label[flies]] / (1.0 + world.settings.drag * h)
-        for axis in range(2):
-            kick = 0.5 * fall * scale * world.settings.gravity[axis]
-            world.velocity[flies, axis] -= kick
-            world.slow_velocity[flies, axis] -= kick
-    world.unmoved[:] = False
+
+    label: Slots
+    stays: Flags
+    members: Slots
+    mass: Floats
+    pulled: Floats
+
+
+def new_flight(particles: int) -> Flight:
+    """Scratch to be filled in."""
+    return Flight(
+        np.zeros(particles, np.int64), np.zeros(particles, np.bool_), np.zeros(particles, np.int64),
+        *np.zeros((2, particles)),
+    )  # fmt: skip
+
+
+@inner_kernel
+def label_all_joined(state: State, flight: Flight) -> None:
+    """Label every particle with the lowest one that springs and constraints join it to; nothing stays yet."""
+    label = flight.label
+    for p in range(label.shape[0]):
+        label[p] = p
+        flight.stays[p] = False
+        flight.members[p] = 0
+        flight.mass[p] = 0.0
+        flight.pulled[p] = 0.0
+    for s in range(state.spring_active.shape[0]):
+        if state.spring_active[s]:
+            join(label, state.particle_a[s], state.particle_b[s])
+    for k in range(state.constraint_active.shape[0]):
+        if state.constraint_active[k]:
+            first = state.constraint_first[k]
+            for c in range(first + 1, first + state.constraint_corners[k]):
+                join(label, state.corner_particle[c - 1], state.corner_particle[c])
+    for p in range(label.shape[0]):
+        label[p] = root_of(label, p)
+
+
+@inner_kernel
+def begin_flight(state: State, numbers: Floats, flight: Flight, alone: float, h: float) -> None:
+    """Take back half of the velocity that gravity added in a first step of h [s] to what is free and does not stay.
+
+    Bodies are labelled, and those that contacts pushed are marked. alone [s]: the small steps in which a particle falls
+    that nothing is joined to.
+    """
+    label = flight.label
+    for p in range(label.shape[0]):
+        if state.particle_active[p] and not (state.inverse_mass[p] > 0.0 and state.unmoved[p]):
+            flight.stays[label[p]] = True
+    for p in range(label.shape[0]):
+        g = label[p]
+        if state.particle_active[p] and state.inverse_mass[p] > 0.0 and not flight.stays[g]:
+            flight.members[g] += 1
+            flight.mass[g] += state.mass[p]
+            flight.pulled[g] += state.mass[p] * state.gravity_scale[p]
+    for p in range(label.shape[0]):
+        g = label[p]
+        if state.particle_active[p] and state.inverse_mass[p] > 0.0 and not flight.stays[g]:
+            fall = alone if flight.members[g] == 1 else h
+            scale = flight.pulled[g] / flight.mass[g] / (1.0 + numbers[DRAG] * h)
+            for axis in range(2):
+                kick = 0.5 * fall * scale * numbers[GRAVITY_X + axis]
+                state.velocity[p, axis] -= kick
+                state.slow_velocity[p, axis] -= kick
+        state.unmoved[p] = False

@@ -3,8 +3,8 @@
 import math
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.state import Floats
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import Floats, State
 
 # s += c,  c = SLOW_SHARE (v' - s);  r += SLOW_SHARE (c - r), per step.
 SLOW_SHARE = 0.3
@@ -24,26 +24,18 @@ def follow(velocity: Floats, slow_velocity: Floats, slow_change: Floats, active:
 
 
 @inner_kernel
-def advance(position: Floats, velocity: Floats, active: Flags, h: float) -> None:
-    """Symplectic Euler over h [s]: x += v h with the NEW velocity; the equation is derived for it."""
-    for p in range(active.shape[0]):
-        if active[p]:
+def integrate_positions(state: State, h: float) -> None:
+    """Advance all particles by h [s]. Symplectic Euler: x += v h with the NEW velocity; the equation is derived for it.
+
+    Discs turn, with angles [rad] kept between -pi and pi.
+    """
+    position, velocity, angle, spin = state.position, state.velocity, state.angle, state.spin
+    for p in range(spin.shape[0]):
+        if state.particle_active[p]:
             position[p, 0] += velocity[p, 0] * h
             position[p, 1] += velocity[p, 1] * h
-
-
-@inner_kernel
-def turn(angle: Floats, spin: Floats, h: float) -> None:
-    """Turn discs over h [s], angles [rad] kept between -pi and pi."""
     for p in range(spin.shape[0]):
         if spin[p] != 0.0:
             angle[p] += h * spin[p]
             if abs(angle[p]) > 0.5 * FULL_TURN:
                 angle[p] -= FULL_TURN * math.floor(angle[p] / FULL_TURN + 0.5)
-
-
-@kernel
-def integrate(position: Floats, velocity: Floats, active: Flags, angle: Floats, spin: Floats, h: float) -> None:
-    """Advance all particles by h [s]."""
-    advance(position, velocity, active, h)
-    turn(angle, spin, h)

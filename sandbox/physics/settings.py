@@ -13,6 +13,11 @@ SOLVER_NAMES = ("single_pass", "iterative", "direct")
 # The solver of a world or a level that names none.
 DEFAULT_SOLVER = "direct"
 
+# Settings as kernels read them: places among the numbers and among the choices; SOLVER by its place in SOLVER_NAMES.
+GRAVITY_X, GRAVITY_Y, WIND_X, WIND_Y, DRAG, WARM_START, HIGHEST = range(7)
+SOLVER, TICK_RATE, SUBSTEP_COUNT, IS_AUTO, ITERATIONS = range(5)
+SINGLE_PASS, ITERATIVE, DIRECT = range(3)
+
 
 @dataclass(frozen=True)
 class WorldSettings:
@@ -48,6 +53,13 @@ class WorldSettings:
             raise ValueError(f"warm_start is a number from 0 to 1, not {self.warm_start!r}")
         if not (_is_finite(self.drag) and self.drag >= 0.0):
             raise ValueError(f"drag is a finite number of at least 0, not {self.drag!r}")
+
+    @property
+    def choices(self) -> tuple[int, int, int, int, int]:
+        """Its whole numbers as kernels read them; SUBSTEP_COUNT 0: each tick chooses."""
+        auto = self.substeps == AUTO
+        substeps = 0 if auto else int(self.substeps)
+        return SOLVER_NAMES.index(self.solver), self.tick_rate, substeps, int(auto), self.iterations
 
     @property
     def fewest_substeps(self) -> int:

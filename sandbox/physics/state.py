@@ -4,9 +4,10 @@ World and Snapshot have these attributes, appending, hashing, storing and guardi
 line here, and the place that gives it its values.
 """
 
+from collections import namedtuple
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -173,6 +174,34 @@ ALWAYS_STORED: frozenset[str] = frozenset(column.stored for column in COLUMNS if
 TOPOLOGY: tuple[Column, ...] = tuple(column for column in COLUMNS if column.topology)
 MOVING: tuple[Column, ...] = tuple(column for column in COLUMNS if not column.topology)
 GUARDED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.guarded)
+# The fields of State. A step's contacts lie elsewhere, with room for more.
+STATE_FIELDS: tuple[str, ...] = tuple(column.name for column in COLUMNS if column.family is not Family.CONTACT)
+
+if TYPE_CHECKING:
+
+    class State(StateArrays):
+        """The arrays of a world as kernels take them, all but its contacts; and its Terrain."""
+
+        terrain: Any
+
+    class GoodValues(StateArrays):
+        """The last good values of a world's guarded arrays, as kernels take them."""
+
+else:
+    State = namedtuple("State", [*STATE_FIELDS, "terrain"])
+    GoodValues = namedtuple("GoodValues", [column.name for column in GUARDED])
+
+
+def state_of(world: Any) -> State:
+    """The arrays of a World as kernels take them."""
+    made: State = cast(Any, State)(*(getattr(world, name) for name in STATE_FIELDS), world.terrain)
+    return made
+
+
+def good_of(world: Any) -> GoodValues:
+    """The last good values of a World's guarded arrays as kernels take them."""
+    made: GoodValues = cast(Any, GoodValues)(*(world.good[column.name] for column in GUARDED))
+    return made
 
 
 def reference() -> str:

@@ -8,6 +8,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sandbox.physics.geometry.polygon import signed_area, winding_number
+from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.jit import inner_kernel
 
 Floats = NDArray[np.float64]
@@ -114,9 +116,7 @@ def make_terrain(chains: Sequence[Chain], tips: bool = True) -> Terrain:
 def _oriented(chain: Chain) -> Floats:
     """Corners in the order that leaves what is solid on the left."""
     corners = np.array(chain.corners, dtype=np.float64).reshape(-1, 2) + 0.0
-    x, y = corners[:, 0], corners[:, 1]
-    area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-    turned = (area < 0.0) == (chain.kind == "solid")
+    turned = (signed_area(corners, np.roll(corners, -1, axis=0)) < 0.0) == (chain.kind == "solid")
     return np.ascontiguousarray(corners[::-1]) if chain.kind != "line" and turned else corners
 
 
@@ -125,19 +125,19 @@ def _grid(a: Floats, b: Floats) -> tuple[Floats, Floats, Slots, Slots, Slots]:
     if not len(a):
         return np.zeros(2), np.ones(1), np.zeros(2, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros(0, np.int64)
     low, high = np.minimum(a, b).min(axis=0), np.maximum(a, b).max(axis=0)
-    length = np.sqrt(np.sum((b - a) ** 2, axis=1))
+    length = lengths(b - a)
     # Cells are about as large as the shorter edges, so that a cell holds few and an edge lies in few.
     cell = max(float(np.quantile(length, 0.25)), float((high - low).max()) / (MOST_CELLS - 2), LEAST_CELL)
     corner = low - cell
     size = ((high - corner) / cell).astype(np.int64) + 2
-    held: list[list[int]] = [[] for _ in range(int(size[0] * size[1]))]
+    in_cell: list[list[int]] = [[] for _ in range(int(size[0] * size[1]))]
     for edge, (start, end) in enumerate(
         zip(((a - corner) / cell).tolist(), ((b - corner) / cell).tolist(), strict=True)
     ):
         for column, row in _cells(start, end):
-            held[row * int(size[0]) + column].append(edge)
-    first = np.append(0, np.cumsum([len(edges) for edges in held]))
-    return corner, np.array([cell]), size, first, np.array([e for edges in held for e in edges], dtype=np.int64)
+            in_cell[row * int(size[0]) + column].append(edge)
+    first = np.append(0, np.cumsum([len(edges) for edges in in_cell]))
+    return corner, np.array([cell]), size, first, np.array([e for edges in in_cell for e in edges], dtype=np.int64)
 
 
 def _cells(start: list[float], end: list[float]) -> list[tuple[int, int]]:
@@ -180,7 +180,7 @@ def _tips(
             np.concatenate([cell_edge[cell_start[row + left] : cell_start[row + right + 1]] for row in rows])
         )
         along = b[edges] - a[edges]
-        length = np.sqrt(np.sum(along * along, axis=1))
+        length = lengths(along)
         from_a = place - a[edges]
         share = np.clip(np.sum(from_a * along, axis=1) / np.maximum(length * length, 1e-300), 0.0, 1.0)
         off = from_a - share[:, None] * along
@@ -215,27 +215,18 @@ def _polar(ways: Floats) -> Floats:
 
 def _is_hollow(v: int, pairs: Slots, solid: NDArray[np.bool_], along: Floats) -> bool:
     """Whether what is solid lies around a vertex by more than half a turn."""
-    before, after = np.flatnonzero(pairs[:, 1] == v), np.flatnonzero(pairs[:, 0] == v)
-    if not len(before) or not len(after) or not solid[before[0]]:
+    incoming, outgoing = np.flatnonzero(pairs[:, 1] == v), np.flatnonzero(pairs[:, 0] == v)
+    if not len(incoming) or not len(outgoing) or not solid[incoming[0]]:
         return False
-    one, two = along[before[0]], along[after[0]]
+    one, two = along[incoming[0]], along[outgoing[0]]
     return bool(one[0] * two[1] - one[1] * two[0] <= 0.0)
 
 
 def _is_buried(place: Floats, a: Floats, b: Floats) -> bool:
     """Whether a place lies inside what is solid, whose edges are a to b (e, 2), and not at its rim."""
     # Looked at a little to four sides of it: at a rim one of these is outside.
-    for dx, dy in ((2.0, 1.0), (-1.0, 2.0), (-2.0, -1.0), (1.0, -2.0)):
-        x, y = place[0] + dx * WELD, place[1] + dy * WELD
-        below = a[:, 1] <= y
-        crossing = below != (b[:, 1] <= y)
-        right = (x - a[:, 0]) * (b[:, 1] - a[:, 1]) - (y - a[:, 1]) * (b[:, 0] - a[:, 0])
-        winding = np.count_nonzero(crossing & below & (right < 0.0)) - np.count_nonzero(
-            crossing & ~below & (right > 0.0)
-        )
-        if winding <= 0:
-            return False
-    return True
+    sides = WELD * np.array([(2.0, 1.0), (-1.0, 2.0), (-2.0, -1.0), (1.0, -2.0)])
+    return all(winding_number(place + side, a, b) > 0 for side in sides)
 
 
 NO_TERRAIN = make_terrain(())

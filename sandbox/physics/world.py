@@ -8,7 +8,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
 from sandbox.physics.capacity import Capacity
-from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, rest_of_area, rest_of_bend, sides_gone
+from sandbox.physics.constraints import (
+    AREA,
+    BEND,
+    ConstraintArrays,
+    constraints_of,
+    rest_of_area,
+    rest_of_bend,
+    sides_gone,
+)
 from sandbox.physics.equipment import Equipment, Joined
 from sandbox.physics.events import Containment
 from sandbox.physics.forms import FirmBody
@@ -50,7 +58,7 @@ HIGHEST_OF_RING = 0.99
 # Attributes that another value of counts as a change of topology. A step's contacts are other arrays in every step, and
 # nothing is derived from them.
 _WATCHED = frozenset(
-    {"terrain", "actuators", *(column.name for column in COLUMNS if column.family is not Family.CONTACT)}
+    {"terrain", "actuators", "limits", *(column.name for column in COLUMNS if column.family is not Family.CONTACT)}
 )
 
 
@@ -220,10 +228,7 @@ class World(StateArrays):
     @property
     def constraints(self) -> ConstraintArrays:
         """The constraints as kernels read them."""
-        return ConstraintArrays(
-            self.constraint_kind, self.constraint_first, self.constraint_corners, self.constraint_rest,
-            self.constraint_active, self.corner_particle, self.corner_weight,
-        )  # fmt: skip
+        return constraints_of(self)
 
     @property
     def constraint_coefficients(self) -> tuple[Floats, Floats]:
@@ -558,10 +563,8 @@ class World(StateArrays):
         self.velocity[cursor] = (np.asarray(target) - self.position[cursor]) * float(self.settings.tick_rate)
 
     def end_tick(self) -> None:
-        """Count a tick, past the watch over attributes, which takes as long as a tenth of it; stop every cursor."""
+        """Count a tick, past the watch over attributes, which takes as long as a tenth of it."""
         self.__dict__["tick"] += 1
-        if self.grab_particle >= 0:
-            self.velocity[self.grab_particle : self.grab_particle + GRAB_COUNT] = 0.0
 
     def release(self, grab: int) -> None:
         """Let go; the hand's slots wait for its next use. No bank keeps energy that the hand's work put into it."""

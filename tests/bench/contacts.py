@@ -20,11 +20,11 @@ import pymunk
 from sandbox.physics import jit
 from sandbox.physics.analysis.energy import kinetic_energy
 from sandbox.physics.collision.outline import outline_of
-from sandbox.physics.pipeline import last_contacts
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World
 from tests.support.contact_scenes import GROUND, add_chain, add_discs, add_jelly, world
+from tests.support.contacts import last_contacts
 
 SECONDS = 10
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from sandbox.physics.settings import AUTO, Substeps
 from sandbox.physics.step import step
-from sandbox.physics.substeps import substep_count
 from tests.bench import scenes
+from tests.support.parts import parts_taken
 
 
 def drag(substeps: Substeps, hand: bool) -> str:
@@ -24,8 +24,8 @@ def drag(substeps: Substeps, hand: bool) -> str:
             world.move_grab(0, tuple(target))
         else:
             world.velocity[0] = velocity
-        parts.append(substep_count(world))
         step(world)
+        parts.append(parts_taken(world))
         squares.append(scenes.square_strains(world))
     if hand:
         world.release(0)
@@ -48,10 +48,10 @@ def swing(scene: scenes.Scene, seconds: int) -> str:
             world, spent, taken = scene.world(substeps=substeps), 0.0, 0
             start = scenes.total_energy(world)
             for _ in range(ticks):
-                taken += substep_count(world)
                 began = time.perf_counter()
                 step(world)
                 spent += time.perf_counter() - began
+                taken += parts_taken(world)
             best[k], parts = min(best[k], spent), taken
             lost[k] = 100 * (start - scenes.total_energy(world)) / scenes.swing_energy(scene)
     name = f"{scene.name}, {seconds} s"

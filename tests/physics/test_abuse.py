@@ -8,10 +8,10 @@ from sandbox.level.kinds.jelly import JellyDef
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.pipeline import last_contacts
 from sandbox.physics.settings import AUTO
 from sandbox.physics.step import step
 from tests.support.contact_scenes import BODIES, add_discs, add_jelly, world
+from tests.support.contacts import last_contacts
 from tests.support.overlaps import overlaps
 from tests.support.random_scenes import energies, kept_scene, random_scene
 from tests.support.stirring import heap, stir

@@ -1,18 +1,23 @@
 """Collisions of a step: their arrays are made once, have room that grows, and change no bit of a run."""
 
 import copy
+import sys
+from functools import partial
 
 import numpy as np
 import pytest
 
-from sandbox.physics import pipeline
+from sandbox.physics import jit
 from sandbox.physics.collision.types import NO_CONTACTS
-from sandbox.physics.pipeline import Collisions, collisions_of, last_contacts
+from sandbox.physics.pipeline import making
+from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
+from tests.bench import scenes
 from tests.support.contact_scenes import add_discs, add_jelly, world
+from tests.support.contacts import collisions_of, last_contacts
 from tests.support.physics_scenes import run, scaled
 
 PIT = Chain([(-0.9, 6.0), (-0.9, 0.0), (0.9, 0.0), (0.9, 6.0)])
@@ -43,16 +48,16 @@ def hashes(w, ticks):
 @pytest.mark.parametrize("jelly", [False, True])
 def test_a_run_whose_arrays_grow_on_the_way_has_the_bits_of_one_with_room_from_the_start(monkeypatch, substeps, jelly):
     ticks = scaled(120, 30)
-    monkeypatch.setattr(pipeline, "LEAST_ROOM", 5000)
+    monkeypatch.setattr(making, "LEAST_ROOM", 5000)
     ample = hashes(heap(jelly, substeps=substeps), ticks)
-    monkeypatch.setattr(pipeline, "LEAST_ROOM", 1)
-    monkeypatch.setattr(pipeline, "MORE_ROOM", 1)
+    monkeypatch.setattr(making, "LEAST_ROOM", 1)
+    monkeypatch.setattr(making, "MORE_ROOM", 1)
     w = heap(jelly, substeps=substeps)
     rooms = []
     for expected in ample:
         step(w)
         assert state_hash(w) == expected
-        rooms.append(len(collisions_of(w).room.contacts.particle))
+        rooms.append(len(collisions_of(w).contacts.particle))
     assert len(set(rooms)) > 2 and rooms[-1] < 5000
 
 
@@ -60,24 +65,29 @@ def test_a_tick_of_a_heap_at_rest_makes_no_array():
     w = world(PIT)
     add_discs(w, [(-0.4 + 0.3 * k, 0.1) for k in range(4)])
     run(w, 60)
-    made = collisions_of(w)
-    before = made, made.room, made.items, made.kept, w.contact_particle, w.contact_feature, w.contact_impulse
+    made = block_of(w)
+    before = made, made.arrays, made.pointer, made.kept, w.contact_particle, w.contact_feature, w.contact_impulse
     run(w, 10)
-    made = collisions_of(w)
-    after = made, made.room, made.items, made.kept, w.contact_particle, w.contact_feature, w.contact_impulse
+    made = block_of(w)
+    after = made, made.arrays, made.pointer, made.kept, w.contact_particle, w.contact_feature, w.contact_impulse
     assert len(w.contact_particle) == 4
     assert all(one is other for one, other in zip(before, after, strict=True))
 
 
-def test_a_tick_of_free_discs_is_one_call_of_a_kernel(monkeypatch):
-    w = heap(jelly=False, substeps=4)
-    run(w, 20)
-    calls, entry = [], pipeline._collide
-    monkeypatch.setattr(pipeline, "_collide", lambda *arguments: calls.append(arguments) or entry(*arguments))
-    for other in ("sanitise._are_sound", "sanitise._keep_if_sound", "forces._add_gravity_and_air", "step.integrate"):
-        monkeypatch.setattr(f"sandbox.physics.{other}", None)
-    run(w, 5)
-    assert len(calls) == 5
+def test_a_tick_calls_one_kernel_whatever_is_in_its_world(monkeypatch):
+    jelly, discs, rope = heap(substeps=4), heap(jelly=False, solver="iterative"), scenes.rope(4).world(substeps=AUTO)
+    rope.hold(0, 2, (0.1, 0.1))
+    for w in (jelly, discs, rope):
+        run(w, 20)
+    calls = []
+    for entry in (entry for entry in jit.entries() if not isinstance(entry.held, jit.Entry)):
+        counted = partial(lambda held, *arguments: calls.append(held) or held(*arguments), entry.held)
+        for module in [module for name, module in sys.modules.items() if name.startswith("sandbox")]:
+            if vars(module).get(entry.function.__name__) is entry.held:
+                monkeypatch.setattr(module, entry.function.__name__, counted)
+    for w in (jelly, discs, rope):
+        run(w, 5)
+    assert len(calls) == 15 and len(set(calls)) == 1
 
 
 def test_a_run_goes_on_with_the_same_bits_after_slots_were_added_and_taken_back_while_things_touch():
@@ -127,11 +137,3 @@ def test_the_contacts_of_the_last_step_are_those_of_the_state():
     w.cut([0])
     assert len(last_contacts(w).gap) == 0
     assert last_contacts(world()) is NO_CONTACTS
-
-
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_a_world_in_which_nothing_is_held_has_the_bits_of_one_that_is_taken_part_by_part(solver, monkeypatch):
-    ticks = scaled(90, 20)
-    expected = hashes(heap(jelly=False, solver=solver, substeps=2, drag=0.3, wind=(2.0, 0.5)), ticks)
-    monkeypatch.setattr(Collisions, "is_free", property(lambda self: False, lambda self, value: None), raising=False)
-    assert hashes(heap(jelly=False, solver=solver, substeps=2, drag=0.3, wind=(2.0, 0.5)), ticks) == expected

@@ -8,7 +8,6 @@ import pytest
 from sandbox.physics.analysis.energy import kinetic_energy, total_energy
 from sandbox.physics.collision.contacts import PENETRATION_TICKS
 from sandbox.physics.collision.filter import ALL_GROUPS
-from sandbox.physics.pipeline import last_contacts
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
@@ -16,6 +15,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from tests.support.contact_scenes import BODIES, FLOOR, GROUND, add_chain, add_discs, add_jelly, rugged, world
+from tests.support.contacts import last_contacts
 from tests.support.physics_scenes import run, scaled
 
 every_solver = pytest.mark.parametrize("solver", SOLVERS)

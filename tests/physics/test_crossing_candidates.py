@@ -5,10 +5,11 @@ import pytest
 
 from sandbox.physics.collision.filter import LINE
 from sandbox.physics.collision.outline import outline_of
-from sandbox.physics.pipeline import CROSSED, collisions_of
+from sandbox.physics.pipeline.collide import CROSSED
 from sandbox.physics.step import step
 from tests.support.carts import ring_wheel
 from tests.support.contact_scenes import add_discs, world
+from tests.support.contacts import collisions_of
 
 
 def add_lines(to, points, pairs):
@@ -58,7 +59,7 @@ def test_every_crossing_of_lines_is_found_however_bodies_are_bent_and_wherever_t
         place += bend * generator.uniform(-1.0, 1.0, place.shape)
         w.position[:], w.velocity[:] = place, 0.0
         step(w)
-        totals.append(int(collisions_of(w).room.counts[CROSSED]))
+        totals.append(int(collisions_of(w).counts[CROSSED]))
         assert totals[-1] == crossings(w, place)
     assert max(totals) > 10
 
@@ -68,7 +69,7 @@ def test_a_wheel_that_has_kept_its_form_and_meets_nothing_is_not_searched():
     wheel = add_lines(w, *ring_wheel())
     w.position[wheel] = w.position[wheel][:, ::-1] * (-1.0, 1.0) + (3.0, 1.0)
     step(w)
-    assert collisions_of(w).room.shape_bounds.intact.all()
+    assert collisions_of(w).shape_bounds.intact.all()
     w.position[wheel.start + 1] += (0.0, -1.5)
     step(w)
-    assert not collisions_of(w).room.shape_bounds.intact.any()
+    assert not collisions_of(w).shape_bounds.intact.any()

@@ -5,9 +5,9 @@ import pytest
 
 from sandbox.physics.analysis.energy import kinetic_energy, total_energy
 from sandbox.physics.collision.filter import LINE
-from sandbox.physics.pipeline import last_contacts
 from sandbox.physics.step import step
 from tests.support.contact_scenes import FLOOR, add_discs, add_jelly, world
+from tests.support.contacts import last_contacts
 from tests.support.overlaps import overlaps
 from tests.support.physics_scenes import scaled
 

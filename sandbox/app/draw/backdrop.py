@@ -16,6 +16,7 @@ from sandbox.app.draw.textures import EARTH, TILE, TIMBER, Tiles, grains, skin_t
 from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.things.borders import starts_of
 from sandbox.level.document.model import Level
+from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.terrain import Terrain
 
 Floats = NDArray[np.float64]
@@ -93,16 +94,15 @@ class Backdrop:
         for chain in np.unique(terrain.chain).tolist():
             edges = np.flatnonzero(terrain.chain == chain)
             corners = vertex[terrain.edge_a[edges]]
-            x, y = corners[:, 0], corners[:, 1]
             # Pixels count downwards: what is solid inside runs clockwise there.
-            is_solid = terrain.solid[edges[0]] and np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0
+            is_solid = terrain.solid[edges[0]] and signed_area(corners, np.roll(corners, -1, axis=0)) < 0.0
             if not is_solid:
                 ends = np.concatenate([corners, vertex[terrain.edge_b[edges]]], axis=1)
                 metal = theme.metal[0]
                 lines.strokes(ends, (EDGE_HALF + 0.9) * scale, _packed(theme.metal[1]))
                 lines.strips(ends, EDGE_HALF * scale, TILE["steel"], 0.0, _packed(metal), 0.7)
                 continue
-            wide = np.ptp(x) > WIDE * max(extent, camera.viewport[2])
+            wide = np.ptp(corners[:, 0]) > WIDE * max(extent, camera.viewport[2])
             name = ids[chain] if chain < len(ids) else ""
             kind = ground_look(level, name, bool(wide)) if level is not None else "soil" if wide else "metal"
             solids.append((kind, np.ascontiguousarray(corners)))

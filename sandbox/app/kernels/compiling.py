@@ -88,10 +88,10 @@ def _call_the_rest() -> None:
     import numpy as np
 
     from sandbox.app.draw.raster.painter import precompile_painting
+    from sandbox.physics import substeps
     from sandbox.physics.analysis.energy import total_energy
     from sandbox.physics.constraints import AREA
     from sandbox.physics.settings import WorldSettings
-    from sandbox.physics.step import constraint_coefficients, substep_coefficients
     from sandbox.physics.world import World
 
     world = World(WorldSettings())
@@ -99,9 +99,9 @@ def _call_the_rest() -> None:
     world.add_springs(["s"], [0], [1])
     world.add_constraints(AREA, [[0, 1, 2]])
     total_energy(world)
-    for keeps_constant in (False, True):
-        substep_coefficients(world, 2, keeps_constant=keeps_constant)
-        constraint_coefficients(world, 2, keeps_constant=keeps_constant)
+    substeps.substep_coefficients(world, 2)
+    substeps.halve(np.zeros(1), np.zeros(1), np.zeros(1), 2)
+    substeps.divide(np.zeros(1), np.zeros(1), np.zeros(1), 2, True)
     precompile_painting()
 
 

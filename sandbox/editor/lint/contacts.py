@@ -13,6 +13,7 @@ from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.physics.collision.filter import TERRAIN_GROUP
+from sandbox.physics.geometry.segment import lengths, nearest_on_segments
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -62,11 +63,10 @@ def _ways_out(corners: Floats, points: Floats) -> Generator[None, None, Floats]:
     x, y = points.T
     for number, (a, b) in enumerate(zip(corners, np.roll(corners, -1, axis=0), strict=True)):
         along = b - a
-        share = np.clip((points - a) @ along / float(along @ along), 0.0, 1.0)
-        way = a + share[:, None] * along - points
-        distance = np.sum(way * way, axis=1)
+        _, away = nearest_on_segments(points, a, b)
+        distance = lengths(away)
         nearer = distance < best
-        best, out = np.where(nearer, distance, best), np.where(nearer[:, None], way, out)
+        best, out = np.where(nearer, distance, best), np.where(nearer[:, None], -away, out)
         if a[1] != b[1]:
             inside ^= ((a[1] > y) != (b[1] > y)) & (x < a[0] + along[0] * ((y - a[1]) / along[1]))
         if number % EDGES == 0:

@@ -12,6 +12,7 @@ from sandbox.editor.scene import Scene
 from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.geometry import turn
+from sandbox.physics.geometry.segment import lengths, nearest_on_segments
 
 Kind = Literal["particle", "end", "corner", "edge", "angle", "grid", "free"]
 
@@ -119,11 +120,9 @@ def _ground(scene: Scene, point: Point, within: float, grid: float | None, skip:
         return Snap(_rounded(*corner[nearest].tolist()), "corner", None, f"on a corner of {name}")
     edges = np.flatnonzero(~left_out[scene.edge_item])
     start, end = scene.corner[scene.edge[edges, 0]], scene.corner[scene.edge[edges, 1]]
-    along, offset = end - start, np.array(point) - start
-    squared = np.sum(along * along, axis=1)
-    share = np.divide(np.sum(offset * along, axis=1), squared, out=np.zeros_like(squared), where=squared > 0.0)
-    places = start + np.clip(share, 0.0, 1.0)[:, None] * along
-    distance = np.hypot(*(places - np.array(point)).T)
+    along = end - start
+    share, way = nearest_on_segments(np.array(point), start, end)
+    places, distance = start + share[:, None] * along, lengths(way)
     nearest = int(distance.argmin()) if len(edges) else -1
     if nearest < 0 or distance[nearest] > EDGE_SHARE * within:
         return None

@@ -11,6 +11,8 @@ from sandbox.level.format.limits import POLYGON_WORK_LIMIT, SPACING_RANGE
 from sandbox.level.kinds.geometry import Pairs, Points, spokes
 from sandbox.level.kinds.polygon import Corners, is_simple, loops_touch, polygon_grid
 from sandbox.level.kinds.triangulation import Triangulation
+from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import lengths
 
 Loop = tuple[tuple[float, float], ...]
 # Corners [m] in order, or the radius [m] of a circle about [0, 0].
@@ -128,10 +130,9 @@ def fitting_spacing(
 def fitted_work(outline: Outline, holes: tuple[Loop, ...], spacing: float) -> int:
     """An estimate of the work for the mesh of an outline [m] with holes, in the unit of the limit of polygons."""
     loops = (corners_of(outline, spacing), *holes)
-    border = sum(float(np.sum(_lengths(np.diff(np.array([*loop, loop[0]]), axis=0)))) for loop in loops) / spacing
+    border = sum(float(np.sum(lengths(np.diff(np.array([*loop, loop[0]]), axis=0)))) for loop in loops) / spacing
     corners = np.array(loops[0], dtype=np.float64)
-    after = np.roll(corners, -1, axis=0)
-    area = abs(float(np.sum(corners[:, 0] * after[:, 1] - corners[:, 1] * after[:, 0]))) / 2.0
+    area = abs(signed_area(corners, np.roll(corners, -1, axis=0)))
     particles = area / (ROW * spacing * spacing) + border / 2.0
     width, height = (np.max(corners, axis=0) - np.min(corners, axis=0)).tolist()
     # The lattice is looked through in a slanted box.
@@ -152,10 +153,6 @@ def _sharpest(mesh: FittedMesh) -> float:
     return largest
 
 
-def _lengths(vectors: Points) -> NDArray[np.float64]:
-    return np.asarray(np.sqrt(vectors[:, 0] * vectors[:, 0] + vectors[:, 1] * vectors[:, 1]))
-
-
 class _Way:
     """A closed outline [m] (n, 2) as a way along it: from its first corner, counter-clockwise or against it."""
 
@@ -167,7 +164,7 @@ class _Way:
             corners = np.concatenate([corners[:1], corners[:0:-1]])
         self.corners = corners
         self.sides = np.roll(corners, -1, axis=0) - corners
-        self.reach = _lengths(self.sides)
+        self.reach = lengths(self.sides)
         self.start = np.concatenate([np.zeros(1), np.cumsum(self.reach)])
 
     @property
@@ -190,7 +187,7 @@ def _sampled(loop: Loop, spacing: float, counter_clockwise: bool) -> tuple[Point
     window = min(spacing / 2.0, way.length / 8.0)
     along = way.start[:-1]
     back, ahead = way.corners - way.at(along - window), way.at(along + window) - way.corners
-    both = _lengths(back) * _lengths(ahead)
+    both = lengths(back) * lengths(ahead)
     cosine = (back[:, 0] * ahead[:, 0] + back[:, 1] * ahead[:, 1]) / both
     kept: list[int] = []
     for corner in np.argsort(cosine, kind="stable").tolist():

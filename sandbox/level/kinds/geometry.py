@@ -5,6 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.geometry.segment import lengths
+
 Points = NDArray[np.float64]
 Pairs = NDArray[np.int64]
 
@@ -14,8 +16,7 @@ TRIGONOMETRY_DECIMALS = 12
 
 def distances(points: Points, pairs: Pairs) -> Points:
     """Distance [m] (m,) of the two particles of each pair."""
-    apart = points[pairs[:, 1]] - points[pairs[:, 0]]
-    return np.asarray(np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1]))
+    return lengths(points[pairs[:, 1]] - points[pairs[:, 0]])
 
 
 def turn(angle: float) -> tuple[float, float]:

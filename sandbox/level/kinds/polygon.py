@@ -7,6 +7,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.geometry.segment import distances_from_segments, doubled_areas
+
 Corners = Sequence[tuple[float, float]] | NDArray[np.float64]
 
 # Grid points this close to the border, in units of the spacing, count as on it: beyond rounding, below what is seen.
@@ -143,8 +145,7 @@ def loops_touch(loops: Sequence[Corners]) -> bool:
 
 
 def _side_of(p: NDArray[np.float64], q: NDArray[np.float64], r: NDArray[np.float64]) -> NDArray[np.float64]:
-    pq, pr = q - p, r - p
-    return np.sign(pq[..., 0] * pr[..., 1] - pq[..., 1] * pr[..., 0])
+    return np.sign(doubled_areas(p, q, r))
 
 
 def _touch(
@@ -182,19 +183,10 @@ def simplified(corners: Corners, tolerance: float) -> list[tuple[float, float]]:
         between = points[first + 1 : last]
         if not len(between):
             continue
-        distance = _distance_from(points[first], points[last], between)
+        distance = distances_from_segments(between, points[first], points[last])
         worst = int(np.argmax(distance))
         if distance[worst] > tolerance:
             middle = first + 1 + worst
             kept.add(middle)
             ways += [(first, middle), (middle, last)]
     return [given[index] for index in sorted(kept)]
-
-
-def _distance_from(a: NDArray[np.float64], b: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distance of points (k, 2) from the segment a b (2,)."""
-    along, offset = b - a, points - a
-    squared = float(along[0] * along[0] + along[1] * along[1])
-    share = np.clip(offset @ along / squared, 0.0, 1.0) if squared > 0.0 else np.zeros(len(points))
-    gap = offset - share[:, None] * along
-    return np.asarray(np.sqrt(gap[:, 0] ** 2 + gap[:, 1] ** 2))

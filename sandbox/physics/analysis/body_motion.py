@@ -68,8 +68,8 @@ class BodyMotion:
             return share * stiffness, share * damping
         capped = np.minimum(damping, HIGHEST_COEFFICIENT)
         shares = a / (a * capped + (1.0 - capped))
-        held = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
-        return held * shares, capped * shares
+        limited = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
+        return limited * shares, capped * shares
 
     def sag(self, stiffness: Floats, damping: Floats) -> Floats | None:
         """Part of its height by which it sags where it stands (k,), from Cs and Cd of its springs in a substep.

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.collision.filter import LINE, SOLID_RIGHT
 from sandbox.physics.collision.narrow_phase import DISC, EDGE, INSIDE, KINDS, TERRAIN, TIP, TIP_SHIFT
+from sandbox.physics.geometry.segment import lengths, nearest_on_segments
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import substep_time
@@ -38,23 +39,20 @@ def contact_points(state: World | Snapshot, position: Floats | None = None) -> C
     chosen &= (number < last) & ((kind != TIP) | (number % TIP_SHIFT < len(state.edge)))
     kind, number, particle = kind[chosen], number[chosen], state.contact_particle[chosen].astype(np.int64)
     impulse = state.contact_impulse[chosen]
-    start, along, is_solid = _features(state, position, kind, number)
+    start, end, is_solid = _features(state, position, kind, number)
     centre = position[particle]
     tips = np.flatnonzero(kind == TIP)
     # The edge pushes against the corner; what is said is how the corner pushes the edge.
     centre[tips] = state.terrain.vertex[number[tips] // TIP_SHIFT]
-    squared = np.sum(along * along, axis=1)
-    share = np.divide(np.sum((centre - start) * along, axis=1), squared, out=np.zeros(len(start)), where=squared > 0.0)
-    nearest = start + np.clip(share, 0.0, 1.0)[:, None] * along
-    away = centre - nearest
+    share, away = nearest_on_segments(centre, start, end)
     # Right of the way along an edge is outside of what is solid.
-    outward = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    outward = np.stack([end[:, 1] - start[:, 1], start[:, 0] - end[:, 0]], axis=1)
     beside = (share > 0.0) & (share < 1.0)
     side = np.where(is_solid | (np.sum(outward * away, axis=1) >= 0.0), 1.0, -1.0)
     normal = _unit(np.where(beside[:, None], side[:, None] * outward, away))
     normal[tips] *= -1.0
     radius = np.where(kind == TIP, 0.0, 1.0) * np.where(
-        kind == DISC, state.radius[particle], np.minimum(state.radius[particle], _length(away))
+        kind == DISC, state.radius[particle], np.minimum(state.radius[particle], lengths(away))
     )
     # An impact's is that of a tick, beside what a step pushes.
     impact = state.contact_impact[chosen, None] * state.settings.tick_rate * substep_time(state.settings)
@@ -71,7 +69,7 @@ def _edges(state: World | Snapshot) -> int:
 def _features(
     state: World | Snapshot, position: Floats, kind: Slots, number: Slots
 ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """Start [m] and way along it (k, 2) of what contacts are with, and whether it is solid on the left (k,)."""
+    """Start and end [m] (k, 2) of what contacts are with, and whether it is solid on the left (k,)."""
     start, end = np.zeros((2, len(kind), 2))
     is_solid = np.zeros(len(kind), dtype=np.bool_)
     discs, edges, ground = (
@@ -89,15 +87,11 @@ def _features(
     start[ground] = terrain.vertex[terrain.edge_a[number[ground]]]
     end[ground] = terrain.vertex[terrain.edge_b[number[ground]]]
     is_solid[ground] = terrain.solid[number[ground]]
-    return start, end - start, is_solid
-
-
-def _length(vectors: Floats) -> Floats:
-    return np.asarray(np.sqrt(np.sum(vectors * vectors, axis=1)))
+    return start, end, is_solid
 
 
 def _unit(vectors: Floats) -> Floats:
     """Vectors (k, 2) of length 1; upward where they have none."""
-    length = _length(vectors)[:, None]
+    length = lengths(vectors)[:, None]
     up = np.broadcast_to(np.array([0.0, 1.0]), vectors.shape)
     return np.where(length > 0.0, np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0), up)

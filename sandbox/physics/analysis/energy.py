@@ -3,6 +3,7 @@
 import numpy as np
 
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, constraint_values
+from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
@@ -21,8 +22,7 @@ def reduced_masses(world: World | Snapshot) -> Floats:
 @_unbounded
 def spring_lengths(world: World | Snapshot) -> Floats:
     """Present length [m] of every spring (m,)."""
-    separation = world.position[world.particle_b] - world.position[world.particle_a]
-    return np.sqrt(np.sum(separation * separation, axis=1))
+    return lengths(world.position[world.particle_b] - world.position[world.particle_a])
 
 
 def _spring_constants(state: World | Snapshot) -> Floats:

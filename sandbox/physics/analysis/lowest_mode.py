@@ -15,6 +15,7 @@ import numpy as np
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.forms import StiffForm
+from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.jit import kernel
 from sandbox.physics.solvers.linear.matrix_layout import find_blocks, new_matrix
 from sandbox.physics.solvers.linear.minimum_degree import order_by_degree
@@ -36,7 +37,7 @@ KEPT = 256
 _kept: dict[bytes, float] = {}
 
 
-class HeldCorners(NamedTuple):
+class ConstraintRows(NamedTuple):
     """Springs, areas and bends alike: first (k+1,) = where corners begin, mass (k,); node (q,), gradient (q, 2)."""
 
     first: Slots
@@ -47,7 +48,7 @@ class HeldCorners(NamedTuple):
 
 @kernel
 def _iterate_inversely(
-    matrix: Matrix, rows: HeldCorners, mass: Floats, rigid: Floats, vector: Floats, change: Floats, rounds: int,
+    matrix: Matrix, rows: ConstraintRows, mass: Floats, rigid: Floats, vector: Floats, right_side: Floats, rounds: int,
     converged: float,
 ) -> float:  # fmt: skip
     # x -> (S + SHIFT M)^-1 M x without its motions as a whole; the Rayleigh quotient x S x / x M x of the last x.
@@ -74,9 +75,9 @@ def _iterate_inversely(
         for i in range(count):
             vector[i, 0] *= size
             vector[i, 1] *= size
-            change[i, 0] = mass[i] * vector[i, 0]
-            change[i, 1] = mass[i] * vector[i, 1]
-        before = quotient
+            right_side[i, 0] = mass[i] * vector[i, 0]
+            right_side[i, 1] = mass[i] * vector[i, 1]
+        last_quotient = quotient
         quotient = 0.0
         for k in range(rows.mass.shape[0]):
             rate = 0.0
@@ -84,12 +85,12 @@ def _iterate_inversely(
                 i = rows.node[c]
                 rate += rows.gradient[c, 0] * vector[i, 0] + rows.gradient[c, 1] * vector[i, 1]
             quotient += rows.mass[k] * rate * rate
-        if abs(quotient - before) <= converged * quotient:
+        if abs(quotient - last_quotient) <= converged * quotient:
             break
-        back_substitute(0, count, matrix, change)
+        back_substitute(0, count, matrix, right_side)
         for i in range(count):
-            vector[i, 0] = change[i, 0]
-            vector[i, 1] = change[i, 1]
+            vector[i, 0] = right_side[i, 0]
+            vector[i, 1] = right_side[i, 1]
     return quotient
 
 
@@ -153,19 +154,19 @@ class _CornerPairs(NamedTuple):
     owner: Slots
 
 
-def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> HeldCorners:
+def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> ConstraintRows:
     """What holds the particles of a world, at their places."""
     world.add_springs([str(k) for k in range(len(pairs))], pairs[:, 0], pairs[:, 1])
     for kind, corners in ((AREA, areas), (BEND, bends)):
         if len(corners):
             world.add_constraints(kind, corners)
     apart = world.position[pairs[:, 1]] - world.position[pairs[:, 0]]
-    length = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
+    length = lengths(apart)
     # A spring of no length holds nothing.
     normal = np.divide(apart, length[:, None], out=np.zeros_like(apart), where=length[:, None] > 0.0)
     _, of_constraints, slope = measure_constraints(world)
     sizes = np.concatenate([np.full(len(pairs), 2), world.constraint_corners.astype(np.int64)])
-    return HeldCorners(
+    return ConstraintRows(
         np.append(0, np.cumsum(sizes)),
         np.concatenate([pairs.reshape(-1), world.corner_particle]).astype(np.int64),
         np.concatenate([np.stack([-normal, normal], axis=1).reshape(-1, 2), slope]),
@@ -173,7 +174,7 @@ def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> HeldCorners
     )
 
 
-def _assemble(matrix: Matrix, rows: HeldCorners, joined: _CornerPairs, mass: Floats, rank: Slots) -> None:
+def _assemble(matrix: Matrix, rows: ConstraintRows, joined: _CornerPairs, mass: Floats, rank: Slots) -> None:
     """Write S + SHIFT M into the matrix."""
     a, b = rank[rows.node[joined.one]], rank[rows.node[joined.other]]
     # The row of the block is the later of the two.

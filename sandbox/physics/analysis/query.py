@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.geometry.segment import distances_from_segments, doubled_areas, lengths
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.state import BY_STORED, Family
 from sandbox.physics.world import GRAB_COUNT, Floats, Slots, World
@@ -39,8 +40,7 @@ def shown_springs(state: World | Snapshot) -> NDArray[np.bool_]:
 @_far_away
 def nearest_particle(state: World | Snapshot, point: Point, within: float) -> int | None:
     """Slot of the shown particle whose disc is nearest to point [m], at most `within` [m] away; the lowest on a tie."""
-    separation = state.position - np.asarray(point)
-    distance = np.sqrt(np.sum(separation * separation, axis=1)) - state.radius
+    distance = lengths(state.position - np.asarray(point)) - state.radius
     return _nearest(distance, shown_particles(state), within)
 
 
@@ -54,8 +54,7 @@ def free_particle_at(state: World | Snapshot, point: Point, within: float) -> in
         return pressed
     around = np.isin(state.owner, _bodies_around(state, point))
     taken = shown_particles(state) & (state.inverse_mass > 0.0) & around
-    separation = state.position - np.asarray(point)
-    distance = np.sqrt(np.sum(separation * separation, axis=1))
+    distance = lengths(state.position - np.asarray(point))
     return _nearest(distance, taken, np.inf) if taken.any() else None
 
 
@@ -85,20 +84,14 @@ def grip_radius(state: World | Snapshot, particle: int) -> float:
     of_body = state.particle_active & (state.owner == state.owner[particle])
     if not np.any(soft & of_body):
         return 0.0
-    away = state.origin[of_body] - state.origin[particle]
-    return REACH * float(np.sqrt(np.max(np.sum(away * away, axis=1))))
+    return REACH * float(np.max(lengths(state.origin[of_body] - state.origin[particle])))
 
 
 @_far_away
 def nearest_spring(state: World | Snapshot, point: Point, within: float) -> int | None:
     """Slot of the shown spring nearest to point [m], at most `within` [m] away; the lowest on a tie."""
-    start = state.position[state.particle_a]
-    along = state.position[state.particle_b] - start
-    offset = np.asarray(point) - start
-    squared = np.sum(along * along, axis=1)
-    share = np.divide(np.sum(offset * along, axis=1), squared, out=np.zeros_like(squared), where=squared > 0.0)
-    gap = offset - np.clip(share, 0.0, 1.0)[:, None] * along
-    return _nearest(np.sqrt(np.sum(gap * gap, axis=1)), shown_springs(state), within)
+    a, b = state.position[state.particle_a], state.position[state.particle_b]
+    return _nearest(distances_from_segments(np.asarray(point), a, b), shown_springs(state), within)
 
 
 def _nearest(distance: NDArray[np.float64], shown: NDArray[np.bool_], within: float) -> int | None:
@@ -114,23 +107,18 @@ def springs_crossing(state: World | Snapshot, start: Point, end: Point) -> Slots
     """Slots of the shown springs that the segment from start to end [m] crosses or touches, ascending."""
     p, q = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
     a, b = state.position[state.particle_a], state.position[state.particle_b]
-    side_a, side_b = _cross(q - p, a - p), _cross(q - p, b - p)
-    side_p, side_q = _cross(b - a, p - a), _cross(b - a, q - a)
-    straddles = (side_a * side_b <= 0.0) & (side_p * side_q <= 0.0)
-    # Collinear segments have all four sides 0: they meet only where their boxes do.
+    straddles = (doubled_areas(p, q, a) * doubled_areas(p, q, b) <= 0.0) & (
+        doubled_areas(a, b, p) * doubled_areas(a, b, q) <= 0.0
+    )
+    # Collinear segments have all four areas 0: they meet only where their boxes do.
     boxes = np.all((np.minimum(a, b) <= np.maximum(p, q)) & (np.maximum(a, b) >= np.minimum(p, q)), axis=1)
     return np.flatnonzero(shown_springs(state) & straddles & boxes)
-
-
-def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
 
 @_far_away
 def strain(state: World | Snapshot) -> Floats:
     """Signed strain (l - L) / L of every spring (m,): above 0 stretched; 0 where inactive or of rest length 0."""
-    separation = state.position[state.particle_b] - state.position[state.particle_a]
-    length = np.sqrt(separation[:, 0] ** 2 + separation[:, 1] ** 2)
+    length = lengths(state.position[state.particle_b] - state.position[state.particle_a])
     counted = state.spring_active & (state.rest_length > 0.0)
     rest = state.rest_length
     return np.divide(length - rest, rest, out=np.zeros_like(length), where=counted)

@@ -67,7 +67,7 @@ def _working(world: World) -> NDArray[np.bool_]:
     return world.spring_active & (reduced_masses(world) > 0.0) & (world.law != LAW_HAND)
 
 
-def _held_corners(world: World) -> NDArray[np.int64]:
+def _free_corners(world: World) -> NDArray[np.int64]:
     """The corners (of q) of active constraints whose particles are free, which is where constraints do something."""
     active = np.repeat(world.constraint_active, world.constraint_corners)
     return np.flatnonzero(active & (world.inverse_mass[world.corner_particle] > 0.0))
@@ -75,7 +75,7 @@ def _held_corners(world: World) -> NDArray[np.int64]:
 
 def _most_at_corners(world: World, at: Floats) -> Floats:
     """The most of what stands at each particle (n,) over the free corners of every constraint (t,); 0 where none is."""
-    owner, corners = np.repeat(np.arange(world.constraint_count), world.constraint_corners), _held_corners(world)
+    owner, corners = np.repeat(np.arange(world.constraint_count), world.constraint_corners), _free_corners(world)
     most = np.zeros(world.constraint_count)
     np.maximum.at(most, owner[corners], at[world.corner_particle[corners]])
     return most
@@ -84,8 +84,8 @@ def _most_at_corners(world: World, at: Floats) -> Floats:
 def _degrees(world: World) -> NDArray[np.int64]:
     """Springs and constraints that hold each particle (n,)."""
     working = _working(world)
-    held = world.corner_particle[_held_corners(world)]
-    ends = np.concatenate([world.particle_a[working], world.particle_b[working], held])
+    joined = world.corner_particle[_free_corners(world)]
+    ends = np.concatenate([world.particle_a[working], world.particle_b[working], joined])
     return np.bincount(ends, minlength=world.particle_count)
 
 
@@ -144,16 +144,16 @@ def _incidence(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], Floa
     normal[length == 0.0] = (1.0, 0.0)
     normal *= np.sqrt(reduced_masses(world)[springs])[:, None]
     _, rest_mass, slope = measure_constraints(world)
-    owner, corners = np.repeat(np.arange(world.constraint_count), world.constraint_corners), _held_corners(world)
+    owner, corners = np.repeat(np.arange(world.constraint_count), world.constraint_corners), _free_corners(world)
     squares = world.inverse_mass[world.corner_particle[corners]] * np.sum(slope[corners] ** 2, axis=1)
     present = np.bincount(owner[corners], squares, world.constraint_count).astype(np.float64)
     # The explicit solvers take the less of the two masses.
     mass = np.minimum(rest_mass, np.divide(1.0, present, out=np.full_like(present, np.inf), where=present > 0.0))
-    held = slope[corners] * np.sqrt(mass)[owner[corners], None]
+    gradient = slope[corners] * np.sqrt(mass)[owner[corners], None]
     number = np.arange(len(springs))
     rows = np.concatenate([number, number, len(springs) + owner[corners]])
     ends = np.concatenate([a, b, world.corner_particle[corners]])
-    return rows, ends, np.concatenate([-normal, normal, held])
+    return rows, ends, np.concatenate([-normal, normal, gradient])
 
 
 def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
@@ -178,7 +178,7 @@ def _constraint_demands(world: World, stiffness: Floats, damping: Floats) -> Flo
 def _summed_loads(world: World, demands: Floats, of_constraints: Floats) -> Floats:
     """m_r (w_a S_a + w_b S_b) of every spring, S = what is demanded on an end; then the most S of every constraint."""
     a, b = world.particle_a, world.particle_b
-    corners = _held_corners(world)
+    corners = _free_corners(world)
     asked = np.repeat(of_constraints, world.constraint_corners)[corners]
     at = np.zeros(world.particle_count)
     for particles, weight in ((a, demands), (b, demands), (world.corner_particle[corners], asked)):
@@ -310,9 +310,9 @@ def most_springs(world: World, material: int | None = None) -> int:
     _, chosen = _counted(world, material)
     degree, slots = _degrees(world), np.flatnonzero(chosen[: world.spring_count])
     ends = [world.particle_a[slots], world.particle_b[slots]]
-    held = _held_corners(world)
-    owner = np.repeat(np.arange(world.constraint_count), world.constraint_corners)[held]
-    ends.append(world.corner_particle[held[chosen[world.spring_count :][owner]]])
+    corners = _free_corners(world)
+    owner = np.repeat(np.arange(world.constraint_count), world.constraint_corners)[corners]
+    ends.append(world.corner_particle[corners[chosen[world.spring_count :][owner]]])
     return int(degree[np.concatenate(ends)].max(initial=0))
 
 

@@ -11,7 +11,10 @@ from numpy.typing import NDArray
 
 from sandbox.physics.collision.outline import Outline, outline_of
 from sandbox.physics.components import body_of
-from sandbox.physics.pipeline import collisions_of
+from sandbox.physics.geometry.polygon import signed_area, winding_number
+from sandbox.physics.geometry.rigid import fitted
+from sandbox.physics.geometry.segment import distances_from_segments, segments_cross
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.world import BANK_UNOPENED, World
 
@@ -34,9 +37,9 @@ def overlapping(world: World) -> list[tuple[int, int]]:
 
     Lines that cross lines do not count.
     """
-    collisions = collisions_of(world)
-    if collisions is None:
+    if not world.has_contacts:
         return []
+    collisions = block_of(world).arrays.collisions
     outline, colliders = collisions.outline, collisions.colliders
     shapes = colliders.parted[: colliders.parted_count[0], :2]
     first = outline.member[outline.member_start[:-1]]
@@ -53,7 +56,7 @@ def free_body(world: World, particle: int) -> None:
     body = body_of(world, particle)
     places = world.position[body] + 0.0
     if _is_one_solid(world, body):
-        places = _formed(world.origin[body], places)
+        places = fitted(world.origin[body], places)
     surroundings = _Surroundings(world, body)
     for way in _ways(RING * max(float(world.radius[body].max()), 1e-3)):
         if surroundings.are_clear_of(places + way):
@@ -69,24 +72,6 @@ def _is_one_solid(world: World, body: Slots) -> bool:
     outline = outline_of(world)
     shape = outline.shape[body]
     return len(set(world.owner[body].tolist())) == 1 and shape[0] >= 0 and bool(outline.solid_of[shape[0]] >= 0)
-
-
-def _formed(form: Floats, places: Floats) -> Floats:
-    """The form moved and turned to fit places: with sums in order and no trigonometry, so that all machines agree."""
-    count = len(form)
-    middle, centre = (_summed(at) / count for at in (form, places))
-    p, q = form - middle, places - centre
-    along, across = _summed(np.stack([p[:, 0] * q[:, 0] + p[:, 1] * q[:, 1], p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]], 1))
-    length = math.sqrt(along * along + across * across)
-    c, s = (along / length, across / length) if length > 0.0 else (1.0, 0.0)
-    return centre + np.stack([c * p[:, 0] - s * p[:, 1], s * p[:, 0] + c * p[:, 1]], axis=1)
-
-
-def _summed(rows: Floats) -> Floats:
-    total = np.zeros(2)
-    for row in rows:
-        total = total + row
-    return total
 
 
 def _ways(ring: float) -> list[Floats]:
@@ -127,7 +112,7 @@ class _Surroundings:
     def are_clear_of(self, places: Floats) -> bool:
         """Whether a body at these places [m] touches nothing, and nothing is inside of it or round it."""
         # Of places beyond walls there are most, and they are found at once.
-        if any(_winds(places[0], a, b) != outside for a, b, outside in self.solids):
+        if any(winding_number(places[0], a, b) != outside for a, b, outside in self.solids):
             return False
         low, high = places.min(axis=0) - 2.0 * self.radius.max(), places.max(axis=0) + 2.0 * self.radius.max()
         near = np.all((np.maximum(self.start, self.end) >= low - self.reach[:, None])
@@ -138,19 +123,19 @@ class _Surroundings:
         discs, disc_reach = self.discs[around], self.disc_reach[around]
         for some in _batches(len(places)):
             place, radius = places[some, None], self.radius[some, None]
-            if np.any(_distance(place, start, end) < CLEAR * (radius + reach)):
+            if np.any(distances_from_segments(place, start, end) < CLEAR * (radius + reach)):
                 return False
-            if np.any(_distance(place, discs, discs) < CLEAR * (radius + disc_reach)):
+            if np.any(distances_from_segments(place, discs, discs) < CLEAR * (radius + disc_reach)):
                 return False
         own = float(self.radius.max())
         for some in _batches(len(self.own_a)):
             a, b = places[self.own_a[some], None], places[self.own_b[some], None]
-            if np.any(_cross(a, b, start, end)):
+            if np.any(segments_cross(a, b, start, end)):
                 return False
-            if np.any(_distance(discs, a, b) < CLEAR * (own + disc_reach)):
+            if np.any(distances_from_segments(discs, a, b) < CLEAR * (own + disc_reach)):
                 return False
         loops = [_own_loop(self.outline, k, self.row, places) for k in self.own_solids]
-        return not any(_winds(disc, a, b) != 0 for disc in discs for a, b in loops)
+        return not any(winding_number(disc, a, b) != 0 for disc in discs for a, b in loops)
 
 
 def _batches(count: int) -> Iterator[slice]:
@@ -167,7 +152,7 @@ def _solid(outline: Outline, vertices: Floats, k: int) -> tuple[Floats, Floats, 
     edges = _sides(outline, k)
     a, b = vertices[outline.edge_a[edges]], vertices[outline.edge_b[edges]]
     # A hollow chain runs the other way round, and its outside is inside of it.
-    return a, b, 0 if float(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])) >= 0.0 else -1
+    return a, b, 0 if signed_area(a, b) >= 0.0 else -1
 
 
 def _sides(outline: Outline, k: int) -> Slots:
@@ -178,29 +163,3 @@ def _sides(outline: Outline, k: int) -> Slots:
 def _own_loop(outline: Outline, k: int, row: Slots, places: Floats) -> tuple[Floats, Floats]:
     edges = _sides(outline, k)
     return places[row[outline.edge_a[edges]]], places[row[outline.edge_b[edges]]]
-
-
-def _side(a: Floats, b: Floats, p: Floats) -> Floats:
-    along, away = b - a, p - a
-    return np.asarray(along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0])
-
-
-def _winds(p: Floats, a: Floats, b: Floats) -> int:
-    """How often edges from a to b (k, 2) run round a place."""
-    up, down = (a[:, 1] <= p[1]) & (b[:, 1] > p[1]), (a[:, 1] > p[1]) & (b[:, 1] <= p[1])
-    left = _side(a, b, p)
-    return int(np.count_nonzero(up & (left > 0.0))) - int(np.count_nonzero(down & (left < 0.0)))
-
-
-def _cross(a: Floats, b: Floats, c: Floats, d: Floats) -> NDArray[np.bool_]:
-    """Which edges from c to d (k, 2) edges from a to b (n, 1, 2) cross: (n, k)."""
-    return ((_side(a, b, c) > 0.0) != (_side(a, b, d) > 0.0)) & ((_side(c, d, a) > 0.0) != (_side(c, d, b) > 0.0))
-
-
-def _distance(p: Floats, a: Floats, b: Floats) -> Floats:
-    """Distances [m] of places from edges from a to b, each with each: (n, 1, 2) and (k, 2), or the other way round."""
-    along, away = b - a, p - a
-    squared = along[..., 0] * along[..., 0] + along[..., 1] * along[..., 1]
-    share = (away[..., 0] * along[..., 0] + away[..., 1] * along[..., 1]) / np.maximum(squared, 1e-300)
-    gap = away - np.clip(share, 0.0, 1.0)[..., None] * along
-    return np.asarray(np.sqrt(gap[..., 0] * gap[..., 0] + gap[..., 1] * gap[..., 1]))

@@ -28,8 +28,8 @@ def push(world: World, place: tuple[float, float], impulse: tuple[float, float],
     total = sum_in_order(world.mass[pushed] * weight)
     distance = np.sqrt(squares[pushed])
     share = np.divide(outward, distance, out=np.zeros_like(distance), where=distance > 0.0)
-    change = (np.array(impulse) + share[:, None] * away[pushed]) * (weight / total)[:, None]
+    dv = (np.array(impulse) + share[:, None] * away[pushed]) * (weight / total)[:, None]
     for name in ("velocity", "slow_velocity"):
-        world.change(name, getattr(world, name)[pushed] + change, pushed)
+        world.change(name, getattr(world, name)[pushed] + dv, pushed)
     world.disturb(pushed)
     return True

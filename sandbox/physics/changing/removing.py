@@ -17,10 +17,10 @@ def remove_particles(world: World, particles: Slots) -> None:
     if len(springs):
         world.cut(springs.tolist())
     owner = np.repeat(np.arange(world.constraint_count), world.constraint_corners)
-    held = np.unique(owner[gone[world.corner_particle]])
-    if world.constraint_active[held].any():
-        corners = world.corner_particle[np.isin(owner, held)].astype(np.int64)
-        world.change("constraint_active", False, held)
+    lost = np.unique(owner[gone[world.corner_particle]])
+    if world.constraint_active[lost].any():
+        corners = world.corner_particle[np.isin(owner, lost)].astype(np.int64)
+        world.change("constraint_active", False, lost)
         world.disturb(corners)
     world.change("particle_active", False, particles)
     world.change("collides", 0, particles)

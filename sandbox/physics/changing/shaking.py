@@ -16,8 +16,8 @@ def shake(world: World, acceleration: tuple[float, float]) -> bool:
     free = np.flatnonzero(shown_particles(world) & (world.inverse_mass > 0.0))
     if not len(free):
         return False
-    change = np.array(acceleration) / world.settings.tick_rate
+    dv = np.array(acceleration) / world.settings.tick_rate
     for name in ("velocity", "slow_velocity"):
-        world.change(name, getattr(world, name)[free] - change, free)
+        world.change(name, getattr(world, name)[free] - dv, free)
     world.disturb(free)
     return True

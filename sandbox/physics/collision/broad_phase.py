@@ -201,7 +201,7 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
     """The objects whose boxes overlap that of each particle; their number, counted on where there is no room."""
     count = 0
     other = pairs.other
-    room = other.shape[0]
+    capacity = other.shape[0]
     box = boxes.box
     cells = grid.cells
     particles = boxes.filter.shape[0]
@@ -220,7 +220,7 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
         for at in range(larges):
             k = grid.large[at]
             if k != p and (k >= particles or k < past_discs) and overlap(box, p, k):
-                if count < room:
+                if count < capacity:
                     other[count] = k
                 count += 1
         for column in range(left, cells[p, 2] + 1):
@@ -240,7 +240,7 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
                         and grid.cell[entry] == here
                         and overlap(box, p, k)
                     ):
-                        if count < room:
+                        if count < capacity:
                             other[count] = k
                         count += 1
     pairs.start[particles] = count
@@ -263,6 +263,6 @@ def new_grid(objects: int, entries: int) -> Grid:
     )  # fmt: skip
 
 
-def new_pairs(particles: int, room: int) -> Pairs:
+def new_pairs(particles: int, capacity: int) -> Pairs:
     """Empty pairs, with room for a number of them."""
-    return Pairs(np.zeros(particles + 1, np.int64), np.zeros(room, np.int64))
+    return Pairs(np.zeros(particles + 1, np.int64), np.zeros(capacity, np.int64))

@@ -8,7 +8,7 @@ manifold: two points at which two bodies touch are two contacts.
 import math
 
 from sandbox.physics.collision.broad_phase import WITH_ALL, WITH_EDGES, WITH_NOTHING, Boxes, Candidates, Pairs
-from sandbox.physics.collision.edge_geometry import CORNER, closest, is_enclosed
+from sandbox.physics.collision.edge_geometry import CORNER, is_enclosed
 from sandbox.physics.collision.entered import find_entered
 from sandbox.physics.collision.narrow_phase import (
     EDGE,
@@ -25,6 +25,7 @@ from sandbox.physics.collision.narrow_phase import (
 from sandbox.physics.collision.outline import TERRAIN_OWNER, Outline
 from sandbox.physics.collision.tips import find_tips
 from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near
+from sandbox.physics.geometry.segment import closest_on_segment, doubled_area_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
 from sandbox.physics.terrain import Terrain, cells_between
@@ -161,11 +162,11 @@ def _find_penetration(
         lowest = math.inf
         for e in range(solid[k, 0], solid[k, 1]):
             if colliders.side[e] != 0:
-                _, distance, _, _ = closest(p, colliders.edge_a[e], colliders.edge_b[e], colliders.position)
+                _, distance, _, _ = closest_on_segment(p, colliders.edge_a[e], colliders.edge_b[e], colliders.position)
                 if distance < lowest:
                     nearest = e
                     lowest = distance
-        share, distance, _, region = closest(
+        share, distance, _, region = closest_on_segment(
             p, colliders.edge_a[nearest], colliders.edge_b[nearest], colliders.position
         )
         count = push_out(p, nearest, share, distance, region, colliders, outline.dynamic[0], contacts, count)
@@ -194,17 +195,11 @@ def _was_penetrating(
 @inner_kernel
 def _is_hollow(first: int, last: int, colliders: Colliders) -> bool:
     # Whether a chain encloses a negative area: it is terrain that is solid outside.
-    x = colliders.position[colliders.edge_a[first], 0]
-    y = colliders.position[colliders.edge_a[first], 1]
     area = 0.0
     for e in range(first, last):
         if colliders.side[e] == 0 or colliders.owner[colliders.edge_a[e]] > TERRAIN_OWNER:
             return False
-        a = colliders.edge_a[e]
-        b = colliders.edge_b[e]
-        area += (colliders.position[a, 0] - x) * (colliders.position[b, 1] - y) - (colliders.position[b, 0] - x) * (
-            colliders.position[a, 1] - y
-        )
+        area += doubled_area_of(colliders.edge_a[first], colliders.edge_a[e], colliders.edge_b[e], colliders.position)
     return area < 0.0
 
 

@@ -4,6 +4,7 @@ from sandbox.physics.collision.entered import edge_of_spring
 from sandbox.physics.collision.narrow_phase import EDGE, INSIDE, KINDS, TIP
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Contacts
+from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
 
@@ -16,15 +17,14 @@ def _motion_of(
     s: int, outline: Outline, mass: Floats, inverse_mass: Floats, velocity: Floats
 ) -> tuple[float, float, float]:
     # 1 / mass of a body and the velocity of its centre; 0: a pin holds it.
-    total = x = y = 0.0
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for i in range(outline.member_start[s], outline.member_start[s + 1]):
         q = outline.member[i]
         if inverse_mass[q] == 0.0:
             return 0.0, 0.0, 0.0
-        total += mass[q]
-        x += mass[q] * velocity[q, 0]
-        y += mass[q] * velocity[q, 1]
-    return 1.0 / total, x / total, y / total
+        sums = with_point(sums, mass[q], 0.0, 0.0, velocity[q, 0], velocity[q, 1])
+    centre = centre_of(sums)
+    return 1.0 / sums.weight, centre.u, centre.v
 
 
 @inner_kernel

@@ -1,11 +1,10 @@
-"""Places of particles relative to edges: the nearest place of an edge, the owner of a corner, the inside of an
-outline.
-"""
+"""Places of particles relative to edges: normals, the owner of a corner, the inside of an outline."""
 
 import math
 
 from sandbox.physics.collision.types import Colliders
-from sandbox.physics.equation import SHORTEST
+from sandbox.physics.geometry.polygon import winding_of_side
+from sandbox.physics.geometry.segment import difference, doubled_area, unit
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 
@@ -28,39 +27,10 @@ def time_to_circle(dx: float, dy: float, wx: float, wy: float, reach: float) -> 
 
 
 @inner_kernel
-def closest(p: int, a: int, b: int, position: Floats) -> tuple[float, float, float, int]:
-    """Place along the edge a b that is closest to p, distance, signed distance (right of the edge: above 0), region."""
-    dx = position[b, 0] - position[a, 0]
-    dy = position[b, 1] - position[a, 1]
-    px = position[p, 0] - position[a, 0]
-    py = position[p, 1] - position[a, 1]
-    squared = dx * dx + dy * dy
-    if not squared > SHORTEST:
-        distance = math.sqrt(px * px + py * py)
-        return 0.0, distance, distance, -1
-    share = (px * dx + py * dy) / squared
-    signed = (px * dy - py * dx) / math.sqrt(squared)
-    region = 0
-    if share <= 0.0:
-        share = 0.0
-        region = -1
-    elif share >= 1.0:
-        share = 1.0
-        region = 1
-    qx = px - share * dx
-    qy = py - share * dy
-    return share, math.sqrt(qx * qx + qy * qy), signed, region
-
-
-@inner_kernel
 def edge_normal(e: int, colliders: Colliders) -> tuple[float, float]:
     """Unit normal on the right of the edge, away from the solid side."""
-    dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[colliders.edge_a[e], 0]
-    dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[colliders.edge_a[e], 1]
-    length = math.sqrt(dx * dx + dy * dy)
-    if length > SHORTEST:
-        return dy / length, -dx / length
-    return 0.0, 1.0
+    dx, dy = difference(colliders.edge_a[e], colliders.edge_b[e], colliders.position)
+    return unit(dy, -dx)
 
 
 @inner_kernel
@@ -105,10 +75,7 @@ def corner_normal(v: int, colliders: Colliders) -> tuple[float, float]:
             ex, ey = edge_normal(e, colliders)
             nx += ex
             ny += ey
-    length = math.sqrt(nx * nx + ny * ny)
-    if length > SHORTEST:
-        return nx / length, ny / length
-    return 0.0, 1.0
+    return unit(nx, ny)
 
 
 @inner_kernel
@@ -121,21 +88,12 @@ def place_on(e: int, share: float, axis: int, colliders: Colliders) -> float:
 @inner_kernel
 def winds(x: float, y: float, first: int, last: int, colliders: Colliders) -> int:
     """How often solid edges first..last run round a place."""
-    # A ray to the right crosses one that has it on its left going up, or on its right going down.
     winding = 0
     for e in range(first, last):
-        a = colliders.edge_a[e]
-        b = colliders.edge_b[e]
-        below = colliders.position[a, 1] <= y
-        if below == (colliders.position[b, 1] <= y) or colliders.side[e] == 0:
-            continue
-        dx = colliders.position[b, 0] - colliders.position[a, 0]
-        dy = colliders.position[b, 1] - colliders.position[a, 1]
-        right = (x - colliders.position[a, 0]) * dy - (y - colliders.position[a, 1]) * dx
-        if below and right < 0.0:
-            winding += 1
-        elif not below and right > 0.0:
-            winding -= 1
+        ax, ay = colliders.position[colliders.edge_a[e], 0], colliders.position[colliders.edge_a[e], 1]
+        bx, by = colliders.position[colliders.edge_b[e], 0], colliders.position[colliders.edge_b[e], 1]
+        if (ay <= y) != (by <= y) and colliders.side[e] != 0:
+            winding += winding_of_side(ay <= y, by <= y, doubled_area(ax, ay, bx, by, x, y))
     return winding
 
 

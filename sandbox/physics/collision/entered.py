@@ -2,10 +2,11 @@
 
 import math
 
-from sandbox.physics.collision.edge_geometry import closest, is_behind, is_in
+from sandbox.physics.collision.edge_geometry import is_behind, is_in
 from sandbox.physics.collision.narrow_phase import EDGE, INSIDE, KINDS, may_collide, push_out
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts
+from sandbox.physics.geometry.segment import closest_on_segment
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
 
@@ -40,12 +41,12 @@ def _beside(e: int, end: int, colliders: Colliders) -> int:
 @inner_kernel
 def _nearest_from(p: int, e: int, colliders: Colliders) -> int:
     # From an edge on along the outline as long as that comes nearer to a particle.
-    _, lowest, _, _ = closest(p, colliders.edge_a[e], colliders.edge_b[e], colliders.position)
+    _, lowest, _, _ = closest_on_segment(p, colliders.edge_a[e], colliders.edge_b[e], colliders.position)
     for _ in range(MOST_WALK):
         found = e
         for end in range(2):
             f = _beside(e, end, colliders)
-            _, distance, _, _ = closest(p, colliders.edge_a[f], colliders.edge_b[f], colliders.position)
+            _, distance, _, _ = closest_on_segment(p, colliders.edge_a[f], colliders.edge_b[f], colliders.position)
             if distance < lowest:
                 found = f
                 lowest = distance
@@ -75,7 +76,9 @@ def find_entered(
         if e < 0 or colliders.side[e] == 0 or not may_collide(p, colliders.edge_a[e], colliders):
             continue
         g = _nearest_from(p, e, colliders)
-        _, distance, signed, region = closest(p, colliders.edge_a[g], colliders.edge_b[g], colliders.position)
+        _, distance, signed, region = closest_on_segment(
+            p, colliders.edge_a[g], colliders.edge_b[g], colliders.position
+        )
         if not (distance < lowest and is_behind(p, g, signed, region, colliders)):
             continue
         # In one step it may have come out on the other side.
@@ -86,11 +89,11 @@ def find_entered(
             lowest = distance
     if chosen < 0:
         return count, -1
-    share, distance, _, region = closest(
+    share, distance, _, region = closest_on_segment(
         p, colliders.edge_a[chosen], colliders.edge_b[chosen], colliders.position
     )  # fmt: skip
-    before = count
+    added = count
     count = push_out(p, chosen, share, distance, region, colliders, outline.dynamic[0], contacts, count)
-    if before < contacts.particle.shape[0]:
-        contacts.feature[before] = KINDS * colliders.number[chosen] + INSIDE
+    if added < contacts.particle.shape[0]:
+        contacts.feature[added] = KINDS * colliders.number[chosen] + INSIDE
     return count, colliders.edge_a[chosen]

@@ -8,7 +8,6 @@ import math
 
 from sandbox.physics.collision.edge_geometry import (
     CORNER,
-    closest,
     corner_normal,
     edge_normal,
     end_of,
@@ -21,6 +20,7 @@ from sandbox.physics.collision.edge_geometry import (
 from sandbox.physics.collision.seams import is_seam, passes_beside
 from sandbox.physics.collision.types import MOST_NEAR, Colliders, Contacts, Near
 from sandbox.physics.equation import SHORTEST
+from sandbox.physics.geometry.segment import closest_on_segment, difference, segment_of, unit
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 
@@ -113,8 +113,7 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
         return count
     if colliders.owner[p] == colliders.owner[q] or are_joined(p, q, colliders):
         return count
-    dx = colliders.position[p, 0] - colliders.position[q, 0]
-    dy = colliders.position[p, 1] - colliders.position[q, 1]
+    dx, dy = difference(q, p, colliders.position)
     wx = h * (colliders.velocity[p, 0] - colliders.velocity[q, 0])
     wy = h * (colliders.velocity[p, 1] - colliders.velocity[q, 1])
     if _is_corner_before(p, dx, dy, colliders):
@@ -133,12 +132,7 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
     else:
         if gap > MARGIN * reach + travel:
             return count
-        if distance > SHORTEST:
-            nx = dx / distance
-            ny = dy / distance
-        else:
-            nx = 0.0
-            ny = 1.0
+        nx, ny = unit(dx, dy)
     return add_contact(count, contacts, p, KINDS * q + DISC, q, -1, 0.0, nx, ny, gap, q, colliders)
 
 
@@ -169,11 +163,11 @@ def find_near(p: int, e: int, colliders: Colliders, near: Near, count: int) -> i
         return count
     if own:
         reach = OWN_REACH * (colliders.radius[p] + colliders.radius[a])
-        _, distance, _, _ = closest(p, a, b, colliders.origin)
+        _, distance, _, _ = closest_on_segment(p, a, b, colliders.origin)
         if distance <= reach:
             return count
     near.edge[count] = e
-    share, distance, signed, region = closest(p, a, b, colliders.position)
+    share, distance, signed, region = closest_on_segment(p, a, b, colliders.position)
     near.share[count] = share
     near.distance[count] = distance
     near.signed[count] = signed
@@ -196,7 +190,7 @@ def collide_edges(
 ) -> int:
     """Contacts of a particle with the edges noted, owner by owner; the number of contacts then."""
     begun = count
-    way_x, way_y = _held_way(p, h, colliders, near, edges)
+    way_x, way_y = _allowed_way(p, h, colliders, near, edges)
     for i in range(edges):
         owner = colliders.owner[colliders.edge_a[near.edge[i]]]
         nearest = i
@@ -244,8 +238,7 @@ def _collide_later(
             reach = colliders.radius[p] + colliders.radius[a]
             if e == last or travel <= FAST * reach or colliders.inverse_mass[a] + colliders.inverse_mass[b] > 0.0:
                 continue
-            ax, ay = colliders.position[a, 0], colliders.position[a, 1]
-            dx, dy = colliders.position[b, 0] - ax, colliders.position[b, 1] - ay
+            ax, ay, dx, dy = segment_of(a, b, colliders.position)
             length = math.sqrt(dx * dx + dy * dy)
             if not length > SHORTEST:
                 continue
@@ -282,14 +275,14 @@ def _is_known(p: int, e: int, begun: int, count: int, dynamic: int, colliders: C
 
 
 @inlined_kernel
-def _held_way(p: int, h: float, colliders: Colliders, near: Near, edges: int) -> tuple[float, float]:
+def _allowed_way(p: int, h: float, colliders: Colliders, near: Near, edges: int) -> tuple[float, float]:
     # The way of a particle in a step of h [s], as edges on which it lies let it go, or the corner that is nearest.
     wx = h * colliders.velocity[p, 0]
     wy = h * colliders.velocity[p, 1]
     nearest = -1
     lies = False
     for _ in range(2):
-        held = False
+        was_cut = False
         for j in range(edges):
             a = colliders.edge_a[near.edge[j]]
             reach = colliders.radius[p] + colliders.radius[a]
@@ -302,18 +295,18 @@ def _held_way(p: int, h: float, colliders: Colliders, near: Near, edges: int) ->
             if colliders.side[near.edge[j]] != 0 and near.signed[j] < 0.0:
                 continue
             lies = True
-            ux, uy = _hold_way(p, j, wx, wy, h, colliders, near)
-            held = held or ux != wx or uy != wy
+            ux, uy = _cut_way(p, j, wx, wy, h, colliders, near)
+            was_cut = was_cut or ux != wx or uy != wy
             wx, wy = ux, uy
-        if not held:
+        if not was_cut:
             break
     if not lies and nearest >= 0:
-        wx, wy = _hold_way(p, nearest, wx, wy, h, colliders, near)
+        wx, wy = _cut_way(p, nearest, wx, wy, h, colliders, near)
     return wx, wy
 
 
 @inlined_kernel
-def _hold_way(p: int, j: int, wx: float, wy: float, h: float, colliders: Colliders, near: Near) -> tuple[float, float]:
+def _cut_way(p: int, j: int, wx: float, wy: float, h: float, colliders: Colliders, near: Near) -> tuple[float, float]:
     e = near.edge[j]
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
@@ -510,14 +503,11 @@ def _sweep_edge(
         nx, ny, signed = -nx, -ny, -signed
     approach = -(wx * nx + wy * ny)
     a = colliders.edge_a[e]
-    dx = colliders.position[colliders.edge_b[e], 0] - colliders.position[a, 0]
-    dy = colliders.position[colliders.edge_b[e], 1] - colliders.position[a, 1]
+    ax, ay, dx, dy = segment_of(a, colliders.edge_b[e], colliders.position)
     squared = dx * dx + dy * dy
     if approach > 0.0 and signed >= reach and squared > SHORTEST:
         when = (signed - reach) / approach
-        share = (
-            (x + when * wx - colliders.position[a, 0]) * dx + (y + when * wy - colliders.position[a, 1]) * dy
-        ) / squared
+        share = ((x + when * wx - ax) * dx + (y + when * wy - ay) * dy) / squared
         if when <= 1.0 and -CORNER <= share <= 1.0 + CORNER:
             return when, min(1.0, max(0.0, share)), nx, ny, signed - reach
     soonest = 2.0

@@ -28,19 +28,19 @@ def find_bounces(
             continue
         nx = contacts.normal[c, 0]
         ny = contacts.normal[c, 1]
-        before = 0.0
-        after = 0.0
+        u0 = 0.0
+        u = 0.0
         for end in range(3):
             p, weight = weight_of(contacts, c, end)
             if p >= 0:
-                before += weight * (start[p, 0] * nx + start[p, 1] * ny)
-                after += weight * (velocity[p, 0] * nx + velocity[p, 1] * ny)
+                u0 += weight * (start[p, 0] * nx + start[p, 1] * ny)
+                u += weight * (velocity[p, 0] * nx + velocity[p, 1] * ny)
         gap = contacts.gap[c]
-        if after < -SLOWEST_BOUNCE and gap + h * after < 0.0:
+        if u < -SLOWEST_BOUNCE and gap + h * u < 0.0:
             p = contacts.particle[c]
             q = contacts.end_a[c]
             fallen = h if attached[p] and (q < 0 or attached[q]) else small
-            contacts.bounce[c] = bounce_of(contacts.restitution[c], -before, (before - after) / h, gap, fallen, h)
+            contacts.bounce[c] = bounce_of(contacts.restitution[c], -u0, (u0 - u) / h, gap, fallen, h)
 
 
 @inner_kernel

@@ -5,6 +5,7 @@ import math
 from sandbox.physics.collision.edge_geometry import is_covered
 from sandbox.physics.collision.types import Colliders, Near
 from sandbox.physics.equation import SHORTEST
+from sandbox.physics.geometry.segment import segment_of
 from sandbox.physics.jit import inner_kernel
 
 # A corner that stands out of another surface by less than this share of the radius of what touches it, where it lies on
@@ -29,15 +30,12 @@ def is_seam(p: int, e: int, v: int, x: float, y: float, colliders: Colliders, ne
         b = colliders.edge_b[f]
         if f == e or a == v or b == v:
             continue
-        ax = colliders.position[a, 0]
-        ay = colliders.position[a, 1]
-        dx = colliders.position[b, 0] - ax
-        dy = colliders.position[b, 1] - ay
+        ax, ay, dx, dy = segment_of(a, b, colliders.position)
         squared = dx * dx + dy * dy
         if not squared > SHORTEST:
             continue
         length = math.sqrt(squared)
-        # As in `closest`: where that sees a place beside an edge, so does this.
+        # As in `closest_on_segment`: where that sees a place beside an edge, so does this.
         share = ((x - ax) * dx + (y - ay) * dy) / squared
         if share <= 0.0 or share >= 1.0:
             continue
@@ -66,10 +64,7 @@ def passes_beside(
     e = near.edge[i]
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
-    ax = colliders.position[a, 0]
-    ay = colliders.position[a, 1]
-    dx = colliders.position[b, 0] - ax
-    dy = colliders.position[b, 1] - ay
+    ax, ay, dx, dy = segment_of(a, b, colliders.position)
     squared = dx * dx + dy * dy
     # w . n of the normal towards p, times its distance
     px = colliders.position[p, 0] - ax - near.share[i] * dx

@@ -61,6 +61,19 @@ def _cut(p: int, stops: int, dx: float, dy: float, velocity: Floats, ahead: Floa
 
 
 @inner_kernel
+def stop_at_terrain(p: int, position: Floats, velocity: Floats, terrain: Terrain, h: float) -> bool:
+    """Cut the velocity [m/s] of row p, which moves by that alone, if it would cross terrain in the coming h [s].
+
+    Returned: whether it would.
+    """
+    wx = h * velocity[p, 0]
+    wy = h * velocity[p, 1]
+    stops, x, y = stopped(position[p, 0], position[p, 1], wx, wy, terrain)
+    _cut(p, stops, x - wx, y - wy, velocity, velocity, h)
+    return stops > 0
+
+
+@inner_kernel
 def clamp_at_pins(
     position: Floats, velocity: Floats, ahead: Floats, inverse_mass: Floats, outline: Outline, colliders: Colliders,
     box: Floats, near_start: Slots, h: float,
@@ -184,22 +197,22 @@ def _meet_line(
     # When the way w of a centre crosses a line from a to b (2: never), the distance from it and the normal towards it.
     dx, dy = bx - ax, by - ay
     px, py = x - ax, y - ay
-    # Signed area, above 0 on the right of the line; it changes by `change` on the way.
-    before = px * dy - py * dx
-    change = wx * dy - wy * dx
-    if before < 0.0 and not is_solid:
-        before, change, dx, dy = -before, -change, -dx, -dy
+    # Twice the area between line and centre, above 0 on the right of the line; it grows by `growth` on the way.
+    area = px * dy - py * dx
+    growth = wx * dy - wy * dx
+    if area < 0.0 and not is_solid:
+        area, growth, dx, dy = -area, -growth, -dx, -dy
         px, py = x - bx, y - by
     squared = dx * dx + dy * dy
     skin = SKIN * math.sqrt(squared)
-    if not (change < 0.0 and before > -skin and before + change < 0.5 * skin):
+    if not (growth < 0.0 and area > -skin and area + growth < 0.5 * skin):
         return 2.0, 0.0, 0.0, 0.0
-    when = max(0.0, before / -change)
+    when = max(0.0, area / -growth)
     share = ((px + when * wx) * dx + (py + when * wy) * dy) / squared
     if not -1e-9 <= share <= 1.0 + 1e-9:
         return 2.0, 0.0, 0.0, 0.0
     length = math.sqrt(squared)
-    return when, before / length, dy / length, -dx / length
+    return when, area / length, dy / length, -dx / length
 
 
 @inner_kernel

@@ -9,6 +9,7 @@ import math
 from sandbox.physics.collision.narrow_phase import KINDS, TIP, TIP_SHIFT, add_contact, may_collide
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.equation import SHORTEST
+from sandbox.physics.geometry.segment import segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats
 from sandbox.physics.terrain import Terrain, cells_between
@@ -34,10 +35,9 @@ def meet_tip(
     """
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
-    dx = colliders.position[b, 0] - colliders.position[a, 0]
-    dy = colliders.position[b, 1] - colliders.position[a, 1]
-    px = colliders.position[v, 0] - colliders.position[a, 0]
-    py = colliders.position[v, 1] - colliders.position[a, 1]
+    ax, ay, dx, dy = segment_of(a, b, colliders.position)
+    px = colliders.position[v, 0] - ax
+    py = colliders.position[v, 1] - ay
     squared = dx * dx + dy * dy
     if not squared > SHORTEST:
         return False, 0.0, 0.0, 0.0, 0.0
@@ -51,10 +51,8 @@ def meet_tip(
     when = 0.0
     if signed > near:
         # a, b and so the area of a, b and the tip go along: signed area - reach * length = 0
-        ax = h * velocity[a, 0]
-        ay = h * velocity[a, 1]
-        tx = h * velocity[b, 0] - ax
-        ty = h * velocity[b, 1] - ay
+        ax, ay = h * velocity[a, 0], h * velocity[a, 1]
+        tx, ty = h * velocity[b, 0] - ax, h * velocity[b, 1] - ay
         when = _first_root(
             (signed - reach) * length, way * (px * ty - ax * dy - py * tx + ay * dx), way * (ay * tx - ax * ty)
         )  # fmt: skip

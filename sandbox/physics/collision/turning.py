@@ -9,6 +9,7 @@ import math
 
 from sandbox.physics.collision.narrow_phase import FAST, MARGIN
 from sandbox.physics.collision.types import Colliders, Contacts
+from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 
 # r^2 / I of a disc, times its mass.
@@ -62,10 +63,7 @@ def load_arms(contacts: Contacts, count: int, colliders: Colliders) -> None:
 @inner_kernel
 def _load_couple(contacts: Contacts, c: int, arm: float, colliders: Colliders) -> None:
     # An impulse on the surface of an edge, so far [m] from its middle, turns it: by a couple of its ends.
-    a = contacts.end_a[c]
-    b = contacts.end_b[c]
-    dx = colliders.position[b, 0] - colliders.position[a, 0]
-    dy = colliders.position[b, 1] - colliders.position[a, 1]
+    dx, dy = difference(contacts.end_a[c], contacts.end_b[c], colliders.position)
     squared = dx * dx + dy * dy
     if squared > arm * arm:
         contacts.couple[c, 0] = -arm * dy / squared

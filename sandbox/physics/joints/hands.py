@@ -25,9 +25,12 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.components import label_joined
+from sandbox.physics.geometry.rigid import best_turn, rotated, with_pair
+from sandbox.physics.geometry.segment import difference, lengths
 from sandbox.physics.geometry.sums import sum_in_order
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, shortened
+from sandbox.physics.state import State
 from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, Floats, Slots, World
 
 # No hand wants what it holds to be faster than this [m/s]. Higher lets a mouse shoot one body through others.
@@ -129,26 +132,21 @@ def _gripped(world: World, body: Slots, held: int, radius: float) -> tuple[Slots
         return chosen, world.mass[chosen]
     # What else is joined to the body, a rope or a weight, is not gripped with it.
     chosen = body[world.owner[body] == world.owner[held]]
-    away = world.origin[chosen] - world.origin[held]
-    near = 1.0 - np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1]) / radius
+    near = 1.0 - lengths(world.origin[chosen] - world.origin[held]) / radius
     return chosen[near > 0.0], (near * world.mass[chosen])[near > 0.0]
 
 
 class HandRows(NamedTuple):
-    """The rows of hands as kernels fill them in: row (g,) = the first of each one's two; all else: see StateArrays."""
+    """The rows of hands as kernels fill them in: row (g,) = the first of each one's two."""
 
     row: Slots
     grips: Grips
-    position: Floats
-    velocity: Floats
-    strength: Floats
-    force: Floats
 
 
 @inner_kernel
-def _load_gradients(rows: JointRows, hands: HandRows, i: int) -> tuple[float, float]:
+def _load_gradients(rows: JointRows, hands: HandRows, position: Floats, i: int) -> tuple[float, float]:
     # The two rows of a hand, u along x and along y; where the point is in the frame.
-    grips, position = hands.grips, hands.position
+    grips = hands.grips
     first, last = grips.start[i], grips.start[i + 1]
     x = 0.0
     y = 0.0
@@ -162,14 +160,10 @@ def _load_gradients(rows: JointRows, hands: HandRows, i: int) -> tuple[float, fl
     for k in range(first, last):
         dx = position[grips.particle[k], 0] - x
         dy = position[grips.particle[k], 1] - y
-        along += grips.share[k] * (grips.form[k, 0] * dx + grips.form[k, 1] * dy)
-        across += grips.share[k] * (grips.form[k, 0] * dy - grips.form[k, 1] * dx)
+        along, across = with_pair(along, across, grips.share[k], grips.form[k, 0], grips.form[k, 1], dx, dy)
         spread += grips.share[k] * (dx * dx + dy * dy)
-    size = math.sqrt(along * along + across * across)
-    cosine = along / size if size > 0.0 else 1.0
-    sine = across / size if size > 0.0 else 0.0
-    rx = cosine * grips.arm[i, 0] - sine * grips.arm[i, 1]
-    ry = sine * grips.arm[i, 0] + cosine * grips.arm[i, 1]
+    cosine, sine = best_turn(along, across)
+    rx, ry = rotated(cosine, sine, grips.arm[i, 0], grips.arm[i, 1])
     along_x, along_y = rows.first[hands.row[i]], rows.first[hands.row[i] + 1]
     turns = 1.0 / spread if spread > LEAST_SPREAD else 0.0
     for k in range(first, last):
@@ -185,22 +179,21 @@ def _load_gradients(rows: JointRows, hands: HandRows, i: int) -> tuple[float, fl
 
 
 @inner_kernel
-def _wanted(hands: HandRows, i: int, x: float, y: float, h: float) -> tuple[float, float]:
+def _wanted(hands: HandRows, state: State, i: int, x: float, y: float, h: float) -> tuple[float, float]:
     # w, where the point is at x, y in the frame.
     cursor = hands.grips.cursor[i]
     held = hands.grips.held[i]
-    wx = hands.velocity[cursor, 0]
-    wy = hands.velocity[cursor, 1]
-    dx = hands.position[cursor, 0] - hands.position[held, 0]
-    dy = hands.position[cursor, 1] - hands.position[held, 1]
-    bent_x = x - hands.position[held, 0]
-    bent_y = y - hands.position[held, 1]
+    wx = state.velocity[cursor, 0]
+    wy = state.velocity[cursor, 1]
+    dx, dy = difference(held, cursor, state.position)
+    bent_x = x - state.position[held, 0]
+    bent_y = y - state.position[held, 1]
     beyond = 1.0 - shortened(bent_x, bent_y, hands.grips.lead[i])
     dx -= beyond * bent_x
     dy -= beyond * bent_y
     away = math.sqrt(dx * dx + dy * dy)
     if away > 0.0:
-        brake = min(BRAKE_SHARE * hands.strength[hands.grips.hand[i]], HARDEST_BRAKE)
+        brake = min(BRAKE_SHARE * state.hand_strength[hands.grips.hand[i]], HARDEST_BRAKE)
         speed = min(away / max(APPROACH, h), math.sqrt(2.0 * brake * away))
         share = min(speed, FASTEST_HAND) / away
         wx += share * dx
@@ -210,16 +203,16 @@ def _wanted(hands: HandRows, i: int, x: float, y: float, h: float) -> tuple[floa
 
 
 @inner_kernel
-def load_hands(rows: JointRows, hands: HandRows, h: float) -> None:
+def load_hands(rows: JointRows, hands: HandRows, state: State, h: float) -> None:
     """Fill in the rows of hands for a substep of h [s]."""
     grips = hands.grips
     for i in range(grips.hand.shape[0]):
-        x, y = _load_gradients(rows, hands, i)
+        x, y = _load_gradients(rows, hands, state.position, i)
         hand, k = grips.hand[i], hands.row[i]
-        rows.target[k], rows.target[k + 1] = _wanted(hands, i, x, y, h)
-        limit = hands.strength[hand] * grips.mass[i] * h
-        jx = hands.force[hand, 0] * h
-        jy = hands.force[hand, 1] * h
+        rows.target[k], rows.target[k + 1] = _wanted(hands, state, i, x, y, h)
+        limit = state.hand_strength[hand] * grips.mass[i] * h
+        jx = state.hand_force[hand, 0] * h
+        jy = state.hand_force[hand, 1] * h
         share = shortened(jx, jy, limit)
         rows.impulse[k] = jx * share
         rows.impulse[k + 1] = jy * share
@@ -229,8 +222,8 @@ def load_hands(rows: JointRows, hands: HandRows, h: float) -> None:
 
 
 @inner_kernel
-def keep_hands(rows: JointRows, hands: HandRows, h: float) -> None:
+def store_hands(rows: JointRows, hands: HandRows, state: State, h: float) -> None:
     """Keep the forces of hands for the next substep."""
     for i in range(hands.grips.hand.shape[0]):
         for axis in range(2):
-            hands.force[hands.grips.hand[i], axis] = rows.impulse[hands.row[i] + axis] / h
+            state.hand_force[hands.grips.hand[i], axis] = rows.impulse[hands.row[i] + axis] / h

@@ -1,94 +1,72 @@
 """All joints of a world: their rows, made when topology changes, and their numbers, filled in at every substep."""
 
 import itertools
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.jit import bundle, contents, kernel
-from sandbox.physics.joints.hands import HandRows, grips_of, keep_hands, load_hands
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.hands import HandRows, grips_of, load_hands, store_hands
 from sandbox.physics.joints.limited_springs import (
-    keep_limited,
+    LimitedRows,
     limited_particles,
     limited_rows,
     limited_springs,
     load_limited,
+    store_limited,
 )
-from sandbox.physics.joints.motors import MotorRows, keep_motors, load_motors, motor_groups
+from sandbox.physics.joints.motors import MotorRows, load_motors, motor_groups, store_motors
 from sandbox.physics.joints.rows import PAIR, SCALAR, SECOND_OF_TWO, JointRows, any_on, new_rows
-from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.world import Floats, World
+from sandbox.physics.state import Floats, State
+from sandbox.physics.world import World
 
 
-@dataclass(eq=False)
-class JointSet:
-    """The joints of a world; on: whether any of them acts in the present substep. lent: what kernels fill rows from."""
+class JointSet(NamedTuple):
+    """The rows of a world's joints, and what they are filled in from: motors first, then springs, then hands."""
 
     rows: JointRows
-    lent: Any
-    on: bool = False
+    motors: MotorRows
+    hands: HandRows
+    limited: LimitedRows
 
 
-def joints_of(world: World) -> JointSet | None:
-    """The joints of a world, made again after a change of topology; None: it has none."""
+def joints_of(world: World) -> JointSet:
+    """The joints of a world, made again after a change of topology."""
     return world.derived(_make_joints)
 
 
-def _make_joints(world: World) -> JointSet | None:
+def _make_joints(world: World) -> JointSet:
     motors, grips = world.actuators.motors, grips_of(world)
-    springs = limited_springs(world)
-    if not len(motors.hub) and not len(grips.hand) and not len(springs):
-        return None
-    groups, count = motor_groups(world), len(grips.hand)
+    groups, count, springs = motor_groups(world), len(grips.hand), limited_springs(world)
     particles = [np.concatenate(group) for group in groups] + limited_particles(world, springs)
     alone = len(particles)
     for first, last in itertools.pairwise(grips.start.tolist()):
         particles += [grips.particle[first:last]] * 2
     rows = new_rows(particles, [SCALAR] * alone + [PAIR, SECOND_OF_TWO] * count)
     middle = rows.first[: len(groups)] + np.array([len(wheel) for wheel, _ in groups], dtype=np.int64)
-    of_motors = MotorRows(
-        middle, motors.speed, motors.torque, motors.part, world.position, world.mass, world.actuator_value,
-        world.actuator_impulse,
+    return JointSet(
+        rows, MotorRows(middle, motors.speed, motors.torque, motors.part),
+        HandRows(alone + 2 * np.arange(count), grips), limited_rows(world, springs, len(groups)),
     )  # fmt: skip
-    of_hands = HandRows(
-        alone + 2 * np.arange(count), grips, world.position, world.velocity, world.hand_strength, world.hand_force,
-    )  # fmt: skip
-    of_springs = limited_rows(world, springs, len(groups))
-    return JointSet(rows, bundle((rows, of_motors, of_hands, of_springs)))
 
 
-@kernel
-def _load(lent: Any, stiffness: Floats, damping: Floats, form: int, h: float) -> bool:
-    rows, motors, hands, limited = contents(lent)
-    load_motors(rows, motors, h)
-    load_limited(rows, limited, stiffness, damping, form, h)
-    load_hands(rows, hands, h)
-    return any_on(rows)
+@inner_kernel
+def prepare_joints(
+    joints: JointSet, state: State, stiffness: Floats, damping: Floats, solver: int, h: float
+) -> bool:  # fmt: skip
+    """Fill in the rows of joints for a substep of h [s], from where particles are at its start; whether any is on.
 
-
-@kernel
-def _keep(lent: Any, form: int, h: float) -> None:
-    rows, motors, hands, limited = contents(lent)
-    keep_motors(rows, motors)
-    keep_limited(rows, limited, form)
-    keep_hands(rows, hands, h)
-
-
-def _form(world: World) -> int:
-    # In which form springs of limited force are rows, see load_limited.
-    solver = SOLVERS[world.settings.solver]
-    return 0 if not solver.joints_bear_load else 1 if solver.bounded else 2
-
-
-def load_joints(joints: JointSet, world: World, springs: tuple[Floats, Floats], h: float) -> None:
-    """Fill in the rows of joints for a substep of h [s], from where particles are at its start.
-
-    springs: Cs and Cd (m,) of the substep.
+    stiffness, damping (m,): Cs and Cd of springs in the substep. solver: see settings.py.
     """
-    joints.on = _load(joints.lent, *springs, _form(world), h)
+    load_motors(joints.rows, joints.motors, state, h)
+    load_limited(joints.rows, joints.limited, state, stiffness, damping, solver, h)
+    load_hands(joints.rows, joints.hands, state, h)
+    return any_on(joints.rows)
 
 
-def keep_joints(joints: JointSet, world: World, h: float) -> None:
+@inner_kernel
+def store_joint_impulses(joints: JointSet, state: State, solver: int, h: float) -> None:
     """Store the joints' impulses in the state of the world, for the next substep."""
-    _keep(joints.lent, _form(world), h)
+    store_motors(joints.rows, joints.motors, state)
+    store_limited(joints.rows, joints.limited, state, solver)
+    store_hands(joints.rows, joints.hands, state, h)

@@ -115,12 +115,12 @@ def push_at(joints: Joints, p: int, jx: float, jy: float) -> None:
 
 
 @inner_kernel
-def _push(joints: Joints, k: int, impulse: float, change: Floats) -> None:
+def _push(joints: Joints, k: int, impulse: float, delta_v: Floats) -> None:
     # What a row's impulse does to particles and to the velocities of all rows.
     for a in range(joints.answer_first[k], joints.answer_first[k + 1]):
         p = joints.answer_particle[a]
-        change[p, 0] += joints.answer[a, 0] * impulse
-        change[p, 1] += joints.answer[a, 1] * impulse
+        delta_v[p, 0] += joints.answer[a, 0] * impulse
+        delta_v[p, 1] += joints.answer[a, 1] * impulse
     for j in range(joints.velocity.shape[0]):
         joints.velocity[j] += joints.response[j, k] * impulse
 
@@ -191,17 +191,17 @@ def _alone(joints: Joints, k: int, u: float) -> float:
 
 
 @inner_kernel
-def start_joints(joints: Joints, change: Floats) -> None:
+def start_joints(joints: Joints, delta_v: Floats) -> None:
     """Apply the impulses that joints bring along."""
     rows = joints.rows
     for k in range(rows.limit.shape[0]):
         joints.search_direction[k] = 0.0
         if rows.impulse[k] != 0.0:
-            _push(joints, k, rows.impulse[k], change)
+            _push(joints, k, rows.impulse[k], delta_v)
 
 
 @inner_kernel
-def sweep_joints(joints: Joints, change: Floats) -> float:
+def sweep_joints(joints: Joints, delta_v: Floats) -> float:
     """One sweep over all joints, in order; the largest change of a row's velocity [m/s, where g has no unit]."""
     rows = joints.rows
     largest = 0.0
@@ -212,21 +212,21 @@ def sweep_joints(joints: Joints, change: Floats) -> float:
             continue
         if rows.pair[k] == PAIR:
             first, second = _of_two(joints, k, joints.velocity[k], joints.velocity[k + 1])
-            largest = max(largest, _set(joints, k + 1, second, change))
+            largest = max(largest, _set(joints, k + 1, second, delta_v))
         else:
             first = _alone(joints, k, joints.velocity[k])
-        largest = max(largest, _set(joints, k, first, change))
+        largest = max(largest, _set(joints, k, first, delta_v))
     return largest
 
 
 @inner_kernel
-def _set(joints: Joints, k: int, impulse: float, change: Floats) -> float:
+def _set(joints: Joints, k: int, impulse: float, delta_v: Floats) -> float:
     # Give a row another impulse; by how much its own velocity changes.
     more = impulse - joints.rows.impulse[k]
     if more == 0.0:
         return 0.0
     joints.rows.impulse[k] = impulse
-    _push(joints, k, more, change)
+    _push(joints, k, more, delta_v)
     return abs(more) * joints.response[k, k]
 
 
@@ -241,7 +241,7 @@ def swept_by(joints: Joints) -> float:
 
 
 @inner_kernel
-def go_on_with_joints(joints: Joints, change: Floats, ratio: float) -> None:
+def go_on_with_joints(joints: Joints, delta_v: Floats, ratio: float) -> None:
     """P += ratio p, clamped; p = ratio p + the change of the sweep: as contacts do."""
     rows = joints.rows
     for k in range(rows.limit.shape[0]):
@@ -253,10 +253,10 @@ def go_on_with_joints(joints: Joints, change: Floats, ratio: float) -> None:
             continue
         if rows.pair[k] == PAIR:
             share = shortened(joints.last_impulse[k], joints.last_impulse[k + 1], rows.limit[k])
-            _set(joints, k, joints.last_impulse[k] * share, change)
-            _set(joints, k + 1, joints.last_impulse[k + 1] * share, change)
+            _set(joints, k, joints.last_impulse[k] * share, delta_v)
+            _set(joints, k + 1, joints.last_impulse[k + 1] * share, delta_v)
         else:
-            _set(joints, k, clamped(joints.last_impulse[k], rows.limit[k]), change)
+            _set(joints, k, clamped(joints.last_impulse[k], rows.limit[k]), delta_v)
 
 
 @inner_kernel
@@ -274,41 +274,41 @@ def gather_push(joints: Joints) -> None:
 
 
 @inner_kernel
-def _give(rows: JointRows, k: int, impulse: float, change: Floats, inverse_mass: Floats) -> None:
+def _give(rows: JointRows, k: int, impulse: float, delta_v: Floats, inverse_mass: Floats) -> None:
     for e in range(rows.first[k], rows.first[k + 1]):
         p = rows.particle[e]
-        change[p, 0] += rows.gradient[e, 0] * impulse * inverse_mass[p]
-        change[p, 1] += rows.gradient[e, 1] * impulse * inverse_mass[p]
+        delta_v[p, 0] += rows.gradient[e, 0] * impulse * inverse_mass[p]
+        delta_v[p, 1] += rows.gradient[e, 1] * impulse * inverse_mass[p]
 
 
 @inner_kernel
-def warm_start_joints(joints: Joints, change: Floats, inverse_mass: Floats) -> None:
+def warm_start_joints(joints: Joints, delta_v: Floats, inverse_mass: Floats) -> None:
     """Apply the impulses that joints bring along, to particles that answer by their own mass."""
     couple_masses(joints, inverse_mass)
     for k in range(joints.rows.limit.shape[0]):
         if joints.rows.impulse[k] != 0.0:
-            _give(joints.rows, k, joints.rows.impulse[k], change, inverse_mass)
+            _give(joints.rows, k, joints.rows.impulse[k], delta_v, inverse_mass)
 
 
 @inner_kernel
-def iterate_joint(joints: Joints, k: int, velocity: Floats, change: Floats, inverse_mass: Floats) -> None:
+def iterate_joint(joints: Joints, k: int, velocity: Floats, delta_v: Floats, inverse_mass: Floats) -> None:
     """Bring a joint, or two that are clamped together, to its target; particles answer by their own mass."""
     rows = joints.rows
     if rows.pair[k] == SECOND_OF_TWO or not (rows.limit[k] > 0.0 and joints.response[k, k] > 0.0):
         return
-    u = row_velocity(rows, k, velocity, change)
+    u = row_velocity(rows, k, velocity, delta_v)
     if rows.pair[k] == PAIR:
-        first, second = _of_two(joints, k, u, row_velocity(rows, k + 1, velocity, change))
-        _give(rows, k + 1, second - rows.impulse[k + 1], change, inverse_mass)
+        first, second = _of_two(joints, k, u, row_velocity(rows, k + 1, velocity, delta_v))
+        _give(rows, k + 1, second - rows.impulse[k + 1], delta_v, inverse_mass)
         rows.impulse[k + 1] = second
     else:
         first = _alone(joints, k, u)
-    _give(rows, k, first - rows.impulse[k], change, inverse_mass)
+    _give(rows, k, first - rows.impulse[k], delta_v, inverse_mass)
     rows.impulse[k] = first
 
 
 @inner_kernel
-def iterate_joints(joints: Joints, velocity: Floats, change: Floats, inverse_mass: Floats) -> None:
+def iterate_joints(joints: Joints, velocity: Floats, delta_v: Floats, inverse_mass: Floats) -> None:
     """One iteration over all joints of particles that answer by their own mass; clamped is the sum of its impulses."""
     for k in range(joints.rows.limit.shape[0]):
-        iterate_joint(joints, k, velocity, change, inverse_mass)
+        iterate_joint(joints, k, velocity, delta_v, inverse_mass)

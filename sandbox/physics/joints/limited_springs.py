@@ -14,8 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.equation import direction, implicit_masses, reduced_mass
+from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, clamped
+from sandbox.physics.settings import DIRECT, SINGLE_PASS
+from sandbox.physics.state import State
 from sandbox.physics.world import LAW_NISSEN, Floats, Slots, World
 
 # K at least, as a share of the reduced mass: of a spring without damping it would be 0, and 1/K infinite.
@@ -23,21 +26,11 @@ LEAST_SHARE = 1e-9
 
 
 class LimitedRows(NamedTuple):
-    """The springs of limited force, s of them, from row first[0] on: spring (s,): slots, force [N] (s,).
-
-    Of all particles and springs: see StateArrays; impulse keeps J as the iterative solver keeps that of its springs.
-    """
+    """The springs of limited force, s of them, from row first[0] on: spring (s,): slots, force [N] (s,)."""
 
     first: Slots
     spring: Slots
     force: Floats
-    position: Floats
-    velocity: Floats
-    inverse_mass: Floats
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    rest_length: Floats
-    impulse: Floats
 
 
 def force_limits(world: World) -> Floats:
@@ -78,34 +71,30 @@ def limited_particles(world: World, springs: Slots) -> list[Slots]:
 
 def limited_rows(world: World, springs: Slots, first: int) -> LimitedRows:
     """The input from which kernels fill the rows of these springs, which begin at the row `first`."""
-    return LimitedRows(
-        np.array([first]), springs, force_limits(world)[springs], world.position, world.velocity, world.inverse_mass,
-        world.particle_a, world.particle_b, world.rest_length, world.impulse,
-    )  # fmt: skip
+    return LimitedRows(np.array([first]), springs, force_limits(world)[springs])
 
 
 @inner_kernel
 def load_limited(
-    rows: JointRows, limited: LimitedRows, stiffness: Floats, damping: Floats, form: int, h: float
+    rows: JointRows, limited: LimitedRows, state: State, stiffness: Floats, damping: Floats, solver: int, h: float
 ) -> None:
-    """Fill in the rows for a substep of h [s], in which springs have these Cs and Cd.
+    """Fill in the rows for a substep of h [s], in which springs have these Cs and Cd; solver: see settings.py.
 
-    form: 0 = the rows are off, 1 = that of the direct solver, 2 = that of the iterative one.
+    The impulse of a spring keeps J as the iterative solver keeps that of its springs.
     """
-    position, velocity, inverse_mass = limited.position, limited.velocity, limited.inverse_mass
+    position, velocity, inverse_mass = state.position, state.velocity, state.inverse_mass
     for i in range(limited.spring.shape[0]):
         s, k = limited.spring[i], limited.first[0] + i
-        a, b = limited.particle_a[s], limited.particle_b[s]
-        du = velocity[b, 0] - velocity[a, 0]
-        dv = velocity[b, 1] - velocity[a, 1]
+        a, b = state.particle_a[s], state.particle_b[s]
+        du, dv = difference(a, b, velocity)
         nx, ny, length = direction(position[b, 0] - position[a, 0], position[b, 1] - position[a, 1], du, dv)
         for e in range(rows.first[k], rows.first[k + 1]):
             sign = 1.0 if rows.particle[e] == b else -1.0
             rows.gradient[e, 0] = sign * nx
             rows.gradient[e, 1] = sign * ny
-        x = length - limited.rest_length[s]
+        x = length - state.rest_length[s]
         m = reduced_mass(inverse_mass[a], inverse_mass[b])
-        if form == 1:
+        if solver == DIRECT:
             stiff, restoring = implicit_masses(stiffness[s], damping[s], m)
             stiff = max(stiff, LEAST_SHARE * m)
             rows.softness[k] = 1.0 / stiff
@@ -114,17 +103,17 @@ def load_limited(
             u = nx * du + ny * dv
             rows.softness[k] = 0.0
             rows.target[k] = u - (stiffness[s] * x / h + damping[s] * u)
-        rows.limit[k] = limited.force[i] * h if form > 0 else 0.0
-        rows.impulse[k] = clamped(nx * limited.impulse[s, 0] + ny * limited.impulse[s, 1], rows.limit[k])
+        rows.limit[k] = limited.force[i] * h if solver != SINGLE_PASS else 0.0
+        rows.impulse[k] = clamped(nx * state.impulse[s, 0] + ny * state.impulse[s, 1], rows.limit[k])
 
 
 @inner_kernel
-def keep_limited(rows: JointRows, limited: LimitedRows, form: int) -> None:
+def store_limited(rows: JointRows, limited: LimitedRows, state: State, solver: int) -> None:
     """Keep the impulses for the next substep, where rows are on; those along each spring's first entry's direction."""
     for i in range(limited.spring.shape[0]):
         s, k = limited.spring[i], limited.first[0] + i
         e = rows.first[k]
-        if form > 0:
-            sign = 1.0 if rows.particle[e] == limited.particle_b[s] else -1.0
-            limited.impulse[s, 0] = sign * rows.gradient[e, 0] * rows.impulse[k]
-            limited.impulse[s, 1] = sign * rows.gradient[e, 1] * rows.impulse[k]
+        if solver != SINGLE_PASS:
+            sign = 1.0 if rows.particle[e] == state.particle_b[s] else -1.0
+            state.impulse[s, 0] = sign * rows.gradient[e, 0] * rows.impulse[k]
+            state.impulse[s, 1] = sign * rows.gradient[e, 1] * rows.impulse[k]

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.components import Flags, join, root_of
+from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.joints.rows import JointRows, clamped
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.state import Floats, Slots, State
 from sandbox.physics.world import World
 
 # Below this moment of inertia [kg m^2] a group of particles has no direction to be turned in.
@@ -23,18 +24,14 @@ GROUNDED = -1
 class MotorRows(NamedTuple):
     """The rows of motors, which are a world's first, as kernels fill them in; the motors (k,): see Motors.
 
-    middle (k,): the entry where the wheel ends and the mount begins. Particles (n,): position [m], mass [kg]; part
-    (k,): where its value and its kept impulse are in actuator_value, actuator_impulse.
+    middle (k,): the entry where the wheel ends and the mount begins; part (k,): where its value and its kept impulse
+    are in actuator_value, actuator_impulse.
     """
 
     middle: Slots
     speed: Floats
     torque: Floats
     part: Slots
-    position: Floats
-    mass: Floats
-    actuator_value: Floats
-    actuator_impulse: Floats
 
 
 class MotorSources(NamedTuple):
@@ -185,22 +182,17 @@ def motor_groups(world: World) -> list[tuple[Slots, Slots]]:
 
 
 @inner_kernel
-def _turn_of(rows: JointRows, first: int, last: int, sign: float, motors: MotorRows) -> float:
+def _turn_of(rows: JointRows, first: int, last: int, sign: float, state: State) -> float:
     # The gradient of a group's angular velocity about its centre of mass, times a sign, and 1/I; -1: it has none.
     # omega = sum m r x v / I,  I = sum m r^2,  g = m perp(r) / I;  sum m r = 0, so that sum g = 0
-    position, mass = motors.position, motors.mass
-    total = 0.0
-    x = 0.0
-    y = 0.0
+    position, mass = state.position, state.mass
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for e in range(first, last):
         p = rows.particle[e]
-        total += mass[p]
-        x += mass[p] * position[p, 0]
-        y += mass[p] * position[p, 1]
-    if not total > 0.0:
+        sums = with_point(sums, mass[p], position[p, 0], position[p, 1], 0.0, 0.0)
+    if not sums.weight > 0.0:
         return 0.0
-    x /= total
-    y /= total
+    x, y, _, _, _, _ = centre_of(sums)
     inertia = 0.0
     for e in range(first, last):
         p = rows.particle[e]
@@ -218,27 +210,27 @@ def _turn_of(rows: JointRows, first: int, last: int, sign: float, motors: MotorR
 
 
 @inner_kernel
-def load_motors(rows: JointRows, motors: MotorRows, h: float) -> None:
+def load_motors(rows: JointRows, motors: MotorRows, state: State, h: float) -> None:
     """Fill in the rows of motors for a substep of h [s]: u = omega_wheel - omega_mount, target = speed times value."""
     for k in range(motors.middle.shape[0]):
-        value = motors.actuator_value[motors.part[k]]
+        value = state.actuator_value[motors.part[k]]
         first, middle, last = rows.first[k], motors.middle[k], rows.first[k + 1]
         rows.limit[k] = 0.0
         rows.impulse[k] = 0.0
         if value == 0.0 or first == last:
             continue
-        of_wheel = _turn_of(rows, first, middle, 1.0, motors)
-        of_mount = _turn_of(rows, middle, last, -1.0, motors)
+        of_wheel = _turn_of(rows, first, middle, 1.0, state)
+        of_mount = _turn_of(rows, middle, last, -1.0, state)
         if of_wheel < 0.0 or of_mount < 0.0:
             continue
         rows.target[k] = value * motors.speed[k]
         rows.softness[k] = MOTOR_SOFTNESS * (of_wheel + of_mount)
         rows.limit[k] = motors.torque[k] * h
-        rows.impulse[k] = clamped(motors.actuator_impulse[motors.part[k]], rows.limit[k])
+        rows.impulse[k] = clamped(state.actuator_impulse[motors.part[k]], rows.limit[k])
 
 
 @inner_kernel
-def keep_motors(rows: JointRows, motors: MotorRows) -> None:
+def store_motors(rows: JointRows, motors: MotorRows, state: State) -> None:
     """Keep the impulses of motors for the next substep."""
     for k in range(motors.middle.shape[0]):
-        motors.actuator_impulse[motors.part[k]] = rows.impulse[k]
+        state.actuator_impulse[motors.part[k]] = rows.impulse[k]

@@ -35,8 +35,6 @@ class MotorReading(NamedTuple):
 def motor_readings(world: World) -> list[MotorReading]:
     """The reading of every motor, in the order of a world's motors."""
     motors, joints = world.actuators.motors, joints_of(world)
-    if joints is None:
-        return []
     # What is kept is that of a substep, with "auto" as if the tick were one.
     h = substep_time(world.settings)
     first = joints.rows.first

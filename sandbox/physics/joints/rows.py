@@ -59,13 +59,13 @@ def any_on(rows: JointRows) -> bool:
 
 
 @inner_kernel
-def row_velocity(rows: JointRows, k: int, velocity: Floats, change: Floats) -> float:
-    """u = sum g . v of a row, from velocity + change (n, 2)."""
+def row_velocity(rows: JointRows, k: int, velocity: Floats, delta_v: Floats) -> float:
+    """u = sum g . v of a row, from velocity + delta_v (n, 2)."""
     u = 0.0
     for e in range(rows.first[k], rows.first[k + 1]):
         p = rows.particle[e]
-        u += rows.gradient[e, 0] * (velocity[p, 0] + change[p, 0])
-        u += rows.gradient[e, 1] * (velocity[p, 1] + change[p, 1])
+        u += rows.gradient[e, 0] * (velocity[p, 0] + delta_v[p, 0])
+        u += rows.gradient[e, 1] * (velocity[p, 1] + delta_v[p, 1])
     return u
 
 

@@ -10,9 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sandbox.physics.collision.types import LentContacts
-    from sandbox.physics.substeps import Substep
-    from sandbox.physics.world import Floats, World
+    from sandbox.physics.world import Floats
 
 
 @dataclass(frozen=True)
@@ -35,33 +33,10 @@ class Solver:
     highest: float = 1.0
 
     @cached_property
-    def solve(self) -> "Callable[[World, Substep, LentContacts | None], None]":
-        """solve(world, substep, contacts): brings world.velocity from after the forces to the end of a substep.
-
-        contacts: the contacts of the substep, with impulses to start from, which the solver replaces; None: nothing
-        touches.
-        """
-        return self._schedule.solve
-
-    @cached_property
-    def settle(self) -> "Callable[[World, bool, float], None] | None":
-        """settle(world, moves, h): brings velocities to the end of a substep, positions first if asked to; None: no."""
-        return getattr(self._schedule, "settle", None)
-
-    @cached_property
     def spring_constant(self) -> "Callable[[Floats, Floats, Floats, float], Floats]":
         """spring_constant(stiffness, damping, reduced_mass [kg], h): k [N/m] of the energy k/2 x^2."""
-        return self._schedule.spring_constant
-
-    def precompute(self, world: "World") -> None:
-        """Make what topology decides of its substeps, where that takes long, ahead of the tick that needs it."""
-        make = getattr(self._schedule, "precompute", None)
-        if make is not None:
-            make(world)
-
-    @property
-    def _schedule(self) -> Any:
-        return import_module(f"{__name__}.{self.module}")
+        found: Any = import_module(f"{__name__}.{self.module}").spring_constant
+        return found
 
 
 SOLVERS = {

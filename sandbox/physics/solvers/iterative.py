@@ -4,18 +4,24 @@ No proven limit. Only springs are warm-started. Hooke springs are no constraints
 iterations. Source: Nissen's demo programs after the article.
 """
 
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sandbox.physics.collision.types import NO_CONTACTS, LentContacts
-from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraint_rate, evaluate, explicit_mass, look
+from sandbox.physics.collision.types import Contacts
+from sandbox.physics.constraints import (
+    AREA,
+    BEND,
+    ConstraintArrays,
+    constraint_rate,
+    constraints_of,
+    evaluate,
+    explicit_mass,
+    look,
+)
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
-from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
-from sandbox.physics.joints.joint_set import joints_of
-from sandbox.physics.joints.joint_sweep import iterate_joints, joints_by_mass, no_joints, warm_start_joints
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.joint_sweep import iterate_joints, warm_start_joints
 from sandbox.physics.joints.limited_springs import unlimited_active
 from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
@@ -25,23 +31,18 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     load_biases,
     load_responses,
     load_surfaces,
-    new_contact_constraints,
-    no_blocks,
     store_spins,
     sweep,
     warm_start_contacts,
 )
-from sandbox.physics.solvers.lent_substep import LentSubstep, SubstepArrays
-from sandbox.physics.solvers.single_pass import Particles, apply_explicit, particles_of
-from sandbox.physics.substeps import Substep
-from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, Floats, Slots, World
+from sandbox.physics.solvers.inputs import Inputs
+from sandbox.physics.state import State
+from sandbox.physics.world import LAW_NISSEN, Floats, Slots, World
 
 # The share of what an area still wants that it gets in an iteration after the first. With all of it jellies and rings,
 # which have more constraints than ways to move, gain energy several times over; with 0.3 or less a crushed jelly stays
 # crushed.
 AREA_SHARE = 0.5
-# Room for contacts is made for so many times as many as are wanted.
-MORE_ROOM = 2
 
 
 class Wanted(NamedTuple):
@@ -64,7 +65,7 @@ class Wanted(NamedTuple):
 class Pulling(NamedTuple):
     """Scratch of the springs that do something, count of them by slot: wanted [m/s] = r, mass [kg], normal (m, 2).
 
-    By particle: change [m/s] (n, 2). By slot of all springs: accumulated [N s] (m, 2), which outlives the step.
+    By particle: change [m/s] (n, 2).
     """
 
     slot: Slots
@@ -72,45 +73,21 @@ class Pulling(NamedTuple):
     wanted: Floats
     mass: Floats
     change: Floats
-    accumulated: Floats
-
-
-class IteratedSprings(NamedTuple):
-    """Springs (m,) as steps read them, see StateArrays; slots of those that are iterated, in two orders.
-
-    listed: as they are. heavy_first: those of heavy particles first.
-    """
-
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    rest_length: Floats
-    listed: Slots
-    heavy_first: Slots
-
-
-class Turning(NamedTuple):
-    """How particles (n,) turn: spin [rad/s], radius [m]."""
-
-    spin: Floats
-    radius: Floats
 
 
 class Iteration(NamedTuple):
-    """The arrays of a world that steps read and fill in; they stay until its topology changes."""
+    """Slots of the springs that are iterated, as they are listed and those of heavy particles first; and scratch."""
 
-    particles: Particles
-    turning: Turning
-    springs: IteratedSprings
+    listed: Slots
+    heavy_first: Slots
     pulling: Pulling
-    constraints: ConstraintArrays
     wanted: Wanted
-    delassus: Delassus
 
 
 @inner_kernel
 def _prepare_constraints(
-    particles: Particles, constraints: ConstraintArrays, given: SubstepArrays, h: float, wanted: Wanted
-) -> None:
+    state: State, constraints: ConstraintArrays, given: Inputs, h: float, wanted: Wanted
+) -> None:  # fmt: skip
     # wanted = -(Cs C / h + Cd dC/dt) m
     for k in range(constraints.kind.shape[0]):
         wanted.whole[k] = 0.0
@@ -118,14 +95,14 @@ def _prepare_constraints(
             continue
         first = constraints.first[k]
         last = first + constraints.corners[k]
-        look(first, last, particles.position, constraints.particle, wanted.place)
+        look(first, last, state.position, constraints.particle, wanted.place)
         error = evaluate(
             constraints.kind[k], wanted.place, first, last, constraints.rest, k, constraints.weight, wanted.slope
         )  # fmt: skip
         mass, share = explicit_mass(
-            first, last, particles.inverse_mass, constraints.particle, constraints.weight, wanted.slope
+            first, last, state.inverse_mass, constraints.particle, constraints.weight, wanted.slope
         )  # fmt: skip
-        rate = constraint_rate(first, last, particles.velocity, constraints.particle, wanted.slope)
+        rate = constraint_rate(first, last, state.velocity, constraints.particle, wanted.slope)
         damping = given.constraint_damping[k]
         wanted.wanted[k] = spring_impulse(given.constraint_stiffness[k], damping, error, rate, mass, h)
         if constraints.kind[k] == BEND:
@@ -161,17 +138,16 @@ def _iterate_constraints(inverse_mass: Floats, constraints: ConstraintArrays, wa
 
 @inner_kernel
 def _prepare_springs(
-    particles: Particles, springs: IteratedSprings, order: Slots, given: SubstepArrays, warm_start: float, h: float,
-    pulling: Pulling,
+    state: State, order: Slots, given: Inputs, warm_start: float, h: float, pulling: Pulling
 ) -> int:  # fmt: skip
     # r = -(Cs x / h + Cd u), the wanted change of relative velocity; how many springs want one.
-    position, velocity, inverse_mass = particles.position, particles.velocity, particles.inverse_mass
-    change, accumulated = pulling.change, pulling.accumulated
+    position, velocity, inverse_mass = state.position, state.velocity, state.inverse_mass
+    change, accumulated = pulling.change, state.impulse
     count = 0
     for i in range(order.shape[0]):
         s = order[i]
-        a = springs.particle_a[s]
-        b = springs.particle_b[s]
+        a = state.particle_a[s]
+        b = state.particle_b[s]
         m = reduced_mass(inverse_mass[a], inverse_mass[b])
         # Warm start: p = n . acc; only a pull (p < 0) is used again, j = Cw p.
         warm_x = accumulated[s, 0]
@@ -188,7 +164,7 @@ def _prepare_springs(
         pulling.normal[count, 1] = ny
         pulling.mass[count] = m
         pulling.wanted[count] = spring_impulse(
-            given.stiffness[s], given.damping[s], length - springs.rest_length[s], nx * du + ny * dv, 1.0, h
+            given.stiffness[s], given.damping[s], length - state.rest_length[s], nx * du + ny * dv, 1.0, h
         )  # fmt: skip
         count += 1
         p = nx * warm_x + ny * warm_y
@@ -202,16 +178,14 @@ def _prepare_springs(
 
 
 @inner_kernel
-def _iterate_springs(
-    count: int, inverse_mass: Floats, springs: IteratedSprings, pulling: Pulling, backwards: bool
-) -> None:
+def _iterate_springs(count: int, state: State, pulling: Pulling, backwards: bool) -> None:
     # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
-    change, accumulated = pulling.change, pulling.accumulated
+    change, accumulated, inverse_mass = pulling.change, state.impulse, state.inverse_mass
     for i in range(count):
         c = count - 1 - i if backwards else i
         s = pulling.slot[c]
-        a = springs.particle_a[s]
-        b = springs.particle_b[s]
+        a = state.particle_a[s]
+        b = state.particle_b[s]
         nx = pulling.normal[c, 0]
         ny = pulling.normal[c, 1]
         du = change[b, 0] - change[a, 0]
@@ -227,99 +201,60 @@ def _iterate_springs(
         accumulated[s, 1] += jy
 
 
-@kernel
-def _iterate(
-    lent: Any, lent_substep: Any, lent_contacts: Any, lent_terms: Any, iterations: int, warm_start: float,
-    alternates: bool, h: float,
+@inner_kernel
+def solve(
+    state: State, step: Iteration, given: Inputs, contacts: Contacts, terms: ContactConstraints, delassus: Delassus,
+    iterations: int, warm_start: float, alternates: bool, h: float,
 ) -> None:  # fmt: skip
-    # alternates: every other iteration goes through the springs backwards, as they are listed. In small steps what one
-    # order has not carried through a wheel throws it off the ground; in one step a tick light wheels would sink in
-    # under heavy loads. There each goes from the springs of heavy particles to those of light ones: what a load asks
-    # for goes on to what bears it within an iteration, and a wheel of 0.2 kg a particle sinks 3 cm under 60 kg in place
-    # of 9.
-    (step,) = contents(lent)
-    (given,) = contents(lent_substep)
-    (contacts,) = contents(lent_contacts)
-    (terms,) = contents(lent_terms)
-    velocity, inverse_mass, change = step.particles.velocity, step.particles.inverse_mass, step.pulling.change
-    spin, radius = step.turning.spin, step.turning.radius
+    """Bring the velocities to the end of a substep of h [s]; the springs' impulses are kept for the next warm start.
+
+    alternates: every other iteration goes through the springs backwards, as they are listed.
+    """
+    # In small steps what one order has not carried through a wheel throws it off the ground; in one step a tick light
+    # wheels would sink in under heavy loads. There each goes from the springs of heavy particles to those of light
+    # ones: what a load asks for goes on to what bears it within an iteration, and a wheel of 0.2 kg a particle sinks
+    # 3 cm under 60 kg in place of 9.
+    velocity, inverse_mass, change = state.velocity, state.inverse_mass, step.pulling.change
     for p in range(change.shape[0]):
         change[p, 0] = 0.0
         change[p, 1] = 0.0
-    load_surfaces(terms, spin, radius)
-    order = step.springs.listed if alternates else step.springs.heavy_first
+    load_surfaces(terms, state.spin, state.radius)
+    order = step.listed if alternates else step.heavy_first
     load_biases(contacts, terms, h)
-    load_responses(contacts, terms, inverse_mass, step.delassus)
-    pass_on(contacts, terms, velocity, change, inverse_mass, step.delassus, h)
-    count = _prepare_springs(step.particles, step.springs, order, given, warm_start, h, step.pulling)
-    _prepare_constraints(step.particles, step.constraints, given, h, step.wanted)
-    warm_start_contacts(contacts, terms, change, inverse_mass, step.delassus)
-    warm_start_joints(step.delassus.joints, change, inverse_mass)
+    load_responses(contacts, terms, inverse_mass, delassus)
+    pass_on(contacts, terms, velocity, change, inverse_mass, delassus, h)
+    count = _prepare_springs(state, order, given, warm_start, h, step.pulling)
+    constraints = constraints_of(state)
+    _prepare_constraints(state, constraints, given, h, step.wanted)
+    warm_start_contacts(contacts, terms, change, inverse_mass, delassus)
+    warm_start_joints(delassus.joints, change, inverse_mass)
     for k in range(iterations):
-        _iterate_springs(count, inverse_mass, step.springs, step.pulling, alternates and k % 2 == 1)
-        _iterate_constraints(inverse_mass, step.constraints, step.wanted, change)
-        iterate_joints(step.delassus.joints, velocity, change, inverse_mass)
-        sweep(contacts, terms, velocity, change, inverse_mass, step.delassus)
+        _iterate_springs(count, state, step.pulling, alternates and k % 2 == 1)
+        _iterate_constraints(inverse_mass, constraints, step.wanted, change)
+        iterate_joints(delassus.joints, velocity, change, inverse_mass)
+        sweep(contacts, terms, velocity, change, inverse_mass, delassus)
     add_change(velocity, change, inverse_mass)
-    store_spins(terms, spin, radius)
+    store_spins(terms, state.spin, state.radius)
 
 
-@dataclass(eq=False)
-class IterationRoom:
-    """The scratch of a world's steps, each part as one argument for kernels; hooke: springs by that law, None: none.
-
-    no_contacts: in place of those of a step that finds none.
-    """
-
-    lent: Any
-    terms: ContactConstraints
-    lent_terms: Any
-    no_contacts: Any
-    hooke: NDArray[np.bool_] | None
-    substep: LentSubstep = field(default_factory=LentSubstep)
-
-    def grow(self, contacts: int) -> None:
-        """Make room for a number of contacts."""
-        if contacts > len(self.terms.bias):
-            self.terms = new_contact_constraints(MORE_ROOM * contacts, self.terms.surface)
-            self.lent_terms = bundle((self.terms,))
+def iteration_of(world: World) -> Iteration:
+    """The springs of a world that are iterated, made again after a change of topology, with scratch."""
+    return world.derived(_make_iteration)
 
 
-def _make_room(world: World) -> IterationRoom:
-    listed, joints = np.flatnonzero(unlimited_active(world) & (world.law == LAW_NISSEN)), joints_of(world)
+def _make_iteration(world: World) -> Iteration:
+    listed = np.flatnonzero(unlimited_active(world) & (world.law == LAW_NISSEN))
     moved = np.where(world.inverse_mass > 0.0, world.inverse_mass, np.inf)
     lightness = np.minimum(moved[world.particle_a[listed]], moved[world.particle_b[listed]])
-    count, particles = len(listed), world.particle_count
-    step = Iteration(
-        particles_of(world),
-        Turning(world.spin, world.radius),
-        IteratedSprings(
-            world.particle_a, world.particle_b, world.rest_length, listed, listed[np.argsort(lightness, kind="stable")]
-        ),
+    count = len(listed)
+    return Iteration(
+        listed, listed[np.argsort(lightness, kind="stable")],
         Pulling(
-            np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count), np.zeros(count), np.zeros((particles, 2)),
-            world.impulse,
+            np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count), np.zeros(count),
+            np.zeros((world.particle_count, 2)),
         ),
-        world.constraints,
         Wanted(*np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.constraint_count))),
-        no_blocks(particles, no_joints() if joints is None else joints_by_mass(joints.rows)),
     )  # fmt: skip
-    terms, hooke = new_contact_constraints(0, np.zeros(particles)), world.spring_active & (world.law == LAW_HOOKE)
-    lent_terms, nothing = bundle((terms,)), bundle((NO_CONTACTS,))
-    return IterationRoom(bundle((step,)), terms, lent_terms, nothing, hooke if hooke.any() else None)
 
 
 spring_constant = explicit_spring_constant
-
-
-def solve(world: World, substep: Substep, contacts: LentContacts | None) -> None:
-    """Bring the velocities to the end of a substep; world.impulse keeps the sums for the next warm start."""
-    room, settings = world.derived(_make_room), world.settings
-    if room.hooke is not None:
-        apply_explicit(world, room.hooke, substep)
-    if contacts is not None:
-        room.grow(len(contacts.arrays.particle))
-    _iterate(
-        room.lent, room.substep.lend(substep), room.no_contacts if contacts is None else contacts.lent,
-        room.lent_terms, settings.iterations, settings.warm_start, substep.substeps > 1, substep.h,
-    )  # fmt: skip

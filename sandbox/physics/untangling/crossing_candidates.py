@@ -11,7 +11,9 @@ import numpy as np
 
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags
-from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.geometry.rigid import WeightedSums, best_turn, centre_of, rotated, with_pair, with_point
+from sandbox.physics.geometry.segment import doubled_area
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats, Slots
 
 # By this share of a radius two outlines are taken apart before they are compared, so that ones that lie exactly on each
@@ -59,12 +61,6 @@ def _bound(s: int, colliders: Colliders, outline: Outline, shape_bounds: ShapeBo
     shape_bounds.collides[s] = collides
 
 
-@inlined_kernel
-def _side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
-    # Signed area of the triangle a, b, p, doubled: above 0 where p is on the left of a b.
-    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
-
-
 @inner_kernel
 def cross(e: int, f: int, apart: float, position: Floats, colliders: Colliders) -> tuple[float, float]:
     """Where edge e crosses edge f, which is widened a little: the shares along both; -1: they do not cross."""
@@ -84,10 +80,10 @@ def cross(e: int, f: int, apart: float, position: Floats, colliders: Colliders) 
         return -1.0, -1.0
     if max(ay, by) < min(cy, dy) or max(cy, dy) < min(ay, by):
         return -1.0, -1.0
-    of_c = _side(ax, ay, bx, by, cx, cy)
-    of_d = _side(ax, ay, bx, by, dx, dy)
-    of_a = _side(cx, cy, dx, dy, ax, ay)
-    of_b = _side(cx, cy, dx, dy, bx, by)
+    of_c = doubled_area(ax, ay, bx, by, cx, cy)
+    of_d = doubled_area(ax, ay, bx, by, dx, dy)
+    of_a = doubled_area(cx, cy, dx, dy, ax, ay)
+    of_b = doubled_area(cx, cy, dx, dy, bx, by)
     if (of_c > 0.0) == (of_d > 0.0) or (of_a > 0.0) == (of_b > 0.0):
         return -1.0, -1.0
     return of_a / (of_a - of_b), of_c / (of_c - of_d)
@@ -100,39 +96,27 @@ def _bent(s: int, colliders: Colliders, outline: Outline) -> float:
     first, last = outline.member_start[s], outline.member_start[s + 1]
     if first == last:
         return math.inf
-    x = 0.0
-    y = 0.0
-    form_x = 0.0
-    form_y = 0.0
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for i in range(first, last):
         p = outline.member[i]
-        x += position[p, 0]
-        y += position[p, 1]
-        form_x += origin[p, 0]
-        form_y += origin[p, 1]
-    x /= last - first
-    y /= last - first
-    form_x /= last - first
-    form_y /= last - first
+        sums = with_point(sums, 1.0, position[p, 0], position[p, 1], origin[p, 0], origin[p, 1])
+    x, y, form_x, form_y, _, _ = centre_of(sums)
     along = 0.0
     across = 0.0
     for i in range(first, last):
         p = outline.member[i]
-        fx, fy = origin[p, 0] - form_x, origin[p, 1] - form_y
-        dx, dy = position[p, 0] - x, position[p, 1] - y
-        along += fx * dx + fy * dy
-        across += fx * dy - fy * dx
-    size = math.sqrt(along * along + across * across)
-    if not size > 0.0:
+        along, across = with_pair(
+            along, across, 1.0, origin[p, 0] - form_x, origin[p, 1] - form_y, position[p, 0] - x, position[p, 1] - y
+        )
+    if not along * along + across * across > 0.0:
         return math.inf
-    cosine = along / size
-    sine = across / size
+    cosine, sine = best_turn(along, across)
     farthest = 0.0
     for i in range(first, last):
         p = outline.member[i]
-        fx, fy = origin[p, 0] - form_x, origin[p, 1] - form_y
-        dx = position[p, 0] - x - (cosine * fx - sine * fy)
-        dy = position[p, 1] - y - (sine * fx + cosine * fy)
+        fx, fy = rotated(cosine, sine, origin[p, 0] - form_x, origin[p, 1] - form_y)
+        dx = position[p, 0] - x - fx
+        dy = position[p, 1] - y - fy
         farthest = max(farthest, dx * dx + dy * dy)
     return farthest
 

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.components import join, root_of
 from sandbox.physics.constraints import AREA
+from sandbox.physics.geometry.polygon import winding_of_side
+from sandbox.physics.geometry.segment import doubled_area, doubled_area_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.topology.sorting import list_by_key, sort_by_key
@@ -283,15 +285,7 @@ def group_triangles(corners: Slots, is_left: Flags, bound: int) -> Jellies:
 @inlined_kernel
 def _crossing(px: float, py: float, ax: float, ay: float, bx: float, by: float) -> int:
     # +1 where the corner at p, from a to b, sweeps over the direction (1, 0) counter-clockwise, -1 clockwise.
-    crossing = 0
-    below = ay < py
-    if below != (by < py):
-        side = (ax - px) * (by - py) - (ay - py) * (bx - px)
-        if below and side > 0.0:
-            crossing = 1
-        elif not below and side < 0.0:
-            crossing = -1
-    return crossing
+    return winding_of_side(ay < py, by < py, doubled_area(px, py, ax, ay, bx, by))
 
 
 @inlined_kernel
@@ -306,14 +300,7 @@ def wind(place: Floats, a: int, b: int, c: int, member: Slots, at: int, turns: S
     turns[member[at, 0]] += _crossing(ax, ay, bx, by, cx, cy)
     turns[member[at, 1]] += _crossing(bx, by, cx, cy, ax, ay)
     turns[member[at, 2]] += _crossing(cx, cy, ax, ay, bx, by)
-    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-
-
-@inlined_kernel
-def _doubled_area(place: Floats, a: int, b: int, c: int) -> float:
-    return (place[b, 0] - place[a, 0]) * (place[c, 1] - place[a, 1]) - (place[b, 1] - place[a, 1]) * (
-        place[c, 0] - place[a, 0]
-    )
+    return doubled_area(ax, ay, bx, by, cx, cy)
 
 
 @inner_kernel
@@ -323,8 +310,8 @@ def is_wound(g: int, once: int, place: Floats, fan: Slots, fan_start: Slots) -> 
         p = fan[f, 0]
         begin = fan[f, 1]
         if (
-            once * _doubled_area(place, p, fan[f, 2], begin) >= 0.0
-            and once * _doubled_area(place, p, begin, fan[f, 3]) > 0.0
+            once * doubled_area_of(p, fan[f, 2], begin, place) >= 0.0
+            and once * doubled_area_of(p, begin, fan[f, 3], place) > 0.0
         ):
             return True
     return False

@@ -11,10 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
-from sandbox.physics.collision.edge_geometry import closest, winds
+from sandbox.physics.collision.edge_geometry import winds
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
+from sandbox.physics.geometry.segment import closest_on_segment, nearest_share, segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.untangling.crossing_candidates import (
@@ -35,7 +36,7 @@ class Overlaps(NamedTuple):
     """The overlaps of a step: crossings of edges, and the pairs of shapes that overlap; there is room for more.
 
     Of crossings: edge (k, 2), that of the lower shape first; share (k, 2) along them; following = the next one of the
-    same pair, -1: none. Of pairs: shape (q, 2), the lower first; first = of its crossings, -1: none; parts: whether
+    same pair, -1: none. Of pairs: shape (q, 2), the lower first; first = of its crossings, -1: none; separates: whether
     they do; next_pair = of the same lower shape. first_pair = by shape.
     """
 
@@ -44,7 +45,7 @@ class Overlaps(NamedTuple):
     following: Slots
     shape: Slots
     first: Slots
-    parts: Flags
+    separates: Flags
     next_pair: Slots
     first_pair: Slots
     counts: Slots
@@ -215,7 +216,7 @@ def _is_crossed_deep(pair: int, colliders: Colliders, found: Overlaps) -> bool:
             f = found.edge[c, 1 - side]
             for end in range(2):
                 p = colliders.edge_a[e] if end == 0 else colliders.edge_b[e]
-                _, distance, _, _ = closest(p, colliders.edge_a[f], colliders.edge_b[f], colliders.position)
+                _, distance, _, _ = closest_on_segment(p, colliders.edge_a[f], colliders.edge_b[f], colliders.position)
                 least = min(least, distance)
         if least > DEEP * colliders.radius[colliders.edge_a[found.edge[c, 0]]]:
             return True
@@ -240,16 +241,8 @@ def _is_deep_at(
         return False
     for e in range(outline.solid[k, 0], outline.solid[k, 1]):
         if colliders.side[e] != 0:
-            a = colliders.edge_a[e]
-            b = colliders.edge_b[e]
-            ax = colliders.position[a, 0]
-            ay = colliders.position[a, 1]
-            dx = colliders.position[b, 0] - ax
-            dy = colliders.position[b, 1] - ay
-            squared = dx * dx + dy * dy
-            share = 0.0
-            if squared > 0.0:
-                share = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / squared))
+            ax, ay, dx, dy = segment_of(colliders.edge_a[e], colliders.edge_b[e], colliders.position)
+            share = nearest_share(x - ax, y - ay, dx, dy)
             qx = x - ax - share * dx
             qy = y - ay - share * dy
             if not qx * qx + qy * qy > deep * deep:
@@ -361,17 +354,17 @@ def pair_overlaps(
         s = found.shape[at, 0]
         t = found.shape[at, 1]
         both = outline.solid_of[s] >= 0 and outline.solid_of[t] >= 0
-        found.parts[at] = not both or _is_crossed_deep(at, colliders, found)
-        if not found.parts[at] and s != t:
-            found.parts[at] = _is_inside_deep(s, t, outline, bounds, colliders) or _is_inside_deep(
+        found.separates[at] = not both or _is_crossed_deep(at, colliders, found)
+        if not found.separates[at] and s != t:
+            found.separates[at] = _is_inside_deep(s, t, outline, bounds, colliders) or _is_inside_deep(
                 t, s, outline, bounds, colliders
             )
         # What parts goes on until nothing crosses: contacts that hold what they are to push out would take it back.
-        if not found.parts[at] and kept_count > 0:
-            found.parts[at] = not _touched(s, t, colliders, outline, kept, kept_count)
+        if not found.separates[at] and kept_count > 0:
+            found.separates[at] = not _touched(s, t, colliders, outline, kept, kept_count)
     # Only now, as nobody may be left out while others are looked at.
     for at in range(pairs):
-        if found.parts[at]:
+        if found.separates[at]:
             colliders.parted[colliders.parted_count[0], 0] = found.shape[at, 0]
             colliders.parted[colliders.parted_count[0], 1] = found.shape[at, 1]
             alone = outline.solid_of[found.shape[at, 0]] < 0 and outline.solid_of[found.shape[at, 1]] < 0

@@ -9,9 +9,11 @@ it is paid with: energy that the two have lost before.
 import math
 from typing import NamedTuple
 
-from sandbox.physics.collision.edge_geometry import edge_normal, winds
+from sandbox.physics.collision.edge_geometry import edge_normal, place_on, winds
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.geometry.rigid import RigidMotion, WeightedSums, centre_of, with_point
+from sandbox.physics.geometry.segment import difference, segment_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import Floats
 from sandbox.physics.untangling.overlaps import OVERLAPS, Overlaps, mark_separating
@@ -22,8 +24,8 @@ PARTING_SPEED = 1.0
 # Where what is inside of both outlines looks to all sides alike, less than this share of its length, the one goes right
 # through the other, and they part along the line of their centres of mass.
 ONE_SIDED = 0.3
-# Parts of an edge whose middles are looked at for whether they are inside.
-PARTS = 4
+# Places of an edge that are looked at for whether they are inside.
+SAMPLES = 4
 # Lengths [m] below this have no direction.
 LEAST_LENGTH = 1e-12
 
@@ -41,25 +43,12 @@ class MovedParticles(NamedTuple):
     parting_reserve: Floats
 
 
-class Moved(NamedTuple):
-    """A shape that moves as a whole: mass [kg], centre [m], velocity [m/s]; fixed 1: a particle of it is pinned."""
-
-    mass: float
-    x: float
-    y: float
-    u: float
-    v: float
-    fixed: int
-
-
 @inner_kernel
-def _moved(s: int, outline: Outline, colliders: Colliders, particles: MovedParticles, flags: Flags) -> Moved:
-    # What of shape s is flagged.
-    mass = 0.0
-    x = 0.0
-    y = 0.0
-    u = 0.0
-    v = 0.0
+def _moved(
+    s: int, outline: Outline, colliders: Colliders, particles: MovedParticles, flags: Flags
+) -> tuple[RigidMotion, float, int]:
+    # How what of shape s is flagged moves as a whole, its mass, and 1 where a particle of it is pinned.
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     fixed = 0
     for i in range(outline.member_start[s], outline.member_start[s + 1]):
         p = outline.member[i]
@@ -68,16 +57,14 @@ def _moved(s: int, outline: Outline, colliders: Colliders, particles: MovedParti
         if particles.inverse_mass[p] == 0.0:
             fixed = 1
             continue
-        m = particles.mass[p]
-        mass += m
-        x += m * colliders.position[p, 0]
-        y += m * colliders.position[p, 1]
-        u += m * particles.start[p, 0]
-        v += m * particles.start[p, 1]
-    if mass > 0.0:
-        return Moved(mass, x / mass, y / mass, u / mass, v / mass, fixed)
+        sums = with_point(
+            sums, particles.mass[p], colliders.position[p, 0], colliders.position[p, 1], particles.start[p, 0],
+            particles.start[p, 1],
+        )  # fmt: skip
+    if sums.weight > 0.0:
+        return centre_of(sums), sums.weight, fixed
     p = outline.member[outline.member_start[s]]
-    return Moved(0.0, colliders.position[p, 0], colliders.position[p, 1], 0.0, 0.0, 1)
+    return RigidMotion(colliders.position[p, 0], colliders.position[p, 1], 0.0, 0.0, 0.0, 0.0), 0.0, 1
 
 
 @inner_kernel
@@ -92,24 +79,21 @@ def _inside_normal(k: int, other: int, outline: Outline, colliders: Colliders) -
     for e in range(outline.solid[k, 0], outline.solid[k, 1]):
         if colliders.side[e] == 0:
             continue
-        a = colliders.edge_a[e]
-        b = colliders.edge_b[e]
-        ax = colliders.position[a, 0]
-        ay = colliders.position[a, 1]
-        dx = colliders.position[b, 0] - ax
-        dy = colliders.position[b, 1] - ay
+        ax, ay, dx, dy = segment_of(colliders.edge_a[e], colliders.edge_b[e], colliders.position)
         length = math.sqrt(dx * dx + dy * dy)
-        for part in range(PARTS):
-            share = (part + 0.5) / PARTS
+        for sample in range(SAMPLES):
+            share = (sample + 0.5) / SAMPLES
             if winds(ax + share * dx, ay + share * dy, first, last, colliders) > 0:
-                nx += dy / PARTS
-                ny -= dx / PARTS
-                total += length / PARTS
+                nx += dy / SAMPLES
+                ny -= dx / SAMPLES
+                total += length / SAMPLES
     return nx, ny, total
 
 
 @inner_kernel
-def _apart(s: int, t: int, a: Moved, b: Moved, outline: Outline, colliders: Colliders) -> tuple[float, float]:
+def _apart(
+    s: int, t: int, a: RigidMotion, b: RigidMotion, outline: Outline, colliders: Colliders
+) -> tuple[float, float]:
     # The direction in which solid body s is to leave solid body t.
     ax, ay, length_a = _inside_normal(outline.solid_of[s], outline.solid_of[t], outline, colliders)
     bx, by, length_b = _inside_normal(outline.solid_of[t], outline.solid_of[s], outline, colliders)
@@ -143,10 +127,7 @@ def _next_crossing(c: int, pair: int, side: int, most: int, colliders: Colliders
     passed = found.share[c, side]
     way = 0.0
     for _ in range(most + 1):
-        a = colliders.edge_a[f]
-        b = colliders.edge_b[f]
-        dx = colliders.position[b, 0] - colliders.position[a, 0]
-        dy = colliders.position[b, 1] - colliders.position[a, 1]
+        dx, dy = difference(colliders.edge_a[f], colliders.edge_b[f], colliders.position)
         length = math.sqrt(dx * dx + dy * dy)
         nearest = -1
         share = 2.0
@@ -169,9 +150,7 @@ def _next_crossing(c: int, pair: int, side: int, most: int, colliders: Colliders
 
 @inner_kernel
 def _place(c: int, side: int, axis: int, colliders: Colliders, found: Overlaps) -> float:
-    a = colliders.position[colliders.edge_a[found.edge[c, side]], axis]
-    b = colliders.position[colliders.edge_b[found.edge[c, side]], axis]
-    return a + found.share[c, side] * (b - a)
+    return place_on(found.edge[c, side], found.share[c, side], axis, colliders)
 
 
 @inner_kernel
@@ -226,17 +205,15 @@ def _spend(s: int, cost: float, outline: Outline, particles: MovedParticles) -> 
 
 
 @inner_kernel
-def _push(
-    s: int, nx: float, ny: float, change: float, outline: Outline, particles: MovedParticles, flags: Flags
-) -> None:
+def _push(s: int, nx: float, ny: float, dv: float, outline: Outline, particles: MovedParticles, flags: Flags) -> None:
     # Add to the velocities of what of a shape is flagged.
     for i in range(outline.member_start[s], outline.member_start[s + 1]):
         p = outline.member[i]
         if flags[p] and particles.inverse_mass[p] > 0.0:
-            particles.velocity[p, 0] += change * nx
-            particles.velocity[p, 1] += change * ny
-            particles.start[p, 0] += change * nx
-            particles.start[p, 1] += change * ny
+            particles.velocity[p, 0] += dv * nx
+            particles.velocity[p, 1] += dv * ny
+            particles.start[p, 0] += dv * nx
+            particles.start[p, 1] += dv * ny
 
 
 @inner_kernel
@@ -246,8 +223,8 @@ def _part(
     # Bring what parts to PARTING_SPEED, or as near to it as what was saved allows.
     s = found.shape[pair, 0]
     t = found.shape[pair, 1]
-    a = _moved(s, outline, colliders, particles, flags)
-    b = _moved(t, outline, colliders, particles, flags)
+    a, mass_a, fixed_a = _moved(s, outline, colliders, particles, flags)
+    b, mass_b, fixed_b = _moved(t, outline, colliders, particles, flags)
     if outline.solid_of[s] < 0:
         nx, ny = _off(pair, 1, outline, colliders, found)
     elif outline.solid_of[t] < 0:
@@ -257,8 +234,8 @@ def _part(
     else:
         nx, ny = _apart(s, t, a, b, outline, colliders)
     # What is held does not move, unless both are.
-    of_a = 1.0 / a.mass if a.mass > 0.0 and a.fixed <= b.fixed else 0.0
-    of_b = 1.0 / b.mass if b.mass > 0.0 and b.fixed <= a.fixed else 0.0
+    of_a = 1.0 / mass_a if mass_a > 0.0 and fixed_a <= fixed_b else 0.0
+    of_b = 1.0 / mass_b if mass_b > 0.0 and fixed_b <= fixed_a else 0.0
     if not of_a + of_b > 0.0:
         return
     along = 0.0
@@ -290,7 +267,7 @@ def part_overlaps(
         # What has come through itself its own springs restore; lines cross lines as they like.
         s = found.shape[pair, 0]
         t = found.shape[pair, 1]
-        if not found.parts[pair] or s == t or (outline.solid_of[s] < 0 and outline.solid_of[t] < 0):
+        if not found.separates[pair] or s == t or (outline.solid_of[s] < 0 and outline.solid_of[t] < 0):
             continue
         for side in range(2):
             k = found.shape[pair, side]

@@ -9,15 +9,24 @@ are jellies that are inverted already (inversion.py), until they have found back
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.terrain_clamp import STOPS, stopped
+from sandbox.physics.collision.terrain_clamp import stop_at_terrain, stopped
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.components import root_of, united
-from sandbox.physics.jit import bundle, contents, inlined_kernel, inner_kernel, kernel
+from sandbox.physics.geometry.rigid import (
+    RigidMotion,
+    WeightedSums,
+    centre_of,
+    velocity_at,
+    with_point,
+    with_turn,
+)
+from sandbox.physics.geometry.segment import doubled_area_of
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.untangling.inversion import (
@@ -84,11 +93,8 @@ class ClampedTriangles(NamedTuple):
 @inlined_kernel
 def _area_now(k: int, triangles: ClampedTriangles) -> float:
     # The area at the start of the step, turned positive as the one wanted is.
-    x = triangles.position
-    a = triangles.corner[k, 0]
-    b = triangles.corner[k, 1]
-    c = triangles.corner[k, 2]
-    area = 0.5 * ((x[b, 0] - x[a, 0]) * (x[c, 1] - x[a, 1]) - (x[b, 1] - x[a, 1]) * (x[c, 0] - x[a, 0]))
+    corner = triangles.corner
+    area = 0.5 * doubled_area_of(corner[k, 0], corner[k, 1], corner[k, 2], triangles.position)
     return area if triangles.rest[triangles.constraint[k], 0] > 0.0 else -area
 
 
@@ -169,39 +175,27 @@ def _any_missing(first: int, last: int, triangles: ClampedTriangles, share: floa
 
 
 @inner_kernel
-def _rigid_motion(k: int, triangles: ClampedTriangles) -> tuple[float, float, float, float, float]:
-    # Centre, velocity and turn [rad/s] of a triangle as a whole; with a pin it turns about that, with two not.
+def _rigid_motion(k: int, triangles: ClampedTriangles) -> RigidMotion:
+    # That of a triangle as a whole; with a pin it turns about that, with two not.
     position, velocity, mass = triangles.position, triangles.velocity, triangles.mass
-    total = x = y = u = v = 0.0
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     pins = 0
     for i in range(3):
         p = triangles.corner[k, i]
-        m = mass[p]
         if triangles.inverse_mass[p] == 0.0:
             pins += 1
             if pins > 1:
-                return x, y, 0.0, 0.0, 0.0
-            total = x = y = u = v = 0.0
+                return RigidMotion(sums.x, sums.y, 0.0, 0.0, 0.0, 0.0)
+            sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
         elif pins == 1:
             continue
-        total += m
-        x += m * position[p, 0]
-        y += m * position[p, 1]
-        u += m * velocity[p, 0]
-        v += m * velocity[p, 1]
-    x /= total
-    y /= total
-    u /= total
-    v /= total
-    inertia = spin = 0.0
+        sums = with_point(sums, mass[p], position[p, 0], position[p, 1], velocity[p, 0], velocity[p, 1])
+    motion = centre_of(sums)
     for i in range(3):
         p = triangles.corner[k, i]
         if triangles.inverse_mass[p] > 0.0:
-            dx = position[p, 0] - x
-            dy = position[p, 1] - y
-            inertia += mass[p] * (dx * dx + dy * dy)
-            spin += mass[p] * (dx * (velocity[p, 1] - v) - dy * (velocity[p, 0] - u))
-    return x, y, u, v, spin / inertia if inertia > 0.0 else 0.0
+            motion = with_turn(motion, mass[p], position[p, 0], position[p, 1], velocity[p, 0], velocity[p, 1])
+    return motion
 
 
 @inner_kernel
@@ -248,16 +242,15 @@ def _draw_together(k: int, triangles: ClampedTriangles, least: float, h: float) 
     # v = rigid + s (v - rigid) at each corner, s halved until the area is large enough; with s = 0 it is, as a rigid
     # motion makes the area (1 + (turn h)^2) times as large.
     position, velocity = triangles.position, triangles.velocity
-    x, y, u, v, turn = _rigid_motion(k, triangles)
+    motion = _rigid_motion(k, triangles)
     for halving in range(HALVINGS + 1):
         share = 0.5 if halving < HALVINGS else 0.0
         for i in range(3):
             p = triangles.corner[k, i]
             if triangles.inverse_mass[p] > 0.0:
-                along = u - turn * (position[p, 1] - y)
-                up = v + turn * (position[p, 0] - x)
-                velocity[p, 0] = along + share * (velocity[p, 0] - along)
-                velocity[p, 1] = up + share * (velocity[p, 1] - up)
+                u, v = velocity_at(motion, position[p, 0], position[p, 1])
+                velocity[p, 0] = u + share * (velocity[p, 0] - u)
+                velocity[p, 1] = v + share * (velocity[p, 1] - v)
         if _area_left(k, triangles, h) >= least:
             break
 
@@ -283,18 +276,9 @@ def _sweep(first: int, last: int, triangles: ClampedTriangles, begun: int, h: fl
 @inner_kernel
 def _stop_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float) -> None:
     # What would cross terrain now goes as far as it may.
-    position, velocity, terrain = triangles.position, triangles.velocity, triangles.terrain
     for r in range(low, high):
         if triangles.inverse_mass[r] > 0.0 and triangles.collides[r] & TERRAIN_GROUP:
-            wx = h * velocity[r, 0]
-            wy = h * velocity[r, 1]
-            stops, x, y = stopped(position[r, 0], position[r, 1], wx, wy, terrain)
-            if stops > STOPS:
-                velocity[r, 0] = 0.0
-                velocity[r, 1] = 0.0
-            elif stops > 0:
-                velocity[r, 0] += (x - wx) / h
-                velocity[r, 1] += (y - wy) / h
+            stop_at_terrain(r, triangles.position, triangles.velocity, triangles.terrain, h)
 
 
 @inner_kernel
@@ -441,29 +425,29 @@ def _let_go(triangles: ClampedTriangles, of_world: Triangles, found: Inversions,
                 found.is_inverted[triangles.group[k]] = True
 
 
-@kernel
-def _clamp_world(items: Any, matches: bool, h: float) -> None:
-    triangles, of_world, found, marked = contents(items)
-    count = triangles.group.shape[0]
-    for g in range(triangles.inverted.shape[0]):
-        triangles.inverted[g] = False
-    # A solver that has done this itself may have gone as far as to the last share.
-    if _any_missing(0, count, triangles, LAST_SHARE if matches else 1.0, h):
-        _let_go(triangles, of_world, found, marked, matches)
-        clamp_triangles(0, triangles.rest.shape[0], 0, triangles.position.shape[0], triangles, h)
+class WorldTriangles(NamedTuple):
+    """The triangles of a world, over its particles: as they are clamped, and their jellies; marked (n,): scratch."""
+
+    clamped: ClampedTriangles
+    of_world: Triangles
+    found: Inversions
+    marked: Flags
 
 
-def has_triangles(world: World) -> bool:
-    """Whether a world has triangles of areas, which are not to turn over."""
-    return world.derived(_make_items) is not None
-
-
-def clamp_world(world: World, matches: bool, h: float) -> None:
-    """Let the velocities of a world that has triangles turn none over in the coming h [s]; terrain's clamp was before.
+@inner_kernel
+def clamp_world(triangles: WorldTriangles, matches: bool, h: float) -> None:
+    """Let the velocities of a world turn no triangle over in the coming h [s]; terrain's clamp was before.
 
     matches: whether the solver draws inverted jellies to their form, and has held triangles already.
     """
-    _clamp_world(world.derived(_make_items), matches, h)
+    clamped = triangles.clamped
+    count = clamped.group.shape[0]
+    for g in range(clamped.inverted.shape[0]):
+        clamped.inverted[g] = False
+    # A solver that has done this itself may have gone as far as to the last share.
+    if _any_missing(0, count, clamped, LAST_SHARE if matches else 1.0, h):
+        _let_go(clamped, triangles.of_world, triangles.found, triangles.marked, matches)
+        clamp_triangles(0, clamped.rest.shape[0], 0, clamped.position.shape[0], clamped, h)
 
 
 def new_triangles(
@@ -487,13 +471,16 @@ def new_triangles(
     )  # fmt: skip
 
 
-def _make_items(world: World) -> Any:
+def world_triangles(world: World) -> WorldTriangles:
+    """The triangles of a world, made again after a change of topology."""
+    return world.derived(_make_world_triangles)
+
+
+def _make_world_triangles(world: World) -> WorldTriangles:
     triangles = world.derived(triangles_of)
-    if not len(triangles.constraint):
-        return None
     motion, found = (world.position, world.velocity, world.mass, world.inverse_mass), new_inversions(triangles)
     clamped = new_triangles(
         triangles.constraint, triangles.corners, triangles.jellies, world.constraint_rest, motion, world.collides,
         found.is_inverted, world.terrain,
     )  # fmt: skip
-    return bundle((clamped, triangles, found, np.zeros(world.particle_count, np.bool_)))
+    return WorldTriangles(clamped, triangles, found, np.zeros(world.particle_count, np.bool_))

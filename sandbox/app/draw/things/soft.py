@@ -15,6 +15,8 @@ from sandbox.app.draw.things.borders import starts_of
 from sandbox.app.draw.things.frame import FLUSH_FROM, FLUSH_RANGE, Frame
 from sandbox.app.draw.things.level_slots import Actor
 from sandbox.level.kinds.jelly import CircleShape, JellyDef
+from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import lengths
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -96,9 +98,8 @@ def _cut_of(actor: Actor, loop: Slots) -> float:
     """Which part of its sides a cut of the corners of a loop takes, so that a body of few cells keeps its form."""
     order = np.argsort(actor.slots, kind="stable")
     corners = actor.form[order[np.searchsorted(actor.slots[order], loop)]]
-    side = np.roll(corners, -1, axis=0) - corners
-    length = np.sqrt(np.sum(side * side, axis=1))
-    area = 0.5 * abs(float(np.sum(corners[:, 0] * side[:, 1] - corners[:, 1] * side[:, 0])))
+    after = np.roll(corners, -1, axis=0)
+    length, area = lengths(after - corners), abs(signed_area(corners, after))
     around, longest = float(np.sum(length)), float(np.max(length, initial=0.0))
     # A square is as broad as its sides are long.
     breadth = 4.0 * area / around if around > 0.0 else 0.0

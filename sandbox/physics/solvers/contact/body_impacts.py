@@ -8,11 +8,10 @@ and all that rests have their say in the sweeps.
 """
 
 import math
-from typing import Any
 
 from sandbox.physics.collision.restitution import SLOWEST_PASSED
 from sandbox.physics.collision.types import Contacts
-from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
     Delassus,
@@ -25,7 +24,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     solve_contacts,
     store_spins,
 )
-from sandbox.physics.world import Floats
+from sandbox.physics.state import Floats, State
 
 # Passes at most; a row of n balls takes n - 1. Sweeps of each at most, which end where no hit changed its velocity by
 # more [m/s].
@@ -39,7 +38,7 @@ LEAST_WORK = 4000
 
 @inner_kernel
 def _find_hits(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, is_first: bool, h: float
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, is_first: bool, h: float
 ) -> int:  # fmt: skip
     # direction = impulse in this pass, and the velocity along the normal that is wanted (-inf: no hit); before = the
     # sum of impulses, and how fast forces alone bring it near. How many hits there are.
@@ -54,7 +53,7 @@ def _find_hits(
                 terms.search_direction[c, 1] = contacts.bounce[c]
                 hits += 1
             continue
-        u = approach_of(contacts, c, velocity, change)
+        u = approach_of(contacts, c, velocity, delta_v)
         v = u - terms.last_impulse[c, 1]
         gap = contacts.gap[c]
         if v < -SLOWEST_PASSED and gap + h * u <= 0.0:
@@ -74,7 +73,7 @@ def _find_held(contacts: Contacts, terms: ContactConstraints, h: float) -> None:
 
 @inner_kernel
 def _solve_pass(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
     delassus: Delassus, is_alone: bool,
 ) -> int:  # fmt: skip
     # J = max(0, J + (b - u) / W) in sweeps; how many. Then `last_impulse` has what they have given.
@@ -88,11 +87,11 @@ def _solve_pass(
             if wanted == -math.inf:
                 continue
             old = terms.search_direction[c, 0]
-            lacks = wanted - approach_of(contacts, c, velocity, change)
+            lacks = wanted - approach_of(contacts, c, velocity, delta_v)
             j = max(0.0, old + lacks / terms.normal[c]) - old
             if j != 0.0:
                 terms.search_direction[c, 0] += j
-                push_contact(contacts, c, j, 0.0, terms.surface, change, inverse_mass, delassus)
+                push_contact(contacts, c, j, 0.0, terms.surface, delta_v, inverse_mass, delassus)
                 largest = max(largest, abs(j) * terms.normal[c])
         if is_alone or largest < SETTLED:
             break
@@ -104,7 +103,7 @@ def _solve_pass(
 
 
 @inner_kernel
-def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats) -> bool:
+def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats) -> bool:
     # Whether anything bounces at all, and what `before` is then.
     bounces = False
     for c in range(contacts.particle.shape[0]):
@@ -114,57 +113,62 @@ def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity:
             terms.last_impulse[c, 0] = 0.0
             terms.last_impulse[c, 1] = 0.0
             if not contacts.bounce[c] >= 0.0:
-                terms.last_impulse[c, 1] = min(0.0, approach_of(contacts, c, velocity, change))
+                terms.last_impulse[c, 1] = min(0.0, approach_of(contacts, c, velocity, delta_v))
     return bounces
 
 
 @inner_kernel
 def pass_on(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
     delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
     """Find how fast all that bounces in a step of h [s] leaves, in passes from what is hit to what that hits in turn.
 
-    Then `bounce` and bias say so, and contacts begin with these impulses. change is zero before and afterwards.
+    Then `bounce` and bias say so, and contacts begin with these impulses. delta_v is zero before and after.
     """
-    if not _begins_with_passes(contacts, terms, velocity, change):
+    if not _begins_with_passes(contacts, terms, velocity, delta_v):
         return
     count = contacts.particle.shape[0]
     left = LEAST_WORK + WORK_EACH * count
-    hits = _find_hits(contacts, terms, velocity, change, True, h)
+    hits = _find_hits(contacts, terms, velocity, delta_v, True, h)
     for _ in range(PASSES):
-        left -= hits * _solve_pass(contacts, terms, velocity, change, inverse_mass, delassus, hits == 1)
+        left -= hits * _solve_pass(contacts, terms, velocity, delta_v, inverse_mass, delassus, hits == 1)
         if left <= 0:
             break
-        hits = _find_hits(contacts, terms, velocity, change, False, h)
+        hits = _find_hits(contacts, terms, velocity, delta_v, False, h)
         if hits == 0:
             break
     _find_held(contacts, terms, h)
-    _solve_pass(contacts, terms, velocity, change, inverse_mass, delassus, False)
+    _solve_pass(contacts, terms, velocity, delta_v, inverse_mass, delassus, False)
     for c in range(count):
         terms.search_direction[c, 0] = 0.0
         terms.search_direction[c, 1] = 0.0
         if terms.last_impulse[c, 0] > 0.0:
             contacts.impulse[c, 0] += terms.last_impulse[c, 0]
             if contacts.restitution[c] > 0.0:
-                contacts.bounce[c] = max(0.0, approach_of(contacts, c, velocity, change))
+                contacts.bounce[c] = max(0.0, approach_of(contacts, c, velocity, delta_v))
                 terms.bias[c] = -contacts.bounce[c]
-    for p in range(change.shape[0]):
-        change[p, 0] = 0.0
-        change[p, 1] = 0.0
+    for p in range(delta_v.shape[0]):
+        delta_v[p, 0] = 0.0
+        delta_v[p, 1] = 0.0
 
 
-@kernel
+@inner_kernel
 def sweep_masses(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats, spin: Floats,
-    radius: Floats, lent_masses: Any, sweeps: int, h: float,
+    contacts: Contacts, terms: ContactConstraints, state: State, delta_v: Floats, delassus: Delassus, sweeps: int,
+    h: float,
 ) -> None:  # fmt: skip
-    """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step."""
-    (delassus,) = contents(lent_masses)
-    load_surfaces(terms, spin, radius)
+    """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step.
+
+    delta_v (n, 2): scratch.
+    """
+    for p in range(delta_v.shape[0]):
+        delta_v[p, 0] = 0.0
+        delta_v[p, 1] = 0.0
+    load_surfaces(terms, state.spin, state.radius)
     load_biases(contacts, terms, h)
-    load_responses(contacts, terms, inverse_mass, delassus)
-    pass_on(contacts, terms, velocity, change, inverse_mass, delassus, h)
-    solve_contacts(contacts, terms, velocity, change, inverse_mass, delassus, sweeps, sweeps, True)
-    add_change(velocity, change, inverse_mass)
-    store_spins(terms, spin, radius)
+    load_responses(contacts, terms, state.inverse_mass, delassus)
+    pass_on(contacts, terms, state.velocity, delta_v, state.inverse_mass, delassus, h)
+    solve_contacts(contacts, terms, state.velocity, delta_v, state.inverse_mass, delassus, sweeps, sweeps, True)
+    add_change(state.velocity, delta_v, state.inverse_mass)
+    store_spins(terms, state.spin, state.radius)

@@ -9,6 +9,7 @@ import numpy as np
 
 from sandbox.physics.collision.turning import rolling_ratios
 from sandbox.physics.collision.types import Colliders, Contacts, Flags
+from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.contact.free_islands import Islands
 from sandbox.physics.solvers.contact.small_steps import MOST_SMALL_STEPS, small_steps
@@ -160,8 +161,7 @@ def _way_of(contacts: Contacts, c: int, colliders: Colliders) -> float:
     p, q = contacts.particle[c], _disc_of(contacts, c)
     if q < 0:
         return STANDS
-    dx = colliders.position[p, 0] - colliders.position[q, 0]
-    dy = colliders.position[p, 1] - colliders.position[q, 1]
+    dx, dy = difference(q, p, colliders.position)
     reach = colliders.radius[p] + colliders.radius[q]
     if not abs(contacts.normal[c, 0] * dy - contacts.normal[c, 1] * dx) > ALONG_CENTRES * reach:
         return FOLLOWS
@@ -311,8 +311,7 @@ def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: F
     row = work.constraint
     p = contacts.particle[c]
     q = contacts.end_a[c]
-    dx = colliders.position[p, 0] - colliders.position[q, 0]
-    dy = colliders.position[p, 1] - colliders.position[q, 1]
+    dx, dy = difference(q, p, colliders.position)
     reach = colliders.radius[p] + colliders.radius[q]
     row[k, APART_X], row[k, APART_Y] = dx, dy
     row[k, REACH] = -reach

@@ -8,11 +8,20 @@ in small steps: where their number changed with what is near, a disc's energy wo
 """
 
 import math
-from typing import NamedTuple
 
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, spin_of
 from sandbox.physics.collision.types import Colliders, Contacts
+from sandbox.physics.geometry.rigid import (
+    RigidMotion,
+    WeightedSums,
+    centre_of,
+    turn_rate,
+    velocity_at,
+    with_point,
+    with_spin,
+    with_turn,
+)
 from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
 from sandbox.physics.solvers.contact.free_constraints import (
     ACROSS,
@@ -180,69 +189,48 @@ def _restrain(work: FreeContactScratch, begin: int, end: int, colliders: Collide
             if motion[k, VX] != 0.0 or motion[k, VY] != 0.0:
                 return
             apart = False
-    common = Rigid(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    common = RigidMotion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    kept = 0.0
     if apart:
-        common = _rigid_motion(work, begin, end, colliders)
-    beside = after - common.energy
-    factor = math.sqrt(max(0.0, allowed - common.energy) / beside) if beside > 0.0 else 0.0
+        common, kept = _rigid_motion(work, begin, end, colliders)
+    beside = after - kept
+    factor = math.sqrt(max(0.0, allowed - kept) / beside) if beside > 0.0 else 0.0
     for k in range(begin, end):
         if work.weight[k] > 0.0:
             p = work.particle[k]
-            vx = common.vx - common.spin * (colliders.position[p, 1] + motion[k, WY] - common.y)
-            vy = common.vy + common.spin * (colliders.position[p, 0] + motion[k, WX] - common.x)
+            x, y = _place_now(work, k, colliders)
+            vx, vy = velocity_at(common, x, y)
             motion[k, VX] = vx + factor * (motion[k, VX] - vx)
             motion[k, VY] = vy + factor * (motion[k, VY] - vy)
             if work.turning[k] > 0.0:
-                surface = common.spin * colliders.radius[p]
+                surface = turn_rate(common) * colliders.radius[p]
                 motion[k, SURFACE] = surface + factor * (motion[k, SURFACE] - surface)
 
 
-class Rigid(NamedTuple):
-    """The motion of an island as if it were rigid: centre of mass [m], its velocity [m/s], spin [rad/s], energy [J]."""
-
-    x: float
-    y: float
-    vx: float
-    vy: float
-    spin: float
-    energy: float
-
-
 @inner_kernel
-def _rigid_motion(work: FreeContactScratch, begin: int, end: int, colliders: Colliders) -> Rigid:
-    # That of the same momentum and angular momentum, at the end of the step: spin = L / I, the discs' own included.
+def _rigid_motion(work: FreeContactScratch, begin: int, end: int, colliders: Colliders) -> tuple[RigidMotion, float]:
+    # That of an island at the end of the step, the discs' own turning included; its energy [J].
     motion = work.motion
-    mass = 0.0
-    x = 0.0
-    y = 0.0
-    vx = 0.0
-    vy = 0.0
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(begin, end):
-        p = work.particle[k]
-        m = 1.0 / work.weight[k]
-        mass += m
-        x += m * (colliders.position[p, 0] + motion[k, WX])
-        y += m * (colliders.position[p, 1] + motion[k, WY])
-        vx += m * motion[k, VX]
-        vy += m * motion[k, VY]
-    x /= mass
-    y /= mass
-    vx /= mass
-    vy /= mass
-    inertia = 0.0
-    turn = 0.0
+        x, y = _place_now(work, k, colliders)
+        sums = with_point(sums, 1.0 / work.weight[k], x, y, motion[k, VX], motion[k, VY])
+    common = centre_of(sums)
     for k in range(begin, end):
-        p = work.particle[k]
-        m = 1.0 / work.weight[k]
-        dx = colliders.position[p, 0] + motion[k, WX] - x
-        dy = colliders.position[p, 1] + motion[k, WY] - y
-        inertia += m * (dx * dx + dy * dy)
-        turn += m * (dx * (motion[k, VY] - vy) - dy * (motion[k, VX] - vx))
+        x, y = _place_now(work, k, colliders)
+        common = with_turn(common, 1.0 / work.weight[k], x, y, motion[k, VX], motion[k, VY])
         if work.turning[k] > 0.0:
-            inertia += colliders.radius[p] * colliders.radius[p] / work.turning[k]
-            turn += colliders.radius[p] * motion[k, SURFACE] / work.turning[k]
-    spin = turn / inertia if inertia > 0.0 else 0.0
-    return Rigid(x, y, vx, vy, spin, 0.5 * mass * (vx * vx + vy * vy) + 0.5 * inertia * spin * spin)
+            radius = colliders.radius[work.particle[k]]
+            common = with_spin(common, radius * radius / work.turning[k], radius * motion[k, SURFACE] / work.turning[k])
+    turn = turn_rate(common)
+    squared = common.u * common.u + common.v * common.v
+    return common, 0.5 * sums.weight * squared + 0.5 * common.inertia * turn * turn
+
+
+@inlined_kernel
+def _place_now(work: FreeContactScratch, k: int, colliders: Colliders) -> tuple[float, float]:
+    position, p = colliders.position, work.particle[k]
+    return position[p, 0] + work.motion[k, WX], position[p, 1] + work.motion[k, WY]
 
 
 @inner_kernel

@@ -7,24 +7,23 @@ start with the impulses of the last step, so a body at rest is at rest from the 
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import Contacts, Flags, weight_of
 from sandbox.physics.equation import implicit_update
-from sandbox.physics.jit import bundle, inner_kernel
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import (
     Joints,
     go_on_with_joints,
-    no_joints,
     push_at,
     start_joints,
     sweep_joints,
     swept_by,
 )
-from sandbox.physics.world import Floats, Slots, World
+from sandbox.physics.world import Floats, Slots
 
 # Cs / Cd of a contact that penetrates: the part of the penetration that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
@@ -113,52 +112,47 @@ def no_blocks(particle_count: int, joints: Joints) -> Delassus:
     )
 
 
-def lent_masses(world: World) -> Any:
-    """The same of a world without its joints, for kernels."""
-    return bundle((no_blocks(world.particle_count, no_joints()),))
-
-
 @inner_kernel
-def relative_velocity(contacts: Contacts, c: int, velocity: Floats, change: Floats) -> tuple[float, float]:
-    """Velocity of the particle relative to the other side of the contact, from velocity + change."""
+def relative_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> tuple[float, float]:
+    """Velocity of the particle relative to the other side of the contact, from velocity + delta_v."""
     p = contacts.particle[c]
-    ux = velocity[p, 0] + change[p, 0]
-    uy = velocity[p, 1] + change[p, 1]
+    ux = velocity[p, 0] + delta_v[p, 0]
+    uy = velocity[p, 1] + delta_v[p, 1]
     a = contacts.end_a[c]
     if a >= 0:
         b = contacts.end_b[c]
         share = contacts.share[c] if b >= 0 else 0.0
-        ux -= (1.0 - share) * (velocity[a, 0] + change[a, 0])
-        uy -= (1.0 - share) * (velocity[a, 1] + change[a, 1])
+        ux -= (1.0 - share) * (velocity[a, 0] + delta_v[a, 0])
+        uy -= (1.0 - share) * (velocity[a, 1] + delta_v[a, 1])
         if b >= 0:
-            ux -= share * (velocity[b, 0] + change[b, 0])
-            uy -= share * (velocity[b, 1] + change[b, 1])
+            ux -= share * (velocity[b, 0] + delta_v[b, 0])
+            uy -= share * (velocity[b, 1] + delta_v[b, 1])
     elif contacts.end_b[c] >= 0:
         b = contacts.end_b[c]
         share = contacts.share[c]
-        ux = (1.0 - share) * ux + share * (velocity[b, 0] + change[b, 0])
-        uy = (1.0 - share) * uy + share * (velocity[b, 1] + change[b, 1])
+        ux = (1.0 - share) * ux + share * (velocity[b, 0] + delta_v[b, 0])
+        uy = (1.0 - share) * uy + share * (velocity[b, 1] + delta_v[b, 1])
     return ux, uy
 
 
 @inner_kernel
-def _couple_velocity(contacts: Contacts, c: int, velocity: Floats, change: Floats) -> float:
+def _couple_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> float:
     # How fast the surface of an edge moves against its middle, as that turns.
     a = contacts.end_a[c]
     b = contacts.end_b[c]
-    ux = velocity[a, 0] + change[a, 0] - velocity[b, 0] - change[b, 0]
-    uy = velocity[a, 1] + change[a, 1] - velocity[b, 1] - change[b, 1]
+    ux = velocity[a, 0] + delta_v[a, 0] - velocity[b, 0] - delta_v[b, 0]
+    uy = velocity[a, 1] + delta_v[a, 1] - velocity[b, 1] - delta_v[b, 1]
     return contacts.couple[c, 0] * ux + contacts.couple[c, 1] * uy
 
 
 @inner_kernel
-def _push_particle(p: int, jx: float, jy: float, change: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
+def _push_particle(p: int, jx: float, jy: float, delta_v: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
     # v += W J
     push_at(delassus.joints, p, jx, jy)
     k = delassus.block[p]
     if k < 0:
-        change[p, 0] += jx * inverse_mass[p]
-        change[p, 1] += jy * inverse_mass[p]
+        delta_v[p, 0] += jx * inverse_mass[p]
+        delta_v[p, 1] += jy * inverse_mass[p]
         return
     first = delassus.start[k]
     points = delassus.start[k + 1] - first
@@ -167,13 +161,13 @@ def _push_particle(p: int, jx: float, jy: float, change: Floats, inverse_mass: F
     for i in range(points):
         q = delassus.point[first + i]
         j = 2 * i
-        change[q, 0] += delassus.numbers[row + j] * jx + delassus.numbers[lower + j] * jy
-        change[q, 1] += delassus.numbers[row + j + 1] * jx + delassus.numbers[lower + j + 1] * jy
+        delta_v[q, 0] += delassus.numbers[row + j] * jx + delassus.numbers[lower + j] * jy
+        delta_v[q, 1] += delassus.numbers[row + j + 1] * jx + delassus.numbers[lower + j + 1] * jy
 
 
 @inner_kernel
 def push_contact(
-    contacts: Contacts, c: int, jn: float, jt: float, surface: Floats, change: Floats, inverse_mass: Floats,
+    contacts: Contacts, c: int, jn: float, jt: float, surface: Floats, delta_v: Floats, inverse_mass: Floats,
     delassus: Delassus,
 ) -> None:  # fmt: skip
     """Push both sides of a contact by impulses [N s] along normal and tangent, which turns what rolls."""
@@ -185,18 +179,18 @@ def push_contact(
     a = contacts.end_a[c]
     if a < 0 and contacts.end_b[c] >= 0:
         share = contacts.share[c]
-        _push_particle(contacts.particle[c], (1.0 - share) * jx, (1.0 - share) * jy, change, inverse_mass, delassus)
-        _push_particle(contacts.end_b[c], share * jx, share * jy, change, inverse_mass, delassus)
+        _push_particle(contacts.particle[c], (1.0 - share) * jx, (1.0 - share) * jy, delta_v, inverse_mass, delassus)
+        _push_particle(contacts.end_b[c], share * jx, share * jy, delta_v, inverse_mass, delassus)
         return
-    _push_particle(contacts.particle[c], jx, jy, change, inverse_mass, delassus)
+    _push_particle(contacts.particle[c], jx, jy, delta_v, inverse_mass, delassus)
     if a >= 0:
         b = contacts.end_b[c]
         share = contacts.share[c] if b >= 0 else 0.0
         cx = jt * contacts.couple[c, 0]
         cy = jt * contacts.couple[c, 1]
-        _push_particle(a, cx - (1.0 - share) * jx, cy - (1.0 - share) * jy, change, inverse_mass, delassus)
+        _push_particle(a, cx - (1.0 - share) * jx, cy - (1.0 - share) * jy, delta_v, inverse_mass, delassus)
         if b >= 0:
-            _push_particle(b, -share * jx - cx, -share * jy - cy, change, inverse_mass, delassus)
+            _push_particle(b, -share * jx - cx, -share * jy - cy, delta_v, inverse_mass, delassus)
     if jt != 0.0:
         _turn(contacts, c, -jt * contacts.arm[c, 0], -jt * contacts.arm[c, 1], surface)
 
@@ -339,20 +333,20 @@ def load_biases(contacts: Contacts, terms: ContactConstraints, h: float) -> None
 
 @inner_kernel
 def warm_start_contacts(
-    contacts: Contacts, terms: ContactConstraints, change: Floats, inverse_mass: Floats, delassus: Delassus
+    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus
 ) -> None:
     """Apply the impulses that contacts bring along; that of rolling resistance begins with none."""
     for c in range(contacts.particle.shape[0]):
         terms.resisted[c] = 0.0
         jn, jt = contacts.impulse[c, 0], contacts.impulse[c, 1]
         if jn != 0.0 or jt != 0.0:
-            push_contact(contacts, c, jn, jt, terms.surface, change, inverse_mass, delassus)
+            push_contact(contacts, c, jn, jt, terms.surface, delta_v, inverse_mass, delassus)
 
 
 @inner_kernel
-def approach_of(contacts: Contacts, c: int, velocity: Floats, change: Floats) -> float:
-    """Velocity along its normal [m/s] of a contact, from velocity + change."""
-    ux, uy = relative_velocity(contacts, c, velocity, change)
+def approach_of(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> float:
+    """Velocity along its normal [m/s] of a contact, from velocity + delta_v."""
+    ux, uy = relative_velocity(contacts, c, velocity, delta_v)
     return contacts.normal[c, 0] * ux + contacts.normal[c, 1] * uy
 
 
@@ -361,7 +355,7 @@ def sweep(
     contacts: Contacts,
     terms: ContactConstraints,
     velocity: Floats,
-    change: Floats,
+    delta_v: Floats,
     inverse_mass: Floats,
     delassus: Delassus,
 ) -> tuple[float, float]:
@@ -374,7 +368,7 @@ def sweep(
         normal = terms.normal[c]
         if not normal > 0.0:
             continue
-        ux, uy = relative_velocity(contacts, c, velocity, change)
+        ux, uy = relative_velocity(contacts, c, velocity, delta_v)
         nx = contacts.normal[c, 0]
         ny = contacts.normal[c, 1]
         soft = CONTACT_SOFTNESS * normal
@@ -388,13 +382,13 @@ def sweep(
             turn_p, turn_q = _turns(contacts, c, contacts.arm, terms.surface)
             slip -= turn_p + turn_q
             if _has_couple(contacts, c):
-                slip += _couple_velocity(contacts, c, velocity, change)
+                slip += _couple_velocity(contacts, c, velocity, delta_v)
             most = contacts.friction[c] * new
             last = contacts.impulse[c, 1]
             jt = min(most, max(-most, last - slip / terms.tangent[c])) - last
             contacts.impulse[c, 1] = last + jt
         if jn != 0.0 or jt != 0.0:
-            push_contact(contacts, c, jn, jt, terms.surface, change, inverse_mass, delassus)
+            push_contact(contacts, c, jn, jt, terms.surface, delta_v, inverse_mass, delassus)
             changed = max(abs(jn) * normal, abs(jt) * terms.tangent[c])
             largest = max(largest, changed)
             calm = max(calm, terms.calm[c] * changed)
@@ -418,7 +412,7 @@ def mark_calm(contacts: Contacts, terms: ContactConstraints, velocity: Floats, b
 
 @inner_kernel
 def solve_contacts(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, change: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
     delassus: Delassus, sweeps: int, most: int, accelerate: bool,
 ) -> int:  # fmt: skip
     """Sweep until nothing changes, at most so many times, or `most` where what is calm changes still; how many it took.
@@ -427,8 +421,8 @@ def solve_contacts(
     """
     # Nonlinear conjugate gradients on the sweep as a fixed point (Silcowitz-Poulsen and others 2010).
     joints = delassus.joints
-    start_joints(joints, change)
-    warm_start_contacts(contacts, terms, change, inverse_mass, delassus)
+    start_joints(joints, delta_v)
+    warm_start_contacts(contacts, terms, delta_v, inverse_mass, delassus)
     previous = 0.0
     done = 0
     checked = math.inf
@@ -436,8 +430,8 @@ def solve_contacts(
         for c in range(contacts.particle.shape[0]):
             terms.last_impulse[c, 0] = contacts.impulse[c, 0]
             terms.last_impulse[c, 1] = contacts.impulse[c, 1]
-        largest = sweep_joints(joints, change)
-        swept, calm = sweep(contacts, terms, velocity, change, inverse_mass, delassus)
+        largest = sweep_joints(joints, delta_v)
+        swept, calm = sweep(contacts, terms, velocity, delta_v, inverse_mass, delassus)
         largest = max(largest, swept)
         done += 1
         if largest < SETTLED or done >= most or (done >= sweeps and calm < CALM_SETTLED):
@@ -452,8 +446,8 @@ def solve_contacts(
             jt = contacts.impulse[c, 1] - terms.last_impulse[c, 1]
             squared += terms.normal[c] * jn * jn + terms.tangent[c] * jt * jt
         ratio = squared / previous if accelerate and previous > 0.0 else 0.0
-        go_on_with_joints(joints, change, ratio if ratio < 1.0 else 0.0)
-        _go_on(contacts, terms, change, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
+        go_on_with_joints(joints, delta_v, ratio if ratio < 1.0 else 0.0)
+        _go_on(contacts, terms, delta_v, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
         previous = squared
 
 
@@ -461,7 +455,7 @@ def solve_contacts(
 def _go_on(
     contacts: Contacts,
     terms: ContactConstraints,
-    change: Floats,
+    delta_v: Floats,
     inverse_mass: Floats,
     delassus: Delassus,
     ratio: float,
@@ -480,13 +474,13 @@ def _go_on(
         if new_n != old_n or new_t != old_t:
             contacts.impulse[c, 0] = new_n
             contacts.impulse[c, 1] = new_t
-            push_contact(contacts, c, new_n - old_n, new_t - old_t, terms.surface, change, inverse_mass, delassus)
+            push_contact(contacts, c, new_n - old_n, new_t - old_t, terms.surface, delta_v, inverse_mass, delassus)
 
 
 @inner_kernel
-def add_change(velocity: Floats, change: Floats, inverse_mass: Floats) -> None:
+def add_change(velocity: Floats, delta_v: Floats, inverse_mass: Floats) -> None:
     """Add what a step changes to the velocities of particles that can move."""
     for p in range(inverse_mass.shape[0]):
         if inverse_mass[p] > 0.0:
-            velocity[p, 0] += change[p, 0]
-            velocity[p, 1] += change[p, 1]
+            velocity[p, 0] += delta_v[p, 0]
+            velocity[p, 1] += delta_v[p, 1]

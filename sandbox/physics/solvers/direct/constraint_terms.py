@@ -9,10 +9,13 @@ J = max(0, -K (u' + b)), b = x / h above it and beta x / h below. It stands in t
 where it is foreseen to push, and has the same strength whatever Cs and Cd are: the softest jelly lies on its floors.
 """
 
-from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, area_of, evaluate
+from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, evaluate
 from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
+from sandbox.physics.geometry.polygon import polygon_area
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.solvers.direct.system import Constraints, Inputs, Span, State, System
+from sandbox.physics.solvers.direct.system import Constraints, Span, System
+from sandbox.physics.solvers.inputs import Inputs
+from sandbox.physics.state import State
 from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE, Floats
 
 # beta of the floor: the part of what is missing to it that a step wants back.
@@ -110,18 +113,18 @@ def _growth(k: int, system: System, h: float) -> float:
     first = constraints.first[k]
     last = constraints.first[k + 1]
     _look(k, constraints, rows.v, rows.v, 0.0)
-    growth = h * area_of(constraints.place, first, last)
+    growth = h * polygon_area(constraints.place, first, last)
     base = constraints.row[first]
-    before = constraints.row[last - 1]
+    previous = constraints.row[last - 1]
     here = base
     for c in range(first, last):
-        after = constraints.row[c + 1] if c + 1 < last else base
+        following = constraints.row[c + 1] if c + 1 < last else base
         growth += 0.5 * (
-            (rows.position[after, 1] - rows.position[before, 1]) * (rows.v[here, 0] - rows.v[base, 0])
-            - (rows.position[after, 0] - rows.position[before, 0]) * (rows.v[here, 1] - rows.v[base, 1])
+            (rows.position[following, 1] - rows.position[previous, 1]) * (rows.v[here, 0] - rows.v[base, 0])
+            - (rows.position[following, 0] - rows.position[previous, 0]) * (rows.v[here, 1] - rows.v[base, 1])
         )
-        before = here
-        here = after
+        previous = here
+        here = following
     return growth
 
 
@@ -234,19 +237,19 @@ def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
 
 
 @inner_kernel
-def gradient_dot(k: int, constraints: Constraints, change: Floats, free_count: int) -> float:
-    """g . change of a constraint."""
+def gradient_dot(k: int, constraints: Constraints, delta_v: Floats, free_count: int) -> float:
+    """g . delta_v of a constraint."""
     total = 0.0
     for c in range(constraints.first[k], constraints.first[k + 1]):
         r = constraints.row[c]
         if r < free_count:
-            total += constraints.gradient[c, 0] * change[r, 0] + constraints.gradient[c, 1] * change[r, 1]
+            total += constraints.gradient[c, 0] * delta_v[r, 0] + constraints.gradient[c, 1] * delta_v[r, 1]
     return total
 
 
 @inner_kernel
 def push_constraints(span: Span, system: System) -> None:
-    """Add the impulses of a body's constraints to the right side, in `change`."""
+    """Add the impulses of a body's constraints to the right side, in `delta_v`."""
     rows, constraints = system.rows, system.constraints
     free_count = system.matrix.diagonal.shape[0]
     for k in range(span.first_constraint, span.last_constraint):

@@ -4,7 +4,8 @@ from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.families import potential, start_potential
 from sandbox.physics.solvers.direct.motion import kinetic
 from sandbox.physics.solvers.direct.rigid_turn import kinetic_at_end
-from sandbox.physics.solvers.direct.system import Span, State, System
+from sandbox.physics.solvers.direct.system import Span, System
+from sandbox.physics.state import State
 from sandbox.physics.world import BANK_UNOPENED, Floats
 
 # A body's bank holds at most this share of its energy: where every spring has Cs <= Cd, and where one has not (its
@@ -67,12 +68,12 @@ def open_bank(body: int, span: Span, system: System, bank: Floats, moved: float,
     if not bodies.underdamped[body]:
         return saved
     kinetic_after = kinetic(span, rows.mass, rows.v_star)
-    before = kinetic(span, rows.mass, rows.start)
+    kinetic0 = kinetic(span, rows.mass, rows.start)
     present = start_potential(span, system, h)
     if not begun:
-        saved += UNDERDAMPED_BANK_SHARE * (before + present)
+        saved += UNDERDAMPED_BANK_SHARE * (kinetic0 + present)
     # Work done by forces, grabs and drives since then counts as energy of the start.
-    return max(0.0, saved + UNDERDAMPED_BANK_SHARE * (kinetic_after - before + moved - present))
+    return max(0.0, saved + UNDERDAMPED_BANK_SHARE * (kinetic_after - kinetic0 + moved - present))
 
 
 @inner_kernel

@@ -1,7 +1,7 @@
 """A body's matrix, factored and solved with: sparse, or in fronts where the body is large.
 
 Wide constraints are taken in after the factorisation: (A + K g g^T)^-1 = A^-1 - z z^T / (1 / K + g . z), z = A^-1 g
-(Sherman and Morrison 1950). Right sides and solutions are in `change`: the one array that a helping thread knows.
+(Sherman and Morrison 1950). Right sides and solutions are in `delta_v`: the one array that a helping thread knows.
 """
 
 from sandbox.physics.jit import inner_kernel
@@ -16,7 +16,7 @@ from sandbox.physics.world import Floats
 
 @inner_kernel
 def solve_linear(span: Span, system: System) -> None:
-    """Solve A D = right side for one body as it is linearised; D is left in `change`, the factor in the matrix."""
+    """Solve A D = right side for one body as it is linearised; D is left in `delta_v`, the factor in the matrix."""
     rows, fronts = system.rows, system.fronts
     load_residual(span, system)
     assemble(span, system)
@@ -31,14 +31,14 @@ def solve_linear(span: Span, system: System) -> None:
 
 @inner_kernel
 def refine(span: Span, system: System) -> None:
-    """Solve for the rest of the right side, with the impulses found so far; the solution is in `change`."""
+    """Solve for the rest of the right side, with the impulses found so far; the solution is in `delta_v`."""
     load_residual(span, system)
     solve_again(span, system)
 
 
 @inner_kernel
 def solve_again(span: Span, system: System) -> None:
-    """Solve with the matrix as it was factored, wide constraints included, for the right side in `change`."""
+    """Solve with the matrix as it was factored, wide constraints included, for the right side in `delta_v`."""
     _substitute(span, system)
     if span.last_constraint > span.first_constraint:
         _correct_wide(span, system, span.last_constraint)
@@ -64,7 +64,7 @@ def _substitute(span: Span, system: System) -> None:
 
 @inner_kernel
 def _take_in_wide(span: Span, system: System) -> None:
-    # Find z of each wide constraint of a body from the factored matrix, and correct the solution in `change`.
+    # Find z of each wide constraint of a body from the factored matrix, and correct the solution in `delta_v`.
     rows, constraints = system.rows, system.constraints
     free_count = system.matrix.diagonal.shape[0]
     any_wide = False

@@ -1,7 +1,7 @@
 """The families of a body's network through one interface: its rows, springs and constraints.
 
 Each family loops over its own arrays; what calls them knows spans alone. Another family is called here, and nowhere
-else in this room.
+else in this folder.
 """
 
 from sandbox.physics.integrate import SLOW_SHARE
@@ -29,8 +29,10 @@ from sandbox.physics.solvers.direct.spring_terms import (
     spring_slope,
     update_springs,
 )
-from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
+from sandbox.physics.solvers.direct.system import Span, System
+from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import clear_fronts
+from sandbox.physics.state import State
 from sandbox.physics.world import Floats
 
 # The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of
@@ -94,7 +96,7 @@ def linearise(span: Span, system: System, h: float, ahead: float, behind: float)
 
 @inner_kernel
 def load_residual(span: Span, system: System) -> None:
-    """The right side M (v* - v') + sum of impulses of one body, into `change`."""
+    """The right side M (v* - v') + sum of impulses of one body, into `delta_v`."""
     rows = system.rows
     for r in range(span.first_row, span.last_row):
         rows.delta_v[r, 0] = rows.inertia[r] * (rows.v_star_matched[r, 0] - rows.v[r, 0])

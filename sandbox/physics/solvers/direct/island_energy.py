@@ -8,7 +8,7 @@ is stored, up to a limit, in the energy banks of bodies and particles; to push a
 import math
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.terrain_clamp import STOPS, stopped
+from sandbox.physics.collision.terrain_clamp import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
@@ -38,10 +38,10 @@ from sandbox.physics.solvers.direct.system import (
     SPIN_Y,
     Rows,
     Span,
-    State,
     System,
     span_of,
 )
+from sandbox.physics.state import State
 from sandbox.physics.untangling.overlaps import DEEP
 from sandbox.physics.untangling.parting import PARTING_SPEED
 from sandbox.physics.world import BANK_UNOPENED, Floats
@@ -60,15 +60,8 @@ def clamp_rows(span: Span, rows: Rows, state: State, h: float) -> bool:
     """Cut the velocities of one body's particles that would cross terrain; whether any does."""
     found = False
     for r in range(span.first_row, span.last_row):
-        if not state.collides[rows.particle[r]] & TERRAIN_GROUP:
-            continue
-        wx = h * rows.v[r, 0]
-        wy = h * rows.v[r, 1]
-        stops, x, y = stopped(rows.position[r, 0], rows.position[r, 1], wx, wy, state.terrain)
-        if stops > 0:
-            found = True
-            rows.v[r, 0] = 0.0 if stops > STOPS else rows.v[r, 0] + (x - wx) / h
-            rows.v[r, 1] = 0.0 if stops > STOPS else rows.v[r, 1] + (y - wy) / h
+        if state.collides[rows.particle[r]] & TERRAIN_GROUP:
+            found = stop_at_terrain(r, rows.position, rows.v, state.terrain, h) or found
     return found
 
 
@@ -108,9 +101,9 @@ def work_of_forces(span: Span, rows: Rows, underdamped: bool) -> float:
 def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorkspace, driven: bool, h: float) -> float:
     # What forces and joints do at the velocities of the ends of a step beyond what they do at those of its chords [J].
     rows, bodies, push = system.rows, system.bodies, workspace.delassus.joints.push
-    before, after = bodies.spin[body, INWARD], bodies.spin[body, END_INWARD]
+    rate0, rate = bodies.spin[body, INWARD], bodies.spin[body, END_INWARD]
     spared = bodies.spared[body]
-    if not bodies.spin[body, END_INERTIA] > 0.0 or (before == 0.0 and after == 0.0 and spared == 0.0):
+    if not bodies.spin[body, END_INERTIA] > 0.0 or (rate0 == 0.0 and rate == 0.0 and spared == 0.0):
         return 0.0
     turn, turned = spared / bodies.spin[body, INERTIA], spared / bodies.spin[body, END_INERTIA]
     pivots = bodies.pivot[body] >= 0
@@ -120,8 +113,8 @@ def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorksp
         dy = rows.position[r, 1] - bodies.spin[body, SPIN_Y]
         ex = rows.position[r, 0] + h * rows.v[r, 0] - bodies.spin[body, END_X]
         ey = rows.position[r, 1] + h * rows.v[r, 1] - bodies.spin[body, END_Y]
-        ux, uy = -before * dx - turn * dy, -before * dy + turn * dx
-        vx, vy = -after * ex - turned * ey, -after * ey + turned * ex
+        ux, uy = -rate0 * dx - turn * dy, -rate0 * dy + turn * dx
+        vx, vy = -rate * ex - turned * ey, -rate * ey + turned * ex
         if pivots:
             total += rows.mass[r] * (rows.v_star[r, 0] - rows.start[r, 0]) * (vx - ux)
             total += rows.mass[r] * (rows.v_star[r, 1] - rows.start[r, 1]) * (vy - uy)

@@ -6,12 +6,9 @@ and one more substitution brings the impulses to the whole body. The energy test
 together that touch each other, so that one may take what another gives.
 """
 
-from typing import Any
-
 from sandbox.physics.collision.turning import spin_of
-from sandbox.physics.collision.types import Contacts, LentContacts, weight_of
-from sandbox.physics.jit import contents, inner_kernel, kernel
-from sandbox.physics.joints.joint_set import joints_of
+from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import gather_push
 from sandbox.physics.joints.rows import any_on
 from sandbox.physics.solvers.contact.body_impacts import pass_on
@@ -31,7 +28,6 @@ from sandbox.physics.solvers.direct.families import (
     find_tension,
     keep_tension,
     linearise,
-    load_rows,
     potential,
     update,
 )
@@ -52,10 +48,7 @@ from sandbox.physics.solvers.direct.islands import (
     BODIES,
     MEMBERS,
     BodyIslands,
-    IslandScratch,
     IslandWorkspace,
-    find_body_islands,
-    new_islands,
 )
 from sandbox.physics.solvers.direct.joint_response import (
     fails_driven,
@@ -64,16 +57,17 @@ from sandbox.physics.solvers.direct.joint_response import (
     prepare_joints,
     release_joints,
 )
-from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
 from sandbox.physics.solvers.direct.response import load_block
 from sandbox.physics.solvers.direct.rigid_turn import hold_spin, kinetic_at_end, spin_of_body, torque_of
 from sandbox.physics.solvers.direct.shape_matching import release_shape
 from sandbox.physics.solvers.direct.slow_motion import AHEAD
-from sandbox.physics.solvers.direct.step_body import LINEAR_SOLVES, MISFIT_RATE, open_body, step_bodies
-from sandbox.physics.solvers.direct.system import Inputs, Rows, Span, State, System, span_of
+from sandbox.physics.solvers.direct.step_body import LINEAR_SOLVES, MISFIT_RATE, open_body
+from sandbox.physics.solvers.direct.system import Rows, Span, System, span_of
+from sandbox.physics.solvers.inputs import Inputs
+from sandbox.physics.state import State
 from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import Floats
 
 # Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
 SWEEPS = 20
@@ -276,40 +270,12 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
                 bodies.matched[body] = False
 
 
-@kernel
-def _solve_bodies(
-    lent_contacts: Any, lent_room: Any, lent_system: Any, lent_state: Any, lent_inputs: Any, start_length: Floats,
-    ease: float, auto_substeps: int, h: float,
-) -> bool:  # fmt: skip
-    # Bring islands, and then all other bodies, to the end of a step of h [s]; False: there is too little room.
-    (contacts,) = contents(lent_contacts)
-    (system,) = contents(lent_system)
-    (state,) = contents(lent_state)
-    (workspace,) = contents(lent_room)
-    (given,) = contents(lent_inputs)
-    inputs = Inputs(
-        given.stiffness, given.damping, given.constraint_stiffness, given.constraint_damping, given.start, start_length,
-        ease,
-    )  # fmt: skip
-    if not find_body_islands(contacts, state.inverse_mass, system, workspace):
-        return False
-    load_rows(system, state, inputs, h)
-    _solve_islands(contacts, workspace, system, state, inputs, auto_substeps, h)
-    step_bodies(system, state, inputs, True, auto_substeps, h)
-    return True
-
-
 @inner_kernel
-def _solve_islands(
-    contacts: Contacts,
-    workspace: IslandWorkspace,
-    system: System,
-    state: State,
-    inputs: Inputs,
-    auto_substeps: int,
+def solve_islands(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, inputs: Inputs, auto_substeps: int,
     h: float,
-) -> None:
-    # Bring what contacts touch to the end of a step of h [s]; rows are loaded.
+) -> None:  # fmt: skip
+    """Bring what contacts touch or joints act on to the end of a step of h [s]; rows are loaded, islands found."""
     islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
     load_biases(contacts, terms, h)
     _open(workspace, system, state, inputs, auto_substeps, h)
@@ -358,23 +324,3 @@ def _solve_islands(
         damp_islands(workspace, system, state, inputs.start, h)
     store_energies(contacts, workspace, system, state, h)
     _finish(islands, terms.surface, system, state)
-
-
-def _islands_of(world: World) -> IslandScratch:
-    joints = joints_of(world)
-    rows = None if joints is None else joints.rows
-    return new_islands(layout_of(world).system, world.particle_count, rows)
-
-
-def solve_islands(
-    contacts: LentContacts | None, world: World, system: Any, state: Any, inputs: Any, start_length: Floats,
-    ease: float, auto_substeps: int, h: float,
-) -> None:  # fmt: skip
-    """Solve the islands of what contacts touch or joints act on, and all other bodies; arguments as `solve` has them.
-
-    contacts: None: joints alone act.
-    """
-    room = world.derived(_islands_of)
-    count, lent = (0, room.no_contacts) if contacts is None else (len(contacts.arrays.particle), contacts.lent)
-    while not _solve_bodies(lent, room.lent, system, state, inputs, start_length, ease, auto_substeps, h):
-        room.grow(count)

@@ -1,24 +1,20 @@
 """Contact islands: which bodies and free particles contacts touch or joints act on, and which of them hang together."""
 
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.collision.types import NO_CONTACTS, Contacts, weight_of
+from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.components import root_of, united
-from sandbox.physics.jit import bundle, inner_kernel
-from sandbox.physics.joints.joint_sweep import Joints, new_joints, no_joints
-from sandbox.physics.joints.rows import JointRows
-from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus, new_contact_constraints
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.joint_sweep import Joints
+from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
 from sandbox.physics.solvers.direct.system import Flags, System
 from sandbox.physics.world import Floats, Slots
 
 # Places in `counts`: bodies that contacts touch, members (those and free particles), islands, and the room that the
 # Delassus blocks of the bodies want: for their numbers, and for the columns of the largest.
 BODIES, MEMBERS, ISLANDS, NUMBERS, COLUMNS = range(5)
-# Room beyond what is wanted, in shares of it: a pile grows for a while.
-SPARE = 2
 
 
 class BodyIslands(NamedTuple):
@@ -69,39 +65,14 @@ class IslandWorkspace(NamedTuple):
     terms: ContactConstraints
 
 
-@dataclass(eq=False)
-class IslandScratch:
-    """The scratch of a world's islands: made when its topology changes, with more room where a step wants it.
-
-    lent: the same as one argument for kernels; no_contacts: what only joints act on is solved with.
-    """
-
-    workspace: IslandWorkspace
-    lent: Any
-    no_contacts: Any
-
-    def grow(self, contacts: int) -> None:
-        """Make room for the islands that were found, and for a number of contacts."""
-        islands, delassus, terms = self.workspace
-        numbers, columns = int(islands.counts[NUMBERS]), int(islands.counts[COLUMNS])
-        if numbers > len(delassus.numbers):
-            delassus = delassus._replace(numbers=np.zeros(SPARE * numbers))
-        if columns > len(delassus.columns):
-            delassus = delassus._replace(columns=np.zeros(SPARE * columns))
-        if contacts > len(terms.bias):
-            terms = new_contact_constraints(SPARE * contacts, terms.surface)
-        self.workspace = IslandWorkspace(islands, delassus, terms)
-        self.lent = bundle((self.workspace,))
-
-
-def new_islands(system: System, particle_count: int, rows: JointRows | None) -> IslandScratch:
-    """Empty islands for a system, in a world with a number of particles; rows: those of its joints."""
+def new_islands(system: System, particle_count: int) -> BodyIslands:
+    """Empty islands for a system, in a world with a number of particles."""
     bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
     members = bodies + particle_count
     row = np.full(particle_count, -1, dtype=np.int64)
     row[system.rows.particle[:free_rows]] = np.arange(free_rows)
     slots, energies = np.zeros((2, members), dtype=np.int64), np.zeros((7, members))
-    islands = BodyIslands(
+    return BodyIslands(
         counts=np.zeros(5, dtype=np.int64), body=np.zeros(bodies, dtype=np.int64),
         free=np.zeros(particle_count, dtype=np.int64), island=slots[0],
         member=np.full(particle_count, -1, dtype=np.int64), row=row, energy0=energies[0], bank=energies[1],
@@ -113,15 +84,16 @@ def new_islands(system: System, particle_count: int, rows: JointRows | None) -> 
         given=np.zeros((particle_count, 2)), delta_v=np.zeros((particle_count, 2)), label=slots[1],
         marked=np.zeros(particle_count, dtype=np.bool_),
     )  # fmt: skip
+
+
+def new_blocks(particle_count: int, system: System, joints: Joints) -> Delassus:
+    """The Delassus blocks of a system's bodies, without room for their numbers yet."""
+    bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
     block, place = np.full((2, particle_count), -1, dtype=np.int64)
-    joints = no_joints() if rows is None else new_joints(rows, row, system.bodies.row_start, particle_count)
-    delassus = Delassus(
-        block, place, np.zeros(bodies + 1, dtype=np.int64),
-        np.zeros(free_rows, dtype=np.int64), np.zeros(bodies + 1, dtype=np.int64), np.zeros(0), np.zeros(0),
-        joints,
+    return Delassus(
+        block, place, np.zeros(bodies + 1, dtype=np.int64), np.zeros(free_rows, dtype=np.int64),
+        np.zeros(bodies + 1, dtype=np.int64), np.zeros(0), np.zeros(0), joints,
     )  # fmt: skip
-    workspace = IslandWorkspace(islands, delassus, new_contact_constraints(0, np.zeros(particle_count)))
-    return IslandScratch(workspace, bundle((workspace,)), bundle((NO_CONTACTS,)))
 
 
 @inner_kernel
@@ -276,8 +248,4 @@ def find_body_islands(contacts: Contacts, inverse_mass: Floats, system: System, 
     _number_islands(contacts, inverse_mass, workspace)
     _find_room(system, workspace)
     counts, delassus = workspace.islands.counts, workspace.delassus
-    return (
-        counts[NUMBERS] <= delassus.numbers.shape[0]
-        and counts[COLUMNS] <= delassus.columns.shape[0]
-        and contacts.particle.shape[0] <= workspace.terms.bias.shape[0]
-    )
+    return counts[NUMBERS] <= delassus.numbers.shape[0] and counts[COLUMNS] <= delassus.columns.shape[0]

@@ -12,8 +12,16 @@ None of the three changes the angular momentum L about the centre of mass, or ab
 """
 
 import math
-from typing import NamedTuple
 
+from sandbox.physics.geometry.rigid import (
+    RigidMotion,
+    WeightedSums,
+    centre_of,
+    momentum_about,
+    rotated,
+    with_point,
+    with_turn,
+)
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.motion import kinetic
 from sandbox.physics.solvers.direct.slow_motion import find_slow
@@ -32,10 +40,10 @@ from sandbox.physics.solvers.direct.system import (
     SPIN_Y,
     Rows,
     Span,
-    State,
     System,
     span_of,
 )
+from sandbox.physics.state import State
 from sandbox.physics.world import Floats
 
 # Below this angle [rad] in a step the turn of a body is not foreseen, so that what falls without turning falls without
@@ -46,21 +54,6 @@ LARGEST_ANGLE = 1.3
 LARGEST_SINE = 0.96
 # What has turned so far in a step that r . r' is less than this share of r . r is turned about where the step begins.
 LEAST_ACROSS = 0.2
-
-
-class Spin(NamedTuple):
-    """How a body turns: about (x, y) [m], with the velocity (u, v) [m/s] of that, inertia [kg m^2].
-
-    momentum [kg m^2/s]: the angular momentum about that. inertia is 0 where pins hold it, and not one alone, about
-    which it turns.
-    """
-
-    x: float
-    y: float
-    u: float
-    v: float
-    inertia: float
-    momentum: float
 
 
 @inner_kernel
@@ -89,10 +82,10 @@ def turned(momentum: float, inertia: float, arc: float, h: float) -> tuple[float
 
 
 @inner_kernel
-def spin_of_body(body: int, system: System) -> Spin:
-    """How a body turns by v*, on chords."""
+def spin_of_body(body: int, system: System) -> RigidMotion:
+    """How a body turns by v*, on chords; inertia is 0 where pins hold it, and not one alone, about which it turns."""
     numbers = system.bodies.spin
-    return Spin(
+    return RigidMotion(
         numbers[body, SPIN_X],
         numbers[body, SPIN_Y],
         numbers[body, SPIN_VX],
@@ -117,42 +110,29 @@ def _find_spin(body: int, span: Span, system: System) -> float:
     # How a body turns by v* about its centre of mass, or about the one pin that holds it; L before forces.
     rows, spin = system.rows, system.bodies.spin
     pivot = system.bodies.pivot[body]
-    total = x = y = u = v = inertia = after = before = 0.0
     for k in range(SPIN_X, MOMENTUM + 1):
         spin[body, k] = 0.0
     if pivot >= 0:
-        x = rows.position[pivot, 0]
-        y = rows.position[pivot, 1]
+        motion = RigidMotion(rows.position[pivot, 0], rows.position[pivot, 1], 0.0, 0.0, 0.0, 0.0)
         if rows.v_star[pivot, 0] != 0.0 or rows.v_star[pivot, 1] != 0.0:
             return 0.0
     elif pivot == -1:
+        sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
         for r in range(span.first_row, span.last_row):
-            m = rows.mass[r]
-            total += m
-            x += m * rows.position[r, 0]
-            y += m * rows.position[r, 1]
-            u += m * rows.v_star[r, 0]
-            v += m * rows.v_star[r, 1]
-        u /= total
-        v /= total
-        x /= total
-        y /= total
+            sums = with_point(
+                sums, rows.mass[r], rows.position[r, 0], rows.position[r, 1], rows.v_star[r, 0], rows.v_star[r, 1]
+            )
+        motion = centre_of(sums)
     else:
         return 0.0
+    momentum0 = 0.0
     for r in range(span.first_row, span.last_row):
-        m = rows.mass[r]
-        dx = rows.position[r, 0] - x
-        dy = rows.position[r, 1] - y
-        inertia += m * (dx * dx + dy * dy)
-        after += m * (dx * (rows.v_star[r, 1] - v) - dy * (rows.v_star[r, 0] - u))
-        before += m * (dx * (rows.start[r, 1] - v) - dy * (rows.start[r, 0] - u))
-    spin[body, SPIN_X] = x
-    spin[body, SPIN_Y] = y
-    spin[body, SPIN_VX] = u
-    spin[body, SPIN_VY] = v
-    spin[body, INERTIA] = inertia
-    spin[body, MOMENTUM] = after
-    return before
+        m, x, y = rows.mass[r], rows.position[r, 0], rows.position[r, 1]
+        momentum0 += momentum_about(motion, m, x, y, rows.start[r, 0], rows.start[r, 1])
+        motion = with_turn(motion, m, x, y, rows.v_star[r, 0], rows.v_star[r, 1])
+    for k in range(SPIN_X, MOMENTUM + 1):
+        spin[body, k] = motion[k - SPIN_X]
+    return momentum0
 
 
 @inner_kernel
@@ -165,10 +145,10 @@ def begin_turn(body: int, span: Span, system: System, state: State, arc: float, 
     # v += (1 - cos) r / h - (L - I sin / h) / I x r:  of what turns as a whole, v' = (R - 1) r / h is a chord
     rows, bodies = system.rows, system.bodies
     bodies.spared[body] = 0.0
-    before = _find_spin(body, span, system)
+    momentum0 = _find_spin(body, span, system)
     bodies.spin[body, BY_ARC] = arc
     spin = spin_of_body(body, system)
-    rate = _inward(before, spin.inertia, arc, h)
+    rate = _inward(momentum0, spin.inertia, arc, h)
     bodies.spin[body, INWARD] = rate
     for k in range(END_INWARD, END_Y + 1):
         bodies.spin[body, k] = 0.0
@@ -186,34 +166,27 @@ def begin_turn(body: int, span: Span, system: System, state: State, arc: float, 
             for vector in (rows.start, rows.v_star, rows.v_star_matched):
                 vector[r, 0] += x
                 vector[r, 1] += y
-            x += rows.v[r, 0] - spin.u
-            y += rows.v[r, 1] - spin.v
-            rows.v[r, 0] = spin.u + (cosine * x - sine * y)
-            rows.v[r, 1] = spin.v + (sine * x + cosine * y)
+            x, y = rotated(cosine, sine, x + (rows.v[r, 0] - spin.u), y + (rows.v[r, 1] - spin.v))
+            rows.v[r, 0] = spin.u + x
+            rows.v[r, 1] = spin.v + y
     find_slow(span, rows, state)
 
 
 @inner_kernel
 def _turn_on(span: Span, rows: Rows, state: State, sine: float, cosine: float) -> None:
     # The slow part of a body's velocities, beside that of the whole, and of their change turns as the body does.
-    mass = u = v = 0.0
+    slow, slow_change = state.slow_velocity, state.slow_change
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for r in range(span.first_row, span.last_row):
         p = rows.particle[r]
-        mass += rows.mass[r]
-        u += rows.mass[r] * state.slow_velocity[p, 0]
-        v += rows.mass[r] * state.slow_velocity[p, 1]
-    u /= mass
-    v /= mass
+        sums = with_point(sums, rows.mass[r], 0.0, 0.0, slow[p, 0], slow[p, 1])
+    centre = centre_of(sums)
     for r in range(span.first_row, span.last_row):
         p = rows.particle[r]
-        x = state.slow_velocity[p, 0] - u
-        y = state.slow_velocity[p, 1] - v
-        state.slow_velocity[p, 0] = u + (cosine * x - sine * y)
-        state.slow_velocity[p, 1] = v + (sine * x + cosine * y)
-        x = state.slow_change[p, 0]
-        y = state.slow_change[p, 1]
-        state.slow_change[p, 0] = cosine * x - sine * y
-        state.slow_change[p, 1] = sine * x + cosine * y
+        x, y = rotated(cosine, sine, slow[p, 0] - centre.u, slow[p, 1] - centre.v)
+        slow[p, 0] = centre.u + x
+        slow[p, 1] = centre.v + y
+        slow_change[p, 0], slow_change[p, 1] = rotated(cosine, sine, slow_change[p, 0], slow_change[p, 1])
 
 
 @inner_kernel
@@ -304,7 +277,7 @@ def end_turns(system: System, state: State, h: float) -> None:
 
 
 @inner_kernel
-def torque_of(span: Span, rows: Rows, spin: Spin, impulse: Floats) -> float:
+def torque_of(span: Span, rows: Rows, spin: RigidMotion, impulse: Floats) -> float:
     """The angular momentum [kg m^2/s] that impulses on a body's rows give it about the place that it turns about."""
     total = 0.0
     for r in range(span.first_row, span.last_row):
@@ -313,7 +286,7 @@ def torque_of(span: Span, rows: Rows, spin: Spin, impulse: Floats) -> float:
 
 
 @inner_kernel
-def hold_spin(span: Span, rows: Rows, spin: Spin, pivots: bool, aims: bool, momentum: float, h: float) -> None:
+def hold_spin(span: Span, rows: Rows, spin: RigidMotion, pivots: bool, aims: bool, momentum: float, h: float) -> None:
     """Turn where `v` leads to, as a whole, until it has this angular momentum: nothing within a body turns it.
 
     Directions taken ahead do, as does the minimum of f. pivots: it turns about a pin. aims: the next linear solve
@@ -381,11 +354,11 @@ def damp_within(body: int, span: Span, system: System, found: Floats, share: flo
     else:
         u *= 1.0 / total
         v *= 1.0 / total
-    halve_within(span, rows, Spin(spin.x, spin.y, u, v, spin.inertia, momentum), share, h, rows.v)
+    halve_within(span, rows, RigidMotion(spin.x, spin.y, u, v, spin.inertia, momentum), share, h, rows.v)
 
 
 @inner_kernel
-def halve_within(span: Span, rows: Rows, spin: Spin, share: float, h: float, vector: Floats) -> None:
+def halve_within(span: Span, rows: Rows, spin: RigidMotion, share: float, h: float, vector: Floats) -> None:
     """Leave this share of what moves beside the rigid motion that keeps a body's momenta and all its lengths."""
     # v = V + (R - 1) r / h,  whose angular momentum is I sin / h
     sine = h * spin.momentum / spin.inertia

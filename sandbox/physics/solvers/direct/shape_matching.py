@@ -9,6 +9,7 @@ no jelly as a whole, and let it lose its spin; what they add to the body's energ
 import math
 
 from sandbox.physics.equation import implicit_masses
+from sandbox.physics.geometry.rigid import WeightedSums, best_turn, centre_of, with_pair, with_point
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.system import Rows, ShapeMatchGroups, Span, System
 from sandbox.physics.untangling.inversion import is_out_of_shape, is_wound, wind
@@ -58,23 +59,15 @@ def find_inverted(body: int, span: Span, system: System) -> tuple[bool, bool]:
 @inner_kernel
 def _fit(g: int, rows: Rows, goals: ShapeMatchGroups) -> tuple[float, float, float, float, float, float, float, float]:
     # Centres of a jelly and of its form, its velocity, and cosine and sine of the turn that fits best; 0, 0: none.
-    mass = 0.0
-    x = y = p = q = u = v = 0.0
+    sums = form = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for i in range(goals.start[g], goals.start[g + 1]):
         r = goals.row[i]
         m = rows.mass[r]
-        mass += m
-        x += m * rows.position[r, 0]
-        y += m * rows.position[r, 1]
-        p += m * goals.form[i, 0]
-        q += m * goals.form[i, 1]
-        u += m * rows.v_star[r, 0]
-        v += m * rows.v_star[r, 1]
-    x /= mass
-    y /= mass
-    p /= mass
-    q /= mass
-    cosine = sine = own = 0.0
+        sums = with_point(sums, m, rows.position[r, 0], rows.position[r, 1], rows.v_star[r, 0], rows.v_star[r, 1])
+        form = with_point(form, m, goals.form[i, 0], goals.form[i, 1], 0.0, 0.0)
+    x, y, u, v, _, _ = centre_of(sums)
+    p, q, _, _, _, _ = centre_of(form)
+    along = across = own = 0.0
     for i in range(goals.start[g], goals.start[g + 1]):
         r = goals.row[i]
         m = rows.mass[r]
@@ -82,13 +75,12 @@ def _fit(g: int, rows: Rows, goals: ShapeMatchGroups) -> tuple[float, float, flo
         dy = rows.position[r, 1] - y
         ex = goals.form[i, 0] - p
         ey = goals.form[i, 1] - q
-        cosine += m * (ex * dx + ey * dy)
-        sine += m * (ex * dy - ey * dx)
+        along, across = with_pair(along, across, m, ex, ey, dx, dy)
         own += m * math.sqrt((dx * dx + dy * dy) * (ex * ex + ey * ey))
-    length = math.sqrt(cosine * cosine + sine * sine)
-    if not length > ROUND * own:
-        return x, y, p, q, u / mass, v / mass, 0.0, 0.0
-    return x, y, p, q, u / mass, v / mass, cosine / length, sine / length
+    if not math.sqrt(along * along + across * across) > ROUND * own:
+        return x, y, p, q, u, v, 0.0, 0.0
+    cosine, sine = best_turn(along, across)
+    return x, y, p, q, u, v, cosine, sine
 
 
 @inner_kernel

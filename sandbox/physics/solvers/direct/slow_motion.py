@@ -9,7 +9,8 @@ with both.
 
 from sandbox.physics.integrate import SLOW_SHARE
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.solvers.direct.system import Rows, Span, State
+from sandbox.physics.solvers.direct.system import Rows, Span
+from sandbox.physics.state import State
 
 # Below 0.9 it is unstable at the taut end; higher damps swings more.
 FAST = 1.2

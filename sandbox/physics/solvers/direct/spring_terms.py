@@ -5,8 +5,8 @@ minimum over v' of
 
     f(v') = 1/2 |v' - v*|^2_M + sum over springs of [K (x' - x)^2 + K beta (x'^2 - (x' - x)^2)] / (2 h^2)
 
-v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here K is `stiff`, K beta is `restoring`, v* is
-`v_star`, v' is `v`. The Jacobian of a spring's length is its direction n, at its ends with opposite signs.
+v* = the velocities after gravity, x' = |d + h (v'_b - v'_a)| - L. Here v* is `v_star`, v' is `v`. The
+Jacobian of a spring's length is its direction n, at its ends with opposite signs.
 """
 
 import math
@@ -18,9 +18,12 @@ from sandbox.physics.equation import (
     implicit_masses,
     reduced_mass,
 )
+from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel, scalar_kernel
-from sandbox.physics.solvers.direct.system import Inputs, Span, State, System
+from sandbox.physics.solvers.direct.system import Span, System
+from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import add_block
+from sandbox.physics.state import State
 from sandbox.physics.world import Floats
 
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
@@ -62,15 +65,13 @@ def load_springs(
         rest = state.rest_length[s]
         springs.rest[k] = rest
         springs.start_rest[k] = inputs.start_length[s]
-        dx = rows.position[b, 0] - rows.position[a, 0]
-        dy = rows.position[b, 1] - rows.position[a, 1]
+        dx, dy = difference(a, b, rows.position)
         length = math.sqrt(dx * dx + dy * dy)
         springs.length[k] = length
         springs.error[k] = length - rest
         springs.tension[k] = state.tension[s]
         if a >= free_count or b >= free_count:
-            dx = rows.x_moved[b, 0] - rows.x_moved[a, 0]
-            dy = rows.x_moved[b, 1] - rows.x_moved[a, 1]
+            dx, dy = difference(a, b, rows.x_moved)
             length = math.sqrt(dx * dx + dy * dy)
         error = (length - rest) / h
         moved += 0.5 * springs.k_h2[k] * error * error
@@ -88,10 +89,8 @@ def linearise_springs(span: Span, system: System, h: float, ahead: float, behind
     for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
-        dx = rows.position[b, 0] - rows.position[a, 0]
-        dy = rows.position[b, 1] - rows.position[a, 1]
-        ux = rows.v[b, 0] - rows.v[a, 0]
-        uy = rows.v[b, 1] - rows.v[a, 1]
+        dx, dy = difference(a, b, rows.position)
+        ux, uy = difference(a, b, rows.v)
         px = dx + h * (ahead * ux - behind * (rows.slow[b, 0] - rows.slow[a, 0]))
         py = dy + h * (ahead * uy - behind * (rows.slow[b, 1] - rows.slow[a, 1]))
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
@@ -184,7 +183,7 @@ def assemble_springs_in_fronts(span: Span, system: System) -> None:
 
 @inner_kernel
 def push_springs(span: Span, system: System) -> None:
-    """Add the impulses of a body's springs to the right side, in `change`."""
+    """Add the impulses of a body's springs to the right side, in `delta_v`."""
     rows, springs = system.rows, system.springs
     free_count = system.matrix.diagonal.shape[0]
     for k in range(span.first_spring, span.last_spring):
@@ -211,8 +210,8 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
     """
     rows, springs = system.rows, system.springs
     free_count = system.matrix.diagonal.shape[0]
-    before = 0.0
-    after = 0.0
+    taken_away = 0.0
+    left = 0.0
     energy = 0.0
     misfit = 0.0
     for k in range(span.first_spring, span.last_spring):
@@ -234,8 +233,8 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         taken = springs.K[k] * u
         springs.impulse[k] -= taken
         springs.tangential[k] -= springs.transverse[k] * (nx * uy - ny * ux)
-        before += abs(taken)
-        after += abs(springs.impulse[k])
+        taken_away += abs(taken)
+        left += abs(springs.impulse[k])
         dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.v[b, 0] - rows.v[a, 0])
         dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.v[b, 1] - rows.v[a, 1])
         rest = springs.rest[k]
@@ -247,7 +246,7 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         # One of rest length 0 has no strain to be spared.
         if rest > 0.0 and extent > SHORTEST and missed > misfit * extent:
             misfit = missed / extent
-    return energy, 2.0 * misfit, before > CANCELLATION * after and 2.0 * misfit < ROUNDING_MISFIT
+    return energy, 2.0 * misfit, taken_away > CANCELLATION * left and 2.0 * misfit < ROUNDING_MISFIT
 
 
 @inner_kernel
@@ -262,10 +261,8 @@ def spring_objective(span: Span, system: System, h: float) -> float:
     for k in range(span.first_spring, span.last_spring):
         a = springs.row_a[k]
         b = springs.row_b[k]
-        dx = rows.position[b, 0] - rows.position[a, 0]
-        dy = rows.position[b, 1] - rows.position[a, 1]
-        ux = rows.v[b, 0] - rows.v[a, 0]
-        uy = rows.v[b, 1] - rows.v[a, 1]
+        dx, dy = difference(a, b, rows.position)
+        ux, uy = difference(a, b, rows.v)
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
         error = springs.error[k] / h
         after = error + growth

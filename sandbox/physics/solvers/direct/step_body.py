@@ -7,6 +7,7 @@ what it had plus what its bank holds of earlier losses; else f itself is minimis
 
 import math
 
+from sandbox.physics.geometry.rigid import RigidMotion
 from sandbox.physics.integrate import follow
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.energy_bank import (
@@ -22,7 +23,6 @@ from sandbox.physics.solvers.direct.families import find_tension, keep_tension, 
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.newton import minimise
 from sandbox.physics.solvers.direct.rigid_turn import (
-    Spin,
     begin_turn,
     halve_within,
     hold_spin,
@@ -31,7 +31,9 @@ from sandbox.physics.solvers.direct.rigid_turn import (
 )
 from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
 from sandbox.physics.solvers.direct.slow_motion import AHEAD
-from sandbox.physics.solvers.direct.system import Inputs, Span, State, System, span_of
+from sandbox.physics.solvers.direct.system import Span, System, span_of
+from sandbox.physics.solvers.inputs import Inputs
+from sandbox.physics.state import State
 from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, JOINED
 
 # A body of which a spring, after a linear solve, misses the length that was predicted by more than this share of it
@@ -68,7 +70,7 @@ def open_body(
 
 
 @inner_kernel
-def _take_candidate(body: int, span: Span, system: System, spin: Spin, h: float) -> tuple[float, float]:
+def _take_candidate(body: int, span: Span, system: System, spin: RigidMotion, h: float) -> tuple[float, float]:
     # v' = v + D;  J = q - K n.(D_b - D_a);  T = max(0, -J) for what follows. Returned: H, and the largest misfit.
     rows, bodies = system.rows, system.bodies
     linearise(span, system, h, AHEAD, AHEAD)
@@ -96,7 +98,7 @@ def _take_candidate(body: int, span: Span, system: System, spin: Spin, h: float)
 
 
 @inner_kernel
-def _solve_within(body: int, span: Span, system: System, spin: Spin, allowed: float, h: float) -> float:
+def _solve_within(body: int, span: Span, system: System, spin: RigidMotion, allowed: float, h: float) -> float:
     # Linear solves until one fits and has no more energy than is allowed; the energy of the last that is taken.
     bodies, rows = system.bodies, system.rows
     after = 0.0
@@ -152,7 +154,7 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
 
 
 @inner_kernel
-def _damp(body: int, span: Span, system: System, spin: Spin, allowed: float, h: float) -> float:
+def _damp(body: int, span: Span, system: System, spin: RigidMotion, allowed: float, h: float) -> float:
     # Halve the free velocities, as they were found, until the energy test holds; at rest it always does. First only
     # what moves beside the motion of the whole.
     rows = system.rows

@@ -13,58 +13,10 @@ from numpy.typing import NDArray
 from sandbox.physics.jit import inlined_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
-from sandbox.physics.terrain import Terrain
 from sandbox.physics.untangling.triangle_clamp import ClampedTriangles
 from sandbox.physics.world import Floats, Slots
 
 Flags = NDArray[np.bool_]
-
-
-class State(NamedTuple):
-    """The arrays of a world that a step reads, and of which it writes five: see StateArrays; and the terrain.
-
-    stiffness and damping are Cs and Cd of a whole tick.
-    """
-
-    position: Floats
-    velocity: Floats
-    mass: Floats
-    inverse_mass: Floats
-    slow_velocity: Floats
-    slow_change: Floats
-    energy_bank: Floats
-    parting_reserve: Floats
-    radius: Floats
-    spin: Floats
-    angle: Floats
-    particle_active: Flags
-    collides: Slots
-    rest_length: Floats
-    stiffness: Floats
-    damping: Floats
-    tension: Floats
-    lowest_mode: Floats
-    constraint_rest: Floats
-    constraint_stiffness: Floats
-    constraint_damping: Floats
-    constraint_lowest_mode: Floats
-    corner_weight: Floats
-    terrain: Terrain
-
-
-class Inputs(NamedTuple):
-    """The input of a substep: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
-
-    start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives. ease: 1 + drag h.
-    """
-
-    stiffness: Floats
-    damping: Floats
-    constraint_stiffness: Floats
-    constraint_damping: Floats
-    start: Floats
-    start_length: Floats
-    ease: float
 
 
 # Columns of `Bodies.spin`: the place [m] that a body turns about, the velocity [m/s] of that, inertia [kg m^2] and
@@ -128,8 +80,8 @@ class Springs(NamedTuple):
     """The springs of the matrix by body: ends as rows, the block they share (-1: one end is pinned), and scratch.
 
     rest, start_rest [m]: rest length, and at the start of the step; K, K_beta [kg]: K and K beta of the equation,
-    transverse [kg] = the geometric stiffness h T / l; k_h2 [kg]: k h^2 of their energy, that of a tick in one part
-    where ticks choose their parts; length, error, predicted [m]; normal; impulse, tangential, tension [N s].
+    transverse [kg] = the geometric stiffness h T / l; k_h2 [kg]: k h^2 of their energy, that of a tick in one step
+    where ticks choose their substeps; length, error, predicted [m]; normal; impulse, tangential, tension [N s].
     """
 
     slot: Slots

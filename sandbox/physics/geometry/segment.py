@@ -1,0 +1,107 @@
+"""Segments and triangles in the plane: parts of kernels, and their twins for arrays of places (..., 2)."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.physics.equation import SHORTEST
+from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.state import Floats
+
+# A segment whose length squared is below this [m^2] is a point.
+LEAST_SQUARE = 1e-300
+
+
+@inlined_kernel
+def doubled_area(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> float:
+    """Signed area [m^2] of the triangle a b c, doubled: above 0 where c is on the left of the way from a to b."""
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+
+
+@inlined_kernel
+def doubled_area_of(a: int, b: int, c: int, position: Floats) -> float:
+    """`doubled_area` of three rows of positions (n, 2)."""
+    return doubled_area(position[a, 0], position[a, 1], position[b, 0], position[b, 1], position[c, 0], position[c, 1])
+
+
+@inlined_kernel
+def unit(x: float, y: float) -> tuple[float, float]:
+    """A vector at length 1; upward where it has none."""
+    length = math.sqrt(x * x + y * y)
+    return (x / length, y / length) if length > SHORTEST else (0.0, 1.0)
+
+
+@inlined_kernel
+def nearest_share(px: float, py: float, dx: float, dy: float) -> float:
+    """The place nearest to p of the segment from 0 to d, as a share of it; 0 where it has no length."""
+    squared = dx * dx + dy * dy
+    return min(1.0, max(0.0, (px * dx + py * dy) / squared)) if squared > 0.0 else 0.0
+
+
+@inlined_kernel
+def difference(a: int, b: int, rows: Floats) -> tuple[float, float]:
+    """Row b of (n, 2) less row a: the way from one place to another, or how fast that changes."""
+    return rows[b, 0] - rows[a, 0], rows[b, 1] - rows[a, 1]
+
+
+@inlined_kernel
+def segment_of(a: int, b: int, position: Floats) -> tuple[float, float, float, float]:
+    """Where the segment from row a to row b of positions (n, 2) begins, and its way [m]: x, y, dx, dy."""
+    ax = position[a, 0]
+    ay = position[a, 1]
+    return ax, ay, position[b, 0] - ax, position[b, 1] - ay
+
+
+@inner_kernel
+def closest_on_segment(p: int, a: int, b: int, position: Floats) -> tuple[float, float, float, int]:
+    """The place nearest to p of the segment a b, as a share of it; distance and signed distance [m]; region.
+
+    The signed distance is that from the straight line, above 0 on its right. region: -1 and 1 where an end is nearest.
+    """
+    dx, dy = difference(a, b, position)
+    px, py = difference(a, p, position)
+    squared = dx * dx + dy * dy
+    if not squared > SHORTEST:
+        distance = math.sqrt(px * px + py * py)
+        return 0.0, distance, distance, -1
+    share = nearest_share(px, py, dx, dy)
+    region = -1 if share <= 0.0 else 1 if share >= 1.0 else 0
+    qx = px - share * dx
+    qy = py - share * dy
+    return share, math.sqrt(qx * qx + qy * qy), (px * dy - py * dx) / math.sqrt(squared), region
+
+
+def doubled_areas(a: Floats, b: Floats, c: Floats) -> Floats:
+    """`doubled_area` of places (..., 2), each with each."""
+    along, away = b - a, c - a
+    return np.asarray(along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0])
+
+
+def segments_cross(a: Floats, b: Floats, c: Floats, d: Floats) -> NDArray[np.bool_]:
+    """Which segments a b cross segments c d (..., 2), each with each. A place on a line counts as on its right."""
+    return ((doubled_areas(a, b, c) > 0.0) != (doubled_areas(a, b, d) > 0.0)) & (
+        (doubled_areas(c, d, a) > 0.0) != (doubled_areas(c, d, b) > 0.0)
+    )
+
+
+def nearest_on_segments(places: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """The nearest places of segments a b, as shares (...,) of them, and the ways [m] (..., 2) from there to `places`.
+
+    Places (..., 2), each with each.
+    """
+    along, away = b - a, places - a
+    squared = along[..., 0] * along[..., 0] + along[..., 1] * along[..., 1]
+    dot = away[..., 0] * along[..., 0] + away[..., 1] * along[..., 1]
+    share = np.clip(dot / np.maximum(squared, LEAST_SQUARE), 0.0, 1.0)
+    return share, away - share[..., None] * along
+
+
+def distances_from_segments(places: Floats, a: Floats, b: Floats) -> Floats:
+    """Distances [m] (...,) of places from segments a b (..., 2), each with each."""
+    return lengths(nearest_on_segments(places, a, b)[1])
+
+
+def lengths(vectors: Floats) -> Floats:
+    """Lengths (...,) of vectors (..., 2)."""
+    return np.asarray(np.sqrt(vectors[..., 0] * vectors[..., 0] + vectors[..., 1] * vectors[..., 1]))

@@ -1,0 +1,61 @@
+"""The world block: all arrays of a world and of its steps as one structure, which kernels take as one pointer."""
+
+from typing import NamedTuple
+
+from sandbox.physics.breaking import MaterialLimits
+from sandbox.physics.driving import Drives
+from sandbox.physics.flight import Flight
+from sandbox.physics.joints.joint_set import JointSet
+from sandbox.physics.pipeline.collide import Collisions
+from sandbox.physics.solvers.direct.islands import IslandWorkspace
+from sandbox.physics.solvers.direct.system import System
+from sandbox.physics.solvers.iterative import Iteration
+from sandbox.physics.solvers.single_pass import ExplicitPass
+from sandbox.physics.state import Floats, GoodValues, Slots, State
+from sandbox.physics.untangling.triangle_clamp import WorldTriangles
+
+# Places in `plan`, what topology decides: whether anything can touch, whether the solver's system has Hooke springs
+# beside it, whether there are areas of more than three corners; the first spring of a grab, or -1.
+HAS_CONTACTS, HAS_HOOKE, HAS_RINGS, GRAB_PARTICLE, GRAB_SPRING = range(5)
+# Places in `progress`: the number of the tick, whether any particle may be unmoved; its substeps, 0 before they
+# are chosen, and how many are done; springs that broke.
+TICK, MAY_FLY, COUNT, DONE, BROKEN = range(5)
+
+
+class Coefficients(NamedTuple):
+    """Cs and Cd of springs (m,) and constraints (t,) in a substep, where they are not those of a tick."""
+
+    stiffness: Floats
+    damping: Floats
+    constraint_stiffness: Floats
+    constraint_damping: Floats
+
+
+class WorldBlock(NamedTuple):
+    """A world as kernels take it.
+
+    state, good: its arrays. numbers, choices: its settings, see settings.py. plan, progress: see above. start [m/s]
+    (n, 2): velocities before anything acted in a substep; start_length [m] (m,): rest lengths before drives; shortest
+    (GRAB_COUNT,): scratch. All else is of one phase or solver each, and empty where that has nothing to do.
+    """
+
+    state: State
+    good: GoodValues
+    numbers: Floats
+    choices: Slots
+    plan: Slots
+    progress: Slots
+    start: Floats
+    start_length: Floats
+    shortest: Floats
+    coefficients: Coefficients
+    drives: Drives
+    limits: MaterialLimits
+    flight: Flight
+    collisions: Collisions
+    joints: JointSet
+    triangles: WorldTriangles
+    system: System
+    workspace: IslandWorkspace
+    iteration: Iteration
+    explicit: ExplicitPass

@@ -1,0 +1,280 @@
+"""Collisions of a step: what touches is found and, where no spring holds it, solved; the rest is left to a solver.
+
+Arrays whose length a step decides have room for more than there is. `detect` says where there is too little, and
+has changed nothing by then but scratch.
+"""
+
+from typing import NamedTuple
+
+from sandbox.physics.collision.broad_phase import Boxes, Candidates, Grid, cell_size, fill_grid, find_pairs
+from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
+from sandbox.physics.collision.disc_stop import stop_discs
+from sandbox.physics.collision.outline import Outline
+from sandbox.physics.collision.restitution import find_bounces
+from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terrain, clamp_at_tips
+from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
+from sandbox.physics.collision.types import Colliders, Contacts, Flags, KeptContacts, Near
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch
+from sandbox.physics.solvers.contact.free_contacts import solve_free_contacts
+from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, sort_free_contacts
+from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.state import Floats, Slots, State
+from sandbox.physics.untangling.crossing_candidates import ShapeBounds
+from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted
+from sandbox.physics.untangling.overlaps import CROSSINGS, OVERLAPS, Overlaps, find_crossings, pair_overlaps
+from sandbox.physics.untangling.parting import MovedParticles, part_overlaps
+
+# Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
+# crossings of outlines, pairs of shapes that overlap; contacts that are left to a solver.
+CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING, BOUND = range(8)
+# Rounds in which edges are stopped at corners of terrain, and particles at terrain; the latter has the last word.
+TIP_ROUNDS = 4
+
+
+class Collisions(NamedTuple):
+    """What topology decides of a world's collisions, and arrays that a step fills in.
+
+    bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver. kept: those of the last step, the
+    first counts[KEPT] of which are the world's own. moved (n,): scratch.
+    """
+
+    outline: Outline
+    triangles: Triangles
+    colliders: Colliders
+    boxes: Boxes
+    grid: Grid
+    candidates: Candidates
+    bounds: Floats
+    near: Near
+    contacts: Contacts
+    bound: Contacts
+    kept: KeptContacts
+    islands: Islands
+    work: FreeContactScratch
+    inversions: Inversions
+    shape_bounds: ShapeBounds
+    overlaps: Overlaps
+    moved: Flags
+    counts: Slots
+
+
+@inner_kernel
+def _load_particles(state: State, attached: Flags, colliders: Colliders) -> None:
+    for p in range(state.radius.shape[0]):
+        for axis in range(2):
+            colliders.position[p, axis] = state.position[p, axis]
+            colliders.velocity[p, axis] = state.velocity[p, axis]
+            colliders.origin[p, axis] = state.origin[p, axis]
+        colliders.radius[p] = state.radius[p]
+        colliders.friction[p] = state.friction[p]
+        colliders.restitution[p] = state.restitution[p]
+        colliders.group[p] = state.group[p]
+        colliders.collides[p] = state.collides[p] if state.particle_active[p] else 0
+        colliders.inverse_mass[p] = state.inverse_mass[p]
+        colliders.rolling[p] = state.rolling[p]
+        turns = state.rolls[p] and not attached[p] and state.radius[p] > 0.0
+        colliders.turning[p] = SURFACE_WEIGHT * state.inverse_mass[p] if turns else 0.0
+
+
+@inner_kernel
+def bound_terrain(collisions: Collisions) -> None:
+    """Bound what is solid of terrain, which stays where it is."""
+    outline = collisions.outline
+    bound_solids(collisions.colliders, outline, outline.dynamic[1], outline.solid.shape[0], collisions.bounds)
+
+
+@inner_kernel
+def _find_overlaps(collisions: Collisions, larges: int) -> bool:
+    # Which bodies part in this step; whether there is room for them.
+    outline, colliders, overlaps = collisions.outline, collisions.colliders, collisions.overlaps
+    counts = collisions.counts
+    counts[CROSSED] = find_crossings(
+        collisions.boxes, collisions.grid, larges, colliders, outline, collisions.shape_bounds, overlaps
+    )
+    if overlaps.counts[CROSSINGS] > overlaps.edge.shape[0]:
+        return False
+    counts[OVERLAPPING] = pair_overlaps(
+        colliders, outline, collisions.bounds, collisions.kept, counts[KEPT], overlaps
+    )  # fmt: skip
+    return counts[OVERLAPPING] <= overlaps.shape.shape[0]
+
+
+@inner_kernel
+def detect(state: State, collisions: Collisions, tick: int, h: float) -> bool:
+    """Broad and narrow phase of a step of h [s]: its contacts, and which are left to a solver; whether there is room.
+
+    Bounces and impulses come later.
+    """
+    outline, colliders, counts, boxes = collisions.outline, collisions.colliders, collisions.counts, collisions.boxes
+    _load_particles(state, outline.attached, colliders)
+    if collisions.triangles.constraint.shape[0] > 0:
+        find_inverted(
+            state.position, state.constraint_rest, collisions.triangles, collisions.inversions, colliders.inverted
+        )
+    fill_boxes(colliders, outline.dynamic[0], h, boxes)
+    cell = cell_size(boxes.box)
+    larges, entries = fill_grid(boxes, cell, collisions.grid)
+    counts[ENTRIES] = entries
+    if entries > collisions.grid.object.shape[0]:
+        return False
+    pairs, terrain_pairs = collisions.candidates.pairs, collisions.candidates.terrain
+    counts[PAIRS] = find_pairs(boxes, collisions.grid, larges, pairs)
+    counts[TERRAIN_PAIRS] = find_terrain(boxes, state.terrain, terrain_pairs)
+    if counts[PAIRS] > pairs.other.shape[0] or counts[TERRAIN_PAIRS] > terrain_pairs.other.shape[0]:
+        return False
+    bound_solids(colliders, outline, 0, outline.dynamic[1], collisions.bounds)
+    if not _find_overlaps(collisions, larges):
+        return False
+    count = find_contacts(
+        colliders, outline, collisions.candidates, collisions.bounds, collisions.near,
+        collisions.kept, counts[KEPT], tick, h, collisions.contacts, state.terrain,
+    )  # fmt: skip
+    counts[CONTACTS] = count
+    if count > collisions.contacts.particle.shape[0]:
+        return False
+    counts[BOUND] = find_islands(
+        collisions.contacts, count, state.inverse_mass, outline.attached, collisions.islands
+    )  # fmt: skip
+    _copy_bound(collisions.contacts, count, collisions.islands.bound, collisions.bound)
+    return True
+
+
+@inner_kernel
+def _copy_bound(contacts: Contacts, count: int, bound: Flags, to: Contacts) -> None:
+    # The contacts that are bound, in their order, but for what `prepare_contacts` finds.
+    k = 0
+    for c in range(count):
+        if bound[c]:
+            to.particle[k] = contacts.particle[c]
+            to.feature[k] = contacts.feature[c]
+            to.end_a[k] = contacts.end_a[c]
+            to.end_b[k] = contacts.end_b[c]
+            to.share[k] = contacts.share[c]
+            to.gap[k] = contacts.gap[c]
+            to.friction[k] = contacts.friction[c]
+            to.restitution[k] = contacts.restitution[c]
+            to.rolling[k] = contacts.rolling[c]
+            for axis in range(2):
+                to.normal[k, axis] = contacts.normal[c, axis]
+            k += 1
+
+
+@inner_kernel
+def separate_overlaps(state: State, start: Floats, collisions: Collisions) -> None:
+    """Let bodies come apart whose outlines overlap; start [m/s] (n, 2): velocities before anything acted."""
+    if collisions.overlaps.counts[OVERLAPS] > 0:
+        moved = MovedParticles(
+            state.velocity, start, state.mass, state.inverse_mass, state.energy_bank, state.parting_reserve
+        )
+        part_overlaps(
+            collisions.outline, collisions.colliders, collisions.bounds, moved, collisions.overlaps, collisions.moved
+        )
+
+
+@inner_kernel
+def prepare_contacts(state: State, start: Floats, collisions: Collisions, h: float) -> None:
+    """Find what bounces in a step of h [s], and give contacts the impulses that they begin with."""
+    contacts, counts, bound = collisions.contacts, collisions.counts, collisions.bound
+    attached = collisions.outline.attached
+    find_bounces(contacts, counts[CONTACTS], start, state.velocity, attached, h, h / small_steps(h))
+    carry_over(contacts, counts[CONTACTS], collisions.kept, counts[KEPT])
+    k = 0
+    for c in range(counts[CONTACTS]):
+        if collisions.islands.bound[c]:
+            bound.bounce[k] = contacts.bounce[c]
+            bound.impulse[k, 0], bound.impulse[k, 1] = contacts.impulse[c, 0], contacts.impulse[c, 1]
+            k += 1
+    if k > 0:
+        load_arms(bound, k, collisions.colliders)
+
+
+@inner_kernel
+def solve_free(state: State, start: Floats, collisions: Collisions, h: float) -> None:
+    """Solve the contacts of what no spring or constraint holds."""
+    contacts, counts = collisions.contacts, collisions.counts
+    found = 0
+    if counts[BOUND] < counts[CONTACTS]:
+        found = sort_free_contacts(counts[CONTACTS], collisions.islands)
+    solve_free_contacts(
+        contacts, collisions.islands, found, collisions.colliders, start, state.velocity, state.spin, h,
+        collisions.work,
+    )  # fmt: skip
+
+
+@inner_kernel
+def bound_contacts(collisions: Collisions) -> Contacts:
+    """The contacts that are left to a solver."""
+    count, b = collisions.counts[BOUND], collisions.bound
+    return Contacts(
+        b.particle[:count], b.feature[:count], b.end_a[:count], b.end_b[:count], b.share[:count], b.normal[:count],
+        b.gap[:count], b.friction[:count], b.restitution[:count], b.bounce[:count], b.impulse[:count],
+        b.turning[:count], b.arm[:count], b.ratio[:count], b.rolling[:count], b.couple[:count], b.impact[:count],
+    )  # fmt: skip
+
+
+@inner_kernel
+def mark_pushed(collisions: Collisions, label: Slots, marks: Flags) -> None:
+    """Mark the labels of the particles that contacts of the present step push."""
+    contacts, k = collisions.contacts, 0
+    for c in range(collisions.counts[CONTACTS]):
+        impulse = contacts.impulse[c, 0]
+        if collisions.islands.bound[c]:
+            impulse = collisions.bound.impulse[k, 0]
+            k += 1
+        if impulse > 0.0:
+            marks[label[contacts.particle[c]]] = True
+            if contacts.end_a[c] >= 0:
+                marks[label[contacts.end_a[c]]] = True
+            if contacts.end_b[c] >= 0:
+                marks[label[contacts.end_b[c]]] = True
+
+
+@inner_kernel
+def store_impulses(collisions: Collisions) -> None:
+    """Keep a step's contacts with their impulses for the next."""
+    contacts, bound, kept, k = collisions.contacts, collisions.bound, collisions.kept, 0
+    count = collisions.counts[CONTACTS]
+    for c in range(count):
+        if collisions.islands.bound[c]:
+            contacts.impulse[c, 0], contacts.impulse[c, 1] = bound.impulse[k, 0], bound.impulse[k, 1]
+            if bound.bounce[k] >= 0.0:
+                # The impulse of an impact is no guess of what the next step needs.
+                contacts.impact[c] += bound.impulse[k, 0]
+                contacts.impulse[c, 0], contacts.impulse[c, 1] = 0.0, 0.0
+            k += 1
+        kept.particle[c] = contacts.particle[c]
+        kept.feature[c] = contacts.feature[c]
+        kept.impulse[c, 0] = contacts.impulse[c, 0]
+        kept.impulse[c, 1] = contacts.impulse[c, 1]
+        kept.impact[c] = contacts.impact[c]
+    collisions.counts[KEPT] = count
+
+
+@inner_kernel
+def clamp(state: State, collisions: Collisions, h: float) -> None:
+    """Stop what would cross terrain, or come behind an edge, in the coming h [s]."""
+    outline, colliders, ahead = collisions.outline, collisions.colliders, collisions.work.ahead
+    terrain, box, candidates = state.terrain, collisions.boxes.box, collisions.candidates
+    velocity, inverse_mass = state.velocity, state.inverse_mass
+    if outline.dynamic[1] > 0:
+        stop_discs(
+            collisions.contacts, collisions.counts[CONTACTS], outline, colliders, velocity, state.mass, inverse_mass, h
+        )
+    clamp_at_pins(state.position, velocity, ahead, inverse_mass, outline, colliders, box, candidates.pairs.start, h)
+    for k in range(TIP_ROUNDS):
+        if not clamp_at_tips(
+            velocity, inverse_mass, terrain, outline.dynamic[0], colliders, k == TIP_ROUNDS - 1, h
+        ):  # fmt: skip
+            break
+        clamp_at_terrain(
+            state.position, velocity, ahead, state.collides, state.particle_active, inverse_mass, terrain, box,
+            candidates.terrain.start, h,
+        )  # fmt: skip
+    clamp_at_terrain(
+        state.position, velocity, ahead, state.collides, state.particle_active, inverse_mass, terrain, box,
+        candidates.terrain.start, h,
+    )  # fmt: skip
+    for p in range(ahead.shape[0]):
+        state.position[p, 0] += ahead[p, 0]
+        state.position[p, 1] += ahead[p, 1]

@@ -1,0 +1,279 @@
+"""A tick as one kernel: its phases on one screen. Their order is part of the replay contract."""
+
+from typing import Any
+
+from sandbox.physics.breaking import yield_and_break
+from sandbox.physics.driving import drive_springs
+from sandbox.physics.flight import begin_flight, label_all_joined
+from sandbox.physics.forces import integrate_velocities
+from sandbox.physics.integrate import integrate_positions
+from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.joints.joint_set import prepare_joints, store_joint_impulses
+from sandbox.physics.pipeline.block import (
+    BROKEN,
+    COUNT,
+    DONE,
+    GRAB_PARTICLE,
+    GRAB_SPRING,
+    HAS_CONTACTS,
+    HAS_HOOKE,
+    HAS_RINGS,
+    MAY_FLY,
+    TICK,
+    WorldBlock,
+)
+from sandbox.physics.pipeline.collide import (
+    BOUND,
+    KEPT,
+    bound_contacts,
+    clamp,
+    detect,
+    mark_pushed,
+    prepare_contacts,
+    separate_overlaps,
+    solve_free,
+    store_impulses,
+)
+from sandbox.physics.sanitise import are_sound, keep_if_sound
+from sandbox.physics.settings import (
+    DIRECT,
+    DRAG,
+    HIGHEST,
+    IS_AUTO,
+    ITERATIONS,
+    ITERATIVE,
+    SINGLE_PASS,
+    SOLVER,
+    SUBSTEP_COUNT,
+    TICK_RATE,
+    WARM_START,
+)
+from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.solvers.direct.islands import find_body_islands
+from sandbox.physics.solvers.direct.rigid_turn import end_turns
+from sandbox.physics.solvers.direct.solve import solve as solve_direct
+from sandbox.physics.solvers.inputs import Inputs
+from sandbox.physics.solvers.iterative import solve as solve_iterative
+from sandbox.physics.solvers.single_pass import apply_explicit
+from sandbox.physics.solvers.single_pass import solve as solve_single_pass
+from sandbox.physics.substeps import (
+    ALL_BUT_FIRM,
+    ALL_CONSTANT,
+    MOTION,
+    choose_substeps,
+    limit_rings,
+    turn_into_substep,
+)
+from sandbox.physics.untangling.triangle_clamp import clamp_world
+from sandbox.physics.world import GRAB_COUNT
+
+# What a tick says at its end. It has changed nothing where something that it begins with is not sound, and goes on
+# where it was, once there is more room. Something that it has moved is not sound; springs broke.
+FINISHED, UNSOUND, NO_ROOM, LOST, BROKE = range(5)
+
+
+@kernel
+def tick(lent: Any) -> int:
+    """Advance a world by one tick of 1 / tick_rate seconds; what is to be done about it, see FINISHED."""
+    world: WorldBlock = contents(lent)
+    state, start, collisions, joints = world.state, world.start, world.collisions, world.joints
+    progress, solver, touches = world.progress, world.choices[SOLVER], world.plan[HAS_CONTACTS] != 0
+    if progress[COUNT] == 0:
+        if not are_sound(state, collisions.kept.impulse, collisions.kept.impact, collisions.counts[KEPT]):
+            return UNSOUND
+        _begin_tick(world)
+    h = 1.0 / (world.choices[TICK_RATE] * progress[COUNT])
+    while progress[DONE] < progress[COUNT]:
+        integrate_velocities(state, world.numbers, start, h)
+        given = _inputs(world)
+        drives = prepare_joints(joints, state, given.stiffness, given.damping, solver, h)
+        if not _find_contacts(world, touches, drives, h):
+            _take_back_forces(world)
+            return NO_ROOM
+        if touches:
+            separate_overlaps(state, start, collisions)
+            prepare_contacts(state, start, collisions, h)
+            solve_free(state, start, collisions, h)
+        _solve(world, given, drives, h)
+        _begin_flight(world, touches, h)
+        store_joint_impulses(joints, state, solver, h)
+        if touches:
+            store_impulses(collisions)
+            clamp(state, collisions, h)
+        if world.triangles.of_world.constraint.shape[0] > 0:
+            clamp_world(world.triangles, solver == DIRECT, h)
+        integrate_positions(state, h)
+        if solver == DIRECT:
+            end_turns(world.system, state, h)
+        progress[DONE] += 1
+    _end_tick(world)
+    if not keep_if_sound(state, world.good):
+        return LOST
+    return BROKE if _find_broken(world) > 0 else FINISHED
+
+
+@kernel
+def find_broken(lent: Any) -> int:
+    """Let springs yield and find those that break, at the end of a tick in which something was lost; how many."""
+    return _find_broken(contents(lent))
+
+
+@inner_kernel
+def _find_broken(world: WorldBlock) -> int:
+    world.progress[BROKEN] = yield_and_break(world.state, world.good, world.limits)
+    return world.progress[BROKEN]
+
+
+@inner_kernel
+def _begin_tick(world: WorldBlock) -> None:
+    # Drive springs, choose the substeps, and bring Cs, Cd and kept impulses to those.
+    state, choices, progress, drives = world.state, world.choices, world.progress, world.drives
+    if drives.muscle.shape[0] + drives.hydraulic.shape[0] > 0:
+        for s in range(state.rest_length.shape[0]):
+            world.start_length[s] = state.rest_length[s]
+        drive_springs(state, world.good, drives, progress[TICK] + 1, choices[SOLVER], choices[TICK_RATE])
+    count = choices[SUBSTEP_COUNT]
+    if count == 0:
+        count = choose_substeps(state, world.plan[GRAB_SPRING], choices[TICK_RATE], world.shortest)
+    progress[COUNT] = count
+    progress[DONE] = 0
+    ease = _ease(world)
+    if count > 1 or ease != 1.0:
+        for s in range(state.stiffness.shape[0]):
+            world.coefficients.stiffness[s] = state.stiffness[s]
+            world.coefficients.damping[s] = state.damping[s]
+        _turn_all_into_substep(world, ease)
+    elif world.plan[HAS_RINGS] != 0:
+        limit_rings(state, world.coefficients.constraint_stiffness, world.coefficients.constraint_damping)
+    if choices[IS_AUTO] != 0 and count > 1:
+        # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
+        _scale_impulses(world, 1.0 / count)
+    kept = world.collisions.kept
+    for c in range(world.collisions.counts[KEPT]):
+        kept.impact[c] = 0.0
+
+
+@inner_kernel
+def _ease(world: WorldBlock) -> float:
+    # 1 + drag h, of a whole tick where ticks choose their parts, see substeps.py.
+    choices = world.choices
+    parts = 1 if choices[IS_AUTO] != 0 else world.progress[COUNT]
+    return 1.0 + world.numbers[DRAG] / (choices[TICK_RATE] * parts)
+
+
+@inner_kernel
+def _turn_all_into_substep(world: WorldBlock, ease: float) -> None:
+    state, into, count = world.state, world.coefficients, world.progress[COUNT]
+    keeps = MOTION
+    if world.choices[SOLVER] == DIRECT:
+        keeps = ALL_CONSTANT if world.choices[IS_AUTO] != 0 else ALL_BUT_FIRM
+    limit_rings(state, into.constraint_stiffness, into.constraint_damping)
+    highest = world.numbers[HIGHEST]
+    turn_into_substep(into.stiffness, into.damping, state.lowest_mode, count, keeps, highest, ease)
+    turn_into_substep(
+        into.constraint_stiffness, into.constraint_damping, state.constraint_lowest_mode, count, keeps, highest, ease
+    )
+
+
+@inner_kernel
+def _scale_impulses(world: WorldBlock, factor: float) -> None:
+    state, kept = world.state, world.collisions.kept
+    for s in range(state.tension.shape[0]):
+        state.impulse[s, 0] *= factor
+        state.impulse[s, 1] *= factor
+        state.tension[s] *= factor
+    for c in range(world.collisions.counts[KEPT]):
+        kept.impulse[c, 0] *= factor
+        kept.impulse[c, 1] *= factor
+    for k in range(state.actuator_impulse.shape[0]):
+        state.actuator_impulse[k] *= factor
+
+
+@inner_kernel
+def _inputs(world: WorldBlock) -> Inputs:
+    # Where nothing turns them into others, Cs and Cd are those of the tick.
+    state, into, progress = world.state, world.coefficients, world.progress
+    ease = _ease(world)
+    turned = progress[COUNT] > 1 or ease != 1.0
+    limited = turned or world.plan[HAS_RINGS] != 0
+    driven = progress[DONE] == 0 and world.drives.muscle.shape[0] + world.drives.hydraulic.shape[0] > 0
+    return Inputs(
+        into.stiffness if turned else state.stiffness,
+        into.damping if turned else state.damping,
+        into.constraint_stiffness if limited else state.constraint_stiffness,
+        into.constraint_damping if limited else state.constraint_damping,
+        world.start,
+        world.start_length if driven else state.rest_length,
+        ease,
+    )
+
+
+@inner_kernel
+def _find_contacts(world: WorldBlock, touches: bool, drives: bool, h: float) -> bool:
+    # And the islands that they make with joints; whether there is room for all.
+    collisions, state = world.collisions, world.state
+    if touches and not detect(state, collisions, world.progress[TICK], h):
+        return False
+    if world.choices[SOLVER] == DIRECT and (drives or collisions.counts[BOUND] > 0):
+        return find_body_islands(bound_contacts(collisions), state.inverse_mass, world.system, world.workspace)
+    return True
+
+
+@inner_kernel
+def _take_back_forces(world: WorldBlock) -> None:
+    for p in range(world.start.shape[0]):
+        world.state.velocity[p, 0] = world.start[p, 0]
+        world.state.velocity[p, 1] = world.start[p, 1]
+
+
+@inner_kernel
+def _solve(world: WorldBlock, given: Inputs, drives: bool, h: float) -> None:
+    # Bring velocities to the end of a substep by the solver that is set. Another solver is a branch here.
+    state, solver, workspace, choices = world.state, world.choices[SOLVER], world.workspace, world.choices
+    contacts = bound_contacts(world.collisions)
+    if solver == SINGLE_PASS:
+        solve_single_pass(
+            state, world.explicit, given, contacts, workspace.terms, workspace.delassus, choices[ITERATIONS], h
+        )
+        return
+    if world.plan[HAS_HOOKE] != 0:
+        apply_explicit(state, given, world.explicit, False, h)
+    count = world.progress[COUNT]
+    if solver == ITERATIVE:
+        solve_iterative(
+            state, world.iteration, given, contacts, workspace.terms, workspace.delassus, choices[ITERATIONS],
+            world.numbers[WARM_START], count > 1, h,
+        )  # fmt: skip
+    else:
+        has_islands = drives or contacts.particle.shape[0] > 0
+        auto_substeps = count if choices[IS_AUTO] != 0 else 0
+        solve_direct(state, world.system, given, contacts, workspace, has_islands, auto_substeps, h)
+
+
+@inner_kernel
+def _begin_flight(world: WorldBlock, touches: bool, h: float) -> None:
+    progress, state, flight = world.progress, world.state, world.flight
+    if progress[MAY_FLY] == 0 or progress[DONE] > 0:
+        return
+    found = False
+    for p in range(state.unmoved.shape[0]):
+        found = found or state.unmoved[p]
+    if found:
+        label_all_joined(state, flight)
+        alone = h
+        if touches:
+            mark_pushed(world.collisions, flight.label, flight.stays)
+            alone = h / small_steps(h)
+        begin_flight(state, world.numbers, flight, alone, h)
+
+
+@inner_kernel
+def _end_tick(world: WorldBlock) -> None:
+    # Bring kept impulses back to those of a tick, and stop every cursor.
+    progress, velocity, first = world.progress, world.state.velocity, world.plan[GRAB_PARTICLE]
+    if world.choices[IS_AUTO] != 0 and progress[COUNT] > 1:
+        _scale_impulses(world, 1.0 * progress[COUNT])
+    if first >= 0:
+        for p in range(first, first + GRAB_COUNT):
+            velocity[p, 0] = 0.0
+            velocity[p, 1] = 0.0

@@ -1,0 +1,20 @@
+"""The input of a substep, as solvers take it."""
+
+from typing import NamedTuple
+
+from sandbox.physics.world import Floats
+
+
+class Inputs(NamedTuple):
+    """The input of a substep: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
+
+    start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives. ease: 1 + drag h.
+    """
+
+    stiffness: Floats
+    damping: Floats
+    constraint_stiffness: Floats
+    constraint_damping: Floats
+    start: Floats
+    start_length: Floats
+    ease: float
