@@ -11,25 +11,20 @@ from sandbox.physics.state import Slots, StateArrays
 Flags = NDArray[np.bool_]
 
 
-@kernel
-def label_bodies(link_a: Slots, link_b: Slots, label: Slots) -> None:
+@inner_kernel
+def label_linked(link_a: Slots, link_b: Slots, label: Slots) -> None:
     """Label every node (n,) with the lowest node of its connected component; label holds 0..n-1 at the start."""
     for k in range(link_a.shape[0]):
-        a = link_a[k]
-        b = link_b[k]
-        while label[a] != a:
-            label[a] = label[label[a]]
-            a = label[a]
-        while label[b] != b:
-            label[b] = label[label[b]]
-            b = label[b]
-        if a < b:
-            label[b] = a
-        else:
-            label[a] = b
+        join(label, link_a[k], link_b[k])
     # Labels never point upwards, so one ascending pass flattens them.
     for node in range(label.shape[0]):
         label[node] = label[label[node]]
+
+
+@kernel
+def label_bodies(link_a: Slots, link_b: Slots, label: Slots) -> None:
+    """Label every node as `label_linked` does."""
+    label_linked(link_a, link_b, label)
 
 
 class JoinSources(NamedTuple):

@@ -4,8 +4,10 @@ import numpy as np
 
 from sandbox.physics.actuators import Actuators, Muscles
 from sandbox.physics.analysis import lowest_mode
+from sandbox.physics.collision.close_edges import close_edges
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import pinned_edges
+from sandbox.physics.components import body_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.pipeline.making import block_of
@@ -31,7 +33,9 @@ def call_every_kernel() -> None:
     system = layout_of(world).system
     parallel.precompile_help(system.fronts, system.rows.delta_v)
     lowest_mode.precompile_modes()
-    # Nor has any an edge that is pinned at both ends.
+    # Nor has any an edge, let alone one that is pinned at both ends.
     for particle in (0, 1):
         world.pin(particle)
     pinned_edges(world, np.array([0]), np.array([1]), np.array([0]))
+    body_of(world, 0)
+    close_edges(world.origin, np.array([0]), np.array([1]), np.zeros(2, np.int64), np.array([-1]))

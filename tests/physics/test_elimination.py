@@ -71,7 +71,7 @@ def test_every_block_of_the_factor_has_its_place(seed, smallest_body):
     made, room, small, counts = order_for_elimination(links)
     count = len(links.x)
     joined = fill(count, made.rank, links)
-    found, places, fronts = new_fronts(count, made.first_front, counts[BODIES], room, counts[FRONTS], counts[BORDERS])
+    fronts = new_fronts(count, made.first_front, counts[BODIES], room, counts[FRONTS], counts[BORDERS])
     matrix = new_matrix(count, small.order[: counts[elimination.SMALL]], small.columns, made.row_of)
     of_body = np.diff(made.first_front[: counts[BODIES] + 1]) > 0
     assert np.array_equal(fronts.of_row >= 0, of_body[made.body])
@@ -90,7 +90,7 @@ def test_every_block_of_the_factor_has_its_place(seed, smallest_body):
     # No two numbers of fronts share a place.
     taken = [
         base + np.arange(2 * (last - first) * width)
-        for base, width, first, last in zip(places.base, places.width, found.first, found.last, strict=True)
+        for base, width, first, last in zip(fronts.base, fronts.width, fronts.first, fronts.last, strict=True)
     ]
     assert sorted(np.concatenate([*taken, np.zeros(0, np.int64)]).tolist()) == list(range(len(fronts.numbers)))
 

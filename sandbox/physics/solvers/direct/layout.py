@@ -16,7 +16,7 @@ from sandbox.physics.solvers.direct.jelly_groups import group_constraints
 from sandbox.physics.solvers.direct.placing import Lying, Places, places_of
 from sandbox.physics.solvers.direct.system import SPIN_NUMBERS, Bodies, Constraints, Rows, Springs, System
 from sandbox.physics.solvers.linear.elimination import BODIES, BORDERS, FRONTS, SMALL, Links, order_for_elimination
-from sandbox.physics.solvers.linear.front_layout import new_fronts
+from sandbox.physics.solvers.linear.front_layout import FrontBlocks, new_fronts
 from sandbox.physics.solvers.linear.matrix_layout import new_matrix
 from sandbox.physics.solvers.linear.parallel import start_helper
 from sandbox.physics.state import Slots
@@ -55,11 +55,13 @@ def make_layout(world: World) -> SystemLayout:
     joined = Links(chosen.link_a[:links], chosen.link_b[:links], chosen.x[:nodes], chosen.y[:nodes])
     elimination, room, small, found = order_for_elimination(joined)
     bodies = found[BODIES]
-    dissection, front_places, fronts = new_fronts(
-        nodes, elimination.first_front, bodies, room, found[FRONTS], found[BORDERS]
-    )
+    fronts = new_fronts(nodes, elimination.first_front, bodies, room, found[FRONTS], found[BORDERS])
     matrix = new_matrix(nodes, small.order[: found[SMALL]], small.columns, elimination.row_of)
-    lying = Lying(elimination, matrix.column_start, matrix.row, dissection, front_places)
+    blocks = FrontBlocks._make([getattr(fronts, name) for name in FrontBlocks._fields])
+    lying = Lying(
+        elimination.order, elimination.rank, elimination.body, elimination.first_row, elimination.lowest,
+        matrix.column_start, matrix.row, blocks,
+    )  # fmt: skip
     places, most_wide = places_of(counts, bodies, given, chosen, lying)
     rows = _rows(places.particle)
     constraints = _constraints(places, nodes, most_wide)

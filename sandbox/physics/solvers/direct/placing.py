@@ -16,9 +16,7 @@ from sandbox.physics.solvers.direct.choosing import (
     MatrixContents,
     MatrixSources,
 )
-from sandbox.physics.solvers.linear.dissection import Dissection
-from sandbox.physics.solvers.linear.elimination import Elimination
-from sandbox.physics.solvers.linear.front_layout import FrontPlaces, block_in_front
+from sandbox.physics.solvers.linear.front_layout import FrontBlocks, block_in_front
 from sandbox.physics.solvers.linear.matrix_layout import block_below
 from sandbox.physics.state import Slots
 from sandbox.physics.topology.sorting import list_by_key, sort_by_key
@@ -28,13 +26,16 @@ NO_PIVOT, SEVERAL_PIVOTS = -1, -2
 
 
 class Lying(NamedTuple):
-    """What is known of the matrix: its elimination, its sparse columns, its fronts."""
+    """What is known of the matrix: its order of elimination, see Elimination, its sparse columns, its fronts."""
 
-    elimination: Elimination
+    order: Slots
+    rank: Slots
+    body: Slots
+    first_row: Slots
+    lowest: Slots
     column_start: Slots
     row: Slots
-    dissection: Dissection
-    fronts: FrontPlaces
+    fronts: FrontBlocks
 
 
 class Places(NamedTuple):
@@ -73,8 +74,8 @@ class PlaceScratch(NamedTuple):
 @inner_kernel
 def _row_of(p: int, chosen: MatrixContents, lying: Lying) -> int:
     k = chosen.number[p]
-    nodes = lying.elimination.rank.shape[0]
-    return lying.elimination.rank[k] if k < nodes else k
+    nodes = lying.rank.shape[0]
+    return lying.rank[k] if k < nodes else k
 
 
 @inner_kernel
@@ -82,20 +83,19 @@ def _block_of(row_a: int, row_b: int, lying: Lying) -> int:
     # The block that two rows share; -1: one is pinned.
     low = min(row_a, row_b)
     high = max(row_a, row_b)
-    if high >= lying.elimination.rank.shape[0]:
+    if high >= lying.rank.shape[0]:
         return -1
     if lying.fronts.of_row[low] >= 0:
-        return block_in_front(low, high, lying.dissection, lying.fronts)
+        return block_in_front(low, high, lying.fronts)
     return block_below(low, high, lying.column_start, lying.row)
 
 
 @inner_kernel
 def _place_bodies(bodies: int, chosen: MatrixContents, lying: Lying, places: Places) -> None:
-    elimination = lying.elimination
     places.row_start[0] = 0
     for b in range(bodies):
-        places.row_start[b + 1] = elimination.first_row[b + 1]
-        places.lowest[b] = chosen.particle[elimination.lowest[b]]
+        places.row_start[b + 1] = lying.first_row[b + 1]
+        places.lowest[b] = chosen.particle[lying.lowest[b]]
         places.pivot[b] = NO_PIVOT
         places.anchored[b] = False
 
@@ -122,13 +122,13 @@ def _place_springs(
     work: PlaceScratch,
 ) -> None:
     # Body by body; those of a large one in the order of its rows: what a step reads together then lies together.
-    nodes = lying.elimination.rank.shape[0]
+    nodes = lying.rank.shape[0]
     for k in range(count):
         s = chosen.spring[k]
         row_a = _row_of(given.particle_a[s], chosen, lying)
         row_b = _row_of(given.particle_b[s], chosen, lying)
         low = min(row_a, row_b)
-        work.key[k] = lying.elimination.body[low]
+        work.key[k] = lying.body[low]
         work.low[k] = low if lying.fronts.of_row[low] >= 0 else 0
         _anchor(work.key[k], max(row_a, row_b), nodes, places)
     list_by_key(work.low, count, nodes, work.start, work.items)
@@ -153,12 +153,12 @@ def _sort_constraints(
     places: Places,
     work: PlaceScratch,
 ) -> None:
-    nodes = lying.elimination.rank.shape[0]
+    nodes = lying.rank.shape[0]
     for k in range(count):
         low = nodes
         for at in range(chosen.start[k], chosen.start[k + 1]):
             low = min(low, _row_of(given.corner_particle[chosen.corner[at]], chosen, lying))
-        work.key[k] = lying.elimination.body[low]
+        work.key[k] = lying.body[low]
     list_by_key(work.key, count, bodies, places.constraint_start, work.order)
 
 
@@ -173,7 +173,7 @@ def _place_constraints(
     work: PlaceScratch,
 ) -> int:
     # Body by body; how many wide ones a body has at most.
-    nodes = lying.elimination.rank.shape[0]
+    nodes = lying.rank.shape[0]
     top = 0
     most = 0
     number = 0
@@ -214,9 +214,9 @@ def place_all(
 
     counts: of what was chosen; narrow: see NARROW.
     """
-    nodes = lying.elimination.rank.shape[0]
+    nodes = lying.rank.shape[0]
     for row in range(nodes):
-        places.particle[row] = chosen.particle[lying.elimination.order[row]]
+        places.particle[row] = chosen.particle[lying.order[row]]
     for k in range(nodes, nodes + counts[ANCHORS]):
         places.particle[k] = chosen.particle[k]
     _place_bodies(bodies, chosen, lying, places)

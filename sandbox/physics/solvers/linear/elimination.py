@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.components import label_bodies
+from sandbox.physics.components import label_linked
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.solvers.linear import dissection
 from sandbox.physics.solvers.linear.dissection import (
@@ -64,7 +64,7 @@ def _find_bodies(links: Links, made: Elimination) -> int:
     nodes = made.order.shape[0]
     for node in range(nodes):
         made.label[node] = node
-    label_bodies(links.a, links.b, made.label)
+    label_linked(links.a, links.b, made.label)
     bodies = 0
     for node in range(nodes):
         if made.label[node] == node:

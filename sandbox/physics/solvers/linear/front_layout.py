@@ -107,22 +107,32 @@ def _lay_out_fronts(
     lay_out_fronts(first_front, bodies, found, places, worth, lengths)
 
 
+class FrontBlocks(NamedTuple):
+    """Where the blocks of large bodies lie: see Fronts."""
+
+    of_row: Slots
+    width: Slots
+    base: Slots
+    first: Slots
+    last: Slots
+    border_start: Slots
+    border: Slots
+
+
 @inner_kernel
-def block_in_front(low: int, high: int, found: Dissection, places: FrontPlaces) -> int:
+def block_in_front(low: int, high: int, fronts: FrontBlocks) -> int:
     """Where the block between the rows low < high of a large body begins in the numbers of its fronts."""
-    front = places.of_row[low]
-    first = found.first[front]
+    front = fronts.of_row[low]
+    first = fronts.first[front]
     column = high - first
-    if high >= found.last[front]:
-        begin = found.border_start[front]
-        at = place_among(high, found.border, begin, found.border_start[front + 1])
-        column = found.last[front] - first + at - begin
-    return places.base[front] + 2 * (low - first) * places.width[front] + 2 * column
+    if high >= fronts.last[front]:
+        begin = fronts.border_start[front]
+        at = place_among(high, fronts.border, begin, fronts.border_start[front + 1])
+        column = fronts.last[front] - first + at - begin
+    return fronts.base[front] + 2 * (low - first) * fronts.width[front] + 2 * column
 
 
-def new_fronts(
-    rows: int, first_front: Slots, bodies: int, room: Dissection, fronts: int, borders: int
-) -> tuple[Dissection, FrontPlaces, Fronts]:
+def new_fronts(rows: int, first_front: Slots, bodies: int, room: Dissection, fronts: int, borders: int) -> Fronts:
     """The fronts of a matrix of so many rows, of those found in room; first_front (b+1,): of each body."""
     found = Dissection(
         room.first[:fronts], room.last[:fronts], room.child[:fronts], room.place[:fronts],
@@ -137,7 +147,7 @@ def new_fronts(
     )  # fmt: skip
     _lay_out_fronts(first_front, bodies, found, places, parallel.WORTH_HALVING, lengths)
     numbers, remainder, widest = lengths.tolist()
-    return found, places, Fronts(
+    return Fronts(
         of_row, diagonal, row_width, found.first, found.last, found.child, found.border_start, found.border,
         found.to_parent, width, base, remains, np.zeros(numbers), np.zeros(remainder), np.zeros(2 * rows), fork,
         _scratch(widest), _scratch(widest), np.zeros((rows, 2)), np.zeros(CALL_LENGTH, np.int64),
