@@ -1,13 +1,10 @@
 """Collisions of a step: their arrays are made once, have room that grows, and change no bit of a run."""
 
 import copy
-import sys
-from functools import partial
 
 import numpy as np
 import pytest
 
-from sandbox.physics import jit
 from sandbox.physics.collision.types import NO_CONTACTS
 from sandbox.physics.pipeline import making
 from sandbox.physics.pipeline.making import block_of
@@ -16,6 +13,7 @@ from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from tests.bench import scenes
+from tests.support.calls import counted_calls
 from tests.support.contact_scenes import add_discs, add_jelly, world
 from tests.support.contacts import collisions_of, last_contacts
 from tests.support.physics_scenes import run, scaled
@@ -79,15 +77,10 @@ def test_a_tick_calls_one_kernel_whatever_is_in_its_world(monkeypatch):
     rope.hold(0, 2, (0.1, 0.1))
     for w in (jelly, discs, rope):
         run(w, 20)
-    calls = []
-    for entry in (entry for entry in jit.entries() if not isinstance(entry.held, jit.Entry)):
-        counted = partial(lambda held, *arguments: calls.append(held) or held(*arguments), entry.held)
-        for module in [module for name, module in sys.modules.items() if name.startswith("sandbox")]:
-            if vars(module).get(entry.function.__name__) is entry.held:
-                monkeypatch.setattr(module, entry.function.__name__, counted)
-    for w in (jelly, discs, rope):
-        run(w, 5)
-    assert len(calls) == 15 and len(set(calls)) == 1
+    with counted_calls() as calls:
+        for w in (jelly, discs, rope):
+            run(w, 5)
+    assert calls == ["tick"] * 15
 
 
 def test_a_run_goes_on_with_the_same_bits_after_slots_were_added_and_taken_back_while_things_touch():
