@@ -7,7 +7,8 @@ one of strides for each dimension. A named tuple is the words of its fields, one
 import ctypes
 import functools
 import hashlib
-from typing import Any
+import struct
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,33 +28,48 @@ Signature = tuple[Any, ...]
 SIGNATURES: dict[str, Signature] = {}
 
 
+class _Part(NamedTuple):
+    """What lies in a bundle for an array or a tuple: its words and signature, and the parts of a tuple."""
+
+    item: Any
+    words: bytes
+    signature: Signature
+    parts: tuple["_Part", ...]
+
+
 class _Words(bytearray):
-    """What a bundle points to, and the arrays that its words are the addresses of, which live as long.
+    """What a bundle points to, and the arrays that its words are the addresses of, which live as long."""
 
-    parts: the words and the signature of each item.
-    """
-
-    items: Any
-    parts: list[tuple[bytes, Signature]]
+    whole: _Part
 
 
 def owner_of(bundle: Any) -> Any:
-    """The object that holds what a bundle was made of, as `items`."""
+    """The object that holds what a bundle was made of: `whole.item`."""
     base: Any = bundle.base
     return base.obj if isinstance(base, memoryview) else base
 
 
-def _add_words(item: Any, words: list[int]) -> Signature:
-    """Add the words of what lies in a bundle; its signature, quicker to compare than a type of numba."""
+def _part(item: Any, like: _Part | None) -> _Part:
+    """The part of an item; like: one whose items may be the same."""
+    if like is not None and like.item is item:
+        return like
     if isinstance(item, np.ndarray):
         if not item.flags.c_contiguous:
             raise TypeError("arrays in a bundle are contiguous")
         address = _address_at(id(item) + _ADDRESS).value
-        words += (0, 0, item.size, item.itemsize, address, *item.shape, *item.strides)
-        return item.dtype.str, item.ndim
+        words = _packed(item.ndim).pack(0, 0, item.size, item.itemsize, address, *item.shape, *item.strides)
+        return _Part(item, words, (item.dtype.str, item.ndim), ())
     if not isinstance(item, tuple):
         raise TypeError(f"a bundle holds arrays and tuples of them, not {type(item).__name__}")
-    return type(item), *[_add_words(part, words) for part in item]
+    known = like.parts if like is not None and len(like.parts) == len(item) else (None,) * len(item)
+    parts = tuple(map(_part, item, known))
+    signature = type(item), *(part.signature for part in parts)
+    return _Part(item, b"".join([part.words for part in parts]), signature, parts)
+
+
+@functools.cache
+def _packed(dimensions: int) -> struct.Struct:
+    return struct.Struct(f"={HEAD_WORDS + 2 * dimensions}q")
 
 
 def signature_text(signature: Signature) -> str:
@@ -86,17 +102,7 @@ def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
     Raises:
         TypeError: for what is neither array nor tuple, and for arrays that are not contiguous.
     """
-    last = None if like is None else owner_of(like)
-    parts = [
-        last.parts[k] if last is not None and item is last.items[k] else _part(item) for k, item in enumerate(items)
-    ]
-    owner = _Words(b"".join(words for words, _ in parts))
-    owner.items, owner.parts = items, parts
-    signature = type(items), *(signature for _, signature in parts)
-    return np.frombuffer(owner, dtype=_dtype(signature, len(owner) // WORD))
-
-
-def _part(item: Any) -> tuple[bytes, Signature]:
-    words: list[int] = []
-    signature = _add_words(item, words)
-    return np.array(words, dtype=np.int64).tobytes(), signature
+    whole = _part(items, None if like is None else owner_of(like).whole)
+    owner = _Words(whole.words)
+    owner.whole = whole
+    return np.frombuffer(owner, dtype=_dtype(whole.signature, len(owner) // WORD))

@@ -42,7 +42,7 @@ class InterpreterFunction:
 
 def _viewed(item: Any) -> Any:
     if isinstance(item, np.ndarray):
-        return memoryview(cast(Any, item)) if item.dtype.fields is None else Bundle(owner_of(item).items)
+        return memoryview(cast(Any, item)) if item.dtype.fields is None else Bundle(owner_of(item).whole.item)
     if isinstance(item, tuple) and hasattr(item, "_make"):
         return cast(Any, item)._make(map(_viewed, item))
     return item

@@ -1,6 +1,7 @@
 """Makes the block of a world, and makes it larger where a step wants more room."""
 
 import functools
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,39 +65,63 @@ class Block:
 
     def __init__(self, world: World) -> None:
         self.wanted = np.zeros(BOUND, np.int64)
+        self.kept = NOTHING_KEPT
         self._room = _Room(0, 0)
+        self._scratch: dict[Callable[..., Any], tuple[tuple[int, ...], dict[str, Any]]] = {}
         self._make(world)
 
     def _make(self, world: World) -> None:
         self._topology, self._hands, self._settings = world.topology_version, world.hand_version, world.settings
         self.wanted[[CONTACTS, KEPT]] = np.maximum(self.wanted[[CONTACTS, KEPT]], len(world.contact_particle))
         self.wanted[ENTRIES] = max(self.wanted[ENTRIES], world.particle_count)
-        springs, constraints = world.spring_count, world.constraint_count
-        collisions, joints = _make_collisions(world, self.wanted), joints_of(world)
+        collisions, joints = self._collisions(world), joints_of(world)
         solving = _for_solver(world, joints.rows, len(collisions.bound.particle), self._room)
         self.arrays = WorldBlock(
             state=state_of(world),
             good=good_of(world),
-            numbers=np.zeros(7),
-            choices=np.zeros(5, np.int64),
             plan=_plan_of(world),
-            progress=np.zeros(5, np.int64),
-            start=np.zeros((world.particle_count, 2)),
-            start_length=np.zeros(springs),
-            shortest=np.zeros(GRAB_COUNT),
-            coefficients=Coefficients(*np.zeros((2, springs)), *np.zeros((2, constraints))),
             drives=drives_of(world.actuators),
             limits=_limits_of(world),
-            flight=new_flight(world.particle_count),
             collisions=collisions,
             joints=joints,
             triangles=world_triangles(world),
+            **self._again(_new_scratch, world.particle_count, world.spring_count, world.constraint_count),
             **solving._asdict(),
         )
-        self.kept = NOTHING_KEPT
         _load_settings(world.settings, self.arrays)
         self._point()
         _bound_terrain(self.pointer)
+
+    def _again(self, make: Callable[..., dict[str, Any]], *sizes: int) -> dict[str, Any]:
+        """The scratch that was made last, where it is to be as large as then; else new scratch."""
+        if make not in self._scratch or self._scratch[make][0] != sizes:
+            self._scratch[make] = sizes, make(*sizes)
+        return self._scratch[make][1]
+
+    def _collisions(self, world: World) -> Collisions:
+        """The collisions of a world with room for more than is wanted, which keep the contacts of the last step."""
+        contacts, kept, *room = (MORE_ROOM * self.wanted + LEAST_ROOM).tolist()
+        contacts, particles = max(contacts, kept), world.particle_count
+        if world.has_contacts:
+            outline, triangles = outline_of(world), world.derived(triangles_of, of_hands=False)
+            objects, shapes = particles + int(outline.dynamic[0]), len(outline.solid_of)
+            made = Collisions(
+                outline=outline,
+                triangles=triangles,
+                colliders=colliders_of(world, outline, room[-1]),
+                bounds=np.zeros((len(outline.solid), 5)),
+                inversions=new_inversions(triangles),
+                shape_bounds=new_shape_bounds(shapes),
+                counts=np.zeros(BOUND + 1, np.int64),
+                **self._again(_new_collision_scratch, particles, objects, shapes, contacts, *room),
+            )
+        else:
+            made = _no_collisions()._replace(kept=room_to_keep(contacts), counts=np.zeros(BOUND + 1, np.int64))
+        if self.kept.impulse.base is made.kept.impulse:
+            made.counts[KEPT] = len(self.kept.particle)
+        else:
+            self.kept = NOTHING_KEPT
+        return made
 
     def follow(self, world: World) -> None:
         """Follow what has changed of a world's topology."""
@@ -153,13 +178,12 @@ class Block:
     def _grow_collisions(self, world: World) -> None:
         old, workspace = self.arrays.collisions, self.arrays.workspace
         self.wanted = np.maximum(self.wanted, old.counts[:BOUND])
-        made, count = _make_collisions(world, self.wanted), len(old.kept.particle)
+        made, count = self._collisions(world), len(old.kept.particle)
         made.counts[:] = old.counts
         for name in KeptContacts._fields:
             getattr(made.kept, name)[:count] = getattr(old.kept, name)
         terms = new_contact_constraints(len(made.bound.particle), workspace.terms.surface)
         self.arrays = self.arrays._replace(collisions=made, workspace=workspace._replace(terms=terms))
-        self.kept = NOTHING_KEPT
         self._point()
         _bound_terrain(self.pointer)
 
@@ -274,40 +298,44 @@ def _limits_of(world: World) -> MaterialLimits:
     )  # fmt: skip
 
 
-def _make_collisions(world: World, wanted: Slots) -> Collisions:
-    """The collisions of a world with room for more than is wanted; of one in which nothing can touch, empty ones."""
-    contacts, kept, entries, pairs, terrain_pairs, crossings, overlaps = (MORE_ROOM * wanted + LEAST_ROOM).tolist()
-    contacts = max(contacts, kept)
-    if not world.has_contacts:
-        return _no_collisions()._replace(kept=room_to_keep(contacts), counts=np.zeros(BOUND + 1, np.int64))
-    outline, triangles, particles = outline_of(world), world.derived(triangles_of, of_hands=False), world.particle_count
-    objects = particles + int(outline.dynamic[0])
-    boxes, shapes = new_boxes(particles, objects), len(outline.solid_of)
-    return Collisions(
-        outline=outline,
-        triangles=triangles,
-        colliders=colliders_of(world, outline, overlaps),
-        boxes=boxes,
-        grid=new_grid(objects, entries),
-        candidates=Candidates(new_pairs(particles, pairs), new_pairs(particles, terrain_pairs), boxes.box),
-        bounds=np.zeros((len(outline.solid), 5)),
-        near=room_near(),
-        contacts=room_for(contacts),
-        bound=room_for(contacts),
-        kept=room_to_keep(contacts),
-        islands=new_free_islands(particles, contacts),
-        work=new_work(particles, contacts),
-        inversions=new_inversions(triangles),
-        shape_bounds=new_shape_bounds(shapes),
-        overlaps=new_overlaps(shapes, crossings, overlaps),
-        moved=np.zeros(particles, np.bool_),
-        attached=np.zeros(particles, np.bool_),
-        counts=np.zeros(BOUND + 1, np.int64),
-    )
+def _new_scratch(particles: int, springs: int, constraints: int) -> dict[str, Any]:
+    """What a world of so many wants whatever is in it, by its names in the block."""
+    return {
+        "numbers": np.zeros(7),
+        "choices": np.zeros(5, np.int64),
+        "progress": np.zeros(5, np.int64),
+        "start": np.zeros((particles, 2)),
+        "start_length": np.zeros(springs),
+        "shortest": np.zeros(GRAB_COUNT),
+        "coefficients": Coefficients(*np.zeros((2, springs)), *np.zeros((2, constraints))),
+        "flight": new_flight(particles),
+    }
+
+
+def _new_collision_scratch(
+    particles: int, objects: int, shapes: int, contacts: int, entries: int, pairs: int, terrain_pairs: int,
+    crossings: int, overlaps: int,
+) -> dict[str, Any]:  # fmt: skip
+    """What steps fill in, with room for so many of each, by its names in Collisions."""
+    boxes = new_boxes(particles, objects)
+    return {
+        "boxes": boxes,
+        "grid": new_grid(objects, entries),
+        "candidates": Candidates(new_pairs(particles, pairs), new_pairs(particles, terrain_pairs), boxes.box),
+        "near": room_near(),
+        "contacts": room_for(contacts),
+        "bound": room_for(contacts),
+        "kept": room_to_keep(contacts),
+        "islands": new_free_islands(particles, contacts),
+        "work": new_work(particles, contacts),
+        "overlaps": new_overlaps(shapes, crossings, overlaps),
+        "moved": np.zeros(particles, np.bool_),
+        "attached": np.zeros(particles, np.bool_),
+    }
 
 
 @functools.cache
 def _no_collisions() -> Collisions:
     world = World()
     world.add_particles(["a"], [[0.0, 0.0]], collides=1)
-    return _make_collisions(world, np.zeros(BOUND, np.int64))
+    return Block(world).arrays.collisions
