@@ -9,13 +9,12 @@ from sandbox.physics.collision.types import Flags
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.joints.limited_springs import unlimited_active
 from sandbox.physics.state import Floats, Slots
-from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
+from sandbox.physics.world import LAW_NISSEN, World
 
 # Corners at most of a constraint that is added to the matrix; one of more is wide.
 NARROW = 3
-# Places in `counts`: springs of the matrix, constraints and their corners, free particles, pinned ones, links between
-# free ones, springs of Hooke's law.
-SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, HOOKE, COUNTS = range(8)
+# Places in `counts`: springs, constraints and their corners, free particles, pinned ones, links between free ones.
+SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, COUNTS = range(7)
 
 
 class MatrixSources(NamedTuple):
@@ -39,7 +38,7 @@ class MatrixContents(NamedTuple):
     spring; constraint, those with a free corner, k of them: corners corner[start[k]:start[k + 1]]. particle: free ones,
     the nodes, then pinned ones; number (n,): place of each in that, -1: none. link_a, link_b: nodes that are joined, of
     a narrow constraint all, of a wide one each free corner and the next free one, past the pinned. x, y [m]: where
-    nodes were created. hooke (m,): springs of Hooke's law, which are no part of it.
+    nodes were created.
     """
 
     spring: Slots
@@ -52,26 +51,20 @@ class MatrixContents(NamedTuple):
     link_b: Slots
     x: Floats
     y: Floats
-    hooke: Flags
 
 
 @inner_kernel
 def _choose_springs(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
     springs = 0
-    hooke = 0
     for s in range(given.law.shape[0]):
         a = given.particle_a[s]
         b = given.particle_b[s]
-        chosen.hooke[s] = given.unlimited[s] and given.law[s] == LAW_HOOKE
-        if chosen.hooke[s]:
-            hooke += 1
         moves = given.inverse_mass[a] > 0.0 or given.inverse_mass[b] > 0.0
         if moves and given.unlimited[s] and given.law[s] == LAW_NISSEN:
             chosen.spring[springs] = s
             chosen.number[a] = chosen.number[b] = 0
             springs += 1
     counts[SPRINGS] = springs
-    counts[HOOKE] = hooke
 
 
 @inner_kernel
@@ -184,7 +177,7 @@ def chosen_of(world: World) -> tuple[MatrixSources, MatrixContents, list[int]]:
     x, y = np.zeros((2, particles))
     chosen = MatrixContents(
         np.zeros(springs, np.int64), np.zeros(constraints, np.int64), np.zeros(constraints + 1, np.int64),
-        np.zeros(corners, np.int64), particle, number, link_a, link_b, x, y, np.zeros(springs, np.bool_),
+        np.zeros(corners, np.int64), particle, number, link_a, link_b, x, y,
     )  # fmt: skip
     _choose_for_matrix(given, chosen, NARROW, counts)
     return given, chosen, counts.tolist()

@@ -8,10 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sandbox.physics.jit import bundle
-from sandbox.physics.solvers.direct.choosing import HOOKE, LINKS, NODES, chosen_of
+from sandbox.physics.solvers.direct.choosing import LINKS, NODES, chosen_of
 from sandbox.physics.solvers.direct.jelly_groups import group_constraints
 from sandbox.physics.solvers.direct.placing import Lying, Places, places_of
 from sandbox.physics.solvers.direct.system import SPIN_NUMBERS, Bodies, Constraints, Rows, Springs, System
@@ -26,15 +24,9 @@ from sandbox.physics.world import World
 
 @dataclass(frozen=True, eq=False)
 class SystemLayout:
-    """Everything about a world's system that its topology and pins decide, with the scratch arrays of a step.
+    """Everything about a world's system that its topology and pins decide, with the scratch arrays of a step."""
 
-    hooke (m,): springs of Hooke's law, which are no part of it. lent: the system as one argument for kernels.
-    """
-
-    has_hooke: bool
-    hooke: NDArray[np.bool_]
     system: System
-    lent: Any
 
 
 def layout_of(world: World) -> SystemLayout:
@@ -74,7 +66,7 @@ def make_layout(world: World) -> SystemLayout:
         world.terrain,
     )  # fmt: skip
     system = System(_bodies(places), rows, _springs(places), constraints, matrix, fronts, groups, clamped)
-    return SystemLayout(counts[HOOKE] > 0, chosen.hooke, system, bundle((system,)))
+    return SystemLayout(system)
 
 
 def _bodies(places: Places) -> Bodies:

@@ -212,9 +212,8 @@ def _find_places(first_front: int, last_front: int, nodes: Halving, fronts: Diss
 
 
 @inner_kernel
-def begin_dissections(nodes: Halving, fronts: Dissection) -> None:
-    """Prepare for `dissect`."""
-    fronts.border_start[0] = 0
+def begin_dissections(nodes: Halving) -> None:
+    """Prepare for `dissect`; borders begin at 0."""
     for node in range(nodes.part.shape[0]):
         nodes.part[node] = -1
         nodes.mark[node] = -1

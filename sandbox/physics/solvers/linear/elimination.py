@@ -85,9 +85,9 @@ def _dissect_bodies(
 ) -> int:
     # Dissect large bodies; how many fronts there are, or TOO_SHORT.
     count = 0
-    made.first_front[0] = 0
+    made.first_front[0] = fronts.border_start[0] = 0
     if nodes.part.shape[0] > 0:
-        begin_dissections(nodes, fronts)
+        begin_dissections(nodes)
     for b in range(bodies):
         first, last = made.first_row[b], made.first_row[b + 1]
         if last - first >= smallest:
