@@ -15,7 +15,7 @@ from sandbox.physics.components import label_joined
 from sandbox.physics.joints.motors import motor_groups
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.topology import sorting
-from sandbox.physics.untangling.inversion import group_triangles
+from sandbox.physics.untangling.jellies import group_triangles
 from sandbox.physics.world import GRAB_MATERIAL
 from tests.support.tangles import tangle
 

@@ -1,11 +1,11 @@
 """Inversion: finds jellies so far out of shape that springs and areas alone may not bring them back.
 
-A jelly is a group of triangles that share sides. It is inverted while a triangle of it is turned over, or drawn out to
-LARGEST times its area, or while the triangles about one of its inner particles do not wind round that just once. It is
-wound where those about a particle of its outline go on round that beyond where they began: then its outline crosses
-itself there though no triangle is turned over, and what is next to it, which may not touch it, does not hold it apart.
-Where a jelly lies folded over in its own form, some of its triangles counter-clockwise and others not, no turns are
-counted: there is no number of them that is right.
+A jelly (jellies.py) is inverted while a triangle of it is turned over, or drawn out to LARGEST times its area, or while
+the triangles about one of its inner particles do not wind round that just once. It is wound where those about a
+particle of its outline go on round that beyond where they began: then its outline crosses itself there though no
+triangle is turned over, and what is next to it, which may not touch it, does not hold it apart. Where a jelly lies
+folded over in its own form, some of its triangles counter-clockwise and others not, no turns are counted: there is no
+number of them that is right.
 """
 
 from typing import NamedTuple
@@ -14,272 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.components import join, root_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.geometry.polygon import winding_of_side
 from sandbox.physics.geometry.segment import doubled_area, doubled_area_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
 from sandbox.physics.state import Floats, Slots
-from sandbox.physics.topology.sorting import list_by_key, sort_by_key
+from sandbox.physics.untangling.jellies import NO_JELLIES, Jellies, group_triangles
 from sandbox.physics.world import World
 
 # A jelly of which a triangle is drawn out to so many times its area wants to be back in a step, and cannot be without
 # turning others over on its way: held from that, it would stand still. The softest jelly comes to a hundredth of it
 # when it is stirred at 80 m/s.
 LARGEST = 1e4
-
-
-class Jellies(NamedTuple):
-    """Jellies of t triangles: g of them, with k particles in all.
-
-    Of triangles: group (t,) and member (t, 3) = their corners among the k. first (g,): a triangle of each jelly; start
-    (g+1,): where its particles begin; particle (k,); corner (k,): one of the 3 t corners that stands there; inner (k,):
-    whether triangles are all round it. fan (f, 4): a particle of an outline, the next one on that, and the other two
-    corners of each triangle about it but the first; those of jelly g: fan[fan_start[g]:fan_start[g + 1]]. gap (q, 4):
-    the triangle at which those about a particle of an outline begin, that particle, the one before and the next one on
-    that outline.
-    """
-
-    group: Slots
-    member: Slots
-    first: Slots
-    start: Slots
-    particle: Slots
-    corner: Slots
-    inner: Flags
-    fan: Slots
-    fan_start: Slots
-    gap: Slots
-
-
-class TriangleScratch(NamedTuple):
-    """Scratch of 3 t sides and corners of t triangles: label (t,), start (b+1,) with one number for each of b
-    particles, or corner; at sides whether they lie at the rim, by corner of a jelly its first and its last side there.
-    """
-
-    label: Slots
-    start: Slots
-    low: Slots
-    high: Slots
-    one: Slots
-    other: Slots
-    at_rim: Flags
-    lies_flat: Flags
-    begin: Slots
-    end: Slots
-    number: Slots
-
-
-# Of `begin` and `end`: no side of the rim begins or ends there; several do.
-NO_SIDE, SEVERAL = -1, -2
-
-
-@inner_kernel
-def _group(corners: Slots, bound: int, jellies: Jellies, work: TriangleScratch) -> int:
-    # Find the sides that triangles share, work.one in the order of their ends, and number what hangs together.
-    triangles = corners.shape[0]
-    for t in range(triangles):
-        work.label[t] = t
-        for c in range(3):
-            p = corners[t, c]
-            q = corners[t, (c + 1) % 3]
-            work.low[3 * t + c] = min(p, q)
-            work.high[3 * t + c] = max(p, q)
-    list_by_key(work.high, 3 * triangles, bound, work.start, work.other)
-    sort_by_key(work.low, work.other, 3 * triangles, bound, work.start, work.one)
-    for at in range(3 * triangles):
-        side = work.one[at]
-        work.at_rim[side] = True
-        if at > 0 and _is_same(work.one[at - 1], side, work):
-            before = work.one[at - 1]
-            work.at_rim[side] = work.at_rim[before] = False
-            join(work.label, before // 3, side // 3)
-    groups = 0
-    for t in range(triangles):
-        label = root_of(work.label, t)
-        if label == t:
-            jellies.first[groups] = t
-            jellies.group[t] = groups
-            groups += 1
-        else:
-            jellies.group[t] = jellies.group[label]
-    return groups
-
-
-@inlined_kernel
-def _is_same(side: int, other: int, work: TriangleScratch) -> bool:
-    return work.low[side] == work.low[other] and work.high[side] == work.high[other]
-
-
-@inner_kernel
-def _number_corners(corners: Slots, bound: int, groups: int, jellies: Jellies, work: TriangleScratch) -> int:
-    # Number the particles of jellies by jelly and slot; how many there are. work.other becomes corners in that order.
-    count = 3 * corners.shape[0]
-    for i in range(count):
-        work.begin[i] = corners[i // 3, i % 3]
-        work.end[i] = jellies.group[i // 3]
-    list_by_key(work.begin, count, bound, work.start, work.number)
-    sort_by_key(work.end, work.number, count, groups, work.start, work.other)
-    members = 0
-    jellies.start[0] = 0
-    for at in range(count):
-        i = work.other[at]
-        before = work.other[at - 1] if at > 0 else i
-        if at == 0 or work.begin[i] != work.begin[before] or work.end[i] != work.end[before]:
-            jellies.particle[members] = work.begin[i]
-            jellies.corner[members] = i
-            members += 1
-        jellies.member[i // 3, i % 3] = members - 1
-        jellies.start[work.end[i] + 1] = members
-    return members
-
-
-@inner_kernel
-def _find_inner(members: int, groups: int, jellies: Jellies, is_left: Flags, work: TriangleScratch) -> None:
-    # Once round: as many triangles as neighbours. The same triangle twice is round nothing.
-    triangles = jellies.group.shape[0]
-    for g in range(groups):
-        work.begin[g] = 0
-        work.end[g] = 0
-    for t in range(triangles):
-        work.begin[jellies.group[t]] += 1
-        if is_left[t]:
-            work.end[jellies.group[t]] += 1
-    for g in range(groups):
-        work.lies_flat[g] = work.end[g] % work.begin[g] == 0
-    # Triangles less neighbours, and triangles.
-    for i in range(members):
-        work.number[i] = 0
-        work.begin[i] = 0
-    for at in range(3 * triangles):
-        side = work.one[at]
-        work.number[jellies.member[side // 3, side % 3]] += 1
-        work.begin[jellies.member[side // 3, side % 3]] += 1
-        if at == 0 or not _is_same(work.one[at - 1], side, work):
-            work.number[jellies.member[side // 3, side % 3]] -= 1
-            work.number[jellies.member[side // 3, (side + 1) % 3]] -= 1
-    for g in range(groups):
-        for i in range(jellies.start[g], jellies.start[g + 1]):
-            jellies.inner[i] = work.lies_flat[g] and work.number[i] == 0 and work.begin[i] > 2
-
-
-@inner_kernel
-def _find_rims(members: int, jellies: Jellies, work: TriangleScratch) -> None:
-    # By corner of a jelly, the side of the rim that begins there, and the one that ends there. Where two fans meet in a
-    # particle, neither is told from the other.
-    for i in range(members):
-        work.begin[i] = NO_SIDE
-        work.end[i] = NO_SIDE
-    for side in range(3 * jellies.group.shape[0]):
-        if not work.at_rim[side]:
-            continue
-        t = side // 3
-        i = jellies.member[t, side % 3]
-        if work.lies_flat[jellies.group[t]]:
-            work.begin[i] = side if work.begin[i] == NO_SIDE else SEVERAL
-        i = jellies.member[t, (side + 1) % 3]
-        work.end[i] = side if work.end[i] == NO_SIDE else SEVERAL
-
-
-@inner_kernel
-def _find_fans(corners: Slots, members: int, groups: int, jellies: Jellies, work: TriangleScratch) -> tuple[int, int]:
-    # The fans of triangles about particles of outlines, and their gaps; how many rows there are of both.
-    _find_rims(members, jellies, work)
-    gaps = 0
-    for i in range(members):
-        begin = work.begin[i]
-        # What begins with one side ends with one, but where triangles lie over each other.
-        if begin >= 0 and work.end[i] >= 0:
-            jellies.gap[gaps, 0] = begin // 3
-            jellies.gap[gaps, 1] = jellies.particle[i]
-            jellies.gap[gaps, 2] = corners[work.end[i] // 3, work.end[i] % 3]
-            jellies.gap[gaps, 3] = corners[begin // 3, (begin + 1) % 3]
-            gaps += 1
-    list_by_key(jellies.group, jellies.group.shape[0], groups, work.start, work.label)
-    fans = 0
-    jellies.fan_start[0] = 0
-    for g in range(groups):
-        for at in range(work.start[g], work.start[g + 1]):
-            t = work.label[at]
-            for c in range(3):
-                begin = work.begin[jellies.member[t, c]]
-                if begin < 0 or corners[t, (c + 1) % 3] == corners[begin // 3, (begin + 1) % 3]:
-                    continue
-                jellies.fan[fans, 0] = corners[t, c]
-                jellies.fan[fans, 1] = corners[begin // 3, (begin + 1) % 3]
-                jellies.fan[fans, 2] = corners[t, (c + 1) % 3]
-                jellies.fan[fans, 3] = corners[t, (c + 2) % 3]
-                fans += 1
-        jellies.fan_start[g + 1] = fans
-    return fans, gaps
-
-
-# Places in `counts`: jellies, their particles, rows of fans and of gaps.
-GROUPS, PARTICLES, FANS, GAPS, COUNTS = range(5)
-
-
-@inner_kernel
-def derive_jellies(
-    corners: Slots, is_left: Flags, bound: int, jellies: Jellies, counts: Slots, work: TriangleScratch
-) -> None:
-    """Fill in the jellies of triangles of particles below a bound, and say in counts (COUNTS,) how much of them."""
-    groups = _group(corners, bound, jellies, work)
-    members = _number_corners(corners, bound, groups, jellies, work)
-    _find_inner(members, groups, jellies, is_left, work)
-    fans, gaps = _find_fans(corners, members, groups, jellies, work)
-    counts[GROUPS] = groups
-    counts[PARTICLES] = members
-    counts[FANS] = fans
-    counts[GAPS] = gaps
-
-
-@kernel
-def _derive_jellies(
-    corners: Slots, is_left: Flags, bound: int, jellies: Jellies, counts: Slots, work: TriangleScratch
-) -> None:
-    derive_jellies(corners, is_left, bound, jellies, counts, work)
-
-
-def room_for_jellies(triangles: int) -> Jellies:
-    """Jellies of so many triangles, to be filled in."""
-    corners = 3 * triangles
-    group, first = np.zeros((2, triangles), np.int64)
-    particle, corner = np.zeros((2, corners), np.int64)
-    start, fan_start = np.zeros((2, triangles + 1), np.int64)
-    member, fan, gap = (np.zeros(shape, np.int64) for shape in ((triangles, 3), (corners, 4), (corners, 4)))
-    return Jellies(
-        group, member, first, start, particle, corner, np.zeros(corners, np.bool_), fan, fan_start, gap
-    )  # fmt: skip
-
-
-NO_JELLIES = room_for_jellies(0)
-
-
-def new_triangle_scratch(triangles: int, bound: int) -> TriangleScratch:
-    """Scratch for triangles of particles below a bound."""
-    corners = 3 * triangles
-    low, high, one, other, begin, end, number = np.zeros((7, corners), np.int64)
-    return TriangleScratch(
-        np.zeros(triangles, np.int64), np.zeros(max(bound, corners) + 1, np.int64), low, high, one, other,
-        np.zeros(corners, np.bool_), np.zeros(triangles, np.bool_), begin, end, number,
-    )  # fmt: skip
-
-
-def group_triangles(corners: Slots, is_left: Flags, bound: int) -> Jellies:
-    """The jellies that triangles of particles below a bound (t, 3) make, in the order of their first triangles.
-
-    is_left (t,): whether their forms have them run counter-clockwise.
-    """
-    if not len(corners):
-        return NO_JELLIES
-    room, counts = room_for_jellies(len(corners)), np.zeros(COUNTS, np.int64)
-    _derive_jellies(corners, is_left, bound, room, counts, new_triangle_scratch(len(corners), bound))
-    groups, members, fans, gaps = counts.tolist()
-    return room._replace(
-        first=room.first[:groups], start=room.start[: groups + 1], particle=room.particle[:members],
-        corner=room.corner[:members], inner=room.inner[:members], fan=room.fan[:fans],
-        fan_start=room.fan_start[: groups + 1], gap=room.gap[:gaps],
-    )  # fmt: skip
 
 
 @inlined_kernel

@@ -10,7 +10,7 @@ from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.solvers.direct.system import Constraints, ShapeMatchGroups
 from sandbox.physics.state import Floats, Slots
 from sandbox.physics.topology.sorting import place_among
-from sandbox.physics.untangling.inversion import Jellies, group_triangles
+from sandbox.physics.untangling.jellies import Jellies, group_triangles
 
 
 class SystemTriangles(NamedTuple):
