@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from sandbox.physics.actuators import Actuators, Muscles
+from sandbox.physics.actuators import Actuators, Motors, Muscles
 from sandbox.physics.analysis import lowest_mode
 from sandbox.physics.collision.close_edges import close_edges
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import pinned_edges
-from sandbox.physics.components import body_of
+from sandbox.physics.components import body_of, label_joined
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.pipeline.making import block_of
@@ -25,10 +25,12 @@ def call_every_kernel() -> None:
     world.add_particles(["a", "b", "c"], places, group=TERRAIN_GROUP, collides=TERRAIN_GROUP)
     world.add_springs(["s", "t"], [0, 1], [1, 2])
     world.add_constraints(AREA, [[0, 1, 2]])
-    world.fit(Actuators(("a",), Muscles(one, np.zeros(1), one + 2, np.zeros(1))), [1.0])
+    motors = Motors(one, np.ones(1), np.ones(1), one, np.array([0, 1]), one + 1)
+    world.fit(Actuators(("a",), Muscles(one, np.zeros(1), one + 2, np.zeros(1)), motors=motors), [1.0])
     drive_muscles(world, 0)
     step(world)
     find_broken(block_of(world).pointer)
+    label_joined(world, world.spring_active, world.particle_active)
     # It is too small to need a second thread.
     system = layout_of(world).system
     parallel.precompile_help(system.fronts, system.rows.delta_v)
