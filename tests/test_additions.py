@@ -333,11 +333,16 @@ def test_a_level_setting_is_three_files(package):
         '    lift: float = Field(default=0.0, ge=-1e6, le=1e6, description="Acceleration upward.")\n',
         before="    drag: Drag = Field(",
     )
+    put(package / "physics/settings.py", "LIFT = 6\n", before="SOLVER, TICK_RATE")
+    numbers = "        return (*self.gravity, *self.wind, self.drag, self.warm_start, self.lift)\n"
+    put(package / "physics/settings.py", numbers, before="        return (*self.gravity, *self.wind")
     put(
         package / "physics/forces.py",
-        "    forces.particles.velocity[forces.particles.inverse_mass > 0.0, 1] += forces.settings.lift * h\n",
-        before="    _add_gravity_and_air(forces.items, h)",
+        "from sandbox.physics.settings import LIFT\n",
+        before="from sandbox.physics.state",
     )
+    lifted = "            velocity[p, 1] += numbers[LIFT] * h\n"
+    put(package / "physics/forces.py", lifted, before="            velocity[p, 0] += gravity_x")
     script = """
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash

@@ -14,7 +14,7 @@ SOLVER_NAMES = ("single_pass", "iterative", "direct")
 DEFAULT_SOLVER = "direct"
 
 # Settings as kernels read them: places among the numbers and among the choices; SOLVER by its place in SOLVER_NAMES.
-GRAVITY_X, GRAVITY_Y, WIND_X, WIND_Y, DRAG, WARM_START, HIGHEST = range(7)
+GRAVITY_X, GRAVITY_Y, WIND_X, WIND_Y, DRAG, WARM_START = range(6)
 SOLVER, TICK_RATE, SUBSTEP_COUNT, IS_AUTO, ITERATIONS = range(5)
 SINGLE_PASS, ITERATIVE, DIRECT = range(3)
 
@@ -53,6 +53,11 @@ class WorldSettings:
             raise ValueError(f"warm_start is a number from 0 to 1, not {self.warm_start!r}")
         if not (_is_finite(self.drag) and self.drag >= 0.0):
             raise ValueError(f"drag is a finite number of at least 0, not {self.drag!r}")
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Its numbers as kernels read them."""
+        return (*self.gravity, *self.wind, self.drag, self.warm_start)
 
     @property
     def choices(self) -> tuple[int, int, int, int, int]:

@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.physics.settings import AUTO, Substeps
 from sandbox.physics.step import step
 from tests.bench import scenes
-from tests.support.parts import parts_taken
+from tests.support.tick_parts import parts_taken
 
 
 def drag(substeps: Substeps, hand: bool) -> str:

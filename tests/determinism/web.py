@@ -94,7 +94,7 @@ class Image:
                 for part in item:
                     add(part)
 
-        add((base.obj if isinstance(base, memoryview) else base).items)
+        add((base.obj if isinstance(base, memoryview) else base).whole.item)
         start = bundle.ctypes.data
         where = self._place(start, bundle.nbytes)
         if start not in self._bundles:
@@ -120,7 +120,7 @@ class Image:
 
     def content(self) -> bytes:
         """All that is to be done, and then to be checked."""
-        for start, held in self._shadows.items():
+        for start, held in filter(lambda each: each[1], self._shadows.items()):
             self._add(CHECK, self._places[start], held)
         return b"".join(self._parts)
 

@@ -16,7 +16,7 @@ from sandbox.physics.substeps import MOST_AUTO
 from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
 from tests.physics.test_direct import run, single_springs
-from tests.support.parts import parts_of_next_tick, parts_taken, set_parts
+from tests.support.tick_parts import parts_of_next_tick, parts_taken, set_parts
 
 DIRECTIONS = 20.0 * np.array([(-1, 0), (1, 0), (0, 1), (0, -1)])
 

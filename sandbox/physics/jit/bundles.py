@@ -28,19 +28,19 @@ Signature = tuple[Any, ...]
 SIGNATURES: dict[str, Signature] = {}
 
 
-class _Part(NamedTuple):
+class _Packed(NamedTuple):
     """What lies in a bundle for an array or a tuple: its words and signature, and the parts of a tuple."""
 
     item: Any
     words: bytes
     signature: Signature
-    parts: tuple["_Part", ...]
+    parts: tuple["_Packed", ...]
 
 
 class _Words(bytearray):
     """What a bundle points to, and the arrays that its words are the addresses of, which live as long."""
 
-    whole: _Part
+    whole: _Packed
 
 
 def owner_of(bundle: Any) -> Any:
@@ -49,7 +49,7 @@ def owner_of(bundle: Any) -> Any:
     return base.obj if isinstance(base, memoryview) else base
 
 
-def _part(item: Any, like: _Part | None) -> _Part:
+def _part(item: Any, like: _Packed | None) -> _Packed:
     """The part of an item; like: one whose items may be the same."""
     if like is not None and like.item is item:
         return like
@@ -57,18 +57,18 @@ def _part(item: Any, like: _Part | None) -> _Part:
         if not item.flags.c_contiguous:
             raise TypeError("arrays in a bundle are contiguous")
         address = _address_at(id(item) + _ADDRESS).value
-        words = _packed(item.ndim).pack(0, 0, item.size, item.itemsize, address, *item.shape, *item.strides)
-        return _Part(item, words, (item.dtype.str, item.ndim), ())
+        words = _format(item.ndim).pack(0, 0, item.size, item.itemsize, address, *item.shape, *item.strides)
+        return _Packed(item, words, (item.dtype.str, item.ndim), ())
     if not isinstance(item, tuple):
         raise TypeError(f"a bundle holds arrays and tuples of them, not {type(item).__name__}")
     known = like.parts if like is not None and len(like.parts) == len(item) else (None,) * len(item)
     parts = tuple(map(_part, item, known))
     signature = type(item), *(part.signature for part in parts)
-    return _Part(item, b"".join([part.words for part in parts]), signature, parts)
+    return _Packed(item, b"".join([part.words for part in parts]), signature, parts)
 
 
 @functools.cache
-def _packed(dimensions: int) -> struct.Struct:
+def _format(dimensions: int) -> struct.Struct:
     return struct.Struct(f"={HEAD_WORDS + 2 * dimensions}q")
 
 

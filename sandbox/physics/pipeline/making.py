@@ -26,7 +26,6 @@ from sandbox.physics.pipeline.collide import (
     bound_terrain,
 )
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.contact.free_constraints import new_work
 from sandbox.physics.solvers.contact.free_islands import new_islands as new_free_islands
 from sandbox.physics.solvers.contact.gauss_seidel import new_contact_constraints, no_blocks
@@ -131,7 +130,7 @@ class Block:
             self._hands = world.hand_version
             arrays, joints = self.arrays, joints_of(world)
             solving = _Solving(arrays.system, arrays.workspace, arrays.iteration, arrays.explicit)
-            solving = _with_joints(solving, world, joints.rows)
+            solving = _with_joints(solving, self._settings.solver, world.particle_count, joints.rows)
             self.arrays = arrays._replace(joints=joints, **solving._asdict())
             self._point()
 
@@ -253,23 +252,24 @@ def _for_solver(world: World, rows: JointRows, contacts: int, room: _Room) -> _S
         workspace = workspace._replace(delassus=no_blocks(count, no_joints()))
     if world.settings.solver == "iterative":
         iteration = iteration_of(world)
-    if world.settings.solver == "single_pass":
+    # These take springs of Hooke's law apart, all others take all springs so.
+    if world.settings.solver not in ("direct", "iterative"):
         explicit = new_explicit_pass(world, no_joints(), world.spring_active)
     elif hooke.any():
         explicit = new_explicit_pass(world, no_joints(), hooke)
     workspace = workspace._replace(terms=new_contact_constraints(contacts, np.zeros(count)))
-    return _with_joints(_Solving(system, workspace, iteration, explicit), world, rows)
+    return _with_joints(_Solving(system, workspace, iteration, explicit), world.settings.solver, count, rows)
 
 
-def _with_joints(solving: _Solving, world: World, rows: JointRows) -> _Solving:
-    """The same with the rows of joints as the solver takes them."""
+def _with_joints(solving: _Solving, solver: str, particles: int, rows: JointRows) -> _Solving:
+    """The same with the rows of joints as a solver takes them that it is for."""
     workspace, explicit = solving.workspace, solving.explicit
-    if world.settings.solver == "single_pass":
+    if solver == "single_pass":
         mass, given = np.zeros((2, len(rows.limit)))
         return solving._replace(explicit=explicit._replace(joints=joints_by_mass(rows), mass=mass, given=given))
-    if world.settings.solver == "direct":
+    if solver == "direct":
         row_of, row_start = workspace.islands.row, solving.system.bodies.row_start
-        joints = new_joints(rows, row_of, row_start, world.particle_count)
+        joints = new_joints(rows, row_of, row_start, particles)
     else:
         joints = joints_by_mass(rows)
     return solving._replace(workspace=workspace._replace(delassus=workspace.delassus._replace(joints=joints)))
@@ -282,9 +282,7 @@ def _plan_of(world: World) -> Slots:
 
 
 def _load_settings(settings: WorldSettings, arrays: WorldBlock) -> None:
-    highest = SOLVERS[settings.solver].highest
-    arrays.numbers[:] = (*settings.gravity, *settings.wind, settings.drag, settings.warm_start, highest)
-    arrays.choices[:] = settings.choices
+    arrays.numbers[:], arrays.choices[:] = settings.numbers, settings.choices
 
 
 def _limits_of(world: World) -> MaterialLimits:
@@ -301,8 +299,8 @@ def _limits_of(world: World) -> MaterialLimits:
 def _new_scratch(particles: int, springs: int, constraints: int) -> dict[str, Any]:
     """What a world of so many wants whatever is in it, by its names in the block."""
     return {
-        "numbers": np.zeros(7),
-        "choices": np.zeros(5, np.int64),
+        "numbers": np.zeros(len(WorldSettings().numbers)),
+        "choices": np.zeros(len(WorldSettings().choices), np.int64),
         "progress": np.zeros(5, np.int64),
         "start": np.zeros((particles, 2)),
         "start_length": np.zeros(springs),

@@ -38,7 +38,6 @@ from sandbox.physics.sanitise import are_sound, keep_if_sound
 from sandbox.physics.settings import (
     DIRECT,
     DRAG,
-    HIGHEST,
     IS_AUTO,
     ITERATIONS,
     ITERATIVE,
@@ -48,6 +47,7 @@ from sandbox.physics.settings import (
     TICK_RATE,
     WARM_START,
 )
+from sandbox.physics.solvers import HIGHEST_ITERATED
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.solvers.direct.islands import find_body_islands
 from sandbox.physics.solvers.direct.rigid_turn import end_turns
@@ -168,7 +168,7 @@ def _turn_all_into_substep(world: WorldBlock, ease: float) -> None:
     if world.choices[SOLVER] == DIRECT:
         keeps = ALL_CONSTANT if world.choices[IS_AUTO] != 0 else ALL_BUT_FIRM
     limit_rings(state, into.constraint_stiffness, into.constraint_damping)
-    highest = world.numbers[HIGHEST]
+    highest = HIGHEST_ITERATED if world.choices[SOLVER] == ITERATIVE else 1.0
     turn_into_substep(into.stiffness, into.damping, state.lowest_mode, count, keeps, highest, ease)
     turn_into_substep(
         into.constraint_stiffness, into.constraint_damping, state.constraint_lowest_mode, count, keeps, highest, ease

@@ -39,11 +39,13 @@ class Solver:
         return found
 
 
+# With 1, what a wheel's springs give way where it meets the ground throws it off again: in a fraction of a tick the
+# velocity that takes an error back is as many times greater, and nothing damps it. Less lets light wheels sink under
+# heavy loads in two substeps, more lets them hop in eight.
+HIGHEST_ITERATED = 1.0 - 1e-5
+
 SOLVERS = {
     "single_pass": Solver("single_pass", proven_limit=True, bounded=False, joints_bear_load=False),
-    # With 1, what a wheel's springs give way where it meets the ground throws it off again: in a fraction of a tick the
-    # velocity that takes an error back is as many times greater, and nothing damps it. Less lets light wheels sink
-    # under heavy loads in two substeps, more lets them hop in eight.
-    "iterative": Solver("iterative", proven_limit=False, bounded=False, highest=1.0 - 1e-5),
+    "iterative": Solver("iterative", proven_limit=False, bounded=False, highest=HIGHEST_ITERATED),
     "direct": Solver("direct.solve", proven_limit=False, bounded=True, tracks_slow_velocity=True, has_floors=True),
 }
