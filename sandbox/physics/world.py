@@ -70,8 +70,7 @@ class World(StateArrays):
     """
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
-        # Never state: counts the changes of what solvers and collision derive from, those by hands apart; whether any
-        # may be `unmoved`.
+        # Never state: counts the changes of topology, those by hands apart; whether any may be `unmoved`.
         self.topology_version, self.hand_version, self.may_fly = 0, 0, True
         self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
         self._lasting: dict[Callable[[World], Any], Any] = {}
@@ -421,12 +420,9 @@ class World(StateArrays):
             constraint_active=True,
         )
         self.append(
-            Family.CORNER,
-            count * size,
-            corner_particle=slots.reshape(-1),
-            corner_weight=weight.reshape(-1),
+            Family.CORNER, count * size, corner_particle=slots.reshape(-1), corner_weight=weight.reshape(-1),
             corner_form=places.reshape(-1, 2),
-        )
+        )  # fmt: skip
         self.spin[slots] = 0.0
         self.disturb(slots)
         return first
@@ -469,14 +465,9 @@ class World(StateArrays):
         held = np.zeros(GRAB_COUNT, dtype=np.int64)
         cursors = self.grab_particle + np.arange(GRAB_COUNT)
         self.grab_spring = self.add_springs(
-            _GRAB_NAMES,
-            cursors,
-            held,
-            rest_length=0.0,
-            stiffness=GRAB_STIFFNESS,
-            damping=GRAB_DAMPING,
+            _GRAB_NAMES, cursors, held, rest_length=0.0, stiffness=GRAB_STIFFNESS, damping=GRAB_DAMPING,
             material=GRAB_MATERIAL,
-        )
+        )  # fmt: skip
         self.append(Family.HAND, GRAB_COUNT)
         self.change("particle_active", False, slice(self.grab_particle, None))
         self.change("spring_active", False, slice(self.grab_spring, None))
