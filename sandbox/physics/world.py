@@ -408,17 +408,10 @@ class World(StateArrays):
         rest, weight = rest_of_area(places, inflation) if kind == AREA else rest_of_bend(places)
         first = self.constraint_count
         self.append(
-            Family.CONSTRAINT,
-            count,
-            constraint_kind=kind,
-            constraint_first=len(self.corner_particle) + size * np.arange(count),
-            constraint_corners=size,
-            constraint_rest=rest,
-            constraint_stiffness=stiffness,
-            constraint_damping=damping,
-            constraint_material=material,
-            constraint_active=True,
-        )
+            Family.CONSTRAINT, count, constraint_kind=kind, constraint_corners=size, constraint_rest=rest,
+            constraint_first=len(self.corner_particle) + size * np.arange(count), constraint_stiffness=stiffness,
+            constraint_damping=damping, constraint_material=material, constraint_active=True,
+        )  # fmt: skip
         self.append(
             Family.CORNER, count * size, corner_particle=slots.reshape(-1), corner_weight=weight.reshape(-1),
             corner_form=places.reshape(-1, 2),
