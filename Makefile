@@ -1,7 +1,8 @@
 # make play: install into .venv and run the app.    make test: install into .venv and run every test.
 # make quick: run the tests of what differs from main, without slow ones; about a minute.
 # make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-record: record them again, after a
-# change of a tick's arithmetic or of a shipped level; never to make a failing test pass.
+# change of a tick's arithmetic or of a shipped level; never to make a failing test pass. make goldens-everywhere: run
+# them in WebAssembly and on an emulated arm64 too, where node and qemu-user with libc6-arm64-cross are installed.
 # make bounds: run every test with kernels that check each index; usual kernels do not.
 # make libraries: machine code of the kernels for all platforms, after a kernel was changed; minutes. CHECK=1 compares
 # it with what is there, HERE=1 only this platform's.
@@ -27,7 +28,7 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test quick lint bounds goldens goldens-record libraries pictures bench abuse soak clean
+.PHONY: play install test quick lint bounds goldens goldens-everywhere goldens-record libraries pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -55,6 +56,9 @@ bounds: test
 
 goldens: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal tests/determinism/goldens
+
+goldens-everywhere: $(VENV)/installed-dev
+	$(BIN)/python -m tests.determinism.elsewhere
 
 goldens-record: $(VENV)/installed-dev
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)

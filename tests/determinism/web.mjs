@@ -1,7 +1,8 @@
-// node web.mjs MODULE IMAGE END SYMBOL...: make the calls of an image, as web.py wrote it, and compare memory and results.
+// node web.mjs MODULE IMAGE BASE END SYMBOL...: make the calls of an image, as elsewhere.py wrote it, and compare memory
+// and results.
 import fs from 'node:fs';
 
-const [, , moduleFile, imageFile, end, ...symbols] = process.argv;
+const [, , moduleFile, imageFile, , end, ...symbols] = process.argv;
 const PAGE = 65536, BLOCK = 3 << 20;
 const [PATCH, CALL] = [0, 1];
 const { exports } = await WebAssembly.instantiate(new WebAssembly.Module(fs.readFileSync(moduleFile)), {});
