@@ -1,12 +1,12 @@
 """Connected components of what links join; union-find with path halving (Tarjan 1975)."""
 
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.state import Slots, StateArrays
+from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.state import Slots, State, StateArrays, lent_state
 
 Flags = NDArray[np.bool_]
 
@@ -27,33 +27,23 @@ def label_bodies(link_a: Slots, link_b: Slots, label: Slots) -> None:
     label_linked(link_a, link_b, label)
 
 
-class JoinSources(NamedTuple):
-    """What joins particles: see StateArrays."""
-
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    constraint_corners: NDArray[np.int32]
-    constraint_active: Flags
-    corner_particle: NDArray[np.int32]
-
-
 @inner_kernel
-def find_joined(given: JoinSources, springs: Flags, particles: Flags, label: Slots) -> None:
+def find_joined(state: State, springs: Flags, particles: Flags, label: Slots) -> None:
     """Label every particle (n,) with the lowest one that it is joined to: see label_joined."""
     for p in range(label.shape[0]):
         label[p] = p
     for s in range(springs.shape[0]):
-        a = given.particle_a[s]
-        b = given.particle_b[s]
+        a = state.particle_a[s]
+        b = state.particle_b[s]
         if springs[s] and particles[a] and particles[b]:
             join(label, a, b)
     corner = 0
-    for k in range(given.constraint_corners.shape[0]):
+    for k in range(state.constraint_corners.shape[0]):
         before = -1
-        for _ in range(given.constraint_corners[k]):
-            p = given.corner_particle[corner]
+        for _ in range(state.constraint_corners[k]):
+            p = state.corner_particle[corner]
             corner += 1
-            if given.constraint_active[k] and particles[p]:
+            if state.constraint_active[k] and particles[p]:
                 if before >= 0:
                     join(label, before, p)
                 before = p
@@ -62,8 +52,8 @@ def find_joined(given: JoinSources, springs: Flags, particles: Flags, label: Slo
 
 
 @kernel
-def _find_joined(given: JoinSources, springs: Flags, particles: Flags, label: Slots) -> None:
-    find_joined(given, springs, particles, label)
+def _find_joined(lent: Any, springs: Flags, particles: Flags, label: Slots) -> None:
+    find_joined(contents(lent), springs, particles, label)
 
 
 def label_joined(world: StateArrays, springs: Flags, particles: Flags) -> Slots:
@@ -72,8 +62,7 @@ def label_joined(world: StateArrays, springs: Flags, particles: Flags) -> Slots:
     springs (m,), particles (n,): which of them join; constraints do where they are active.
     """
     label = np.zeros(len(particles), np.int64)
-    given = JoinSources._make([getattr(world, name) for name in JoinSources._fields])
-    _find_joined(given, springs, particles, label)
+    _find_joined(lent_state(world), springs, particles, label)
     return label
 
 

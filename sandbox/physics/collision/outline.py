@@ -1,16 +1,15 @@
 """Outlines: the edges that springs make, and terrain, as topology alone decides; kept until topology changes."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.physics.collision.close_edges import NO_CLOSE_EDGES, CloseEdges, close_edges
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import pinned_edges
 from sandbox.physics.collision.types import Colliders, Flags
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.state import Slots
+from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.state import Slots, State, lent_state
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
 from sandbox.physics.topology.sorting import list_by_key, list_ends, list_neighbours, sort_by_key, sort_by_value
 from sandbox.physics.world import GRAB_MATERIAL, World
@@ -55,25 +54,6 @@ class Outline(NamedTuple):
     pins: Terrain
 
 
-class EdgeSources(NamedTuple):
-    """What an outline follows from: see StateArrays and Terrain, whose edges are edge_a, edge_b, chain and solid."""
-
-    owner: NDArray[np.int32]
-    particle_active: Flags
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    spring_active: Flags
-    edge: NDArray[np.int8]
-    material: NDArray[np.int32]
-    constraint_active: Flags
-    constraint_corners: NDArray[np.int32]
-    corner_particle: NDArray[np.int32]
-    edge_a: Slots
-    edge_b: Slots
-    chain: Slots
-    solid: Slots
-
-
 class OutlineScratch(NamedTuple):
     """Scratch: rank (v,) = the number of a vertex's owner, ascending; by owner: start (v+1,), ways, flag; others long
     enough for twice the springs and all vertices."""
@@ -88,17 +68,17 @@ class OutlineScratch(NamedTuple):
 
 
 @inner_kernel
-def _rank_owners(given: EdgeSources, owner: Slots, work: OutlineScratch) -> int:
+def _rank_owners(state: State, owner: Slots, work: OutlineScratch) -> int:
     # The owner of each vertex, and its number among them, ascending; how many owners there are.
-    particles = given.owner.shape[0]
+    particles = state.owner.shape[0]
     for p in range(particles):
-        owner[p] = given.owner[p]
+        owner[p] = state.owner[p]
     for v in range(particles, owner.shape[0]):
         owner[v] = 0
-    for e in range(given.edge_a.shape[0]):
-        owner[particles + given.edge_a[e]] = TERRAIN_OWNER - given.chain[e]
-    for e in range(given.edge_b.shape[0]):
-        owner[particles + given.edge_b[e]] = TERRAIN_OWNER - given.chain[e]
+    for e in range(state.terrain.edge_a.shape[0]):
+        owner[particles + state.terrain.edge_a[e]] = TERRAIN_OWNER - state.terrain.chain[e]
+    for e in range(state.terrain.edge_b.shape[0]):
+        owner[particles + state.terrain.edge_b[e]] = TERRAIN_OWNER - state.terrain.chain[e]
     for v in range(owner.shape[0]):
         work.one[v] = v
     sort_by_value(owner, work.one, 0, owner.shape[0], work.other)
@@ -112,66 +92,66 @@ def _rank_owners(given: EdgeSources, owner: Slots, work: OutlineScratch) -> int:
 
 
 @inner_kernel
-def _choose_edges(given: EdgeSources, owners: int, outline: Outline, work: OutlineScratch) -> int:
+def _choose_edges(state: State, owners: int, outline: Outline, work: OutlineScratch) -> int:
     # Edges of one owner lie together, so that a whole outline can be walked through. How many bodies have.
     chosen = 0
-    for s in range(given.spring_active.shape[0]):
+    for s in range(state.spring_active.shape[0]):
         work.other[s] = -1
-        if given.spring_active[s] and given.edge[s] != NO_EDGE:
+        if state.spring_active[s] and state.edge[s] != NO_EDGE:
             work.one[chosen] = s
-            work.other[s] = work.rank[given.particle_a[s]]
+            work.other[s] = work.rank[state.particle_a[s]]
             chosen += 1
     sort_by_key(work.other, work.one, chosen, owners, work.start, outline.number)
     for e in range(chosen):
         s = outline.number[e]
-        swapped = given.edge[s] == SOLID_RIGHT
-        outline.edge_a[e] = given.particle_b[s] if swapped else given.particle_a[s]
-        outline.edge_b[e] = given.particle_a[s] if swapped else given.particle_b[s]
-    for e in range(given.edge_a.shape[0]):
-        outline.edge_a[chosen + e] = given.owner.shape[0] + given.edge_a[e]
-        outline.edge_b[chosen + e] = given.owner.shape[0] + given.edge_b[e]
-        outline.side[chosen + e] = given.solid[e]
+        swapped = state.edge[s] == SOLID_RIGHT
+        outline.edge_a[e] = state.particle_b[s] if swapped else state.particle_a[s]
+        outline.edge_b[e] = state.particle_a[s] if swapped else state.particle_b[s]
+    for e in range(state.terrain.edge_a.shape[0]):
+        outline.edge_a[chosen + e] = state.owner.shape[0] + state.terrain.edge_a[e]
+        outline.edge_b[chosen + e] = state.owner.shape[0] + state.terrain.edge_b[e]
+        outline.side[chosen + e] = state.terrain.solid[e]
         outline.number[chosen + e] = e
     return chosen
 
 
 @inner_kernel
-def _find_sides(given: EdgeSources, chosen: int, outline: Outline, work: OutlineScratch) -> None:
+def _find_sides(state: State, chosen: int, outline: Outline, work: OutlineScratch) -> None:
     # An outline that is torn open encloses nothing, so all its edges have two sides.
     for v in range(outline.owner.shape[0]):
         work.ways[v] = 0
         work.flag[v] = False
     for e in range(chosen):
-        if given.edge[outline.number[e]] != LINE:
+        if state.edge[outline.number[e]] != LINE:
             work.ways[outline.edge_a[e]] += 1
             work.ways[outline.edge_b[e]] -= 1
     for v in range(outline.owner.shape[0]):
         if work.ways[v] != 0:
             work.flag[work.rank[v]] = True
     for e in range(chosen):
-        whole = given.edge[outline.number[e]] != LINE and not work.flag[work.rank[outline.edge_a[e]]]
+        whole = state.edge[outline.number[e]] != LINE and not work.flag[work.rank[outline.edge_a[e]]]
         outline.side[e] = 1 if whole else 0
 
 
 @inner_kernel
-def _find_neighbours(given: EdgeSources, outline: Outline, work: OutlineScratch) -> int:
+def _find_neighbours(state: State, outline: Outline, work: OutlineScratch) -> int:
     # What each particle is joined to, and which ones a spring or a constraint holds; how many springs there are. Hands
     # are told apart, in every tick.
     joined = 0
-    for s in range(given.spring_active.shape[0]):
-        if given.spring_active[s] and given.material[s] != GRAB_MATERIAL:
-            work.one[joined] = given.particle_a[s]
-            work.other[joined] = given.particle_b[s]
+    for s in range(state.spring_active.shape[0]):
+        if state.spring_active[s] and state.material[s] != GRAB_MATERIAL:
+            work.one[joined] = state.particle_a[s]
+            work.other[joined] = state.particle_b[s]
             joined += 1
-    particles = given.owner.shape[0]
+    particles = state.owner.shape[0]
     list_neighbours(work.one, work.other, joined, particles, outline.near_start, outline.near_of, work.third, work.ways)
     for p in range(particles):
         outline.attached[p] = outline.near_start[p + 1] > outline.near_start[p]
     corner = 0
-    for k in range(given.constraint_active.shape[0]):
-        for _ in range(given.constraint_corners[k]):
-            if given.constraint_active[k]:
-                outline.attached[given.corner_particle[corner]] = True
+    for k in range(state.constraint_active.shape[0]):
+        for _ in range(state.constraint_corners[k]):
+            if state.constraint_active[k]:
+                outline.attached[state.corner_particle[corner]] = True
             corner += 1
     return joined
 
@@ -195,7 +175,7 @@ def _find_spans(count: int, outline: Outline) -> int:
 
 
 @inner_kernel
-def _find_shapes(given: EdgeSources, chosen: int, spans: int, outline: Outline, work: OutlineScratch) -> int:
+def _find_shapes(state: State, chosen: int, spans: int, outline: Outline, work: OutlineScratch) -> int:
     # Number the owners of edges in the order of those, and list their particles; how many there are.
     shape, rank, number = outline.shape, work.rank, work.ways
     for v in range(shape.shape[0]):
@@ -212,54 +192,54 @@ def _find_shapes(given: EdgeSources, chosen: int, spans: int, outline: Outline, 
         if outline.solid[k, 0] < chosen:
             outline.solid_of[shape[outline.edge_a[outline.solid[k, 0]]]] = k
             outline.dynamic[1] = k + 1
-    for p in range(given.owner.shape[0]):
-        work.one[p] = shape[p] if given.particle_active[p] else -1
-    list_by_key(work.one, given.owner.shape[0], shapes, outline.member_start, outline.member)
+    for p in range(state.owner.shape[0]):
+        work.one[p] = shape[p] if state.particle_active[p] else -1
+    list_by_key(work.one, state.owner.shape[0], shapes, outline.member_start, outline.member)
     return shapes
 
 
 @inner_kernel
-def _find_shielded(given: EdgeSources, chosen: int, outline: Outline, work: OutlineScratch) -> None:
+def _find_shielded(state: State, chosen: int, outline: Outline, work: OutlineScratch) -> None:
     # A grab that holds nothing tears nothing.
     shielded = outline.shielded
     for v in range(outline.owner.shape[0]):
         work.flag[v] = False
     for e in range(chosen):
-        if given.edge[outline.number[e]] != LINE:
-            work.flag[work.rank[given.particle_a[outline.number[e]]]] = True
+        if state.edge[outline.number[e]] != LINE:
+            work.flag[work.rank[state.particle_a[outline.number[e]]]] = True
     for p in range(shielded.shape[0]):
         shielded[p] = work.flag[work.rank[p]]
-    for s in range(given.spring_active.shape[0]):
-        bare = not given.spring_active[s] or given.edge[s] != NO_EDGE
-        if bare and given.material[s] != GRAB_MATERIAL:
-            shielded[given.particle_a[s]] = False
-            shielded[given.particle_b[s]] = False
+    for s in range(state.spring_active.shape[0]):
+        bare = not state.spring_active[s] or state.edge[s] != NO_EDGE
+        if bare and state.material[s] != GRAB_MATERIAL:
+            shielded[state.particle_a[s]] = False
+            shielded[state.particle_b[s]] = False
 
 
 @inner_kernel
-def derive_edges(given: EdgeSources, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
+def derive_edges(state: State, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
     """Fill in an outline, all but its close edges and pins, and say in counts (COUNTS,) how much of it."""
-    owners = _rank_owners(given, outline.owner, work)
-    chosen = _choose_edges(given, owners, outline, work)
-    count = chosen + given.edge_a.shape[0]
-    _find_sides(given, chosen, outline, work)
+    owners = _rank_owners(state, outline.owner, work)
+    chosen = _choose_edges(state, owners, outline, work)
+    count = chosen + state.terrain.edge_a.shape[0]
+    _find_sides(state, chosen, outline, work)
     list_ends(outline.edge_a, outline.edge_b, count, outline.owner.shape[0], outline.edge_start, outline.edge_of)
-    counts[JOINED] = _find_neighbours(given, outline, work)
+    counts[JOINED] = _find_neighbours(state, outline, work)
     outline.dynamic[0] = chosen
     outline.dynamic[1] = 0
     counts[EDGES] = chosen
     counts[ALL_EDGES] = count
     counts[SPANS] = _find_spans(count, outline)
-    counts[SHAPES] = _find_shapes(given, chosen, counts[SPANS], outline, work)
+    counts[SHAPES] = _find_shapes(state, chosen, counts[SPANS], outline, work)
     counts[MEMBERS] = outline.member_start[counts[SHAPES]]
-    _find_shielded(given, chosen, outline, work)
+    _find_shielded(state, chosen, outline, work)
     for s in range(outline.spring_end.shape[0]):
-        outline.spring_end[s] = given.particle_a[s]
+        outline.spring_end[s] = state.particle_a[s]
 
 
 @kernel
-def _derive_edges(given: EdgeSources, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
-    derive_edges(given, outline, counts, work)
+def _derive_edges(lent: Any, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
+    derive_edges(contents(lent), outline, counts, work)
 
 
 def outline_of(world: World) -> Outline:
@@ -269,14 +249,12 @@ def outline_of(world: World) -> Outline:
 
 def _make_outline(world: World) -> Outline:
     terrain, counts = world.terrain, np.zeros(COUNTS, np.int64)
-    of_world = [getattr(world, name) for name in EdgeSources._fields[:10]]
-    given = EdgeSources._make([*of_world, terrain.edge_a, terrain.edge_b, terrain.chain, terrain.solid])
     room = _room(world.particle_count, world.spring_count, len(terrain.vertex), len(terrain.edge_a))
     vertices = len(room.owner)
     longest = max(vertices, 2 * world.spring_count)
     rank, start, ways = np.zeros((3, vertices + 1), np.int64)
     work = OutlineScratch(rank, start, ways, np.zeros(vertices, np.bool_), *np.zeros((3, longest), np.int64))
-    _derive_edges(given, room, counts, work)
+    _derive_edges(lent_state(world), room, counts, work)
     edges, all_edges, joined, spans, shapes, members = counts.tolist()
     a, b, side = room.edge_a[:edges], room.edge_b[:edges], room.side[:all_edges]
     return room._replace(

@@ -1,29 +1,18 @@
 """Edges of bodies of which both ends are pinned: terrain of their own, as they stand while topology does not change."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.state import Floats, Slots, State, lent_state
 from sandbox.physics.terrain import CELL_SLACK, LEAST_CELL, MOST_CELLS, Chain, Terrain, make_terrain
 from sandbox.physics.topology.sorting import sort_by_value
 from sandbox.physics.world import World
 
 FRICTION, RESTITUTION = Chain.friction, Chain.restitution
 NO_PINS = make_terrain([])
-
-
-class PinSources(NamedTuple):
-    """Particles (n,), see StateArrays, and the edges of bodies: edge_a to edge_b, side."""
-
-    position: Floats
-    velocity: Floats
-    inverse_mass: Floats
-    edge_a: Slots
-    edge_b: Slots
-    side: Slots
 
 
 class PinScratch(NamedTuple):
@@ -35,30 +24,30 @@ class PinScratch(NamedTuple):
 
 
 @inner_kernel
-def _is_still(p: int, given: PinSources) -> bool:
-    return given.inverse_mass[p] == 0.0 and given.velocity[p, 0] == 0.0 and given.velocity[p, 1] == 0.0
+def _is_still(p: int, state: State) -> bool:
+    return state.inverse_mass[p] == 0.0 and state.velocity[p, 0] == 0.0 and state.velocity[p, 1] == 0.0
 
 
 @inner_kernel
-def find_pinned(given: PinSources, pins: Terrain, work: PinScratch) -> int:
+def find_pinned(state: State, edge_a: Slots, edge_b: Slots, side: Slots, pins: Terrain, work: PinScratch) -> int:
     """Fill in the edges that are pinned, and corner, cell and size of their grid; how many there are."""
     count = 0
-    for e in range(given.edge_a.shape[0]):
-        a = given.edge_a[e]
-        b = given.edge_b[e]
-        if not (_is_still(a, given) and _is_still(b, given)):
+    for e in range(edge_a.shape[0]):
+        a = edge_a[e]
+        b = edge_b[e]
+        if not (_is_still(a, state) and _is_still(b, state)):
             continue
-        dx = given.position[b, 0] - given.position[a, 0]
-        dy = given.position[b, 1] - given.position[a, 1]
+        dx = state.position[b, 0] - state.position[a, 0]
+        dy = state.position[b, 1] - state.position[a, 1]
         if dx == 0.0 and dy == 0.0:
             continue
         for axis in range(2):
             # -0.0 becomes 0.0
-            pins.vertex[2 * count, axis] = given.position[a, axis] + 0.0
-            pins.vertex[2 * count + 1, axis] = given.position[b, axis] + 0.0
+            pins.vertex[2 * count, axis] = state.position[a, axis] + 0.0
+            pins.vertex[2 * count + 1, axis] = state.position[b, axis] + 0.0
         pins.edge_a[count] = 2 * count
         pins.edge_b[count] = 2 * count + 1
-        pins.solid[count] = given.side[e]
+        pins.solid[count] = side[e]
         pins.chain[count] = e
         pins.friction[count] = FRICTION
         pins.restitution[count] = RESTITUTION
@@ -148,8 +137,8 @@ def fill_cells(count: int, pins: Terrain) -> int:
 
 
 @kernel
-def _find_pinned(given: PinSources, pins: Terrain, work: PinScratch) -> int:
-    return find_pinned(given, pins, work)
+def _find_pinned(lent: Any, edge_a: Slots, edge_b: Slots, side: Slots, pins: Terrain, work: PinScratch) -> int:
+    return find_pinned(contents(lent), edge_a, edge_b, side, pins, work)
 
 
 @kernel
@@ -168,8 +157,7 @@ def pinned_edges(world: World, edge_a: Slots, edge_b: Slots, side: Slots) -> Ter
         vertex=np.zeros((2 * room, 2)), edge_a=a, edge_b=b, solid=solid, chain=chain, friction=friction,
         restitution=restitution, corner=np.zeros(2), cell=np.ones(1), size=np.zeros(2, np.int64),
     )  # fmt: skip
-    given = PinSources(world.position, world.velocity, world.inverse_mass, edge_a, edge_b, side)
-    count = _find_pinned(given, pins, PinScratch(length, order, spare))
+    count = _find_pinned(lent_state(world), edge_a, edge_b, side, pins, PinScratch(length, order, spare))
     cells = int(pins.size[0] * pins.size[1])
     if not count:
         return NO_PINS

@@ -1,16 +1,15 @@
 """Motors: each a row between the turning of a wheel and of what its hub is mounted on."""
 
 import itertools
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.physics.components import Flags, join, root_of
 from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.joints.rows import JointRows, clamped
-from sandbox.physics.state import Floats, Slots, State
+from sandbox.physics.state import Floats, Slots, State, lent_state
 from sandbox.physics.world import World
 
 # Below this moment of inertia [kg m^2] a group of particles has no direction to be turned in.
@@ -34,14 +33,9 @@ class MotorRows(NamedTuple):
     part: Slots
 
 
-class MotorSources(NamedTuple):
-    """What the sides of motors follow from: see StateArrays; hub, rim_start and rim: see Motors."""
+class Wheels(NamedTuple):
+    """The wheels of motors, see Motors."""
 
-    inverse_mass: Floats
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    spring_active: Flags
-    material: NDArray[np.int32]
     hub: Slots
     rim_start: Slots
     rim: Slots
@@ -62,50 +56,50 @@ class MotorSides(NamedTuple):
 
 
 @inner_kernel
-def _label_free(given: MotorSources, label: Slots) -> None:
+def _label_free(state: State, label: Slots) -> None:
     for p in range(label.shape[0]):
         label[p] = p
-    for s in range(given.spring_active.shape[0]):
-        a = given.particle_a[s]
-        b = given.particle_b[s]
-        both_free = given.inverse_mass[a] > 0.0 and given.inverse_mass[b] > 0.0
-        if both_free and given.spring_active[s] and given.material[s] >= 0:
+    for s in range(state.spring_active.shape[0]):
+        a = state.particle_a[s]
+        b = state.particle_b[s]
+        both_free = state.inverse_mass[a] > 0.0 and state.inverse_mass[b] > 0.0
+        if both_free and state.spring_active[s] and state.material[s] >= 0:
             join(label, a, b)
     for p in range(label.shape[0]):
         label[p] = root_of(label, p)
 
 
 @inner_kernel
-def _mark_wheel(k: int, given: MotorSources, sides: MotorSides) -> bool:
+def _mark_wheel(k: int, state: State, wheels: Wheels, sides: MotorSides) -> bool:
     # Mark the rim, what springs join to the hub, and what turns with it; whether anything holds the rim to the hub.
-    hub = given.hub[k]
+    hub = wheels.hub[k]
     for p in range(sides.label.shape[0]):
         sides.on_rim[p] = sides.at_hub[p] = sides.turns[p] = False
-    for at in range(given.rim_start[k], given.rim_start[k + 1]):
-        sides.on_rim[given.rim[at]] = True
-    for s in range(given.spring_active.shape[0]):
-        if given.spring_active[s] and given.material[s] >= 0:
-            if given.particle_a[s] == hub:
-                sides.at_hub[given.particle_b[s]] = True
-            if given.particle_b[s] == hub:
-                sides.at_hub[given.particle_a[s]] = True
+    for at in range(wheels.rim_start[k], wheels.rim_start[k + 1]):
+        sides.on_rim[wheels.rim[at]] = True
+    for s in range(state.spring_active.shape[0]):
+        if state.spring_active[s] and state.material[s] >= 0:
+            if state.particle_a[s] == hub:
+                sides.at_hub[state.particle_b[s]] = True
+            if state.particle_b[s] == hub:
+                sides.at_hub[state.particle_a[s]] = True
     held = False
     for p in range(sides.label.shape[0]):
         if sides.at_hub[p] and sides.on_rim[p]:
             held = True
             sides.turns[sides.label[p]] = True
-    if given.inverse_mass[hub] > 0.0:
+    if state.inverse_mass[hub] > 0.0:
         for p in range(sides.label.shape[0]):
             sides.turns[p] = p == sides.label[hub]
     return held
 
 
 @inner_kernel
-def _list_side(hub: int, of_wheel: bool, top: int, given: MotorSources, sides: MotorSides) -> int:
+def _list_side(hub: int, of_wheel: bool, top: int, state: State, sides: MotorSides) -> int:
     # List the particles of a side, the hub apart, from `top` on; where it ends, which may be beyond the room, or
     # GROUNDED.
     for p in range(sides.label.shape[0]):
-        is_free = given.inverse_mass[p] > 0.0
+        is_free = state.inverse_mass[p] > 0.0
         if of_wheel:
             belongs = sides.on_rim[p] and (sides.turns[sides.label[p]] or not is_free)
         else:
@@ -125,18 +119,18 @@ def _enter(p: int, top: int, sides: MotorSides) -> None:
 
 
 @inner_kernel
-def list_motor_sides(given: MotorSources, sides: MotorSides) -> int:
+def list_motor_sides(state: State, wheels: Wheels, sides: MotorSides) -> int:
     """List the sides of all motors; how many particles they have, which may be more than there is room for."""
-    _label_free(given, sides.label)
+    _label_free(state, sides.label)
     top = 0
     sides.first[0] = 0
-    for k in range(given.hub.shape[0]):
-        hub = given.hub[k]
-        idle = not _mark_wheel(k, given, sides)
-        middle = _list_side(hub, True, top, given, sides)
+    for k in range(wheels.hub.shape[0]):
+        hub = wheels.hub[k]
+        idle = not _mark_wheel(k, state, wheels, sides)
+        middle = _list_side(hub, True, top, state, sides)
         middle = top if middle == GROUNDED else middle
-        end = _list_side(hub, False, middle, given, sides)
-        if end == GROUNDED or not given.inverse_mass[hub] > 0.0:
+        end = _list_side(hub, False, middle, state, sides)
+        if end == GROUNDED or not state.inverse_mass[hub] > 0.0:
             end = middle
         else:
             idle = idle or end == middle
@@ -150,8 +144,8 @@ def list_motor_sides(given: MotorSources, sides: MotorSides) -> int:
 
 
 @kernel
-def _list_motor_sides(given: MotorSources, sides: MotorSides) -> int:
-    return list_motor_sides(given, sides)
+def _list_motor_sides(lent: Any, wheels: Wheels, sides: MotorSides) -> int:
+    return list_motor_sides(contents(lent), wheels, sides)
 
 
 def motor_groups(world: World) -> list[tuple[Slots, Slots]]:
@@ -165,17 +159,16 @@ def motor_groups(world: World) -> list[tuple[Slots, Slots]]:
     motors, count = world.actuators.motors, world.particle_count
     if not len(motors.hub):
         return []
-    of_world = [getattr(world, name) for name in MotorSources._fields[:5]]
-    given = MotorSources._make([*of_world, motors.hub, motors.rim_start, motors.rim])
+    wheels = Wheels(motors.hub, motors.rim_start, motors.rim)
     on_rim, at_hub, turns = np.zeros((3, count), np.bool_)
     sides = MotorSides(
         np.zeros(2 * len(motors.hub) + 1, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64), on_rim,
         at_hub, turns,
     )  # fmt: skip
-    needed = _list_motor_sides(given, sides)
+    needed = _list_motor_sides(lent_state(world), wheels, sides)
     if needed > len(sides.particle):
         sides = sides._replace(particle=np.zeros(needed, np.int64))
-        _list_motor_sides(given, sides)
+        _list_motor_sides(lent_state(world), wheels, sides)
     first = sides.first.tolist()
     groups = [sides.particle[begin:end] for begin, end in itertools.pairwise(first)]
     return list(zip(groups[::2], groups[1::2], strict=True))

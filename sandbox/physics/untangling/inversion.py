@@ -8,17 +8,16 @@ folded over in its own form, some of its triangles counter-clockwise and others 
 number of them that is right.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.physics.collision.types import Flags
 from sandbox.physics.constraints import AREA
 from sandbox.physics.geometry.polygon import winding_of_side
 from sandbox.physics.geometry.segment import doubled_area, doubled_area_of
-from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.jit import contents, inlined_kernel, inner_kernel, kernel
+from sandbox.physics.state import Floats, Slots, State, lent_state
 from sandbox.physics.untangling.jellies import NO_JELLIES, Jellies, group_triangles
 from sandbox.physics.world import World
 
@@ -116,34 +115,23 @@ def find_inverted(
                 inverted[jellies.particle[i]] = True
 
 
-class AreaSources(NamedTuple):
-    """The constraints of a world and their corners, see StateArrays."""
-
-    constraint_kind: NDArray[np.int8]
-    constraint_first: NDArray[np.int32]
-    constraint_corners: NDArray[np.int32]
-    constraint_active: Flags
-    constraint_rest: Floats
-    corner_particle: NDArray[np.int32]
-
-
 @inner_kernel
-def choose_triangles(given: AreaSources, constraint: Slots, corners: Slots, is_left: Flags) -> int:
+def choose_triangles(state: State, constraint: Slots, corners: Slots, is_left: Flags) -> int:
     """Choose the constraints that are triangles; how many there are."""
     count = 0
-    for k in range(given.constraint_kind.shape[0]):
-        if given.constraint_kind[k] == AREA and given.constraint_corners[k] == 3 and given.constraint_active[k]:
+    for k in range(state.constraint_kind.shape[0]):
+        if state.constraint_kind[k] == AREA and state.constraint_corners[k] == 3 and state.constraint_active[k]:
             constraint[count] = k
             for c in range(3):
-                corners[count, c] = given.corner_particle[given.constraint_first[k] + c]
-            is_left[count] = given.constraint_rest[k, 1] > 0.0
+                corners[count, c] = state.corner_particle[state.constraint_first[k] + c]
+            is_left[count] = state.constraint_rest[k, 1] > 0.0
             count += 1
     return count
 
 
 @kernel
-def _choose_triangles(given: AreaSources, constraint: Slots, corners: Slots, is_left: Flags) -> int:
-    return choose_triangles(given, constraint, corners, is_left)
+def _choose_triangles(lent: Any, constraint: Slots, corners: Slots, is_left: Flags) -> int:
+    return choose_triangles(contents(lent), constraint, corners, is_left)
 
 
 def triangles_of(world: World) -> Triangles:
@@ -152,8 +140,7 @@ def triangles_of(world: World) -> Triangles:
     if not room:
         return NO_TRIANGLES
     constraint, corners, is_left = np.zeros(room, np.int64), np.zeros((room, 3), np.int64), np.zeros(room, np.bool_)
-    given = AreaSources._make([getattr(world, name) for name in AreaSources._fields])
-    count = _choose_triangles(given, constraint, corners, is_left)
+    count = _choose_triangles(lent_state(world), constraint, corners, is_left)
     jellies = group_triangles(corners[:count], is_left[:count], world.particle_count)
     return Triangles(constraint[:count], corners[:count], jellies)
 

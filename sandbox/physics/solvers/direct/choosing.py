@@ -1,35 +1,19 @@
 """What the matrix of the direct solver is made of: which springs, constraints and particles, and what those join."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.joints.limited_springs import unlimited_active
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.state import Floats, Slots, State, lent_state
 from sandbox.physics.world import LAW_NISSEN, World
 
 # Corners at most of a constraint that is added to the matrix; one of more is wide.
 NARROW = 3
 # Places in `counts`: springs, constraints and their corners, free particles, pinned ones, links between free ones.
 SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, COUNTS = range(7)
-
-
-class MatrixSources(NamedTuple):
-    """What the matrix follows from: see StateArrays; unlimited (m,): springs that act and are no joints."""
-
-    origin: Floats
-    inverse_mass: Floats
-    particle_a: NDArray[np.int32]
-    particle_b: NDArray[np.int32]
-    law: NDArray[np.int8]
-    constraint_kind: NDArray[np.int8]
-    constraint_corners: NDArray[np.int32]
-    constraint_active: Flags
-    corner_particle: NDArray[np.int32]
-    unlimited: Flags
 
 
 class MatrixContents(NamedTuple):
@@ -54,13 +38,13 @@ class MatrixContents(NamedTuple):
 
 
 @inner_kernel
-def _choose_springs(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
+def _choose_springs(state: State, unlimited: Flags, chosen: MatrixContents, counts: Slots) -> None:
     springs = 0
-    for s in range(given.law.shape[0]):
-        a = given.particle_a[s]
-        b = given.particle_b[s]
-        moves = given.inverse_mass[a] > 0.0 or given.inverse_mass[b] > 0.0
-        if moves and given.unlimited[s] and given.law[s] == LAW_NISSEN:
+    for s in range(state.law.shape[0]):
+        a = state.particle_a[s]
+        b = state.particle_b[s]
+        moves = state.inverse_mass[a] > 0.0 or state.inverse_mass[b] > 0.0
+        if moves and unlimited[s] and state.law[s] == LAW_NISSEN:
             chosen.spring[springs] = s
             chosen.number[a] = chosen.number[b] = 0
             springs += 1
@@ -68,22 +52,22 @@ def _choose_springs(given: MatrixSources, chosen: MatrixContents, counts: Slots)
 
 
 @inner_kernel
-def _choose_constraints(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
+def _choose_constraints(state: State, chosen: MatrixContents, counts: Slots) -> None:
     constraints = 0
     corners = 0
     last = 0
     chosen.start[0] = 0
-    for k in range(given.constraint_kind.shape[0]):
+    for k in range(state.constraint_kind.shape[0]):
         first = last
-        last = first + given.constraint_corners[k]
+        last = first + state.constraint_corners[k]
         moves = False
         for corner in range(first, last):
-            moves = moves or given.inverse_mass[given.corner_particle[corner]] > 0.0
-        if not (moves and given.constraint_active[k]):
+            moves = moves or state.inverse_mass[state.corner_particle[corner]] > 0.0
+        if not (moves and state.constraint_active[k]):
             continue
         for corner in range(first, last):
             chosen.corner[corners] = corner
-            chosen.number[given.corner_particle[corner]] = 0
+            chosen.number[state.corner_particle[corner]] = 0
             corners += 1
         chosen.constraint[constraints] = k
         constraints += 1
@@ -93,18 +77,18 @@ def _choose_constraints(given: MatrixSources, chosen: MatrixContents, counts: Sl
 
 
 @inner_kernel
-def _number_particles(given: MatrixSources, chosen: MatrixContents, counts: Slots) -> None:
+def _number_particles(state: State, chosen: MatrixContents, counts: Slots) -> None:
     # The free ones that something holds, then the pinned ones.
     count = 0
     for p in range(chosen.number.shape[0]):
-        if chosen.number[p] == 0 and given.inverse_mass[p] > 0.0:
+        if chosen.number[p] == 0 and state.inverse_mass[p] > 0.0:
             chosen.particle[count] = p
-            chosen.x[count] = given.origin[p, 0]
-            chosen.y[count] = given.origin[p, 1]
+            chosen.x[count] = state.origin[p, 0]
+            chosen.y[count] = state.origin[p, 1]
             count += 1
     counts[NODES] = count
     for p in range(chosen.number.shape[0]):
-        if chosen.number[p] == 0 and not given.inverse_mass[p] > 0.0:
+        if chosen.number[p] == 0 and not state.inverse_mass[p] > 0.0:
             chosen.particle[count] = p
             count += 1
     counts[ANCHORS] = count - counts[NODES]
@@ -125,24 +109,24 @@ def _link(p: int, q: int, count: int, nodes: int, chosen: MatrixContents) -> int
 
 
 @inner_kernel
-def _find_links(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
+def _find_links(state: State, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
     nodes = counts[NODES]
     count = 0
     for k in range(counts[SPRINGS]):
         s = chosen.spring[k]
-        count = _link(given.particle_a[s], given.particle_b[s], count, nodes, chosen)
+        count = _link(state.particle_a[s], state.particle_b[s], count, nodes, chosen)
     for k in range(counts[CONSTRAINTS]):
         first, last = chosen.start[k], chosen.start[k + 1]
         if last - first <= narrow:
             for c in range(3):
-                p = given.corner_particle[chosen.corner[first + c]]
-                q = given.corner_particle[chosen.corner[first + (c + 1) % 3]]
+                p = state.corner_particle[chosen.corner[first + c]]
+                q = state.corner_particle[chosen.corner[first + (c + 1) % 3]]
                 count = _link(p, q, count, nodes, chosen)
         else:
             before = -1
             for at in range(first, last):
-                p = given.corner_particle[chosen.corner[at]]
-                if given.inverse_mass[p] > 0.0:
+                p = state.corner_particle[chosen.corner[at]]
+                if state.inverse_mass[p] > 0.0:
                     if before >= 0:
                         count = _link(before, p, count, nodes, chosen)
                     before = p
@@ -150,27 +134,25 @@ def _find_links(given: MatrixSources, chosen: MatrixContents, narrow: int, count
 
 
 @inner_kernel
-def choose_for_matrix(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
+def choose_for_matrix(state: State, unlimited: Flags, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
     """Choose what is in the matrix, and say in counts (COUNTS,) how much it is; narrow: see NARROW."""
     for p in range(chosen.number.shape[0]):
         chosen.number[p] = -1
-    _choose_springs(given, chosen, counts)
-    _choose_constraints(given, chosen, counts)
-    _number_particles(given, chosen, counts)
-    _find_links(given, chosen, narrow, counts)
+    _choose_springs(state, unlimited, chosen, counts)
+    _choose_constraints(state, chosen, counts)
+    _number_particles(state, chosen, counts)
+    _find_links(state, chosen, narrow, counts)
 
 
 @kernel
-def _choose_for_matrix(given: MatrixSources, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
-    choose_for_matrix(given, chosen, narrow, counts)
+def _choose_for_matrix(lent: Any, unlimited: Flags, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
+    choose_for_matrix(contents(lent), unlimited, chosen, narrow, counts)
 
 
-def chosen_of(world: World) -> tuple[MatrixSources, MatrixContents, list[int]]:
-    """What is in the matrix of a world, with what that follows from, and how much it is, by place in `counts`."""
-    of_world = [getattr(world, name) for name in MatrixSources._fields[:9]]
-    given, counts = MatrixSources._make([*of_world, unlimited_active(world)]), np.zeros(COUNTS, np.int64)
+def chosen_of(world: World) -> tuple[MatrixContents, list[int]]:
+    """What is in the matrix of a world, and how much it is, by place in `counts`."""
     particles, springs, constraints = world.particle_count, world.spring_count, world.constraint_count
-    corners = len(world.corner_particle)
+    corners, counts = len(world.corner_particle), np.zeros(COUNTS, np.int64)
     particle, number = np.zeros((2, particles), np.int64)
     # Of c corners a narrow constraint has c links, and a wide one fewer.
     link_a, link_b = np.zeros((2, springs + corners), np.int64)
@@ -179,5 +161,5 @@ def chosen_of(world: World) -> tuple[MatrixSources, MatrixContents, list[int]]:
         np.zeros(springs, np.int64), np.zeros(constraints, np.int64), np.zeros(constraints + 1, np.int64),
         np.zeros(corners, np.int64), particle, number, link_a, link_b, x, y,
     )  # fmt: skip
-    _choose_for_matrix(given, chosen, NARROW, counts)
-    return given, chosen, counts.tolist()
+    _choose_for_matrix(lent_state(world), unlimited_active(world), chosen, NARROW, counts)
+    return chosen, counts.tolist()

@@ -42,7 +42,7 @@ def _hired_layout(world: World) -> SystemLayout:
 
 def make_layout(world: World) -> SystemLayout:
     """Order a world's free particles for elimination and lay out the matrix of its springs and constraints."""
-    given, chosen, counts = chosen_of(world)
+    chosen, counts = chosen_of(world)
     nodes, links = counts[NODES], counts[LINKS]
     joined = Links(chosen.link_a[:links], chosen.link_b[:links], chosen.x[:nodes], chosen.y[:nodes])
     elimination, room, small, found = order_for_elimination(joined)
@@ -54,7 +54,7 @@ def make_layout(world: World) -> SystemLayout:
         elimination.order, elimination.rank, elimination.body, elimination.first_row, elimination.lowest,
         matrix.column_start, matrix.row, blocks,
     )  # fmt: skip
-    places, most_wide = places_of(counts, bodies, given, chosen, lying)
+    places, most_wide = places_of(world, counts, bodies, chosen, lying)
     rows = _rows(places.particle)
     constraints = _constraints(places, nodes, most_wide)
     triangles, jellies, groups = group_constraints(

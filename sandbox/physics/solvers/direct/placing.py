@@ -1,11 +1,11 @@
 """Where rows, springs, constraints and bodies lie in the system of the direct solver."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.solvers.direct import choosing
 from sandbox.physics.solvers.direct.choosing import (
     ANCHORS,
@@ -14,12 +14,12 @@ from sandbox.physics.solvers.direct.choosing import (
     NODES,
     SPRINGS,
     MatrixContents,
-    MatrixSources,
 )
 from sandbox.physics.solvers.linear.front_layout import FrontBlocks, block_in_front
 from sandbox.physics.solvers.linear.matrix_layout import block_below
-from sandbox.physics.state import Slots
+from sandbox.physics.state import Slots, State, lent_state
 from sandbox.physics.topology.sorting import list_by_key, sort_by_key
+from sandbox.physics.world import World
 
 # In place of the row of a body's one pinned particle.
 NO_PIVOT, SEVERAL_PIVOTS = -1, -2
@@ -115,7 +115,7 @@ def _anchor(b: int, row: int, nodes: int, places: Places) -> None:
 def _place_springs(
     count: int,
     bodies: int,
-    given: MatrixSources,
+    state: State,
     chosen: MatrixContents,
     lying: Lying,
     places: Places,
@@ -125,8 +125,8 @@ def _place_springs(
     nodes = lying.rank.shape[0]
     for k in range(count):
         s = chosen.spring[k]
-        row_a = _row_of(given.particle_a[s], chosen, lying)
-        row_b = _row_of(given.particle_b[s], chosen, lying)
+        row_a = _row_of(state.particle_a[s], chosen, lying)
+        row_b = _row_of(state.particle_b[s], chosen, lying)
         low = min(row_a, row_b)
         work.key[k] = lying.body[low]
         work.low[k] = low if lying.fronts.of_row[low] >= 0 else 0
@@ -135,8 +135,8 @@ def _place_springs(
     sort_by_key(work.key, work.items, count, bodies, places.spring_start, work.order)
     for at in range(count):
         s = chosen.spring[work.order[at]]
-        row_a = _row_of(given.particle_a[s], chosen, lying)
-        row_b = _row_of(given.particle_b[s], chosen, lying)
+        row_a = _row_of(state.particle_a[s], chosen, lying)
+        row_b = _row_of(state.particle_b[s], chosen, lying)
         places.spring[at] = s
         places.row_a[at] = row_a
         places.row_b[at] = row_b
@@ -147,7 +147,7 @@ def _place_springs(
 def _sort_constraints(
     count: int,
     bodies: int,
-    given: MatrixSources,
+    state: State,
     chosen: MatrixContents,
     lying: Lying,
     places: Places,
@@ -157,7 +157,7 @@ def _sort_constraints(
     for k in range(count):
         low = nodes
         for at in range(chosen.start[k], chosen.start[k + 1]):
-            low = min(low, _row_of(given.corner_particle[chosen.corner[at]], chosen, lying))
+            low = min(low, _row_of(state.corner_particle[chosen.corner[at]], chosen, lying))
         work.key[k] = lying.body[low]
     list_by_key(work.key, count, bodies, places.constraint_start, work.order)
 
@@ -166,7 +166,7 @@ def _sort_constraints(
 def _place_constraints(
     count: int,
     narrow: int,
-    given: MatrixSources,
+    state: State,
     chosen: MatrixContents,
     lying: Lying,
     places: Places,
@@ -185,9 +185,9 @@ def _place_constraints(
             number = 0
         first, last = chosen.start[k], chosen.start[k + 1]
         places.constraint[at] = chosen.constraint[k]
-        places.kind[at] = given.constraint_kind[chosen.constraint[k]]
+        places.kind[at] = state.constraint_kind[chosen.constraint[k]]
         for corner in range(first, last):
-            row = _row_of(given.corner_particle[chosen.corner[corner]], chosen, lying)
+            row = _row_of(state.corner_particle[chosen.corner[corner]], chosen, lying)
             places.corner[top + corner - first] = chosen.corner[corner]
             places.row[top + corner - first] = row
             _anchor(b, row, nodes, places)
@@ -207,7 +207,7 @@ def _place_constraints(
 
 @inner_kernel
 def place_all(
-    counts: Slots, bodies: int, narrow: int, given: MatrixSources, chosen: MatrixContents, lying: Lying, places: Places,
+    counts: Slots, bodies: int, narrow: int, state: State, chosen: MatrixContents, lying: Lying, places: Places,
     work: PlaceScratch,
 ) -> int:  # fmt: skip
     """Find where all lies; how many wide constraints a body has at most.
@@ -220,22 +220,20 @@ def place_all(
     for k in range(nodes, nodes + counts[ANCHORS]):
         places.particle[k] = chosen.particle[k]
     _place_bodies(bodies, chosen, lying, places)
-    _place_springs(counts[SPRINGS], bodies, given, chosen, lying, places, work)
-    _sort_constraints(counts[CONSTRAINTS], bodies, given, chosen, lying, places, work)
-    return _place_constraints(counts[CONSTRAINTS], narrow, given, chosen, lying, places, work)
+    _place_springs(counts[SPRINGS], bodies, state, chosen, lying, places, work)
+    _sort_constraints(counts[CONSTRAINTS], bodies, state, chosen, lying, places, work)
+    return _place_constraints(counts[CONSTRAINTS], narrow, state, chosen, lying, places, work)
 
 
 @kernel
 def _place_all(
-    counts: Slots, bodies: int, narrow: int, given: MatrixSources, chosen: MatrixContents, lying: Lying, places: Places,
+    lent: Any, counts: Slots, bodies: int, narrow: int, chosen: MatrixContents, lying: Lying, places: Places,
     work: PlaceScratch,
 ) -> int:  # fmt: skip
-    return place_all(counts, bodies, narrow, given, chosen, lying, places, work)
+    return place_all(counts, bodies, narrow, contents(lent), chosen, lying, places, work)
 
 
-def places_of(
-    counts: list[int], bodies: int, given: MatrixSources, chosen: MatrixContents, lying: Lying
-) -> tuple[Places, int]:
+def places_of(world: World, counts: list[int], bodies: int, chosen: MatrixContents, lying: Lying) -> tuple[Places, int]:
     """Where all lies in the system of so many bodies, and how many wide constraints a body has at most."""
     springs, constraints, corners, rows = (counts[k] for k in (SPRINGS, CONSTRAINTS, CORNERS, NODES))
     row_start, spring_start, constraint_start = np.zeros((3, bodies + 1), np.int64)
@@ -251,6 +249,6 @@ def places_of(
     key, low, order, items = np.zeros((4, max(springs, constraints)), np.int64)
     work = PlaceScratch(key, low, order, items, np.zeros(rows + 1, np.int64))
     most = _place_all(
-        np.array(counts, np.int64), bodies, choosing.NARROW, given, chosen, lying, places, work
+        lent_state(world), np.array(counts, np.int64), bodies, choosing.NARROW, chosen, lying, places, work
     )  # fmt: skip
     return places, most
