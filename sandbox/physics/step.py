@@ -1,6 +1,6 @@
 """step(world): one tick. A kernel does it (pipeline/tick.py); what is rare is answered here."""
 
-from sandbox.physics.pipeline.block import BROKEN
+from sandbox.physics.pipeline.block import BROKEN, CHECKED
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.pipeline.tick import BROKE, LOST, NO_ROOM, UNSOUND, find_broken, tick
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
@@ -29,6 +29,8 @@ def step(world: World) -> None:
             contain_inputs(world)
             block = block_of(world)
             block.begin(world)
+            # What was good is not always: nothing is looked at twice.
+            block.arrays.progress[CHECKED] = 1
         code = tick(block.pointer)
     block.end(world)
     world.may_fly = False

@@ -18,8 +18,8 @@ from sandbox.physics.untangling.triangle_clamp import WorldTriangles
 # beside it, whether there are areas of more than three corners; the first spring of a grab, or -1.
 HAS_CONTACTS, HAS_HOOKE, HAS_RINGS, GRAB_PARTICLE, GRAB_SPRING = range(5)
 # Places in `progress`: the number of the tick, whether any particle may be unmoved; its substeps, 0 before they
-# are chosen, and how many are done; springs that broke.
-TICK, MAY_FLY, COUNT, DONE, BROKEN = range(5)
+# are chosen, and how many are done; springs that broke; whether what it begins with was looked at.
+TICK, MAY_FLY, COUNT, DONE, BROKEN, CHECKED, PROGRESS = range(7)
 
 
 class Coefficients(NamedTuple):

@@ -16,7 +16,7 @@ from sandbox.physics.jit import bundle, contents, kernel
 from sandbox.physics.joints.joint_set import joints_of
 from sandbox.physics.joints.joint_sweep import joints_by_mass, new_joints, no_joints
 from sandbox.physics.joints.rows import JointRows
-from sandbox.physics.pipeline.block import COUNT, MAY_FLY, TICK, Coefficients, WorldBlock
+from sandbox.physics.pipeline.block import CHECKED, COUNT, MAY_FLY, PROGRESS, TICK, Coefficients, WorldBlock
 from sandbox.physics.pipeline.collide import (
     BOUND,
     CONTACTS,
@@ -147,7 +147,7 @@ class Block:
         if world.contact_impulse is not self.kept.impulse and self._has_other_contacts(world):
             self._take_contacts(world)
         progress = self.arrays.progress
-        progress[TICK], progress[MAY_FLY], progress[COUNT] = world.tick, world.may_fly, 0
+        progress[TICK], progress[MAY_FLY], progress[COUNT], progress[CHECKED] = world.tick, world.may_fly, 0, 0
 
     def _take_contacts(self, world: World) -> None:
         count = self.arrays.collisions.counts[KEPT] = len(world.contact_particle)
@@ -301,7 +301,7 @@ def _new_scratch(particles: int, springs: int, constraints: int) -> dict[str, An
     return {
         "numbers": np.zeros(len(WorldSettings().numbers)),
         "choices": np.zeros(len(WorldSettings().choices), np.int64),
-        "progress": np.zeros(5, np.int64),
+        "progress": np.zeros(PROGRESS, np.int64),
         "start": np.zeros((particles, 2)),
         "start_length": np.zeros(springs),
         "shortest": np.zeros(GRAB_COUNT),

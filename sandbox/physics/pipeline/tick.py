@@ -11,6 +11,7 @@ from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.joints.joint_set import prepare_joints, store_joint_impulses
 from sandbox.physics.pipeline.block import (
     BROKEN,
+    CHECKED,
     COUNT,
     DONE,
     GRAB_PARTICLE,
@@ -79,22 +80,23 @@ def tick(lent: Any) -> int:
     state, start, collisions, joints = world.state, world.start, world.collisions, world.joints
     progress, solver, touches = world.progress, world.choices[SOLVER], world.plan[HAS_CONTACTS] != 0
     if progress[COUNT] == 0:
-        if not are_sound(state, collisions.kept.impulse, collisions.kept.impact, collisions.counts[KEPT]):
+        kept, count = collisions.kept, collisions.counts[KEPT]
+        if progress[CHECKED] == 0 and not are_sound(state, kept.impulse, kept.impact, count):
             return UNSOUND
         _begin_tick(world)
     h = 1.0 / (world.choices[TICK_RATE] * progress[COUNT])
     while progress[DONE] < progress[COUNT]:
         integrate_velocities(state, world.numbers, start, h)
         given = _inputs(world)
-        drives = prepare_joints(joints, state, given.stiffness, given.damping, solver, h)
-        if not _find_contacts(world, touches, drives, h):
+        has_joints = prepare_joints(joints, state, given.stiffness, given.damping, solver, h)
+        if not _find_contacts(world, touches, has_joints, h):
             _take_back_forces(world)
             return NO_ROOM
         if touches:
             separate_overlaps(state, start, collisions)
             prepare_contacts(state, start, collisions, h)
             solve_free(state, start, collisions, h)
-        _solve(world, given, drives, h)
+        _solve(world, given, has_joints, h)
         _begin_flight(world, touches, h)
         store_joint_impulses(joints, state, solver, h)
         if touches:
@@ -209,12 +211,12 @@ def _inputs(world: WorldBlock) -> Inputs:
 
 
 @inner_kernel
-def _find_contacts(world: WorldBlock, touches: bool, drives: bool, h: float) -> bool:
+def _find_contacts(world: WorldBlock, touches: bool, has_joints: bool, h: float) -> bool:
     # And the islands that they make with joints; whether there is room for all.
     collisions, state = world.collisions, world.state
     if touches and not detect(state, collisions, world.plan[GRAB_SPRING], world.progress[TICK], h):
         return False
-    if world.choices[SOLVER] == DIRECT and (drives or collisions.counts[BOUND] > 0):
+    if world.choices[SOLVER] == DIRECT and (has_joints or collisions.counts[BOUND] > 0):
         return find_body_islands(bound_contacts(collisions), state.inverse_mass, world.system, world.workspace)
     return True
 
@@ -227,7 +229,7 @@ def _take_back_forces(world: WorldBlock) -> None:
 
 
 @inner_kernel
-def _solve(world: WorldBlock, given: Inputs, drives: bool, h: float) -> None:
+def _solve(world: WorldBlock, given: Inputs, has_joints: bool, h: float) -> None:
     # Bring velocities to the end of a substep by the solver that is set. Another solver is a branch here.
     state, solver, workspace, choices = world.state, world.choices[SOLVER], world.workspace, world.choices
     contacts = bound_contacts(world.collisions)
@@ -245,7 +247,7 @@ def _solve(world: WorldBlock, given: Inputs, drives: bool, h: float) -> None:
             world.numbers[WARM_START], count > 1, h,
         )  # fmt: skip
     else:
-        has_islands = drives or contacts.particle.shape[0] > 0
+        has_islands = has_joints or contacts.particle.shape[0] > 0
         auto_substeps = count if choices[IS_AUTO] != 0 else 0
         solve_direct(state, world.system, given, contacts, workspace, has_islands, auto_substeps, h)
 
