@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.collision.types import Flags
-from sandbox.physics.components import join, root_of
+from sandbox.physics.components import find_joined
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.settings import DRAG, GRAVITY_X
 from sandbox.physics.state import Floats, Slots, State
@@ -42,23 +42,15 @@ def new_flight(particles: int) -> Flight:
 @inner_kernel
 def label_all_joined(state: State, flight: Flight) -> None:
     """Label every particle with the lowest one that springs and constraints join it to; nothing stays yet."""
-    label = flight.label
-    for p in range(label.shape[0]):
-        label[p] = p
+    for p in range(flight.stays.shape[0]):
+        flight.stays[p] = True
+    # All of them join.
+    find_joined(state, state.spring_active, flight.stays, flight.label)
+    for p in range(flight.stays.shape[0]):
         flight.stays[p] = False
         flight.members[p] = 0
         flight.mass[p] = 0.0
         flight.pulled[p] = 0.0
-    for s in range(state.spring_active.shape[0]):
-        if state.spring_active[s]:
-            join(label, state.particle_a[s], state.particle_b[s])
-    for k in range(state.constraint_active.shape[0]):
-        if state.constraint_active[k]:
-            first = state.constraint_first[k]
-            for c in range(first + 1, first + state.constraint_corners[k]):
-                join(label, state.corner_particle[c - 1], state.corner_particle[c])
-    for p in range(label.shape[0]):
-        label[p] = root_of(label, p)
 
 
 @inner_kernel

@@ -3,11 +3,13 @@
 The choice is a pure function of the state at the tick's start, of + - * / and comparisons alone.
 """
 
-from sandbox.physics.equation import HIGHEST_COEFFICIENT, half_step_of_network, part_of_network
-from sandbox.physics.jit import inner_kernel, kernel
+from typing import Any
+
+from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, half_step_of_network, part_of_network
+from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.state import State
+from sandbox.physics.state import State, lent_state
 from sandbox.physics.world import GRAB_COUNT, HIGHEST_OF_RING, TRIANGLE, Floats, World
 
 # No tick chooses more substeps than this. 4 leaves a rope dragged at 20 m/s at a stretch above 1e-2, 16 doubles the
@@ -47,7 +49,14 @@ def constraint_coefficients(
 ) -> Pair:
     """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
     modes = world.constraint_lowest_mode
-    return _of_substep(world, world.constraint_coefficients, modes, count, keeps_constant, highest)
+    return _of_substep(world, tick_constraint_coefficients(world), modes, count, keeps_constant, highest)
+
+
+def tick_constraint_coefficients(world: World) -> Pair:
+    """Cs and Cd (t,) of constraints in a tick, as solvers take them; areas of more than three corners give way."""
+    pair = world.constraint_stiffness.copy(), world.constraint_damping.copy()
+    _limit_rings(lent_state(world), *pair)
+    return pair
 
 
 def _of_substep(
@@ -96,13 +105,17 @@ def _turn_into_substep(
 
 @inner_kernel
 def limit_rings(state: State, stiffness: Floats, damping: Floats) -> None:
-    """Cs and Cd (t,) of constraints in a tick, as solvers take them: see `World.constraint_coefficients`."""
+    """Fill in Cs and Cd (t,) of constraints in a tick: see `tick_constraint_coefficients`."""
     for k in range(stiffness.shape[0]):
         stiffness[k] = state.constraint_stiffness[k]
         damping[k] = state.constraint_damping[k]
-        if state.constraint_corners[k] > TRIANGLE and damping[k] > HIGHEST_OF_RING:
-            stiffness[k] = min(stiffness[k], HIGHEST_OF_RING)
-            damping[k] = HIGHEST_OF_RING
+        if state.constraint_corners[k] > TRIANGLE:
+            stiffness[k], damping[k] = capped(stiffness[k], damping[k], HIGHEST_OF_RING)
+
+
+@kernel
+def _limit_rings(lent: Any, stiffness: Floats, damping: Floats) -> None:
+    limit_rings(contents(lent), stiffness, damping)
 
 
 @inner_kernel

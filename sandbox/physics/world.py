@@ -240,19 +240,6 @@ class World(StateArrays):
         return constraints_of(self)
 
     @property
-    def constraint_coefficients(self) -> tuple[Floats, Floats]:
-        """Cs and Cd (t,) of a tick, as solvers take them; those of areas of more than three corners give way."""
-        stiffness, damping = self.constraint_stiffness, self.constraint_damping
-        # numpy takes 2 us for nothing at all, a fifth of the tick of a rope.
-        if not len(damping):
-            return stiffness, damping
-        gives = (self.constraint_corners > TRIANGLE) & (damping > HIGHEST_OF_RING)
-        if not gives.any():
-            return stiffness, damping
-        least = np.minimum(stiffness, HIGHEST_OF_RING)
-        return np.where(gives, least, stiffness), np.where(gives, HIGHEST_OF_RING, damping)
-
-    @property
     def particle_names(self) -> list[str]:
         """Name of each particle, by slot."""
         return self.particle_naming.in_order

@@ -16,6 +16,7 @@ from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.settings import Substeps, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
+from sandbox.physics.substeps import tick_constraint_coefficients
 from sandbox.physics.world import Floats, Slots, World
 
 # Kinds of coefficients, and the multiple of its starting energy that no graph may exceed (solver `direct`).
@@ -145,7 +146,7 @@ def energies(graphs: Graphs, count: int, constant: Floats) -> Floats:
     if world.constraint_count:
         value, effective, _ = measure_constraints(world)
         of_constraints = SOLVERS[world.settings.solver].spring_constant(
-            *world.constraint_coefficients, effective, 1.0 / world.settings.tick_rate
+            *tick_constraint_coefficients(world), effective, 1.0 / world.settings.tick_rate
         )
         doubled = doubled + np.bincount(graphs.of_element, of_constraints * value**2, count)
     return 0.5 * doubled

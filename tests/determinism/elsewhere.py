@@ -23,6 +23,7 @@ import numpy as np
 
 from sandbox.physics import jit
 from sandbox.physics.jit.library import FOLDER, read_manifest
+from tests.support.calls import in_place_of
 
 HERE = Path(__file__).parent
 ALIGNED = 16
@@ -189,23 +190,12 @@ def watched(images: list[Image]) -> Iterator[Callable[[], None]]:
 
     It gives what is to be called now and then: entries that were never called before are watched from then on.
     """
-    changed: list[tuple[Any, str, Any]] = []
 
-    def watch() -> None:
-        for kernel in jit.entries():
-            if kernel.name in images[0].entries:
-                name, run = kernel.function.__name__, kernel.ready()
-                for holder in [one for one in sys.modules.values() if getattr(one, name, None) is run]:
-                    changed.append((holder, name, run))
-                    note = lambda *given, _name=kernel.name, _run=run: images[0].call(_name, _run, given)  # noqa: E731
-                    setattr(holder, name, note)
+    def note(kernel: jit.Kernel, run: Callable[..., Any], given: tuple[Any, ...]) -> Any:
+        return images[0].call(kernel.name, run, given)
 
-    try:
-        watch()
+    with in_place_of(lambda: [one for one in jit.entries() if one.name in images[0].entries], note) as watch:
         yield watch
-    finally:
-        for holder, name, run in changed:
-            setattr(holder, name, run)
 
 
 def verified(name: str, machine: Machine, end: int | None) -> str:

@@ -13,7 +13,7 @@ from sandbox.level.reading.salvage import salvage
 from sandbox.physics.equation import half_step
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
-from sandbox.physics.substeps import constraint_coefficients, substep_coefficients
+from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, tick_constraint_coefficients
 from tests.support.malformed_levels import GOOD, encoded
 
 
@@ -120,7 +120,7 @@ def test_a_substep_of_a_direct_level_of_version_1_has_the_coefficients_that_it_h
         assert now[0][s] == pytest.approx(expected[0], rel=1e-9, abs=1e-12)
         if expected[1] is not None:
             assert now[1][s] == pytest.approx(expected[1], rel=1e-9, abs=1e-12)
-    bend = old.constraint_coefficients[0].tolist().index(0.2)
+    bend = tick_constraint_coefficients(old)[0].tolist().index(0.2)
     stiffness, damping = constraint_coefficients(world)
     assert (stiffness[bend], damping[bend]) == pytest.approx(halved(0.2, 0.9, substeps), rel=1e-9)
 

@@ -5,7 +5,6 @@ import copy
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.types import NO_CONTACTS
 from sandbox.physics.pipeline import making
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.settings import AUTO
@@ -15,7 +14,7 @@ from sandbox.physics.terrain import Chain
 from tests.bench import scenes
 from tests.support.calls import counted_calls
 from tests.support.contact_scenes import add_discs, add_jelly, world
-from tests.support.contacts import collisions_of, last_contacts
+from tests.support.contacts import NO_CONTACTS, collisions_of, last_contacts
 from tests.support.physics_scenes import run, scaled
 
 PIT = Chain([(-0.9, 6.0), (-0.9, 0.0), (0.9, 0.0), (0.9, 6.0)])

@@ -1,9 +1,11 @@
 """The contacts of a world's last step, for tests."""
 
-from sandbox.physics.collision.types import NO_CONTACTS, Contacts
+from sandbox.physics.collision.types import Contacts, room_for
 from sandbox.physics.pipeline.collide import CONTACTS, Collisions
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.world import World
+
+NO_CONTACTS = room_for(0)
 
 
 def collisions_of(world: World) -> Collisions:

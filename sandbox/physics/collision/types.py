@@ -1,7 +1,6 @@
 """Types of collision: the arrays in which kernels find contacts, and the contacts that they find."""
 
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,14 +99,6 @@ class Contacts(NamedTuple):
     impact: Floats
 
 
-@dataclass(frozen=True, eq=False)
-class LentContacts:
-    """The contacts of a step that are left to a solver; lent: the same as one argument for kernels."""
-
-    arrays: Contacts
-    lent: Any
-
-
 class KeptContacts(NamedTuple):
     """The part of a step's contacts that the next step reads: see Contacts."""
 
@@ -155,5 +146,4 @@ def room_near() -> Near:
     return Near(slots[0], numbers[0], numbers[1], numbers[2], slots[1])
 
 
-NO_CONTACTS = room_for(0)
 NOTHING_KEPT = room_to_keep(0)

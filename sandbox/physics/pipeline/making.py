@@ -144,7 +144,7 @@ class Block:
                 self._point()
             self._settings = world.settings
             _load_settings(world.settings, self.arrays)
-        if world.contact_impulse is not self.kept.impulse and self._has_other_contacts(world):
+        if self._has_other_contacts(world):
             self._take_contacts(world)
         progress = self.arrays.progress
         progress[TICK], progress[MAY_FLY], progress[COUNT], progress[CHECKED] = world.tick, world.may_fly, 0, 0
@@ -191,14 +191,14 @@ class Block:
 
     def end(self, world: World) -> None:
         """Make the contacts of a tick's last step those of the world's state."""
-        if len(world.contact_impulse) != self.arrays.collisions.counts[KEPT] or (
-            world.contact_impulse is not self.kept.impulse and self._has_other_contacts(world)
-        ):
+        count = self.arrays.collisions.counts[KEPT]
+        if len(world.contact_impulse) != count or self._has_other_contacts(world):
             self._share_contacts(world)
 
     def _has_other_contacts(self, world: World) -> bool:
         # Two arrays of nothing are the same.
-        return len(world.contact_impulse) > 0 or bool(self.arrays.collisions.counts[KEPT] > 0)
+        is_other = world.contact_impulse is not self.kept.impulse
+        return is_other and (len(world.contact_impulse) > 0 or bool(self.arrays.collisions.counts[KEPT] > 0))
 
     def _share_contacts(self, world: World) -> None:
         count = self.arrays.collisions.counts[KEPT]

@@ -1,7 +1,4 @@
-"""Solvers: schedules of the one equation, with one signature, by the name that level files use.
-
-A solver is imported when it is first used: a run needs one of them.
-"""
+"""Solvers: schedules of the one equation, by the name that level files use."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,19 +12,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Solver:
-    """One solver: another is a module in this folder, and a line in SOLVERS.
+    """What is known of one solver; the tick has its branch.
 
     proven_limit: whether the limits of `stability` hold for it. bounded: whether it needs none, because it tests the
-    energy of every step. tracks_slow_velocity: whether it keeps the slow part of velocities, which is all that it does
-    to particles that nothing holds. joints_bear_load: whether what joints give, such as a motor's torque, carries
-    wheels under a load. has_floors: whether it holds triangles from outside, with an energy of its own. highest: Cs and
-    Cd of a tick are at most this where it has several substeps, as (1, 1) alone would stay so in each of them.
+    energy of every step. joints_bear_load: whether what joints give, such as a motor's torque, carries wheels under a
+    load. has_floors: whether it holds triangles from outside, with an energy of its own. highest: Cs and Cd of a tick
+    are at most this where it has several substeps, as (1, 1) alone would stay so in each of them.
     """
 
     module: str
     proven_limit: bool
     bounded: bool
-    tracks_slow_velocity: bool = False
     joints_bear_load: bool = True
     has_floors: bool = False
     highest: float = 1.0
@@ -47,5 +42,5 @@ HIGHEST_ITERATED = 1.0 - 1e-5
 SOLVERS = {
     "single_pass": Solver("single_pass", proven_limit=True, bounded=False, joints_bear_load=False),
     "iterative": Solver("iterative", proven_limit=False, bounded=False, highest=HIGHEST_ITERATED),
-    "direct": Solver("direct.solve", proven_limit=False, bounded=True, tracks_slow_velocity=True, has_floors=True),
+    "direct": Solver("direct.solve", proven_limit=False, bounded=True, has_floors=True),
 }

@@ -28,8 +28,8 @@ from sandbox.physics.untangling.crossing_candidates import (
 # Outlines of solid bodies that overlap deeper than this many radii of a particle part, until nothing crosses. Less
 # takes contacts from what is only pressed together, more leaves what has been pushed through.
 DEEP = 1.0
-# Places in `counts`: crossings, pairs, and those of them that part.
-CROSSINGS, OVERLAPS, PARTED = range(3)
+# Places in `counts`: crossings, and pairs.
+CROSSINGS, OVERLAPS, COUNTS = range(3)
 
 
 class Overlaps(NamedTuple):
@@ -56,7 +56,7 @@ def new_overlaps(shapes: int, crossings: int, pairs: int) -> Overlaps:
     return Overlaps(
         np.zeros((crossings, 2), np.int64), np.zeros((crossings, 2)), np.zeros(crossings, np.int64),
         np.zeros((pairs, 2), np.int64), np.zeros(pairs, np.int64), np.zeros(pairs, np.bool_),
-        np.zeros(pairs, np.int64), np.zeros(shapes, np.int64), np.zeros(3, np.int64),
+        np.zeros(pairs, np.int64), np.zeros(shapes, np.int64), np.zeros(COUNTS, np.int64),
     )  # fmt: skip
 
 
