@@ -2,11 +2,12 @@
 
 from typing import Any, NamedTuple
 
+from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.pipeline import block, collide, tick
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Family
-from sandbox.physics.world import World
+from sandbox.physics.world import GRAB_COUNT, World
 
 # Kernels that a page calls, by their names there, where the library has them.
 KERNELS = {
@@ -63,6 +64,8 @@ def about(world: World, words: int) -> dict[str, Any]:
         "progress": {name: getattr(block, name) for name in PROGRESS} | {"KEPT": collide.KEPT},
         "commands": {name: packing._asdict() for name, packing in COMMANDS.items()},
         "solvers": SOLVER_NAMES,
+        "hands": {"particle": world.grab_particle, "spring": world.grab_spring, "count": GRAB_COUNT},
+        "area": AREA,
         "columns": [_column(column) for column in COLUMNS],
         "topology": [f"state.{column.name}" for column in TOPOLOGY],
         "kept": kept + list(KEPT),

@@ -162,6 +162,25 @@ export class World {
     this.#views.clear();
   }
 
+  // First particle and spring of hands, and how many hands there are.
+  get hands() {
+    return this.#about.hands;
+  }
+
+  get areaKind() {
+    return this.#about.area;
+  }
+
+  isHeld(hand) {
+    return Boolean(this.view('state.spring_active')[this.hands.spring + hand]);
+  }
+
+  // Particles that touched something in the last step.
+  contacts() {
+    const count = Number(this.view('collisions.counts')[this.#about.progress.KEPT]);
+    return this.view('collisions.kept.particle').subarray(0, count);
+  }
+
   // What ticks keep from one to the next, as a copy; arrays that have not changed are those of the copy before.
   save() {
     const arrays = new Map();

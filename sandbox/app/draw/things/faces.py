@@ -40,7 +40,7 @@ class Faces:
         forms = [actor.form for actor, _ in rows]
         # As seen: pixels count downwards.
         self._form = np.concatenate(forms) * np.array([1.0, -1.0])
-        spots = [actor.spot(loop, _spot) for actor, loop in rows]
+        spots = [actor.spot(loop, spot_of) for actor, loop in rows]
         self._spot = np.array([place for place, _ in spots]) * np.array([1.0, -1.0])
         self._inner = np.array([radius for _, radius in spots])
         angle = np.array([actor.angle for actor, _ in rows])
@@ -189,7 +189,7 @@ def _towards(pointer: tuple[float, float], centre: Floats, size: Floats) -> Floa
     return np.asarray(way / np.maximum(np.sqrt(np.sum(way * way, axis=1)), 1.0)[:, None])
 
 
-def _spot(actor: Actor, loop: Slots) -> tuple[Floats, float]:
+def spot_of(actor: Actor, loop: Slots) -> tuple[Floats, float]:
     """Where a face sits, about the middle of the form, and how much room there is [m]."""
     form = actor.form
     index = {slot: k for k, slot in enumerate(actor.slots.tolist())}

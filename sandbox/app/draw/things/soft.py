@@ -85,8 +85,14 @@ def shape_of(actor: Actor, loops: list[Slots], springs: NDArray[np.bool_], radiu
     flushed = (actor.springs[springs], actor.ends[springs], actor.cell) if look.skin in ("jelly", "rubber") else None
     if is_laid:
         return Shape(loops, look.skin, look.colour, 0, radius, rounds=1, keep=0.12, line=False)
-    keep = min((_cut_of(actor, loop) for loop in loops), default=CUT_OF_SIDE) if _has_corners(actor) else CUT_OF_SIDE
-    return Shape(loops, look.skin, look.colour, 1, radius, keep=keep, flushed=flushed)
+    return Shape(loops, look.skin, look.colour, 1, radius, keep=keep_of(actor, loops), flushed=flushed)
+
+
+def keep_of(actor: Actor, loops: list[Slots]) -> float:
+    """By which part of its sides the corners of loops of slots of a soft body are cut."""
+    if not _has_corners(actor):
+        return CUT_OF_SIDE
+    return min((_cut_of(actor, loop) for loop in loops), default=CUT_OF_SIDE)
 
 
 def _has_corners(actor: Actor) -> bool:

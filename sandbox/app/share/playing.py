@@ -1,0 +1,147 @@
+"""Playing: a page that plays a level, or a recording that can be taken over, as one HTML file."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any, NamedTuple
+
+from sandbox import __version__
+from sandbox.app.draw.scene import scene_of
+from sandbox.app.sound.timbre import timbres_of
+from sandbox.app.sound.waves import STUFFS
+from sandbox.level.document.model import Level
+from sandbox.level.plan.actuators import driving_keys
+from sandbox.page.page import page_text
+from sandbox.page.start import TRIAL, start_of
+from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange
+from sandbox.physics.equation import of_springs
+from sandbox.physics.forms import Firmness
+from sandbox.physics.snapshot import state_hash, take
+from sandbox.physics.step import PHYSICS_VERSION
+from sandbox.physics.world import World
+from sandbox.session.commands import Redo, Undo
+from sandbox.session.commands.records import ScriptLine, from_record, to_record
+from sandbox.session.replay.format import TICK_DIGITS, header, seal
+from sandbox.session.session import Session
+
+# Cs and Cd for the words of firmness where no body's form says what they mean.
+USUAL = {"jelly": (0.01, 0.1), "soft": (0.05, 0.2), "firm": (0.3, 0.5), "hard": (0.8, 0.9), "rigid": (1.0, 1.0)}
+ALL = "All"
+# Digits of Cs and Cd.
+DIGITS = 4
+
+
+class Recorded(NamedTuple):
+    """What of a recording a page plays: its commands without those that were undone, and the hash of each tick."""
+
+    script: tuple[ScriptLine, ...]
+    hashes: list[str]
+
+
+def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> str:
+    """The page of a level; ticks: of a recording, whose commands the script has. Raises CommandError."""
+    world = Session(level).world
+    recorded = None if ticks is None else _recorded(level, script, ticks)
+    start = start_of(level, recorded.script if recorded else (), TRIAL if ticks is None else ticks)
+    data = {
+        "name": level.name,
+        "about": start.about,
+        "scene": scene_of(level, take(world)),
+        "sounds": _sounds(world),
+        "materials": _materials(world),
+        "keys": driving_keys(level),
+        "header": _header(level),
+        "recording": None if recorded is None else _shown(world, recorded),
+    }
+    return page_text(level.name, data, start.image)
+
+
+def _header(level: Level) -> str:
+    """The first line of a recording, without its end."""
+    line, _ = seal(header(level, PHYSICS_VERSION, __version__), "")
+    return line.decode().rpartition(', "chain"')[0]
+
+
+def _recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Recorded:
+    session = Session(level, script)
+    hashes = [state_hash(session.world)]
+    while session.tick < ticks:
+        session.advance()
+        hashes.append(state_hash(session.world))
+    session.apply_pending()
+    if any(isinstance(entry.command, Undo | Redo) for entry in session.history.log):
+        counted = [entry for entry in session.history.timeline if entry.in_effect]
+        lines = [
+            ScriptLine(each.tick, each.gesture, to_record(each.command, session.world), number)
+            for number, each in enumerate(counted, 1)
+        ]
+        return _recorded(level, lines, ticks)
+    return Recorded(tuple(script), [each[:TICK_DIGITS] for each in hashes])
+
+
+def _shown(world: World, recorded: Recorded) -> dict[str, Any]:
+    """A recording as a page reads it: slots in place of names."""
+    commands = [
+        {
+            "tick": line.tick,
+            "gesture": line.gesture,
+            "record": {"type": line.record["type"], **asdict(from_record(line.record, world))},  # type: ignore[call-overload]
+        }
+        for line in recorded.script
+    ]
+    return {"commands": commands, "hashes": recorded.hashes}
+
+
+def _materials(world: World) -> list[dict[str, Any]]:
+    """Materials that springs have, with Cs and Cd by the words of firmness; where there are several, all come first."""
+    used = [slot for slot in range(len(world.material_names)) if (world.material == slot).any()]
+    rows: list[tuple[str, int | None]] = [(world.material_names[slot], slot) for slot in used]
+    if len(rows) != 1:
+        rows.insert(0, (ALL, None))
+    return [{"name": name, "slot": slot, "words": _words(world, slot)} for name, slot in rows]
+
+
+def _words(world: World, material: int | None) -> dict[str, tuple[float, float]]:
+    """Cs and Cd of springs by the words of firmness, for the largest body of a material."""
+    forms = [form for form in world.forms if material in (None, int(world.material[form.springs[0]]))]
+    for form in sorted(forms, key=lambda form: -len(form.springs)):
+        if len(form.shape.mass) > LARGEST_READ:
+            continue
+        reach = FirmnessRange.of(form.shape, world.settings.gravity, world.settings.tick_rate)
+        if reach.lowest_mode > 0.0 and reach.height > 0.0:
+            return {word: _pair(reach, sag) for word, sag in WORDS.items()}
+    return USUAL
+
+
+def _pair(reach: FirmnessRange, sag: float) -> tuple[float, float]:
+    stiffness, damping = reach.coefficients(reach.nearest(Firmness(sag=sag)))
+    if stiffness < 1.0:
+        stiffness, damping = of_springs(stiffness, damping, reach.lowest_mode)
+    return float(f"{stiffness:.{DIGITS}g}"), float(f"{damping:.{DIGITS}g}")
+
+
+def _sounds(world: World) -> dict[str, Any]:
+    """What bodies sound like, stuffs by their modes, and motors that hum."""
+    bodies, motors = timbres_of(world), world.actuators.motors
+    rows = [
+        (motors.rim[motors.rim_start[k] : motors.rim_start[k + 1]].tolist(), k) for k in range(len(motors.part))
+    ]  # fmt: skip
+    return {
+        "bodies": {
+            "of": bodies.body.tolist(),
+            "mass": [_finite(value) for value in bodies.mass.tolist()],
+            "pitch": [_finite(value) for value in bodies.pitch.tolist()],
+            "weight": [_finite(value) for value in bodies.weight.tolist()],
+            "stuff": bodies.stuff,
+            "strand": bodies.strand.tolist(),
+        },
+        "stuffs": {name: asdict(stuff) for name, stuff in STUFFS.items() if name in bodies.stuff},
+        "motors": [
+            {"part": int(motors.part[k]), "hub": int(motors.hub[k]), "rim": rim, "speed": float(motors.speed[k])}
+            for rim, k in rows
+        ],
+    }
+
+
+def _finite(value: float) -> float:
+    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else 0.0

@@ -1,0 +1,50 @@
+"""The page that plays: one HTML file with a level, its world and the kernels, which needs no network."""
+
+import base64
+import gzip
+import html
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from sandbox.page.image import Image
+from sandbox.physics.jit.library import FOLDER
+
+HERE = Path(__file__).with_name("web")
+# In an order in which each is behind what it imports from.
+MODULES = ("hash", "world", "run", "recording", "paint", "things", "draw", "hand", "panel", "sound", "main")
+GZIP_LEVEL = 9
+
+_IMPORT = re.compile(r"^import (\{.*?\}) from '\./(\w+)\.js';$", re.MULTILINE | re.DOTALL)
+_EXPORT = re.compile(r"^export ((?:async )?(?:function\*? |class |const ))(\w+)", re.MULTILINE)
+
+
+def page_text(title: str, level: Mapping[str, Any], image: Image) -> str:
+    """The page of a level; level: what its scripts read of it, image: its world."""
+    data = json.dumps(level, separators=(",", ":"), allow_nan=False).encode()
+    parts = {
+        "TITLE": html.escape(title),
+        "DATA": _packed(data),
+        "IMAGE": _packed(image.content),
+        "KERNELS": _packed((FOLDER / "kernels.wasm").read_bytes()),
+        "SCRIPT": script(),
+    }
+    template = (HERE / "page.html").read_text(encoding="utf-8")
+    return re.sub("@([A-Z]+)@", lambda found: parts[found[1]], template)
+
+
+def script() -> str:
+    """All modules as one script: each is a function of its own, which gives what it exports."""
+    return "\n".join(_as_function(name, (HERE / f"{name}.js").read_text(encoding="utf-8")) for name in MODULES)
+
+
+def _as_function(name: str, text: str) -> str:
+    exported = ", ".join(found[2] for found in _EXPORT.finditer(text))
+    body = _EXPORT.sub(r"\1\2", _IMPORT.sub(r"const \1 = from_\2;", text))
+    return f"const from_{name} = (() => {{\n{body}return {{ {exported} }};\n}})();\n"
+
+
+def _packed(content: bytes) -> str:
+    return base64.b64encode(gzip.compress(content, GZIP_LEVEL, mtime=0)).decode()

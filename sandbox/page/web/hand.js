@@ -1,0 +1,288 @@
+// Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut; what holds nothing moves the view.
+
+const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98, SOFT_REACH = 2, NUDGE = 0.03;
+const UNITS = [[1e6, 'MN'], [1e3, 'kN'], [1, 'N'], [1e-3, 'mN']];
+
+// What of a world lies near a point [m].
+class Near {
+  constructor(world) {
+    this.world = world;
+    for (const name of ['position', 'radius', 'inverse_mass', 'particle_active', 'owner', 'origin', 'mass', 'particle_a', 'particle_b',
+      'spring_active', 'material']) this[name] = world.view(`state.${name}`);
+  }
+
+  isShown(slot) {
+    const { particle, count } = this.world.hands;
+    return this.particle_active[slot] && !(slot >= particle && slot < particle + count);
+  }
+
+  #nearest(count, distance, within) {
+    let best = null, least = within;
+    for (let k = 0; k < count; k++) {
+      const away = distance(k);
+      if (away < least) [best, least] = [k, away];
+    }
+    return best;
+  }
+
+  #away(slot, [x, y]) {
+    return Math.hypot(this.position[2 * slot] - x, this.position[2 * slot + 1] - y);
+  }
+
+  particle(point, within) {
+    return this.#nearest(this.mass.length, (k) => (this.isShown(k) ? this.#away(k, point) - this.radius[k] : Infinity), within);
+  }
+
+  // The free particle that a press takes: one within reach, else the nearest of a body whose springs are around the point.
+  free(point, within) {
+    const pressed = this.particle(point, within);
+    if (pressed !== null && this.inverse_mass[pressed] > 0) return pressed;
+    const sides = new Map();
+    this.#eachSpring((s, a, b) => {
+      const of = sides.get(this.owner[a]) ?? sides.set(this.owner[a], new Set()).get(this.owner[a]);
+      for (const u of [0, 1]) {
+        const low = this.position[2 * a + u], high = this.position[2 * b + u], v = 1 - u;
+        if (low <= point[u] === high <= point[u]) continue;
+        const part = (point[u] - low) / (high - low), at = this.position[2 * a + v] + (this.position[2 * b + v] - this.position[2 * a + v]) * part;
+        of.add(`${u}${at <= point[v]}`);
+      }
+    });
+    const isTaken = (k) => this.isShown(k) && this.inverse_mass[k] > 0 && sides.get(this.owner[k])?.size === 4;
+    return this.#nearest(this.mass.length, (k) => (isTaken(k) ? this.#away(k, point) : Infinity), Infinity);
+  }
+
+  #eachSpring(act) {
+    for (let s = 0; s < this.spring_active.length; s++) {
+      if (this.spring_active[s] && this.material[s] >= 0) act(s, this.particle_a[s], this.particle_b[s]);
+    }
+  }
+
+  spring([x, y], within) {
+    let best = null, least = within;
+    this.#eachSpring((s, a, b) => {
+      const [ax, ay, bx, by] = this.#ends(a, b), dx = bx - ax, dy = by - ay;
+      const part = Math.min(Math.max(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1), 0), 1);
+      const away = Math.hypot(ax + dx * part - x, ay + dy * part - y);
+      if (away < least) [best, least] = [s, away];
+    });
+    return best === null ? [] : [best];
+  }
+
+  #ends(a, b) {
+    return [this.position[2 * a], this.position[2 * a + 1], this.position[2 * b], this.position[2 * b + 1]];
+  }
+
+  crossing(p, q) {
+    const found = [], area = (ux, uy, vx, vy, wx, wy) => (vx - ux) * (wy - uy) - (vy - uy) * (wx - ux);
+    this.#eachSpring((s, a, b) => {
+      const [ax, ay, bx, by] = this.#ends(a, b);
+      const straddles = area(...p, ...q, ax, ay) * area(...p, ...q, bx, by) <= 0 && area(ax, ay, bx, by, ...p) * area(ax, ay, bx, by, ...q) <= 0;
+      const meets = (u, start, end) => Math.min(start, end) <= Math.max(p[u], q[u]) && Math.max(start, end) >= Math.min(p[u], q[u]);
+      if (straddles && meets(0, ax, bx) && meets(1, ay, by)) found.push(s);
+    });
+    return found;
+  }
+
+  // How far a hand reaches into a soft body [m]; 0 where it is not soft.
+  grip(particle) {
+    const view = (name) => this.world.view(`state.constraint_${name}`), active = view('active'), kind = view('kind');
+    const first = view('first'), corner = this.world.view('state.corner_particle'), owner = this.owner[particle];
+    if (!active.some((is, k) => is && kind[k] === this.world.areaKind && this.owner[corner[first[k]]] === owner)) return 0;
+    let most = 0;
+    for (let k = 0; k < this.mass.length; k++) {
+      if (this.particle_active[k] && this.owner[k] === owner) {
+        most = Math.max(most, Math.hypot(this.origin[2 * k] - this.origin[2 * particle], this.origin[2 * k + 1] - this.origin[2 * particle + 1]));
+      }
+    }
+    return SOFT_REACH * most;
+  }
+
+  bodyMass(particle) {
+    return this.mass.reduce((sum, mass, k) => sum + (this.particle_active[k] && this.owner[k] === this.owner[particle] ? mass : 0), 0);
+  }
+}
+
+export class Hands {
+  tool = 'drag';
+  marked = null;
+  #pointers = new Map();
+  #held = new Map();
+
+  // changed: called when the view has been moved by hand; say: tells a person something in a line.
+  constructor(canvas, run, camera, { changed, say }) {
+    Object.assign(this, { canvas, run, camera, changed, say });
+    canvas.addEventListener('pointerdown', (event) => this.#press(event));
+    canvas.addEventListener('pointermove', (event) => this.#move(event));
+    for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => this.#lift(event));
+    canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+    canvas.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      camera.zoomAbout(event.offsetX, event.offsetY, 1.0015 ** -event.deltaY);
+      changed();
+    }, { passive: false });
+  }
+
+  #press(event) {
+    event.preventDefault();
+    this.canvas.focus({ preventScroll: true });
+    this.canvas.setPointerCapture(event.pointerId);
+    const point = this.camera.toWorld(event.offsetX, event.offsetY), within = REACH[event.pointerType] / this.camera.zoom;
+    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan' };
+    this.#pointers.set(event.pointerId, pointer);
+    if (event.button !== 0 || event.altKey) return;
+    const near = new Near(this.run.world);
+    if (this.tool === 'cut') {
+      Object.assign(pointer, { kind: 'cut', point, gesture: this.run.newGesture() });
+      this.#cut(pointer, near.spring(point, within / 2));
+    } else if (this.tool === 'pin') {
+      this.#pin(near, near.particle(point, within), pointer);
+    } else {
+      const particle = near.free(point, within);
+      if (particle !== null && this.hold(particle, point, within)) pointer.kind = particle;
+      else if (particle === null && near.particle(point, within) !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
+    }
+  }
+
+  #pin(near, particle, pointer) {
+    if (particle === null) return;
+    pointer.kind = 'done';
+    const type = near.inverse_mass[particle] > 0 ? 'pin' : 'unpin';
+    if (!this.run.submit({ type, particle }, this.run.newGesture())) this.say('This page cannot pin.');
+  }
+
+  #cut(pointer, springs) {
+    if (springs.length && !this.run.submit({ type: 'cut_springs', springs }, pointer.gesture)) this.say('This page cannot cut.');
+  }
+
+  // Take a particle into a free hand and draw it to a point [m]. Whether one was free.
+  hold(particle, point, within) {
+    const near = new Near(this.run.world), { count } = this.run.world.hands, { position } = near;
+    const hand = Array.from({ length: count }, (_, k) => k).find((k) => ![...this.#held.values()].some((each) => each.hand === k));
+    if (hand === undefined) return false;
+    const dx = position[2 * particle] - point[0], dy = position[2 * particle + 1] - point[1];
+    // A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
+    const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy], gesture = this.run.newGesture();
+    const target = [point[0] + beside[0], point[1] + beside[1]];
+    const record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
+    if (!this.run.submit(record, gesture)) {
+      this.say('This page cannot hold anything.');
+      return false;
+    }
+    this.#held.set(particle, { hand, gesture, beside, target, isMoved: false, limit: STRENGTH * near.bodyMass(particle) });
+    return true;
+  }
+
+  #move(event) {
+    const pointer = this.#pointers.get(event.pointerId);
+    if (!pointer) return;
+    const [x, y] = [event.offsetX, event.offsetY], point = this.camera.toWorld(x, y), held = this.#held.get(pointer.kind);
+    if (held) this.#aim(held, point);
+    else if (pointer.kind === 'cut') {
+      this.#cut(pointer, new Near(this.run.world).crossing(pointer.point, point));
+      pointer.point = point;
+    } else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
+    Object.assign(pointer, { x, y });
+  }
+
+  // One finger moves the view, two turn it larger or smaller as well.
+  #moveView(pointer, x, y) {
+    const other = [...this.#pointers.values()].find((each) => each.kind === 'pan' && each !== pointer);
+    const share = other ? 0.5 : 1;
+    this.camera.x -= (share * (x - pointer.x)) / this.camera.zoom;
+    this.camera.y += (share * (y - pointer.y)) / this.camera.zoom;
+    if (other) {
+      const before = Math.hypot(pointer.x - other.x, pointer.y - other.y), after = Math.hypot(x - other.x, y - other.y);
+      if (before > 1 && after > 1) this.camera.zoomAbout((x + other.x) / 2, (y + other.y) / 2, after / before);
+    }
+    this.changed();
+  }
+
+  #aim(held, [x, y]) {
+    held.target = [x + held.beside[0], y + held.beside[1]];
+    held.isMoved = true;
+  }
+
+  #lift(event) {
+    const pointer = this.#pointers.get(event.pointerId);
+    this.#pointers.delete(event.pointerId);
+    if (pointer && this.#held.has(pointer.kind)) this.release(pointer.kind);
+  }
+
+  release(particle) {
+    const { hand, gesture } = this.#held.get(particle);
+    this.#held.delete(particle);
+    if (this.run.world.isHeld(hand)) this.run.submit({ type: 'release', grab: hand }, gesture);
+  }
+
+  // Let go of everything, also of what a recording holds; after time has jumped nobody holds on.
+  releaseAll() {
+    this.#held.clear();
+    const { count } = this.run.world.hands;
+    for (let hand = 0; hand < count; hand++) {
+      if (!this.run.world.isHeld(hand)) continue;
+      const grab = this.run.commands.findLast(({ record }) => record.type === 'grab' && record.grab === hand);
+      this.run.submit({ type: 'release', grab: hand }, grab?.gesture ?? this.run.newGesture());
+    }
+  }
+
+  // Before a tick: send every hand to where its pointer is now.
+  update() {
+    for (const held of this.#held.values()) {
+      if (!held.isMoved) continue;
+      held.isMoved = false;
+      this.run.submit({ type: 'move_grab', grab: held.hand, target: held.target }, held.gesture);
+    }
+  }
+
+  // Keys: N marks the next particle, Enter takes it, arrows move it. Whether the key was of use.
+  key(event) {
+    const near = new Near(this.run.world), way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const held = this.#held.get(this.marked);
+    if (event.key === 'n' || event.key === 'N') {
+      const free = Array.from(near.mass.keys()).filter((k) => near.isShown(k) && near.inverse_mass[k] > 0);
+      this.marked = free.find((k) => k > (this.marked ?? -1)) ?? free[0] ?? null;
+    } else if (event.key === 'Enter' && this.marked !== null) {
+      if (held) this.release(this.marked);
+      else this.hold(this.marked, Array.from(near.position.subarray(2 * this.marked, 2 * this.marked + 2)), 1);
+    } else if (event.key === 'Escape') {
+      this.marked = null;
+      this.releaseAll();
+    } else if (way && held) {
+      const step = (NUDGE * this.camera.height) / this.camera.zoom;
+      this.#aim(held, [held.target[0] + way[0] * step, held.target[1] + way[1] * step]);
+    } else return false;
+    return true;
+  }
+
+  // Lines from what is held to its cursor, with the force of each hand.
+  draw(context, at, theme) {
+    const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'), force = world.view('state.hand_force');
+    if (this.marked !== null) circle(context, at, this.marked, 10, theme.accent);
+    for (let hand = 0; hand < count; hand++) {
+      if (!world.isHeld(hand)) continue;
+      const held = b[spring + hand], pull = Math.hypot(force[2 * hand], force[2 * hand + 1]), own = this.#held.get(held);
+      const colour = own && pull > AT_LIMIT * own.limit ? '#ffb454' : theme.accent;
+      context.strokeStyle = context.fillStyle = colour;
+      context.lineWidth = 1.6;
+      context.beginPath();
+      context.moveTo(at[2 * held], at[2 * held + 1]);
+      context.lineTo(at[2 * (first + hand)], at[2 * (first + hand) + 1]);
+      context.stroke();
+      circle(context, at, held, 7, colour);
+      const [scale, unit] = UNITS.find(([size]) => pull >= size) ?? UNITS.at(-1), text = `${Number((pull / scale).toPrecision(3))} ${unit}`;
+      context.font = '600 13px system-ui, sans-serif';
+      context.lineWidth = 3;
+      context.strokeStyle = theme.card;
+      context.strokeText(text, at[2 * (first + hand)] + 14, at[2 * (first + hand) + 1] - 16);
+      context.fillText(text, at[2 * (first + hand)] + 14, at[2 * (first + hand) + 1] - 16);
+    }
+  }
+}
+
+function circle(context, at, slot, radius, colour) {
+  context.strokeStyle = colour;
+  context.lineWidth = 2;
+  context.beginPath();
+  context.arc(at[2 * slot], at[2 * slot + 1], radius, 0, 7);
+  context.stroke();
+}

@@ -1,0 +1,192 @@
+// Panel: Cs and Cd of each material by a pad, sliders and words; keys of motors as buttons.
+
+// The axes of the pad: softest value, and how wide the last tenth is.
+const LOWEST = 0.003, REST = 0.02, STEP = 0.02, MARGIN = 14;
+const height = (value) => Math.log10(value / (1 - value + REST)), LOW = height(LOWEST), HIGH = -Math.log10(REST);
+const placeOf = (value) => (value <= LOWEST ? 0 : Math.min((height(Math.min(value, 1)) - LOW) / (HIGH - LOW), 1));
+
+function valueAt(place) {
+  if (place >= 0.9995) return 1;
+  const power = 10 ** (LOW + Math.max(place, 0) * (HIGH - LOW)), value = Math.min(1, (power * (1 + REST)) / (1 + power));
+  return value < 0.9 ? Number(value.toPrecision(3)) : 1 - Number((1 - value).toPrecision(2));
+}
+
+const element = (name, attributes = {}, ...children) => {
+  const made = Object.assign(document.createElement(name), attributes);
+  made.append(...children);
+  return made;
+};
+
+export class Panel {
+  #gesture = null;
+
+  // materials: [{ name, slot, words }], slot null for all; words: Cs and Cd by the words of firmness.
+  constructor(root, run, materials, level) {
+    Object.assign(this, { run, materials, level, chosen: materials[0] });
+    this.choice = element('select', { id: 'material' });
+    materials.forEach((each, k) => this.choice.append(new Option(each.name, k)));
+    this.choice.addEventListener('change', () => {
+      this.chosen = materials[this.choice.value];
+      this.show();
+    });
+    const all = element('label', { hidden: materials.length < 2 }, 'Material ', this.choice);
+    this.words = element('div', { className: 'words' });
+    this.words.setAttribute('role', 'group');
+    this.words.setAttribute('aria-label', 'Firmness');
+    this.pad = element('canvas', { tabIndex: 0, className: 'pad' });
+    this.pad.setAttribute('role', 'img');
+    this.sliders = ['Stiffness Cs', 'Damping Cd'].map((text, k) => {
+      const slider = element('input', { type: 'range', min: 0, max: 1, step: 'any', id: `slider${k}` }), output = element('output');
+      slider.addEventListener('input', () => this.#set(...this.pair.map((old, n) => (n === k ? valueAt(Number(slider.value)) : old))));
+      slider.addEventListener('change', () => this.#end());
+      root.append();
+      return { row: element('label', { htmlFor: slider.id, className: 'slider' }, element('span', { textContent: text }), slider, output), slider, output };
+    });
+    root.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
+    for (const name of ['pointerdown', 'pointermove']) this.pad.addEventListener(name, (event) => this.#drag(event));
+    for (const name of ['pointerup', 'pointercancel']) this.pad.addEventListener(name, () => this.#end());
+    this.pad.addEventListener('keydown', (event) => this.#key(event));
+    this.show();
+  }
+
+  // Cs and Cd of the first spring of the material that is chosen.
+  get pair() {
+    const { world } = this.run, material = world.view('state.material'), { slot } = this.chosen;
+    const spring = material.findIndex((own) => (slot === null ? own >= 0 : own === slot));
+    return spring < 0 ? [1, 1] : ['stiffness', 'damping'].map((name) => world.view(`state.${name}`)[spring]);
+  }
+
+  #set(stiffness, damping) {
+    this.#gesture ??= this.run.newGesture();
+    const record = { type: 'set_coefficients', stiffness, damping, material: this.chosen.slot };
+    this.run.submit(record, this.#gesture);
+    this.show();
+  }
+
+  #end() {
+    this.#gesture = null;
+  }
+
+  #drag(event) {
+    if (!(event.buttons & 1)) return;
+    event.preventDefault();
+    this.pad.setPointerCapture(event.pointerId);
+    const { clientWidth: width, clientHeight: tall } = this.pad, inside = (at, size) => Math.min(Math.max((at - MARGIN) / (size - 2 * MARGIN), 0), 1);
+    this.#set(valueAt(inside(event.offsetX, width)), valueAt(1 - inside(event.offsetY, tall)));
+  }
+
+  #key(event) {
+    const way = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] }[event.key];
+    if (!way) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.#set(...this.pair.map((value, k) => valueAt(Math.min(placeOf(value) + way[k], 1))));
+    this.#end();
+  }
+
+  // The word whose stiffness k = Cs / (1 - Cd) is nearest.
+  #wordFor([stiffness, damping]) {
+    const firmness = ([cs, cd]) => Math.log(cs / (1.0001 - cd)), own = firmness([Math.max(stiffness, 1e-6), damping]);
+    return Object.entries(this.chosen.words).reduce((best, each) => (Math.abs(firmness(each[1]) - own) < Math.abs(firmness(best[1]) - own) ? each : best))[0];
+  }
+
+  show() {
+    const { pair } = this, word = this.#wordFor(pair), { words } = this.chosen;
+    if (this.words.childElementCount !== Object.keys(words).length) {
+      this.words.replaceChildren(...Object.keys(words).map((name) => element('button', { type: 'button', textContent: name, onclick: () => {
+        this.#set(...this.chosen.words[name]);
+        this.#end();
+      } })));
+    }
+    for (const button of this.words.children) button.setAttribute('aria-pressed', button.textContent === word);
+    this.sliders.forEach(({ slider, output }, k) => {
+      if (document.activeElement !== slider || !this.#gesture) slider.value = placeOf(pair[k]);
+      slider.setAttribute('aria-valuetext', String(pair[k]));
+      output.textContent = Number(pair[k].toPrecision(3));
+    });
+    this.pad.setAttribute('aria-label', `Cs ${pair[0]} across, Cd ${pair[1]} up: ${word}. Arrow keys change them.`);
+    this.#draw(pair, word);
+  }
+
+  #draw(pair, word) {
+    const context = this.pad.getContext('2d'), ratio = devicePixelRatio || 1, { clientWidth: width, clientHeight: tall } = this.pad;
+    if (!width) return;
+    this.pad.width = width * ratio;
+    this.pad.height = tall * ratio;
+    context.scale(ratio, ratio);
+    const style = getComputedStyle(this.pad), across = (place) => MARGIN + place * (width - 2 * MARGIN), up = (place) => tall - MARGIN - place * (tall - 2 * MARGIN);
+    context.strokeStyle = style.getPropertyValue('--line');
+    context.fillStyle = style.getPropertyValue('--muted');
+    context.font = '11px system-ui, sans-serif';
+    context.beginPath();
+    for (const value of [0.01, 0.1, 0.5, 0.9, 1]) {
+      context.moveTo(across(placeOf(value)), up(0));
+      context.lineTo(across(placeOf(value)), up(1));
+      context.moveTo(across(0), up(placeOf(value)));
+      context.lineTo(across(1), up(placeOf(value)));
+      context.fillText(value, across(placeOf(value)) - 8, tall - 2);
+    }
+    context.stroke();
+    for (const [name, own] of Object.entries(this.chosen.words)) {
+      context.fillText(name, Math.min(across(placeOf(own[0])) + 6, width - 40), Math.max(up(placeOf(own[1])) - 4, 12));
+    }
+    context.fillStyle = style.getPropertyValue('--accent');
+    context.strokeStyle = style.getPropertyValue('--surface');
+    context.lineWidth = 3;
+    context.beginPath();
+    context.arc(across(placeOf(pair[0])), up(placeOf(pair[1])), 9, 0, 7);
+    context.stroke();
+    context.fill();
+  }
+}
+
+// Buttons and keys that drive motors and hydraulics while they are held. keys: parts and values by the name of a key.
+export class DriveKeys {
+  #held = new Map();
+
+  constructor(root, run, keys) {
+    Object.assign(this, { run, keys, buttons: new Map() });
+    for (const name of Object.keys(keys)) {
+      const shown = { left: '←', right: '→', up: '↑', down: '↓' }[name] ?? name.toUpperCase();
+      const button = element('button', { type: 'button', textContent: shown, className: 'key' });
+      button.setAttribute('aria-label', `Drive with key ${name}`);
+      button.addEventListener('pointerdown', (event) => {
+        button.setPointerCapture(event.pointerId);
+        this.press(name);
+      });
+      for (const end of ['pointerup', 'pointercancel', 'blur']) button.addEventListener(end, () => this.release(name));
+      button.addEventListener('keydown', (event) => [' ', 'Enter'].includes(event.key) && this.press(name));
+      button.addEventListener('keyup', () => this.release(name));
+      this.buttons.set(name, button);
+      root.append(button);
+    }
+  }
+
+  // The key of a keyboard event, where it drives something.
+  nameOf(event) {
+    const name = event.key.replace('Arrow', '').toLowerCase();
+    return name in this.keys && !event.ctrlKey && !event.metaKey && !event.altKey && !event.shiftKey ? name : null;
+  }
+
+  press(name) {
+    if (this.#held.has(name)) return;
+    this.#held.set(name, this.run.newGesture());
+    for (const [part, value] of this.keys[name]) this.run.submit({ type: 'set_drive', part, value }, this.#held.get(name));
+    this.buttons.get(name).setAttribute('aria-pressed', true);
+  }
+
+  // Stop what the key drove, or let the key go on that still drives it another way.
+  release(name) {
+    const gesture = this.#held.get(name);
+    if (!this.#held.delete(name)) return;
+    for (const [part] of this.keys[name]) {
+      const still = [...this.#held.keys()].flatMap((other) => this.keys[other]).filter(([other]) => other === part).at(-1);
+      this.run.submit({ type: 'set_drive', part, value: still ? still[1] : 0 }, gesture);
+    }
+    this.buttons.get(name).setAttribute('aria-pressed', false);
+  }
+
+  releaseAll() {
+    [...this.#held.keys()].forEach((name) => this.release(name));
+  }
+}
