@@ -11,7 +11,7 @@ from sandbox.physics.pipeline.making import Block, block_of
 from sandbox.session.session import Session
 
 # Ticks of a trial that shows how much room is wanted, and how many times that there is then.
-TRIAL, SPARE = 600, 2
+TRIAL, SPARE, LEAST = 600, 4, 64
 
 
 class Start(NamedTuple):
@@ -30,8 +30,8 @@ def start_of(level: Level, script: Any = (), ticks: int = TRIAL) -> Start:
     world = Session(level).world
     block = Block(world)
     wanted = block_of(trial.world)
-    block.wanted = SPARE * wanted.wanted
-    block._room = wanted._room
+    block.wanted = SPARE * wanted.wanted + LEAST
+    block._room = type(wanted._room)(*(SPARE * (each + LEAST * LEAST) for each in wanted._room))
     block._make(world)
     block.begin(world)
     image = image_of(block.arrays)

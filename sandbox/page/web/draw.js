@@ -1,10 +1,11 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, darkEdge, disc, drawBar, fillGround, fillSkin, glow, grown, mixed, outlineOf, pathOf, sheetOf, stroke } from './paint.js';
+import { ball, darkEdge, disc, drawBar, fillGround, fillSkin, glow, grown, mixed, outlineOf, pathOf, sheetOf, stroke, turfOf } from './paint.js';
 import { thingsOf } from './things.js';
 
 const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
 const ROUNDING = { balloon: 0.3, tyre: 0.16, wood: 0.05, stone: 0.07, brick: 0.07, window: 0.2 };
-const SHADOW = 4, FLUSH_FROM = 0.03, FLUSH_RANGE = 0.22, SANDS = ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'];
+const SHADOW = 6, FLUSH_FROM = 0.03, FLUSH_RANGE = 0.22, SANDS = ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'];
+const BOLTS = { bone: ['#4a3a28', '#fff4de'], brass: ['#3a2a10', '#f2ce7c'], wood: ['#3a2614', '#d8a970'] };
 const INK = '#2a1030', DARK = '#161b26', SMALLEST_FACE = 24;
 
 export class Camera {
@@ -83,7 +84,7 @@ export class Picture {
     things.sheets.forEach((sheet) => this.#drawSheet(sheet));
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
     things.shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
-    things.balloons.forEach((body) => this.#drawGleams(body));
+    things.balloons.forEach((body) => this.#drawGleams(body, things.degree));
     things.faces.forEach((body, k) => this.#drawFace(body, k));
     this.#drawBalls();
     this.#drawPins();
@@ -155,22 +156,26 @@ export class Picture {
     this.#backdrop.height = Math.round(height * ratio);
     const context = this.#backdrop.getContext('2d');
     context.scale(ratio, ratio);
-    const paint = (fill) => {
-      context.fillStyle = fill;
-      context.fillRect(0, 0, width, height);
-    };
     const fade = context.createLinearGradient(0, 0, 0, height);
     theme.stage.forEach((colour, k) => fade.addColorStop(k, colour));
-    paint(fade);
-    const round = (radius) => context.createRadialGradient(width / 2, height * 0.46, 0, width / 2, height * 0.46, radius);
-    const lamp = round(Math.hypot(width, height) * 0.4), dark = round(Math.hypot(width, height) * 0.62);
-    context.globalCompositeOperation = 'lighter';
-    for (let k = 0; k <= 4; k++) lamp.addColorStop(k / 4, mixed('#000000', theme.lamp, (1 - k / 4) ** 2));
-    paint(lamp);
-    context.globalCompositeOperation = 'source-over';
-    dark.addColorStop(0.5, '#00000000');
-    dark.addColorStop(1, `#000000${Math.round(255 * 0.7 * theme.vignette).toString(16).padStart(2, '0')}`);
-    paint(dark);
+    context.fillStyle = fade;
+    context.fillRect(0, 0, width, height);
+    // A lamp behind the stage, which is darker towards the corners.
+    const light = context.createRadialGradient(0, 0, 0, 0, 0, 1.6), dark = context.createRadialGradient(0, 0, 0, 0, 0, 1.6);
+    for (let k = 0; k <= 16; k++) {
+      const away = k / 10, lit = Math.max(1 - 1.25 * away, 0) ** 2, dim = theme.vignette * Math.min(Math.max(away - 0.55, 0), 1.2) ** 1.6;
+      light.addColorStop(k / 16, mixed('#000000', theme.lamp, lit));
+      dark.addColorStop(k / 16, `rgb(0 0 0 / ${dim})`);
+    }
+    context.save();
+    context.translate(width / 2, 0.46 * height);
+    context.scale(0.62 * width, 0.72 * height);
+    for (const [fill, how] of [[light, 'lighter'], [dark, 'source-over']]) {
+      context.globalCompositeOperation = how;
+      context.fillStyle = fill;
+      context.fillRect(-1, -1, 2, 2);
+    }
+    context.restore();
     this.#drawGround(context);
     return this.#backdrop;
   }
@@ -200,7 +205,8 @@ export class Picture {
         soil: [...theme.soil, 0.1, 0.25, 1], rock: [...theme.rock, 0.25, 0.35, 1], wood: ['#c28e57', '#9a6c40', 0.3, 0.4, 1],
         glass: ['#d4eefa', '#8cc4e6', 0.6, 0.3, 0.42],
       }[kind] ?? [...metal, 0.45, 0.45, 1];
-      fillGround(context, path, near, deep, (['soil', 'rock'].includes(kind) ? 26 : 9) * scale, light, dark, alpha);
+      const isEarth = ['soil', 'rock'].includes(kind), grain = isEarth ? 'earth' : kind === 'wood' ? 'wood' : null;
+      fillGround(context, path, near, deep, (isEarth ? 26 : 9) * scale, light, dark, alpha, grain);
       stroke(context, path, mixed(kind === 'glass' ? '#6fa8c8' : deep, '#000000', 0.35), 0.9 * scale, kind === 'glass' ? 0.5 : 0.9);
       if (kind === 'soil') this.#layTurf(context, edges);
     });
@@ -208,22 +214,21 @@ export class Picture {
 
   // Turf on what faces up.
   #layTurf(context, edges) {
-    const { scale, theme } = this, way = new Path2D();
+    const { scale, theme } = this;
+    context.fillStyle = turfOf(context, theme.turf);
+    let along = 0;
     for (const [a, b] of edges) {
-      if ((a[0] - b[0]) / Math.hypot(b[0] - a[0], b[1] - a[1]) <= 0.8) continue;
-      way.moveTo(a[0], a[1] + 2 * scale);
-      way.lineTo(b[0], b[1] + 2 * scale);
+      const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+      along += length;
+      if ((a[0] - b[0]) / length <= 0.8) continue;
+      context.save();
+      context.translate(b[0], b[1] + 2 * scale);
+      context.rotate(Math.atan2(a[1] - b[1], a[0] - b[0]));
+      context.scale(0.72 * scale, scale);
+      context.translate(along / (0.72 * scale), -12);
+      context.fillRect(-along / (0.72 * scale), 0, length / (0.72 * scale), 24);
+      context.restore();
     }
-    context.lineCap = context.lineJoin = 'round';
-    const [light, dark] = theme.turf;
-    context.setLineDash([9 * scale, 14 * scale]);
-    stroke(context, way, dark, 8 * scale);
-    context.setLineDash([]);
-    stroke(context, way, dark, 6 * scale);
-    stroke(context, way, mixed(light, dark, 0.35), 4.6 * scale);
-    context.translate(0, -1.5 * scale);
-    stroke(context, way, light, 2.6 * scale);
-    context.translate(0, 1.5 * scale);
   }
 
   // A smooth way through particles; lines between the ends of springs.
@@ -274,8 +279,8 @@ export class Picture {
     this.#flush(bars.springs, half);
     if (bars.deck?.length) drawBar(context, this.#lines(bars.deck, 1.15 * half), 0.95 * half, 'deck');
     if (!bars.bolts.length || (bars.cell ?? 0) * this.camera.zoom < 9) return;
-    const isTruss = bars.size[2] === 4.2, line = bars.kind === 'paint' ? outlineOf(bars.colour) : DARK;
-    const tone = bars.kind === 'paint' ? mixed(bars.colour, '#ffffff', 0.24) : '#b9c4d8';
+    const isTruss = bars.size[2] === 4.2, isPaint = bars.kind === 'paint';
+    const [line, tone] = isPaint ? [outlineOf(bars.colour), mixed(bars.colour, '#ffffff', 0.24)] : BOLTS[bars.kind] ?? [DARK, '#b9c4d8'];
     const [rim, head, middle] = isTruss ? [1.35, 1.05, 0.42] : [1.7, 1.25, 0.5];
     for (const slot of bars.bolts) {
       const x = this.at[2 * slot], y = this.at[2 * slot + 1];
@@ -350,11 +355,9 @@ export class Picture {
   #drawSheet({ body, triangles, loops, isCloth }) {
     const context = this.#context, pattern = sheetOf(context, body.skin, body.colour), origin = this.#world.view('state.origin');
     const cosine = Math.cos(body.angle), sine = Math.sin(body.angle), texels = (isCloth ? 16 : 14) / body.spacing;
-    const left = Math.min(...body.slots.map((slot) => origin[2 * slot])), low = Math.min(...body.slots.map((slot) => origin[2 * slot + 1]));
-    const texel = (slot) => {
-      const x = origin[2 * slot] - left, y = origin[2 * slot + 1] - low;
-      return [(x * cosine + y * sine) * texels, -(y * cosine - x * sine) * texels];
-    };
+    const u = (slot) => origin[2 * slot] * cosine + origin[2 * slot + 1] * sine, v = (slot) => origin[2 * slot + 1] * cosine - origin[2 * slot] * sine;
+    const left = Math.min(...body.slots.map(u)), low = Math.min(...body.slots.map(v));
+    const texel = (slot) => [(u(slot) - left) * texels, (low - v(slot)) * texels];
     context.save();
     context.fillStyle = context.strokeStyle = pattern;
     for (const slots of triangles) {
@@ -375,7 +378,7 @@ export class Picture {
     }
     context.restore();
     const hem = pathOf(loops.map((loop) => this.#points(loop)));
-    stroke(context, hem, isCloth ? outlineOf(body.colour) : darkEdge(body.colour), (isCloth ? 1.5 : 1.6) * this.scale);
+    stroke(context, hem, isCloth ? outlineOf(body.colour) : darkEdge(body.colour), (isCloth ? 1.5 : 2.2) * this.scale);
   }
 
   #sizeOf(wheel) {
@@ -411,7 +414,7 @@ export class Picture {
     ball(context, x, y, hub, -Math.atan2(firstY - y, firstX - x), 'steel', '#aeb9cc');
   }
 
-  #drawGleams(body) {
+  #drawGleams(body, degree) {
     const points = this.#points(body.slots), context = this.#context, count = body.slots.length, mean = [0, 0];
     points.forEach((value, k) => { mean[k & 1] += value / count; });
     let radius = 0;
@@ -419,6 +422,18 @@ export class Picture {
     for (const [x, y, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85], [-0.2, -0.56, 0.09, 0.8], [0.34, 0.5, 0.4, 0.16]]) {
       glow(context, mean[0] + radius * x, mean[1] + radius * y, radius * size, '#ffffff', alpha);
     }
+    // A knot where something is tied.
+    const knots = new Path2D();
+    for (const slot of body.slots.filter((each) => degree.get(each) > 2)) {
+      const x = this.at[2 * slot], y = this.at[2 * slot + 1], away = Math.hypot(x - mean[0], y - mean[1]) || 1;
+      const outX = ((x - mean[0]) / away) * radius, outY = ((y - mean[1]) / away) * radius;
+      knots.moveTo(x, y);
+      knots.lineTo(x + 0.15 * outX - 0.09 * outY, y + 0.15 * outY + 0.09 * outX);
+      knots.lineTo(x + 0.15 * outX + 0.09 * outY, y + 0.15 * outY - 0.09 * outX);
+      knots.closePath();
+    }
+    context.fillStyle = outlineOf(body.colour);
+    context.fill(knots);
   }
 
   // Eyes that look where it moves, cheeks, and a mouth that says how it feels.

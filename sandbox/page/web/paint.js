@@ -17,8 +17,8 @@ const SKINS = {
   wood: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1], stone: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1],
   brick: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1], rubber: ['#ffffff', 0.32, '#140028', 0.38, 0.15, 1],
 };
-// Widths of the strokes that light and shade are made of, in depths of a skin, and how strong each is.
-const SOFTLY = [[2.2, 0.2], [1.5, 0.28], [0.8, 0.42]];
+// How far inwards light and shade reach, in depths of a skin: thin crescents laid over each other.
+const SOFTLY = [0.08, 0.17, 0.27, 0.38, 0.5, 0.64, 0.8, 0.98, 1.2];
 
 // Closed loops of points [x, y, ...] as one path, with their corners cut by `keep` of their sides.
 export function pathOf(loops, keep = 0, rounds = 0) {
@@ -64,60 +64,67 @@ export function fillSkin(context, path, skin, colour, depth, over) {
   context.fill(path, 'evenodd');
   context.clip(path, 'evenodd');
   over?.();
-  edge(context, path, light, up, depth, 0.24, 0.5);
-  edge(context, path, shade, down, depth, -0.2, -0.44);
+  crescents(context, path, light, 0.8 * up, 0.22 * depth, 0.8 * depth);
+  crescents(context, path, shade, down, -0.22 * depth, -0.8 * depth);
   if (gloss) {
-    context.globalAlpha = 0.55 * gloss;
-    context.strokeStyle = '#ffffff';
-    context.lineWidth = 0.3 * depth;
-    context.translate(0.3 * depth, 0.72 * depth);
-    context.stroke(path);
+    const gleam = new Path2D();
+    gleam.addPath(path, new DOMMatrix([1, 0, 0, 1, 0.12 * depth, 0.3 * depth]));
+    context.clip(gleam);
+    crescents(context, gleam, '#ffffff', 0.8 * gloss, 0.14 * depth, 0.5 * depth);
   }
   context.restore();
 }
 
-// The soft edge of a clipped path, on the side from which it is moved.
-function edge(context, path, colour, strength, depth, x, y) {
-  context.save();
-  context.strokeStyle = colour;
-  context.translate(x * depth, y * depth);
-  for (const [width, share] of SOFTLY) {
-    context.globalAlpha = share * strength;
-    context.lineWidth = width * depth;
-    context.stroke(path);
+// What of a clipped path is within so much of its edge, on the side from which light comes.
+function crescents(context, path, colour, strength, x, y) {
+  context.fillStyle = colour;
+  context.globalAlpha = (1.5 * strength) / SOFTLY.length;
+  for (const share of SOFTLY) {
+    const moved = new Path2D();
+    moved.rect(-1e5, -1e5, 2e5, 2e5);
+    moved.addPath(path, new DOMMatrix([1, 0, 0, 1, share * x, share * y]));
+    context.fill(moved, 'evenodd');
   }
-  context.restore();
 }
 
 // Fill a path with ground: from `near` its edge to `deep` inside.
-export function fillGround(context, path, near, deep, depth, light, dark, alpha = 1) {
+export function fillGround(context, path, near, deep, depth, light, dark, alpha = 1, grain = null) {
   context.save();
   context.globalAlpha = alpha;
   context.fillStyle = deep;
   context.fill(path);
   context.clip(path);
   context.strokeStyle = near;
-  for (let k = 6; k > 0; k--) {
-    context.globalAlpha = 0.28 * alpha;
-    context.lineWidth = (k / 3) * depth;
+  for (let k = 10; k > 0; k--) {
+    context.globalAlpha = 0.16 * alpha;
+    context.lineWidth = 0.22 * k * depth;
     context.stroke(path);
   }
-  edge(context, path, '#ffffff', light, 0.6 * depth, 0.1, 0.3);
-  edge(context, path, '#000000', dark, 0.6 * depth, -0.1, -0.3);
+  crescents(context, path, '#ffffff', 0.8 * light, 0.1 * depth, 0.3 * depth);
+  crescents(context, path, '#000000', 0.8 * dark, -0.1 * depth, -0.3 * depth);
+  context.globalAlpha = 1;
+  if (grain) {
+    context.fillStyle = context.createPattern(grains(grain), 'repeat');
+    context.fill(path);
+  }
   context.restore();
 }
 
 // Of each kind of line: its outline, its colour, and a pattern: [colour, its part of the width, dash, gap in half widths].
 const LINES = {
   rope: ['#5b3d20', '#c89b62', ['#80542c', 0.9, 0.9, 2.3]], cable: ['#3a4252', '#a3adbf', ['#5c667a', 0.9, 0.6, 1.5]],
-  chain: ['#1c222e', '#b0bccd', ['#1c222e', 0.45, 1.7, 3.9]], deck: ['#4a2e16', '#c48e58', ['#4a2e16', 1, 0.25, 1.75]],
-  thread: [null, '#ced2da', null], silk: [null, '#e8eef6', null], steel: ['#161b26', '#96a3ba', null],
+  deck: ['#4a2e16', '#c48e58', ['#4a2e16', 1, 0.25, 1.75]],
+  thread: [null, '#aeb5c2', null], silk: [null, '#ccd4e0', null], steel: ['#161b26', '#96a3ba', null],
   brass: ['#3a2a10', '#e2b04e', null], wood: ['#3a2614', '#c99258', null], rubber: ['#3a1418', '#eb605c', null],
   bone: ['#4a3a28', '#f0e4cc', null], muscle: ['#4a1622', '#de5462', null], piston: ['#161b26', '#96a3ba', null],
 };
 
 // Draw a path as a round bar of a kind; colour: of what is painted, and of bars of no kind.
 export function drawBar(context, path, half, kind, colour) {
+  if (kind === 'chain') {
+    drawChain(context, path, half);
+    return;
+  }
   const [line, own, pattern] = LINES[kind] ?? [outlineOf(colour), colour, null];
   context.lineCap = context.lineJoin = 'round';
   if (line && half > 0.7) stroke(context, path, line, half + 0.9, 0.85);
@@ -137,6 +144,17 @@ export function drawBar(context, path, half, kind, colour) {
   context.restore();
 }
 
+// Links on edge, thin, and between them links seen flat.
+function drawChain(context, path, half) {
+  stroke(context, path, '#1c222e', 0.45 * half, 0.7);
+  stroke(context, path, '#b0bccd', 0.3 * half);
+  context.setLineDash([1.8 * half, 3.8 * half]);
+  stroke(context, path, '#1c222e', 0.95 * half, 0.7);
+  stroke(context, path, '#b0bccd', 0.8 * half);
+  stroke(context, path, '#1c222e', 0.34 * half);
+  context.setLineDash([]);
+}
+
 export function stroke(context, path, colour, half, alpha = 1) {
   context.globalAlpha = alpha;
   context.strokeStyle = colour;
@@ -152,6 +170,55 @@ export function disc(context, x, y, radius, colour, alpha = 1) {
   context.arc(x, y, radius, 0, 2 * Math.PI);
   context.fill();
   context.globalAlpha = 1;
+}
+
+// Noise that tiles, of patches about `reach` texels wide.
+function noise(size, reach) {
+  let values = Float32Array.from({ length: size * size }, ((seed) => () => (seed = (seed * 16807) % 2147483647) / 1073741824 - 1)(7));
+  for (const step of [1, size, 1, size]) {
+    const at = (k, by) => (step === 1 ? (k & ~(size - 1)) | ((k + by) & (size - 1)) : (k + by * size) & (size * size - 1));
+    const smooth = values.slice();
+    for (let k = 0; k < values.length; k++) {
+      let sum = 0;
+      for (let by = -reach; by <= reach; by++) sum += values[at(k, by)];
+      smooth[k] = sum / (2 * reach + 1);
+    }
+    values = smooth;
+  }
+  const spread = Math.sqrt(values.reduce((sum, value) => sum + value * value, 0) / values.length);
+  return values.map((value) => value / spread);
+}
+
+// The grain of earth or wood: what is lighter and darker of it, as a picture to lay over.
+function grains(kind) {
+  return sprite(`grain ${kind}`, 256, (own) => {
+    const size = 256, picture = own.createImageData(size, size), fine = noise(size, 2), coarse = noise(size, 9), wide = noise(size, 16);
+    for (let k = 0; k < size * size; k++) {
+      const x = ((k & 255) * Math.PI) / 128, y = ((k >> 8) * Math.PI) / 128, bent = 0.6 * Math.sin(x) + 0.3 * wide[k];
+      const earth = 1.2 * fine[k] + 1.8 * coarse[k] + 4 * Math.tanh(2 * Math.sin(4 * y + 1.6 * bent)) + (fine[k] > 3.6 ? 18 : fine[k] < -3.6 ? -15 : 0);
+      const wood = 5 * Math.sin(18 * y + 1.5 * Math.sin(x)) + 3 * Math.sin(46 * y + Math.sin(2 * x)) + fine[k];
+      const value = kind === 'wood' ? wood : earth;
+      picture.data.fill(value > 0 ? 255 : 0, 4 * k, 4 * k + 3);
+      picture.data[4 * k + 3] = Math.min(Math.abs(value) * (value > 0 ? 1.7 : 2.4), 90);
+    }
+    own.putImageData(picture, 0, 0);
+  });
+}
+
+// A piece of turf that tiles, as long as 64 texels and 24 high; its middle lies on the ground.
+export function turfOf(context, [light, dark]) {
+  return context.createPattern(sprite(`turf ${light}`, 64, (own) => {
+    own.setTransform(1, 0, 0, 1, 0, 0);
+    const fade = own.createLinearGradient(0, 0, 0, 24);
+    fade.addColorStop(0, light);
+    fade.addColorStop(1, dark);
+    own.fillStyle = fade;
+    for (let x = 0; x < 64; x++) {
+      const u = ((x + 0.5) / 64) * Math.PI;
+      const top = -0.45 + 0.38 * Math.abs(Math.sin(5 * u)) + 0.16 * Math.sin(6 * u + 0.7), low = 0.52 + 0.2 * Math.sin(4 * u + 0.5) + 0.1 * Math.sin(10 * u);
+      own.fillRect(x, 12 + 12 * top, 1, 12 * (low - top));
+    }
+  }), 'repeat');
 }
 
 const sprites = new Map();
@@ -191,8 +258,8 @@ const MARKS = {
   marble: (own) => {
     own.lineWidth = 0.4;
     own.beginPath();
-    own.moveTo(-1, 0.4);
-    own.bezierCurveTo(-0.4, -1.1, 0.4, 1.1, 1, -0.4);
+    own.moveTo(-1, 0.12);
+    own.bezierCurveTo(-0.5, 0.8, 0.5, -0.8, 1, -0.12);
     own.stroke();
   },
   steel: (own) => {
@@ -255,6 +322,13 @@ export function sheetOf(context, skin, colour) {
     if (skin === 'cloth') {
       own.fillStyle = '#f3e6cd';
       own.fillRect(0, 0, 20, 64);
+      for (let x = 0; x < 64; x++) {
+        const fold = 0.2 * Math.sin((x * Math.PI) / 32);
+        own.fillStyle = fold > 0 ? `rgb(255 255 255 / ${fold})` : `rgb(0 0 0 / ${-fold})`;
+        own.fillRect(x, 0, 1, 64);
+      }
+      own.fillStyle = 'rgb(0 0 0 / 0.06)';
+      for (let k = 0; k < 1024; k += 2) own.fillRect(2 * ((k & 31) + ((k >> 5) & 1)), 2 * (k >> 5), 2, 2);
       return;
     }
     const isWood = skin === 'wood';

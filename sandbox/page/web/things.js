@@ -11,6 +11,11 @@ const BRACE = 0.62, HANGER = 0.62;
 export function thingsOf(scene, active) {
   const things = { shapes: [], strands: [], bars: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
   for (const body of scene.bodies) addBody(things, body, active);
+  // How many springs each particle has.
+  things.degree = new Map();
+  const count = (slot) => things.degree.set(slot, (things.degree.get(slot) ?? 0) + 1);
+  scene.bodies.forEach((body) => body.ends.forEach((slot, k) => active[body.spring + (k >> 1)] && count(slot)));
+  scene.joins.forEach((join) => active[join.spring] && join.ends.forEach(count));
   for (const join of scene.joins) {
     if (active[join.spring]) addLines(things, join, [[join.spring, ...join.ends]], LOOSE);
   }

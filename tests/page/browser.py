@@ -1,0 +1,166 @@
+"""A browser without a window, told what to do by the DevTools protocol through a pair of pipes."""
+
+import base64
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any, Self
+
+NAMES = ("chromium-headless-shell", "chrome-headless-shell", "chromium", "chromium-browser", "google-chrome")
+FLAGS = (
+    "--headless", "--no-sandbox", "--remote-debugging-pipe", "--hide-scrollbars", "--no-first-run",
+    "--autoplay-policy=user-gesture-required", "--disable-gpu",
+)  # fmt: skip
+# The browser reads from 3 and writes to 4.
+_BEGIN = """
+import fcntl, os, sys
+reads, writes = (fcntl.fcntl(int(end), fcntl.F_DUPFD, 10) for end in sys.argv[1:3])
+os.dup2(reads, 3)
+os.dup2(writes, 4)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
+
+
+def browser_path() -> str | None:
+    """Where a browser is that can be driven; None: nowhere."""
+    return next(filter(None, map(shutil.which, NAMES)), None)
+
+
+class Tab:
+    """A page of a browser. faults: errors of its scripts and of its log, a line each."""
+
+    def __init__(self, browser: "Browser", session: str) -> None:
+        self._browser, self._session = browser, session
+        self.faults: list[str] = []
+
+    def send(self, method: str, **given: Any) -> Any:
+        """What the protocol answers to a method."""
+        return self._browser.send(method, given, self._session)
+
+    def evaluate(self, expression: str) -> Any:
+        """The value of an expression, or what its promise comes to. Raises RuntimeError where it throws."""
+        given = {"expression": expression, "awaitPromise": True, "returnByValue": True, "userGesture": True}
+        answer = self.send("Runtime.evaluate", **given)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(json.dumps(answer["exceptionDetails"])[:600])
+        return answer["result"].get("value")
+
+    def open(self, address: str) -> Self:
+        """Go to an address, and wait until the page plays or says what is wrong."""
+        self.send("Page.navigate", url=address)
+        ready = "globalThis.page || !(document.getElementById('error')?.hidden ?? true)"
+        wait = f"new Promise((done) => {{ const look = () => ({ready}) ? done() : requestAnimationFrame(look); look(); }})"
+        self._browser.until(lambda: any(each == "Page.loadEventFired" for each in self._browser.events))
+        self._browser.events.clear()
+        self.evaluate(wait)
+        return self
+
+    def picture(self) -> bytes:
+        """What is seen, as PNG."""
+        return base64.b64decode(self.send("Page.captureScreenshot", format="png")["data"])
+
+    def mouse(self, kind: str, x: float, y: float) -> None:
+        """Press, move or release the left button at a pixel: mousePressed, mouseMoved, mouseReleased."""
+        self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+
+    def touch(self, kind: str, *points: tuple[float, float]) -> None:
+        """All fingers that are down after this: touchStart, touchMove, touchEnd."""
+        fingers = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
+        self.send("Input.dispatchTouchEvent", type=kind, touchPoints=fingers)
+
+    def key(self, key: str) -> None:
+        """Press and release a key."""
+        text = {"text": key} if len(key) == 1 else {}
+        self.send("Input.dispatchKeyEvent", type="keyDown", key=key, **text)
+        self.send("Input.dispatchKeyEvent", type="keyUp", key=key)
+
+
+class Browser:
+    """A process of a browser, which ends with it."""
+
+    def __init__(self, path: str) -> None:
+        self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        ours, theirs = os.pipe(), os.pipe()
+        ends = str(ours[0]), str(theirs[1])
+        arguments = [sys.executable, "-c", _BEGIN, *ends, path, *FLAGS, f"--user-data-dir={self._folder.name}"]
+        self._process = subprocess.Popen(
+            arguments, pass_fds=(ours[0], theirs[1]), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        os.close(ours[0])
+        os.close(theirs[1])
+        self._to, self._from = os.fdopen(ours[1], "wb"), os.fdopen(theirs[0], "rb", buffering=0)
+        self._rest, self._number = b"", 0
+        self.events: list[str] = []
+        self._tabs: dict[str, Tab] = {}
+        self._target: str | None = None
+
+    def tab(self, width: int = 1280, height: int = 720, scheme: str = "dark", is_phone: bool = False) -> Tab:
+        """A new page of a size [pixels], for a person who prefers this colour scheme; the one before it is closed."""
+        if self._target is not None:
+            self.send("Target.closeTarget", {"targetId": self._target})
+        target = self._target = self.send("Target.createTarget", {"url": "about:blank"})["targetId"]
+        session = self.send("Target.attachToTarget", {"targetId": target, "flatten": True})["sessionId"]
+        tab = self._tabs[session] = Tab(self, session)
+        for domain in ("Page", "Runtime", "Log"):
+            tab.send(f"{domain}.enable")
+        ratio = 2 if is_phone else 1
+        tab.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=is_phone)
+        tab.send("Emulation.setTouchEmulationEnabled", enabled=is_phone, maxTouchPoints=5)
+        features = [{"name": "prefers-color-scheme", "value": scheme}]
+        tab.send("Emulation.setEmulatedMedia", features=features)
+        return tab
+
+    def send(self, method: str, given: dict[str, Any], session: str | None = None) -> Any:
+        """What the browser answers. Raises RuntimeError where it cannot."""
+        self._number += 1
+        number = self._number
+        message = {"id": number, "method": method, "params": given} | ({"sessionId": session} if session else {})
+        self._to.write(json.dumps(message).encode() + b"\0")
+        self._to.flush()
+        while True:
+            answer = self._next()
+            if answer.get("id") == number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']['message']}")
+                return answer["result"]
+
+    def until(self, has_come: Any) -> None:
+        """Read what the browser tells until something has come."""
+        while not has_come():
+            self._next()
+
+    def _next(self) -> dict[str, Any]:
+        while b"\0" not in self._rest:
+            more = os.read(self._from.fileno(), 1 << 20)
+            if not more:
+                raise RuntimeError("the browser has ended")
+            self._rest += more
+        text, _, self._rest = self._rest.partition(b"\0")
+        message: dict[str, Any] = json.loads(text)
+        method, tab = message.get("method", ""), self._tabs.get(message.get("sessionId", ""))
+        self.events.append(method)
+        if tab is not None and method == "Runtime.exceptionThrown":
+            details = message["params"]["exceptionDetails"]
+            tab.faults.append(details.get("exception", {}).get("description", details["text"]))
+        elif tab is not None and method == "Log.entryAdded" and message["params"]["entry"]["level"] == "error":
+            tab.faults.append(message["params"]["entry"]["text"])
+        elif tab is not None and method == "Runtime.consoleAPICalled" and message["params"]["type"] == "error":
+            tab.faults.append(json.dumps(message["params"]["args"])[:600])
+        return message
+
+    def close(self) -> None:
+        """End the browser."""
+        self._to.close()
+        self._process.terminate()
+        self._process.wait()
+        self._from.close()
+        self._folder.cleanup()
+
+
+def page_address(path: Path) -> str:
+    """The address of a file."""
+    return path.resolve().as_uri()

@@ -1,0 +1,113 @@
+"""A page in a browser comes to the bits of the desktop, and what it saves is verified there."""
+
+import base64
+from pathlib import Path
+
+import pytest
+
+from sandbox import Session, load_level
+from sandbox.app.share.playing import page_of
+from sandbox.commands import SetCoefficients, SetDrive
+from sandbox.physics.snapshot import state_hash
+from sandbox.replay import read_replay, verify
+from tests.page.browser import Browser, Tab, page_address
+from tests.page.levels import LEVELS, level_page
+
+TICKS = 90
+_PAUSE = "page.isPaused || page.toggle('play'); page.jump(() => { page.run.seek(0); page.run.takeOver(); });"
+_SAVE = """page.recording().then(async (file) => {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
+})"""
+
+
+def _opened(browser: Browser, folder: Path, text: str, **how: object) -> Tab:
+    file = folder / "page.html"
+    file.write_text(text, encoding="utf-8")
+    return browser.tab(**how).open(page_address(file))  # type: ignore[arg-type]
+
+
+def _saved(tab: Tab, folder: Path) -> Path:
+    file = folder / "saved.replay.gz"
+    file.write_bytes(base64.b64decode(tab.evaluate(_SAVE)))
+    return file
+
+
+@pytest.mark.parametrize("name", LEVELS)
+def test_a_page_opens_without_a_fault_and_steps_as_the_desktop_does(
+    browser: Browser, tmp_path: Path, name: str
+) -> None:
+    tab = _opened(browser, tmp_path, level_page(name))
+    tab.evaluate(_PAUSE)
+    found = tab.evaluate(f"for (let k = 0; k < {TICKS}; k++) page.tick(); page.world.hash().whole")
+    session = Session(load_level(name))
+    for _ in range(TICKS):
+        session.advance()
+    assert found == state_hash(session.world)
+    assert tab.faults == []
+
+
+def test_what_a_page_saves_is_verified_bit_for_bit(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, level_page("suspension_car"))
+    tab.evaluate(_PAUSE)
+    tab.evaluate(
+        """for (let k = 0; k < 700; k++) {
+          if (k === 20) page.keys.press(Object.keys(page.keys.keys)[0]);
+          if (k === 120) page.keys.releaseAll();
+          if (k === 60) page.run.submit({ type: 'set_coefficients', stiffness: 0.3, damping: 0.6, material: null }, 9);
+          page.tick();
+        }"""
+    )
+    recording = read_replay(_saved(tab, tmp_path))
+    assert verify(recording) is None
+    assert recording.ticks == 700
+    assert [line.record["type"] for line in recording.script][0] == "set_drive"
+
+
+def test_an_undo_brings_back_the_state_before_the_gesture(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, level_page("rope"))
+    tab.evaluate(_PAUSE)
+    before = tab.evaluate("for (let k = 0; k < 70; k++) page.tick(); page.world.hash().whole")
+    tab.evaluate("page.run.submit({ type: 'set_coefficients', stiffness: 0.2, damping: 0.3, material: null }, 1)")
+    tab.evaluate("for (let k = 0; k < 100; k++) page.tick(); document.getElementById('undo').click()")
+    assert tab.evaluate("[page.world.time, page.world.hash().whole]") == [70, before]
+    assert verify(read_replay(_saved(tab, tmp_path))) is None
+
+
+def _recorded(folder: Path) -> Path:
+    session, file = Session(load_level("suspension_car")), folder / "run.replay.gz"
+    session.record_to(file)
+    for tick in range(150):
+        if tick == 10:
+            session.submit(SetDrive(0, 1.0))
+        if tick == 40:
+            session.submit(SetCoefficients(stiffness=0.4, damping=0.7, material=1))
+        session.advance()
+    session.stop_recording()
+    return file
+
+
+def test_a_recording_is_verified_scrubbed_and_taken_over(browser: Browser, tmp_path: Path) -> None:
+    replay = read_replay(_recorded(tmp_path))
+    tab = _opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
+    tab.evaluate(
+        """new Promise((done) => { const state = document.getElementById('state');
+          const look = () => state.className ? done() : requestAnimationFrame(look); look(); })"""
+    )
+    assert tab.evaluate("document.getElementById('state').textContent").startswith("Verified")
+    tab.evaluate("page.isPaused || page.toggle('play')")
+    for tick in (150, 30, 90):
+        hashed = tab.evaluate(f"page.jump(() => page.run.seek({tick})); page.world.hash().whole")
+        assert replay.hashes[tick].fits(hashed)
+    tab.evaluate("page.run.submit({ type: 'set_drive', part: 0, value: -1 }, page.run.newGesture())")
+    assert tab.evaluate("[page.run.last, page.run.isFollowing]") == [90, False]
+    tab.evaluate("for (let k = 0; k < 30; k++) page.tick()")
+    taken = read_replay(_saved(tab, tmp_path))
+    assert (taken.ticks, verify(taken)) == (120, None)
+
+
+def test_a_page_that_was_cut_off_says_so_in_a_line(browser: Browser, tmp_path: Path) -> None:
+    text = level_page("rope")
+    for share in (0.3, 0.9):
+        tab = _opened(browser, tmp_path, text[: int(share * len(text))])
+        assert tab.evaluate("document.getElementById('error').textContent").startswith("This page was cut off")
