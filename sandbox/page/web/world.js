@@ -5,8 +5,31 @@ const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
 const KINDS = {
   f8: Float64Array, f4: Float32Array, i8: BigInt64Array, u4: Uint32Array, i4: Int32Array, i1: Int8Array, b1: Uint8Array,
 };
-// Numbers that a record of a command may have beside the springs that it names.
-const RECORD = 16;
+// What is derived, in this order, each by a kernel of its own with an arena of its own; and words that one begins with.
+const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_ARENA = 4096, MORE = 2;
+const CONTACTS = ['particle', 'feature', 'impulse', 'impact'].map((name) => `collisions.kept.${name}`);
+// Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
+const ARGUMENTS = 64, RECORD = 16;
+// Of commands as records have them: whole numbers and floats as the kernel takes them, and the first derivation that
+// has to be made again. hands: first particle and spring of hands.
+const COMMANDS = {
+  grab: [1, (r, hands) => [[hands.particle, hands.spring, r.grab, r.particle], [...r.target, r.strength, r.radius]]],
+  move_grab: [null, (r, hands, rate) => [[hands.particle, r.grab], [...r.target, rate]]],
+  release: [1, (r, hands) => [[hands.particle, hands.spring, r.grab], []]],
+  pin: [0, (r) => [[r.particle], []]],
+  unpin: [0, (r) => [[r.particle], []]],
+  freeze: [0, (r) => [[r.particle], []]],
+  cut_springs: [0, (r) => [r.springs, []]],
+  break_springs: [0, (r) => [r.springs, []]],
+  set_coefficients: [null, (r) => [
+    [r.material ?? -1, r.stiffness == null ? 0 : 1, r.damping == null ? 0 : 1], [r.stiffness ?? 0, r.damping ?? 0],
+  ]],
+  set_drive: [null, (r) => [[r.part], [r.value]]],
+  push: [null, (r, hands) => [[hands.particle], [...r.position, ...(r.impulse ?? [0, 0]), r.outward ?? 0, r.radius]]],
+};
+
+// Where the settings are that commands change, among the numbers of a world.
+const SETTINGS = { set_gravity: [['gravity', 0]], set_air: [['wind', 2], ['drag', 4]] };
 
 // What a person is to read, in one line.
 export class Refusal extends Error {}
@@ -16,8 +39,10 @@ const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 export class World {
   #kernels;
   #about;
+  #arguments;
   #base;
   #end;
+  #arenas = {};
   #views = new Map();
   #hashed = new Map();
   #saved = new Map();
@@ -29,20 +54,23 @@ export class World {
   constructor(kernels, image, about) {
     this.#kernels = kernels;
     this.#about = about;
-    const heap = aligned(kernels.__heap_base.value), springs = about.names.spring.length;
-    this.arguments = heap;
-    this.record = heap + 32 * WORD;
-    this.#base = aligned(this.record + (2 * RECORD + springs) * WORD);
-    this.#end = this.#base + image.length;
-    this.#reserve(this.#end);
+    this.#arguments = aligned(kernels.__heap_base.value);
+    this.#base = aligned(this.#arguments + (ARGUMENTS + 2 * RECORD + about.names.spring.length) * WORD);
+    this.#end = this.#base;
+    this.#reserve(image.length);
     new Uint8Array(kernels.memory.buffer).set(image, this.#base);
     const words = new Uint32Array(kernels.memory.buffer);
     for (const [word] of Object.values(about.table)) words[this.#place(word) + 2 * ADDRESS] += this.#base;
+    if (about.kernels.make_room) this.#derive(0);
   }
 
-  #reserve(end) {
-    const pages = Math.ceil(end / PAGE) - this.#kernels.memory.buffer.byteLength / PAGE;
-    if (pages > 0) this.#kernels.memory.grow(pages);
+  // Where there are so many more bytes of memory.
+  #reserve(size) {
+    const address = this.#end, { memory } = this.#kernels;
+    this.#end = aligned(address + size);
+    const pages = Math.ceil(this.#end / PAGE) - memory.buffer.byteLength / PAGE;
+    if (pages > 0) memory.grow(pages);
+    return address;
   }
 
   // Where a word of the block is, as an index of numbers of 32 bits.
@@ -64,15 +92,17 @@ export class World {
     return view;
   }
 
-  // Call a kernel with arrays: addresses, numbers of items and bytes of each.
-  #call(name, ...arrays) {
-    const words = new BigInt64Array(this.#kernels.memory.buffer, this.arguments, 7 * arrays.length);
-    arrays.forEach(([address, count, size], k) => {
-      words.set([0, 0, count, size, address, count, size].map(BigInt), 7 * k);
+  // Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
+  #call(name, ...given) {
+    const words = given.flatMap((each) => {
+      if (!Array.isArray(each)) return [each];
+      const [address, count, size] = each;
+      return [0, 0, count, size, address, count, size];
     });
-    const kernel = this.#kernels[this.#about.kernels[name]];
-    if (kernel(this.arguments) !== 0) throw new Error(`the kernel ${name} failed`);
-    return Number(words[0]);
+    const place = new BigInt64Array(this.#kernels.memory.buffer, this.#arguments, words.length);
+    place.set(words.map(BigInt));
+    if (this.#kernels[this.#about.kernels[name]](this.#arguments) !== 0) throw new Error(`the kernel ${name} failed`);
+    return Number(new BigInt64Array(this.#kernels.memory.buffer, this.#arguments, 1)[0]);
   }
 
   get #block() {
@@ -91,7 +121,7 @@ export class World {
     progress[COUNT] = progress[CHECKED] = 0n;
     let code = this.#call('tick', this.#block);
     while (code === NO_ROOM) {
-      this.#grow();
+      this.#derive(2);
       code = this.#call('tick', this.#block);
     }
     if (code === UNSOUND || code === LOST) throw new Refusal('This level came to values that no physics gives.');
@@ -100,31 +130,36 @@ export class World {
     if (this.broken.length) this.#apply({ type: 'break_springs', springs: this.broken });
   }
 
-  #grow() {
-    throw new Refusal('This level wants more memory than the page has.');
-  }
-
   // Carry out a command: the record of a recording with slots in place of names. Whether it could be.
   command(record) {
     return this.#apply(record);
   }
 
   #apply(record) {
-    const layout = this.#about.commands[record.type];
-    if (!layout || !this.#about.kernels.command) return this.#write(record);
-    const numbers = (fields, missing) => fields.map((field) => record[field] ?? missing).flat();
-    const whole = [layout.kind, ...numbers(layout.integers, -1)], parts = numbers(layout.floats, NaN);
-    const floats = this.record, integers = floats + WORD * RECORD, { buffer } = this.#kernels.memory;
-    new Float64Array(buffer, floats, parts.length).set(parts);
-    new BigInt64Array(buffer, integers, whole.length).set(whole.map(BigInt));
-    const done = this.#call('command', this.#block, [integers, whole.length, WORD], [floats, parts.length, WORD]);
-    if (done && layout.derives) this.derive();
-    return done !== 0;
+    if (!this.can(record.type)) return false;
+    if (record.type in SETTINGS) return this.#set(record);
+    if (!this.#about.kernels.command) return this.#write(record);
+    const [derives, pack] = COMMANDS[record.type], { tick_rate } = this.settings(), { buffer } = this.#kernels.memory;
+    const [slots, numbers] = pack(record, this.hands, tick_rate), at = this.#arguments + ARGUMENTS * WORD;
+    new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
+    new Float64Array(buffer, at, numbers.length).set(numbers);
+    const given = [this.#about.commands[record.type], [at + RECORD * WORD, slots.length, WORD], [at, numbers.length, WORD]];
+    this.#inArena('command', ...given);
+    if (derives !== null) this.#derive(derives);
+    return true;
+  }
+
+  // Gravity and air are numbers that a tick reads.
+  #set(record) {
+    const numbers = this.view('numbers');
+    for (const [name, place] of SETTINGS[record.type]) if (record[name] != null) numbers.set([record[name]].flat(), place);
+    return true;
   }
 
   // Whether a command of this type can be carried out.
   can(type) {
-    return Boolean(this.#about.kernels.command) || ['move_grab', 'set_coefficients', 'set_drive'].includes(type);
+    if (this.#about.kernels.command) return type in COMMANDS || type in SETTINGS;
+    return type in SETTINGS || ['set_coefficients', 'set_drive'].includes(type);
   }
 
   // What commands write that change no topology.
@@ -155,11 +190,36 @@ export class World {
     return true;
   }
 
-  // Derive what follows from topology, after a change of it.
-  derive() {
-    if (!this.#about.kernels.derive) throw new Refusal('This page cannot follow a change of what is joined.');
-    while (this.#call('derive', this.#block) === this.#about.codes.NO_ROOM) this.#grow();
+  // Derive what follows from topology and hands, from one of the derivations on; contacts of the last step stay.
+  #derive(first, contacts = this.#contactRows()) {
+    if (!this.#about.kernels.make_room) throw new Refusal('This page cannot follow what has changed.');
+    this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
+    for (const name of DERIVATIONS.slice(first)) this.#inArena(name);
+    if (first !== 1) CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
+  }
+
+  // Call a kernel with the block and its own arena, which grows until there is room.
+  #inArena(name, ...given) {
+    let arena = (this.#arenas[name] ??= this.#newArena(FIRST_ARENA));
+    this.#call(name, this.#block, arena, ...given);
+    for (let used = this.#used(arena); used > arena[1]; used = this.#used(arena)) {
+      arena = this.#arenas[name] = this.#newArena(MORE * used);
+      this.#call(name, this.#block, arena, ...given);
+    }
     this.#views.clear();
+  }
+
+  #newArena(words) {
+    return [this.#reserve(words * WORD), words, WORD];
+  }
+
+  #used([address]) {
+    return new Uint32Array(this.#kernels.memory.buffer, address, 1)[0];
+  }
+
+  #contactRows() {
+    const count = Number(this.view('collisions.counts')[this.#about.progress.KEPT]);
+    return CONTACTS.map((path, k) => this.view(path).slice(0, count * (k === 2 ? 2 : 1)));
   }
 
   // First particle and spring of hands, and how many hands there are.
@@ -189,26 +249,27 @@ export class World {
       arrays.set(path, last && isEqual(last, present) ? last : present.slice());
     }
     this.#saved = arrays;
-    return { time: this.time, arrays };
+    return { time: this.time, arrays, contacts: this.#contactRows() };
   }
 
-  restore(saved) {
-    let isOther = false;
-    for (const [path, kept] of saved.arrays) {
-      const present = this.view(path);
-      isOther ||= this.#about.topology.includes(path) && !isEqual(present, kept);
-      present.set(kept);
-    }
-    this.time = saved.time;
+  restore({ time, arrays, contacts }) {
+    const isOther = this.#about.topology.some((path) => !isEqual(this.view(path), arrays.get(path)));
+    for (const [path, kept] of arrays) this.view(path).set(kept);
+    this.time = time;
     this.broken = [];
-    if (isOther) this.derive();
+    if (isOther) this.#derive(0, contacts);
+    else if (contacts[0].length > this.view(CONTACTS[0]).length) this.#derive(2, contacts);
+    else {
+      this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
+      CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
+    }
   }
 
   // The rows of a state array that are in use, flat.
   rows(column) {
     const view = this.view(column.path);
     if (!column.isContact) return view;
-    return view.subarray(0, column.width * Number(this.view('collisions.counts')[this.#about.progress.KEPT]));
+    return view.subarray(0, column.width * this.contacts().length);
   }
 
   // The hash of the whole state, and those of its arrays that are in use, by their names in files.
