@@ -10,6 +10,8 @@ from sandbox.physics.jit.bundles import HEAD_WORDS, WORD
 
 # Where arrays begin [bytes].
 ALIGNED = 16
+# Smaller arrays [bytes] are not looked at for being copies.
+LEAST_COPY = 64
 
 
 class Place(NamedTuple):
@@ -21,10 +23,14 @@ class Place(NamedTuple):
 
 
 class Image(NamedTuple):
-    """A block as bytes: its words, then its arrays; addresses count from the first byte. table: by path of the array."""
+    """A block as bytes: its words, then its arrays; addresses count from the first byte. table: by path of the array.
+
+    copies: of arrays that are as another one is, where to and from, and how many bytes; content has zeros there.
+    """
 
     content: bytes
     table: dict[str, Place]
+    copies: list[tuple[int, int, int]]
 
 
 def image_of(block: tuple[Any, ...]) -> Image:
@@ -37,7 +43,22 @@ def image_of(block: tuple[Any, ...]) -> Image:
     where, content = _laid_out(list(arrays.values()), _aligned(WORD * words))
     values = [value for array in arrays.values() for value in _words(array, where)]
     content[: WORD * words] = np.array(values, "<i8").tobytes()
-    return Image(bytes(content), table)
+    copies = _leave_out_copies(list(arrays.values()), where, content)
+    return Image(bytes(content), table, copies)
+
+
+def _leave_out_copies(
+    arrays: list[NDArray[Any]], where: dict[int, int], content: bytearray
+) -> list[tuple[int, int, int]]:
+    first: dict[bytes, int] = {}
+    copies = []
+    for array in arrays:
+        held, place = array.tobytes(), where.get(array.ctypes.data, 0)
+        if len(held) < LEAST_COPY or not any(held) or first.setdefault(held, place) == place:
+            continue
+        copies.append((place, first[held], len(held)))
+        content[place : place + len(held)] = bytes(len(held))
+    return copies
 
 
 def _arrays(item: Any, path: str) -> Iterator[tuple[str, NDArray[Any]]]:

@@ -1,10 +1,11 @@
 """The page that plays: one HTML file with a level, its world and the kernels, which needs no network."""
 
-import base64
 import gzip
 import html
 import json
 import re
+import string
+import struct
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,9 @@ HERE = Path(__file__).with_name("web")
 # In an order in which each is behind what it imports from.
 MODULES = ("hash", "world", "run", "recording", "paint", "things", "draw", "hand", "panel", "sound", "main")
 GZIP_LEVEL = 9
+# The digits of the numbers that content is written in: none has a meaning in HTML or JavaScript.
+DIGITS = string.digits + string.ascii_letters + "!#$%()*+,-./:;=?@[]^_{|"
+_POWERS = (85**4, 85**3, 85**2, 85, 1)
 
 _IMPORT = re.compile(r"^import (\{.*?\}) from '\./(\w+)\.js';$", re.MULTILINE | re.DOTALL)
 _EXPORT = re.compile(r"^export ((?:async )?(?:function\*? |class |const ))(\w+)", re.MULTILINE)
@@ -26,10 +30,11 @@ def page_text(title: str, level: Mapping[str, Any], image: Image) -> str:
     data = json.dumps(level, separators=(",", ":"), allow_nan=False).encode()
     parts = {
         "TITLE": html.escape(title),
-        "DATA": _packed(data),
-        "IMAGE": _packed(image.content),
-        "KERNELS": _packed((FOLDER / "kernels.wasm").read_bytes()),
-        "SCRIPT": script(),
+        "DATA": packed(data),
+        "IMAGE": packed(image.content),
+        "KERNELS": packed((FOLDER / "kernels.wasm").read_bytes()),
+        "SCRIPT": packed(script().encode()),
+        "DIGITS": DIGITS,
     }
     template = (HERE / "page.html").read_text(encoding="utf-8")
     return re.sub("@([A-Z]+)@", lambda found: parts[found[1]], template)
@@ -46,5 +51,8 @@ def _as_function(name: str, text: str) -> str:
     return f"const from_{name} = (() => {{\n{body}return {{ {exported} }};\n}})();\n"
 
 
-def _packed(content: bytes) -> str:
-    return base64.b64encode(gzip.compress(content, GZIP_LEVEL, mtime=0)).decode()
+def packed(content: bytes) -> str:
+    """Compressed, each four bytes as five of DIGITS: a quarter longer than they are, where base64 is a third."""
+    made = gzip.compress(content, GZIP_LEVEL, mtime=0)
+    numbers = struct.unpack(f">{-(-len(made) // 4)}I", made.ljust(-(-len(made) // 4) * 4, b"\0"))
+    return "".join(DIGITS[number // power % 85] for number in numbers for power in _POWERS) + DIGITS[-len(made) % 4]

@@ -36,4 +36,4 @@ def start_of(level: Level, script: Any = (), ticks: int = TRIAL) -> Start:
     block.begin(world)
     image = image_of(block.arrays)
     table = {path: list(place) for path, place in image.table.items()}
-    return Start(image, about(world, block.pointer.nbytes // 8) | {"table": table})
+    return Start(image, about(world, block.pointer.nbytes // 8) | {"table": table, "copies": image.copies})

@@ -9,13 +9,14 @@ from sandbox.app.draw.backdrop import WIDE
 from sandbox.app.draw.looks import SOFT_SKINS, Look, ground_look
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.themes import THEMES, Theme
-from sandbox.app.draw.things.borders import hull_of, sides_of
+from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.faces import spot_of
 from sandbox.app.draw.things.level_slots import Actor, level_slots_of
 from sandbox.app.draw.things.soft import keep_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
 from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.state import Slots
 
 # Digits of lengths [m]: a tenth of a millimetre.
 DIGITS = 4
@@ -58,7 +59,7 @@ def _look(look: Look) -> dict[str, Any]:
 
 
 def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
-    """A body: its look, slots of its particles, its first spring and the slots of the ends of all, in pairs."""
+    """A body: its look, slots of its particles, its first spring and how many it has."""
     look, there = actor.look, np.ones(len(actor.springs), dtype=np.bool_)
     made: dict[str, Any] = {
         "type": actor.body.type,
@@ -66,9 +67,9 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
         "radius": round(float(np.median(snapshot.radius[actor.slots])), DIGITS),
         "cell": round(actor.cell, DIGITS),
         "angle": round(actor.angle, DIGITS),
-        "slots": actor.slots.tolist(),
+        "slots": _runs(actor.slots),
         "spring": int(actor.springs[0]) if len(actor.springs) else 0,
-        "ends": actor.ends.reshape(-1).tolist(),
+        "springs": len(actor.springs),
     }
     if "segments" in actor.body.__dict__:
         made["segments"] = int(actor.body.__dict__["segments"])
@@ -81,13 +82,18 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
         _, left, loops, _ = actor.filling(there)
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
-        made["sides"] = (actor.springs[0] + sides_of(triangles, actor.pairs)).reshape(-1).tolist()
         made["spacing"] = float(actor.body.__dict__.get("spacing", actor.cell))
         made["keep"] = round(keep_of(actor, loops), DIGITS)
         if look.face and look.skin in SOFT_SKINS and len(left):
             place, room = spot_of(actor, max(loops, key=len))
             made["face"] = [round(float(value), DIGITS) for value in (*place, room)]
     return made
+
+
+def _runs(slots: Slots) -> list[list[int]]:
+    """Slots as runs of consecutive ones: the first of each, and how many."""
+    begins = np.flatnonzero(np.diff(slots, prepend=-2) != 1)
+    return [list(run) for run in zip(slots[begins].tolist(), np.diff(begins, append=len(slots)).tolist(), strict=True)]
 
 
 def _ground(level: Level, snapshot: Snapshot) -> list[str]:

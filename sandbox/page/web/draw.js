@@ -1,6 +1,6 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
 import { ball, darkEdge, disc, drawBar, fillGround, fillSkin, glow, grown, mixed, outlineOf, pathOf, sheetOf, stroke, turfOf } from './paint.js';
-import { thingsOf } from './things.js';
+import { thingsOf, unfolded } from './things.js';
 
 const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
 const ROUNDING = { balloon: 0.3, tyre: 0.16, wood: 0.05, stone: 0.07, brick: 0.07, window: 0.2 };
@@ -52,7 +52,7 @@ export class Picture {
   constructor(canvas, scene, world) {
     this.#canvas = canvas;
     this.#context = canvas.getContext('2d');
-    this.#scene = scene;
+    this.#scene = unfolded(scene, world);
     this.#world = world;
   }
 
@@ -456,8 +456,8 @@ export class Picture {
       cosine += x * dx + y * dy;
       sine += x * dy - y * dx;
     }
-    const turn = Math.atan2(sine, cosine), springs = body.ends.length / 2;
-    for (let k = 0; k < springs; k++) load += Math.abs(this.strain[body.spring + k]) / springs;
+    const turn = Math.atan2(sine, cosine), springs = body.springs.length;
+    for (const [spring] of body.springs) load += Math.abs(this.strain[spring]) / springs;
     const speed = Math.hypot(mean.w, mean.z), context = this.#context, zoom = this.camera.zoom, beat = 3.4 + 0.77 * (number % 4);
     const isSqueezed = load > 0.1, isShut = !isSqueezed && (this.seconds + 1.7 * number) % beat > beat - 0.13;
     context.save();

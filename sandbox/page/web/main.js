@@ -2,18 +2,13 @@
 import { Camera, Picture } from './draw.js';
 import { Hands } from './hand.js';
 import { DriveKeys, Panel } from './panel.js';
-import { through, verified, written } from './recording.js';
+import { verified, written } from './recording.js';
 import { Run } from './run.js';
 import { Sound } from './sound.js';
 import { Refusal, World } from './world.js';
 
 const SLOW = 0.2, MOST_TICKS = 4, CLICK_ZOOM = 1.15;
 const byId = (id) => document.getElementById(id);
-
-async function unpacked(id) {
-  const text = atob(byId(id).textContent.trim()), bytes = Uint8Array.from(text, (letter) => letter.charCodeAt(0));
-  return through(bytes, new DecompressionStream('gzip'));
-}
 
 class Page {
   #owed = 0;
@@ -234,11 +229,11 @@ class Page {
 export async function open() {
   let parts;
   try {
-    parts = await Promise.all([unpacked('data'), unpacked('image'), unpacked('kernels')]);
+    parts = await Promise.all(['data', 'image', 'kernels'].map((id) => globalThis.unpacked(id)));
   } catch {
     throw new Refusal('This page was cut off or damaged. Ask for it again.');
   }
-  const [data, image, kernels] = parts, level = JSON.parse(new TextDecoder().decode(data));
+  const [data, image, kernels] = parts.map((part) => new Uint8Array(part)), level = JSON.parse(new TextDecoder().decode(data));
   const module = await WebAssembly.compile(kernels);
   return new Page(level, () => new World(new WebAssembly.Instance(module, {}).exports, image, level.about));
 }

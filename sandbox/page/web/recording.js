@@ -85,7 +85,7 @@ async function packed(bytes) {
   return btoa(text);
 }
 
-export async function through(bytes, stream) {
+async function through(bytes, stream) {
   return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 }
 

@@ -7,14 +7,29 @@ const LAID = ['wood', 'stone', 'brick'];
 const TRUSS = [0.11, 1.6, 4.2], MESH = [0.075, 1.0, 3.4], LOOSE = [0.1, 1.2, 2.6];
 const BRACE = 0.62, HANGER = 0.62;
 
-// What there is to draw of a scene, where active (m,) says which springs there are.
+// The scene with the slots of each body's particles and its springs as [spring, first end, second end].
+export function unfolded(scene, world) {
+  const a = world.view('state.particle_a'), b = world.view('state.particle_b'), key = (p, q) => Math.min(p, q) * 0x4000000 + Math.max(p, q);
+  const bodies = scene.bodies.map((body) => {
+    const slots = body.slots.flatMap(([first, count]) => Array.from({ length: count }, (_, k) => first + k));
+    const springs = Array.from({ length: body.springs }, (_, k) => [body.spring + k, a[body.spring + k], b[body.spring + k]]);
+    if (!body.triangles) return { ...body, slots, springs };
+    // The springs along the sides of each triangle.
+    const between = new Map(springs.map(([spring, p, q]) => [key(p, q), spring])), { triangles } = body;
+    const sides = triangles.map((slot, k) => between.get(key(slot, triangles[k - (k % 3) + ((k + 1) % 3)])));
+    return { ...body, slots, springs, sides };
+  });
+  return { ...scene, bodies };
+}
+
+// What there is to draw of an unfolded scene, where active (m,) says which springs there are.
 export function thingsOf(scene, active) {
   const things = { shapes: [], strands: [], bars: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
   for (const body of scene.bodies) addBody(things, body, active);
   // How many springs each particle has.
   things.degree = new Map();
   const count = (slot) => things.degree.set(slot, (things.degree.get(slot) ?? 0) + 1);
-  scene.bodies.forEach((body) => body.ends.forEach((slot, k) => active[body.spring + (k >> 1)] && count(slot)));
+  scene.bodies.forEach(({ springs }) => springs.forEach(([spring, ...ends]) => active[spring] && ends.forEach(count)));
   scene.joins.forEach((join) => active[join.spring] && join.ends.forEach(count));
   for (const join of scene.joins) {
     if (active[join.spring]) addLines(things, join, [[join.spring, ...join.ends]], LOOSE);
@@ -23,12 +38,7 @@ export function thingsOf(scene, active) {
 }
 
 function addBody(things, body, active) {
-  const springs = [];
-  for (let k = 0; 2 * k < body.ends.length; k++) {
-    const spring = body.spring + k;
-    if (active[spring]) springs.push([spring, body.ends[2 * k], body.ends[2 * k + 1]]);
-  }
-  const isWhole = 2 * springs.length === body.ends.length, shape = { springs, keep: 0.25, rounds: 2, extra: 0, ...own(body) };
+  const springs = body.springs.filter(([spring]) => active[spring]), isWhole = springs.length === body.springs.length, shape = { springs, keep: 0.25, rounds: 2, extra: 0, ...own(body) };
   if (body.skin === 'lattice') addLines(things, body, springs, MESH);
   else if (body.triangles) addFilled(things, body, springs, active);
   else if (body.type === 'ring' && isWhole) {

@@ -58,7 +58,9 @@ export class World {
     this.#base = aligned(this.#arguments + (ARGUMENTS + 2 * RECORD + about.names.spring.length) * WORD);
     this.#end = this.#base;
     this.#reserve(image.length);
-    new Uint8Array(kernels.memory.buffer).set(image, this.#base);
+    const memory = new Uint8Array(kernels.memory.buffer);
+    memory.set(image, this.#base);
+    for (const [to, from, size] of about.copies) memory.copyWithin(this.#base + to, this.#base + from, this.#base + from + size);
     const words = new Uint32Array(kernels.memory.buffer);
     for (const [word] of Object.values(about.table)) words[this.#place(word) + 2 * ADDRESS] += this.#base;
     if (about.kernels.make_room) this.#derive(0);
