@@ -4,6 +4,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.app.draw.backdrop import WIDE
 from sandbox.app.draw.looks import SOFT_SKINS, Look, ground_look
@@ -16,7 +17,6 @@ from sandbox.app.draw.things.soft import keep_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.state import Slots
 
 # Digits of lengths [m]: a tenth of a millimetre.
 DIGITS = 4
@@ -90,7 +90,7 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
     return made
 
 
-def _runs(slots: Slots) -> list[list[int]]:
+def _runs(slots: NDArray[np.int64]) -> list[list[int]]:
     """Slots as runs of consecutive ones: the first of each, and how many."""
     begins = np.flatnonzero(np.diff(slots, prepend=-2) != 1)
     return [list(run) for run in zip(slots[begins].tolist(), np.diff(begins, append=len(slots)).tolist(), strict=True)]
