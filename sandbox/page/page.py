@@ -22,6 +22,7 @@ DIGITS = string.digits + string.ascii_letters + "!#$%()*+,-./:;=?@[]^_{|"
 _POWERS = (85**4, 85**3, 85**2, 85, 1)
 
 _IMPORT = re.compile(r"^import (\{.*?\}) from '\./(\w+)\.js';$", re.MULTILINE | re.DOTALL)
+_COMMENT, _INDENT = re.compile(r"^\s*//.*\n", re.MULTILINE), re.compile(r"^\s+", re.MULTILINE)
 _EXPORT = re.compile(r"^export ((?:async )?(?:function\*? |class |const ))(\w+)", re.MULTILINE)
 
 
@@ -41,8 +42,9 @@ def page_text(title: str, level: Mapping[str, Any], image: Image) -> str:
 
 
 def script() -> str:
-    """All modules as one script: each is a function of its own, which gives what it exports."""
-    return "\n".join(_as_function(name, (HERE / f"{name}.js").read_text(encoding="utf-8")) for name in MODULES)
+    """All modules as one script, without comments and indents: each is a function, which gives what it exports."""
+    whole = "\n".join(_as_function(name, (HERE / f"{name}.js").read_text(encoding="utf-8")) for name in MODULES)
+    return _INDENT.sub("", _COMMENT.sub("", whole))
 
 
 def _as_function(name: str, text: str) -> str:

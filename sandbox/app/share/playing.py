@@ -27,8 +27,8 @@ from sandbox.session.session import Session
 # Cs and Cd for the words of firmness where no body's form says what they mean.
 USUAL = {"jelly": (0.01, 0.1), "soft": (0.05, 0.2), "firm": (0.3, 0.5), "hard": (0.8, 0.9), "rigid": (1.0, 1.0)}
 ALL = "All"
-# Digits of Cs and Cd.
-DIGITS = 4
+# Digits, and decimals at most, of Cs and Cd.
+DIGITS, DECIMALS = 4, 12
 
 
 class Recorded(NamedTuple):
@@ -49,7 +49,7 @@ def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None =
         "scene": scene_of(level, take(world)),
         "sounds": _sounds(world),
         "materials": _materials(world),
-        "keys": driving_keys(level),
+        "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
         "recording": None if recorded is None else _shown(world, recorded),
     }
@@ -117,7 +117,14 @@ def _pair(reach: FirmnessRange, sag: float) -> tuple[float, float]:
     stiffness, damping = reach.coefficients(reach.nearest(Firmness(sag=sag)))
     if stiffness < 1.0:
         stiffness, damping = of_springs(stiffness, damping, reach.lowest_mode)
-    return float(f"{stiffness:.{DIGITS}g}"), float(f"{damping:.{DIGITS}g}")
+    return _coefficient(stiffness), _coefficient(damping)
+
+
+def _coefficient(value: float) -> float:
+    """In few digits, or with few digits of what it is below 1 by: that says how firm a stiff body is."""
+    if value < 0.5:
+        return float(f"{value:.{DIGITS}g}")
+    return round(1.0 - float(f"{1.0 - value:.{DIGITS}g}"), DECIMALS)
 
 
 def _sounds(world: World) -> dict[str, Any]:

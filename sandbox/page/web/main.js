@@ -52,8 +52,14 @@ class Page {
   #resize() {
     this.camera.width = innerWidth;
     this.camera.height = innerHeight;
-    if (!this.#isMoved) this.camera.fit(this.level.scene.view, innerWidth < 640 ? 110 : 64);
+    if (!this.#isMoved) this.#fit();
     this.#isDirty = true;
+  }
+
+  // Show the level above what covers the lower edge.
+  #fit() {
+    const panel = byId('panel'), covers = innerWidth < 640 && !panel.hidden ? innerHeight - panel.getBoundingClientRect().top : byId('bars').offsetHeight;
+    this.camera.fit(this.level.scene.view, covers);
   }
 
   say(text, kind = '') {
@@ -133,6 +139,7 @@ class Page {
       byId('panel').hidden = !isOn;
       button.setAttribute('aria-expanded', isOn);
       this.panel.show();
+      if (!this.#isMoved) this.#fit();
     }
     this.#isDirty = true;
   }

@@ -39,7 +39,6 @@ export class Panel {
       const slider = element('input', { type: 'range', min: 0, max: 1, step: 'any', id: `slider${k}` }), output = element('output');
       slider.addEventListener('input', () => this.#set(...this.pair.map((old, n) => (n === k ? valueAt(Number(slider.value)) : old))));
       slider.addEventListener('change', () => this.#end());
-      root.append();
       return { row: element('label', { htmlFor: slider.id, className: 'slider' }, element('span', { textContent: text }), slider, output), slider, output };
     });
     root.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
@@ -86,7 +85,7 @@ export class Panel {
 
   // The word whose stiffness k = Cs / (1 - Cd) is nearest.
   #wordFor([stiffness, damping]) {
-    const firmness = ([cs, cd]) => Math.log(cs / (1.0001 - cd)), own = firmness([Math.max(stiffness, 1e-6), damping]);
+    const firmness = ([cs, cd]) => Math.log(Math.max(cs, 1e-9) / (1 - cd + 1e-9)), own = firmness([stiffness, damping]);
     return Object.entries(this.chosen.words).reduce((best, each) => (Math.abs(firmness(each[1]) - own) < Math.abs(firmness(best[1]) - own) ? each : best))[0];
   }
 
@@ -127,8 +126,13 @@ export class Panel {
       context.fillText(value, across(placeOf(value)) - 8, tall - 2);
     }
     context.stroke();
-    for (const [name, own] of Object.entries(this.chosen.words)) {
-      context.fillText(name, Math.min(across(placeOf(own[0])) + 6, width - 40), Math.max(up(placeOf(own[1])) - 4, 12));
+    // Words where there is room for them; what is chosen comes first.
+    const taken = [];
+    for (const [name, own] of Object.entries(this.chosen.words).sort(([name]) => (name === word ? -1 : 1))) {
+      const x = Math.min(across(placeOf(own[0])) + 12, width - 36), y = Math.max(up(placeOf(own[1])) - 8, 11);
+      if (taken.some(([tx, ty]) => Math.abs(x - tx) < 34 && Math.abs(y - ty) < 12)) continue;
+      taken.push([x, y]);
+      context.fillText(name, x, y);
     }
     context.fillStyle = style.getPropertyValue('--accent');
     context.strokeStyle = style.getPropertyValue('--surface');
