@@ -105,7 +105,6 @@ class Page {
     this.picture.draw(this.camera, this.theme, this.previous, part, seconds);
     this.hands.draw(this.canvas.getContext('2d'), this.picture.at, this.theme);
     const { run } = this, rate = this.world.settings().tick_rate, shown = byId('time');
-    byId('timeline').hidden = run.last === 0;
     shown.max = run.last;
     if (document.activeElement !== shown || !this.isPaused) shown.value = run.time;
     shown.setAttribute('aria-valuetext', `${(run.time / rate).toFixed(2)} s`);

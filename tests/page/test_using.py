@@ -1,0 +1,124 @@
+"""A page can be used by touch alone, by keys alone, and read by a screen reader."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.page.browser import Browser, Tab, page_address
+from tests.page.levels import level_page
+
+PHONE = {"width": 390, "height": 844, "is_phone": True}
+# Of small text on what is behind it, by WCAG 2.1 AA.
+LEAST_CONTRAST = 4.5
+_CONTRAST = """
+(() => {
+  const style = getComputedStyle(document.documentElement), probe = document.createElement('i');
+  document.body.append(probe);
+  const light = (name) => {
+    probe.style.color = `var(--${name})`;
+    const parts = getComputedStyle(probe).color.match(/[0-9.]+/g).slice(0, 3).map((part) => part / 255);
+    const [r, g, b] = parts.map((part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const pairs = [['text', 'surface'], ['muted', 'field'], ['text', 'back'], ['muted', 'back'], ['on', 'accent'],
+    ['accent', 'back'], ['danger', 'back']];
+  return Math.min(...pairs.map(([a, b]) => {
+    const [low, high] = [light(a), light(b)].sort((x, y) => x - y);
+    return (high + 0.05) / (low + 0.05);
+  }));
+})()
+"""
+
+
+def _opened(browser: Browser, folder: Path, name: str, **how: object) -> Tab:
+    file = folder / "page.html"
+    file.write_text(level_page(name), encoding="utf-8")
+    return browser.tab(**how).open(page_address(file))  # type: ignore[arg-type]
+
+
+def _middle(tab: Tab, chosen: str) -> tuple[float, float]:
+    box = f"(() => {{ const r = document.querySelector('{chosen}').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; }})()"
+    x, y = tab.evaluate(box)
+    return x, y
+
+
+def _tap(tab: Tab, chosen: str) -> None:
+    place = _middle(tab, chosen)
+    tab.touch("touchStart", place)
+    tab.touch("touchEnd")
+
+
+def test_everything_that_can_be_used_has_a_name(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "suspension_car")
+    tab.evaluate("document.getElementById('tune').click()")
+    nameless = """[...document.querySelectorAll('button, input, select, canvas')].filter((each) =>
+      !(each.getAttribute('aria-label') || each.labels?.[0]?.textContent.trim() || each.textContent.trim())
+    ).map((each) => each.outerHTML)"""
+    assert tab.evaluate(nameless) == []
+    assert tab.evaluate("[document.title, document.documentElement.lang]") == ["Car with suspension", "en"]
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_text_can_be_read_in_both_themes(browser: Browser, tmp_path: Path, scheme: str) -> None:
+    tab = _opened(browser, tmp_path, "rope", scheme=scheme)
+    assert tab.evaluate("document.documentElement.dataset.theme") == scheme
+    assert tab.evaluate(_CONTRAST) >= LEAST_CONTRAST
+
+
+def test_nothing_lies_outside_a_phone_and_all_is_large_enough_for_a_finger(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
+    wrong = """[...document.querySelectorAll('#bars button')].map((each) => each.getBoundingClientRect())
+      .filter((box) => box.left < 0 || box.right > innerWidth || box.bottom > innerHeight || Math.min(box.width, box.height) < 44)"""
+    assert tab.evaluate(wrong) == []
+
+
+def test_two_fingers_zoom_and_one_moves_the_view(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "rope", **PHONE)
+    zoom = tab.evaluate("page.camera.zoom")
+    tab.touch("touchStart", (150, 500), (250, 500))
+    tab.touch("touchMove", (100, 500), (300, 500))
+    tab.touch("touchEnd")
+    assert tab.evaluate("page.camera.zoom") == pytest.approx(2.0 * zoom, rel=0.01)
+    x = tab.evaluate("page.camera.x")
+    tab.touch("touchStart", (150, 500))
+    tab.touch("touchMove", (100, 500))
+    tab.touch("touchEnd")
+    assert tab.evaluate(f"(page.camera.x - {x!r}) * page.camera.zoom") == pytest.approx(50, rel=0.01)
+
+
+def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "jelly_wheel", **PHONE)
+    _tap(tab, "#tune")
+    _tap(tab, ".words button:first-child")
+    soft = tab.evaluate("page.panel.pair")
+    assert tab.evaluate("document.querySelector('.words button').getAttribute('aria-pressed')") == "true"
+    x, y = _middle(tab, ".pad")
+    tab.touch("touchStart", (x, y))
+    tab.touch("touchMove", (x + 80, y - 20))
+    tab.touch("touchEnd")
+    stiff = tab.evaluate("page.panel.pair")
+    assert stiff[0] > soft[0]
+    tab.evaluate("page.isPaused || page.toggle('play')")
+    _tap(tab, "#undo")
+    assert tab.evaluate("page.panel.pair") == soft
+
+
+def test_a_button_drives_a_motor_while_it_is_touched(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
+    tab.touch("touchStart", _middle(tab, ".key"))
+    assert tab.evaluate("page.world.view('state.actuator_value').some((value) => value !== 0)")
+    tab.touch("touchEnd")
+    assert not tab.evaluate("page.world.view('state.actuator_value').some((value) => value !== 0)")
+
+
+def test_keys_pause_step_and_drive(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "suspension_car")
+    tab.key(" ")
+    assert tab.evaluate("page.isPaused")
+    time = tab.evaluate("page.world.time")
+    tab.key(".")
+    assert tab.evaluate("page.world.time") == time + 1
+    tab.key("d")
+    types = tab.evaluate("page.run.commands.map(({ record }) => [record.type, Math.abs(record.value)])")
+    assert types[-1] == ["set_drive", 0]
+    assert tab.faults == []
