@@ -17,8 +17,8 @@ PACKAGE = ROOT / "sandbox"
 # What users import: modules that only pass names on. They stand above the rooms that they take those from.
 PUBLIC = ("commands", "replay", "bodies")
 ROOMS = (
-    "physics", "level", "export", "session", *PUBLIC, "tools", "editor", "app", "testing", "terminal", "cli",
-    "__main__",
+    "physics", "level", "export", "session", "page", *PUBLIC, "tools", "editor", "app", "testing", "terminal",
+    "cli", "__main__",
 )  # fmt: skip
 # Rooms of the window, from the ground up.
 ROOMS_OF_APP = (
@@ -32,6 +32,7 @@ LIBRARIES = {
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
     "export": {"numpy", "pydantic"},
     "session": {"numpy", "pydantic", "filelock", "distributed"},
+    "page": {"numpy"},
     **{name: set() for name in PUBLIC},
     "tools": {"numpy"},
     "editor": {"numpy", "pydantic", "platformdirs", "filelock"},

@@ -1,5 +1,6 @@
 """About: what a page must know of a world beside its memory: places, names, codes and the table of state arrays."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from sandbox.physics.constraints import AREA
@@ -27,6 +28,17 @@ COMMANDS = (
     "grab", "move_grab", "release", "pin", "unpin", "freeze", "cut_springs", "break_springs", "set_coefficients",
     "set_drive", "push",
 )  # fmt: skip
+# What a page does beside these; undoing is left out of what it plays.
+SETTINGS = ("set_gravity", "set_air")
+HISTORY = ("undo", "redo")
+# What it can do where the library has no kernel for commands.
+WITHOUT_KERNEL = ("set_coefficients", "set_drive")
+
+
+def can_play(types: Iterable[str]) -> bool:
+    """Whether a page can carry out commands of these types."""
+    has_kernel = KERNELS["command"] in read_manifest()["entries"]
+    return set(types) <= {*(COMMANDS if has_kernel else WITHOUT_KERNEL), *SETTINGS, *HISTORY}
 
 
 def about(world: World, words: int) -> dict[str, Any]:

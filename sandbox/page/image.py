@@ -1,4 +1,4 @@
-"""Image: the arrays of a block as bytes for a memory of their own, and a table that says where the words of each are."""
+"""Image: the arrays of a block as bytes for a memory of their own, and a table of where the words of each are."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -14,7 +14,7 @@ ALIGNED = 16
 LEAST_COPY = 64
 
 
-class Place(NamedTuple):
+class ArrayPlace(NamedTuple):
     """Where an array of a block is: the first of its words, its dtype as numpy writes it, and its dimensions."""
 
     word: int
@@ -29,7 +29,7 @@ class Image(NamedTuple):
     """
 
     content: bytes
-    table: dict[str, Place]
+    table: dict[str, ArrayPlace]
     copies: list[tuple[int, int, int]]
 
 
@@ -38,7 +38,7 @@ def image_of(block: tuple[Any, ...]) -> Image:
     arrays = dict(_arrays(block, ""))
     table, words = {}, 0
     for path, array in arrays.items():
-        table[path] = Place(words, array.dtype.str.lstrip("<|"), array.ndim)
+        table[path] = ArrayPlace(words, array.dtype.str.lstrip("<|"), array.ndim)
         words += HEAD_WORDS + 2 * array.ndim
     where, content = _laid_out(list(arrays.values()), _aligned(WORD * words))
     values = [value for array in arrays.values() for value in _words(array, where)]

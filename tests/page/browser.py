@@ -53,7 +53,9 @@ class Tab:
         """Go to an address, and wait until the page plays or says what is wrong."""
         self.send("Page.navigate", url=address)
         ready = "globalThis.page || !(document.getElementById('error')?.hidden ?? true)"
-        wait = f"new Promise((done) => {{ const look = () => ({ready}) ? done() : requestAnimationFrame(look); look(); }})"
+        wait = (
+            f"new Promise((done) => {{ const look = () => ({ready}) ? done() : requestAnimationFrame(look); look(); }})"
+        )
         self._browser.until(lambda: any(each == "Page.loadEventFired" for each in self._browser.events))
         self._browser.events.clear()
         self.evaluate(wait)
@@ -108,7 +110,9 @@ class Browser:
         for domain in ("Page", "Runtime", "Log"):
             tab.send(f"{domain}.enable")
         ratio = 2 if is_phone else 1
-        tab.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=is_phone)
+        tab.send(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=is_phone
+        )
         tab.send("Emulation.setTouchEmulationEnabled", enabled=is_phone, maxTouchPoints=5)
         features = [{"name": "prefers-color-scheme", "value": scheme}]
         tab.send("Emulation.setEmulatedMedia", features=features)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.page.image import Place, image_of
+from sandbox.page.image import ArrayPlace, image_of
 
 
 class _Inner(NamedTuple):
@@ -19,7 +19,7 @@ class _Block(NamedTuple):
     nothing: np.ndarray
 
 
-def _array(content: bytes, place: Place) -> np.ndarray:
+def _array(content: bytes, place: ArrayPlace) -> np.ndarray:
     head = struct.unpack_from(f"<{5 + place.dimensions}q", content, 8 * place.word)
     return np.frombuffer(content, place.dtype.replace("b1", "?"), head[2], head[4]).reshape(head[5:])
 

@@ -61,7 +61,7 @@ def test_what_a_page_saves_is_verified_bit_for_bit(browser: Browser, tmp_path: P
     recording = read_replay(_saved(tab, tmp_path))
     assert verify(recording) is None
     assert recording.ticks == 700
-    assert [line.record["type"] for line in recording.script][0] == "set_drive"
+    assert recording.script[0].record["type"] == "set_drive"
 
 
 def test_an_undo_brings_back_the_state_before_the_gesture(browser: Browser, tmp_path: Path) -> None:

@@ -37,7 +37,8 @@ def _opened(browser: Browser, folder: Path, name: str, **how: object) -> Tab:
 
 
 def _middle(tab: Tab, chosen: str) -> tuple[float, float]:
-    box = f"(() => {{ const r = document.querySelector('{chosen}').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; }})()"
+    box = f"document.querySelector('{chosen}').getBoundingClientRect()"
+    box = f"(({{ x, y, width, height }}) => [x + width / 2, y + height / 2])({box})"
     x, y = tab.evaluate(box)
     return x, y
 
@@ -68,7 +69,8 @@ def test_text_can_be_read_in_both_themes(browser: Browser, tmp_path: Path, schem
 def test_nothing_lies_outside_a_phone_and_all_is_large_enough_for_a_finger(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
     wrong = """[...document.querySelectorAll('#bars button')].map((each) => each.getBoundingClientRect())
-      .filter((box) => box.left < 0 || box.right > innerWidth || box.bottom > innerHeight || Math.min(box.width, box.height) < 44)"""
+      .filter((box) => box.left < 0 || box.right > innerWidth || box.bottom > innerHeight ||
+        Math.min(box.width, box.height) < 44)"""
     assert tab.evaluate(wrong) == []
 
 

@@ -15,6 +15,7 @@ from sandbox.app.run.stability_paint import StabilityPaint
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World
+from sandbox.session.commands.records import script_of
 from sandbox.session.session import Session
 
 # Lines are never drawn thinner than at this scale [pixels per layout unit].
@@ -30,7 +31,8 @@ class Film:
     """What `session` has done from the first to the last tick of a span, as a camera shows it and a renderer draws it.
 
     What becomes of the three after that does not change the film. box [m]: what is shown instead, as large as it goes,
-    whatever shape the pictures have. first, last: its ticks. is_latest: whether it ends where the run is.
+    whatever shape the pictures have. first, last: its ticks. is_latest: whether it ends where the run is. script: all
+    that was done until its end, from the level's start; None where the run began later.
     """
 
     def __init__(
@@ -42,6 +44,8 @@ class Film:
         self._past = session.retold(min(span[0], self.last))
         self.first = min(max(self._past.tick, span[0]), self.last)
         self.is_latest = session.tick == self.last
+        history, is_whole = session.history, session.history.keyframes.first.tick == 0
+        self.script = script_of(history.until(self.last), session.world) if is_whole else None
         self._end = session.snapshot() if self.is_latest else session.keyframes(0, self.last)[-1]
         self._centre, self._zoom = camera.centre, camera.zoom
         self._shown, self._box = camera.viewport[2:], box

@@ -3,7 +3,7 @@
 import contextlib
 import os
 import tempfile
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +14,8 @@ from sandbox.app.draw.picture import write_png
 from sandbox.app.film.film import Film, picture_count
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.film.kinds import Size
+from sandbox.level.format.writing import write_file
+from sandbox.session.commands.records import ScriptLine
 
 # The work, in slices: each gives the part of it that is done, 0..1, the last nothing.
 Slices = Generator[float, None, None]
@@ -102,6 +104,28 @@ class Export:
         write_png(self.picture, path)
 
     def _write_page(self, path: Path) -> Slices:
+        """A page that can be taken over; of two runs, and of what such a page cannot do, one that shows what was."""
+        from sandbox.page.about import can_play
+
+        film, excerpt = self.film, self.excerpt
+        script = film.script if isinstance(film, Film) else None
+        if isinstance(film, Film) and script is not None and can_play(line.record["type"] for line in script):
+            yield from self._write_playing(film, script, path)
+        else:
+            yield from self._write_reel(path)
+        # For the clipboard.
+        for picture in film.pictures(excerpt.end, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
+            self.picture = picture or self.picture
+            yield 1.0
+
+    def _write_playing(self, film: Film, script: Sequence[ScriptLine], path: Path) -> Slices:
+        from sandbox.app.share.playing import page_in_slices
+
+        begin, end = (film.first + round(at * film.rate) for at in (self.excerpt.start, self.excerpt.end))
+        text = yield from page_in_slices(film.level, script, max(end, begin + 1), begin)
+        write_file(path, text.encode())
+
+    def _write_reel(self, path: Path) -> Slices:
         from sandbox.session.player.page import PlayerPage
         from sandbox.session.player.reel import Reel, steps_between
 
@@ -118,10 +142,6 @@ class Export:
                 yield (number + passed / (ticks + 1)) / count
             reels.append(reel)
         PlayerPage(excerpt.name or self.path.stem, box, film.rate, reels).write(path)
-        # For the clipboard.
-        for picture in film.pictures(excerpt.end, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
-            self.picture = picture or self.picture
-            yield 1.0
 
     def _pictures(self, write: Callable[[pygame.Surface], object]) -> Slices:
         excerpt, done = self.excerpt, 0

@@ -23,10 +23,10 @@ SLIDER, CAPTION = 32.0, 18.0
 # The part of the width that the preview has, and its shape.
 PREVIEW_PART, SHAPE = 0.55, 9 / 16
 KINDS = (
+    ("html", "Page", "One file for a browser: play it there, take it over, save what you did"),
     ("gif", "GIF", "Plays everywhere, over and over"),
     ("mp4", "MP4", "A film: sharper and smaller, for chats and players"),
     ("png", "PNG", "One picture, of the moment that you choose"),
-    ("html", "Page", "One file for a browser: play, step and scrub it there"),
 )
 SIZE_NAMES = [(f"{width}x{height}", f"{width} x {height}", "") for width, height in SIZES]
 NAMED = (("yes", "Shown", "Small, in the corner"), ("no", "Hidden", "Nothing but the run"))

@@ -1,7 +1,7 @@
 """Playing: a page that plays a level, or a recording that can be taken over, as one HTML file."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import asdict
 from typing import Any, NamedTuple
 
@@ -11,6 +11,7 @@ from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.document.model import Level
 from sandbox.level.plan.actuators import driving_keys
+from sandbox.page.about import can_play
 from sandbox.page.page import page_text
 from sandbox.page.start import TRIAL, start_of
 from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange
@@ -19,8 +20,8 @@ from sandbox.physics.forms import Firmness
 from sandbox.physics.snapshot import state_hash, take
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
-from sandbox.session.commands import Redo, Undo
-from sandbox.session.commands.records import ScriptLine, from_record, to_record
+from sandbox.session.commands import CommandError, Redo, Undo
+from sandbox.session.commands.records import ScriptLine, from_record, script_of
 from sandbox.session.replay.format import TICK_DIGITS, header, seal
 from sandbox.session.session import Session
 
@@ -40,8 +41,26 @@ class Recorded(NamedTuple):
 
 def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> str:
     """The page of a level; ticks: of a recording, whose commands the script has. Raises CommandError."""
+    slices = page_in_slices(level, script, ticks)
+    while True:
+        try:
+            next(slices)
+        except StopIteration as end:
+            return str(end.value)
+
+
+def page_in_slices(
+    level: Level, script: Sequence[ScriptLine], ticks: int | None, begin: int = 0
+) -> Generator[float, None, str]:
+    """As `page_of`, a slice of the work at a time: each gives the part that is done, 0..1. begin: the tick shown first.
+
+    Raises CommandError, also for a command that a page cannot carry out.
+    """
+    unknown = {str(line.record.get("type")) for line in script if not can_play([str(line.record.get("type"))])}
+    if unknown:
+        raise CommandError(f"a page cannot play {', '.join(sorted(unknown))}")
     world = Session(level).world
-    recorded = None if ticks is None else _recorded(level, script, ticks)
+    recorded = None if ticks is None else (yield from _recorded(level, script, ticks))
     start = start_of(level, recorded.script if recorded else (), TRIAL if ticks is None else ticks)
     data = {
         "name": level.name,
@@ -52,6 +71,7 @@ def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None =
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
         "recording": None if recorded is None else _shown(world, recorded),
+        "begin": begin,
     }
     return page_text(level.name, data, start.image)
 
@@ -62,20 +82,17 @@ def _header(level: Level) -> str:
     return line.decode().rpartition(', "chain"')[0]
 
 
-def _recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Recorded:
+def _recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generator[float, None, Recorded]:
     session = Session(level, script)
     hashes = [state_hash(session.world)]
     while session.tick < ticks:
         session.advance()
         hashes.append(state_hash(session.world))
+        yield session.tick / ticks
     session.apply_pending()
     if any(isinstance(entry.command, Undo | Redo) for entry in session.history.log):
         counted = [entry for entry in session.history.timeline if entry.in_effect]
-        lines = [
-            ScriptLine(each.tick, each.gesture, to_record(each.command, session.world), number)
-            for number, each in enumerate(counted, 1)
-        ]
-        return _recorded(level, lines, ticks)
+        return (yield from _recorded(level, script_of(counted, session.world), ticks))
     return Recorded(tuple(script), [each[:TICK_DIGITS] for each in hashes])
 
 

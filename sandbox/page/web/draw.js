@@ -1,5 +1,6 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, darkEdge, disc, drawBar, fillGround, fillSkin, glow, grown, mixed, outlineOf, pathOf, sheetOf, stroke, turfOf } from './paint.js';
+import { ball, darkEdge, disc, drawBar, fillGround, fillSkin, glow, grown, mixed, outlineOf, pathOf, sheetOf, stroke,
+  turfOf } from './paint.js';
 import { thingsOf, unfolded } from './things.js';
 
 const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
@@ -16,7 +17,8 @@ export class Camera {
   // Show a box [m] as large as it goes, above what covers `bottom` pixels of the lower edge.
   fit([left, low, right, high], bottom = 0) {
     const height = Math.max(this.height - bottom, 1);
-    this.zoom = Math.min((this.width * 0.92) / Math.max(right - left, 0.5), (height * 0.88) / Math.max(high - low, 0.5));
+    this.zoom = Math.min((this.width * 0.92) / Math.max(right - left, 0.5),
+      (height * 0.88) / Math.max(high - low, 0.5));
     this.x = (left + right) / 2;
     this.y = (low + high) / 2 - bottom / 2 / this.zoom;
   }
@@ -63,7 +65,8 @@ export class Picture {
       this.#canvas.width = Math.round(width * ratio);
       this.#canvas.height = Math.round(height * ratio);
     }
-    Object.assign(this, { camera, theme, seconds, ratio, scale: Math.min(1, Math.max(0.6, Math.min(width / 1280, height / 720))) });
+    Object.assign(this, { camera, theme, seconds, ratio,
+      scale: Math.min(1, Math.max(0.6, Math.min(width / 1280, height / 720))) });
     this.#place(previous, part);
     const active = this.#world.view('state.spring_active');
     if (!this.#things || active.some((value, k) => value !== this.#active[k])) {
@@ -95,7 +98,8 @@ export class Picture {
     const position = this.#world.view('state.position'), { camera } = this, count = position.length;
     const at = (this.at = new Float64Array(count));
     for (let k = 0; k < count; k += 2) {
-      const x = previous[k] + (position[k] - previous[k]) * part, y = previous[k + 1] + (position[k + 1] - previous[k + 1]) * part;
+      const x = previous[k] + (position[k] - previous[k]) * part,
+        y = previous[k + 1] + (position[k + 1] - previous[k + 1]) * part;
       [at[k], at[k + 1]] = camera.toPixels(x, y);
     }
     const a = this.#world.view('state.particle_a'), b = this.#world.view('state.particle_b');
@@ -112,7 +116,8 @@ export class Picture {
 
   #trace(shape) {
     const by = Math.min(shape.grown * this.camera.zoom, 40) + shape.extra * this.scale;
-    const loops = shape.loops.map((loop, k) => grown(this.#points(loop), k && shape.skin !== 'tyre' ? -by : k ? -by : by));
+    const loops = shape.loops.map((loop, k) =>
+      grown(this.#points(loop), k && shape.skin !== 'tyre' ? -by : k ? -by : by));
     shape.path = pathOf(loops, shape.keep, shape.rounds);
     const xs = loops[0].filter((_, k) => k % 2 === 0), ys = loops[0].filter((_, k) => k % 2);
     const size = Math.sqrt((Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys)));
@@ -128,10 +133,12 @@ export class Picture {
     context.fillStyle = context.strokeStyle = this.theme.shadow;
     context.lineCap = context.lineJoin = 'round';
     things.shapes.forEach((shape) => context.fill(shape.path, 'evenodd'));
-    things.sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) => context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
+    things.sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
+      context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
     const line = (ends, half) => stroke(context, this.#way(ends), this.theme.shadow, half);
     things.strands.forEach((strand) => line(strand.particles, this.#halfOf(strand)));
-    things.bars.forEach((bars) => stroke(context, this.#lines(bars.springs), this.theme.shadow, this.#halfOfBars(bars) + 1));
+    things.bars.forEach((bars) =>
+      stroke(context, this.#lines(bars.springs), this.theme.shadow, this.#halfOfBars(bars) + 1));
     things.working.forEach(({ ends }) => line(ends, 3 * this.scale));
     this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, this.theme.shadow));
     const main = this.#context;
@@ -161,9 +168,11 @@ export class Picture {
     context.fillStyle = fade;
     context.fillRect(0, 0, width, height);
     // A lamp behind the stage, which is darker towards the corners.
-    const light = context.createRadialGradient(0, 0, 0, 0, 0, 1.6), dark = context.createRadialGradient(0, 0, 0, 0, 0, 1.6);
+    const light = context.createRadialGradient(0, 0, 0, 0, 0, 1.6),
+      dark = context.createRadialGradient(0, 0, 0, 0, 0, 1.6);
     for (let k = 0; k <= 16; k++) {
-      const away = k / 10, lit = Math.max(1 - 1.25 * away, 0) ** 2, dim = theme.vignette * Math.min(Math.max(away - 0.55, 0), 1.2) ** 1.6;
+      const away = k / 10, lit = Math.max(1 - 1.25 * away, 0) ** 2,
+        dim = theme.vignette * Math.min(Math.max(away - 0.55, 0), 1.2) ** 1.6;
       light.addColorStop(k / 16, mixed('#000000', theme.lamp, lit));
       dark.addColorStop(k / 16, `rgb(0 0 0 / ${dim})`);
     }
@@ -182,7 +191,8 @@ export class Picture {
 
   #drawGround(context) {
     const { theme, scale, camera } = this, view = (name) => this.#world.view(`state.terrain.${name}`);
-    const vertex = view('vertex'), first = view('edge_a'), second = view('edge_b'), solid = view('solid'), chains = new Map();
+    const vertex = view('vertex'), first = view('edge_a'), second = view('edge_b'), solid = view('solid'),
+      chains = new Map();
     const point = (slot) => camera.toPixels(vertex[2 * Number(slot)], vertex[2 * Number(slot) + 1]);
     view('chain').forEach((chain, edge) => {
       if (!chains.has(chain)) chains.set(chain, { points: [], edges: [], isSolid: Boolean(solid[edge]) });
@@ -202,12 +212,14 @@ export class Picture {
       }
       const path = pathOf([points]), metal = [0.25, 0.55].map((share) => mixed(...theme.metal, share));
       const [near, deep, light, dark, alpha] = {
-        soil: [...theme.soil, 0.1, 0.25, 1], rock: [...theme.rock, 0.25, 0.35, 1], wood: ['#c28e57', '#9a6c40', 0.3, 0.4, 1],
+        soil: [...theme.soil, 0.1, 0.25, 1], rock: [...theme.rock, 0.25, 0.35, 1],
+          wood: ['#c28e57', '#9a6c40', 0.3, 0.4, 1],
         glass: ['#d4eefa', '#8cc4e6', 0.6, 0.3, 0.42],
       }[kind] ?? [...metal, 0.45, 0.45, 1];
       const isEarth = ['soil', 'rock'].includes(kind), grain = isEarth ? 'earth' : kind === 'wood' ? 'wood' : null;
       fillGround(context, path, near, deep, (isEarth ? 26 : 9) * scale, light, dark, alpha, grain);
-      stroke(context, path, mixed(kind === 'glass' ? '#6fa8c8' : deep, '#000000', 0.35), 0.9 * scale, kind === 'glass' ? 0.5 : 0.9);
+      stroke(context, path, mixed(kind === 'glass' ? '#6fa8c8' : deep, '#000000', 0.35), 0.9 * scale,
+        kind === 'glass' ? 0.5 : 0.9);
       if (kind === 'soil') this.#layTurf(context, edges);
     });
   }
@@ -280,7 +292,8 @@ export class Picture {
     if (bars.deck?.length) drawBar(context, this.#lines(bars.deck, 1.15 * half), 0.95 * half, 'deck');
     if (!bars.bolts.length || (bars.cell ?? 0) * this.camera.zoom < 9) return;
     const isTruss = bars.size[2] === 4.2, isPaint = bars.kind === 'paint';
-    const [line, tone] = isPaint ? [outlineOf(bars.colour), mixed(bars.colour, '#ffffff', 0.24)] : BOLTS[bars.kind] ?? [DARK, '#b9c4d8'];
+    const [line, tone] = isPaint ? [outlineOf(bars.colour), mixed(bars.colour, '#ffffff', 0.24)]
+      : BOLTS[bars.kind] ?? [DARK, '#b9c4d8'];
     const [rim, head, middle] = isTruss ? [1.35, 1.05, 0.42] : [1.7, 1.25, 0.5];
     for (const slot of bars.bolts) {
       const x = this.at[2 * slot], y = this.at[2 * slot + 1];
@@ -294,19 +307,23 @@ export class Picture {
   #flush(springs, half) {
     for (const row of springs) {
       const strain = this.strain[row[0]], share = Math.min((Math.abs(strain) - FLUSH_FROM) / FLUSH_RANGE, 1);
-      if (share > 0) stroke(this.#context, this.#lines([row]), this.theme.strain[strain > 0 ? 2 : 0], half, 0.7 * share);
+      if (share > 0) stroke(this.#context, this.#lines([row]), this.theme.strain[strain > 0 ? 2 : 0], half,
+        0.7 * share);
     }
   }
 
   #drawWorking({ kind, ends: [a, b], spring, width }) {
-    const { at, scale } = this, context = this.#context, rest = this.#world.view('state.rest_length')[spring] * this.camera.zoom;
-    const [x, y] = [at[2 * a], at[2 * a + 1]], dx = at[2 * b] - x, dy = at[2 * b + 1] - y, length = Math.hypot(dx, dy) || 1;
+    const { at, scale } = this, context = this.#context,
+      rest = this.#world.view('state.rest_length')[spring] * this.camera.zoom;
+    const [x, y] = [at[2 * a], at[2 * a + 1]], dx = at[2 * b] - x, dy = at[2 * b + 1] - y,
+      length = Math.hypot(dx, dy) || 1;
     const point = (share, side) => [x + dx * share - (dy / length) * side, y + dy * share + (dx / length) * side];
     const clamp = (value, low, high) => Math.min(Math.max(value, low * scale), high * scale) * width;
     if (kind === 'coil') {
       const wide = clamp(0.13 * rest, 2.5, 8), path = new Path2D();
       path.moveTo(x, y);
-      for (let k = 0; k <= 12; k++) path.lineTo(...point(0.12 + (0.76 * k) / 12, k === 0 || k === 12 ? 0 : k % 2 ? wide : -wide));
+      for (let k = 0; k <= 12; k++) path.lineTo(...point(0.12 + (0.76 * k) / 12,
+        k === 0 || k === 12 ? 0 : k % 2 ? wide : -wide));
       path.lineTo(...point(1, 0));
       context.lineCap = context.lineJoin = 'round';
       stroke(context, path, DARK, 2.5 * scale, 0.75);
@@ -348,14 +365,17 @@ export class Picture {
         glow(context, this.at[2 * slot], this.at[2 * slot + 1], reach, colour, 0.7 * share);
       }
     });
-    if (!['wood', 'stone', 'brick'].includes(shape.skin)) stroke(context, shape.path, outlineOf(shape.colour), 0.75 * this.scale, 0.9);
+    if (!['wood', 'stone', 'brick'].includes(shape.skin)) stroke(context, shape.path, outlineOf(shape.colour),
+      0.75 * this.scale, 0.9);
   }
 
   // Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
   #drawSheet({ body, triangles, loops, isCloth }) {
-    const context = this.#context, pattern = sheetOf(context, body.skin, body.colour), origin = this.#world.view('state.origin');
+    const context = this.#context, pattern = sheetOf(context, body.skin, body.colour),
+      origin = this.#world.view('state.origin');
     const cosine = Math.cos(body.angle), sine = Math.sin(body.angle), texels = (isCloth ? 16 : 14) / body.spacing;
-    const u = (slot) => origin[2 * slot] * cosine + origin[2 * slot + 1] * sine, v = (slot) => origin[2 * slot + 1] * cosine - origin[2 * slot] * sine;
+    const u = (slot) => origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
+      v = (slot) => origin[2 * slot + 1] * cosine - origin[2 * slot] * sine;
     const left = Math.min(...body.slots.map(u)), low = Math.min(...body.slots.map(v));
     const texel = (slot) => [(u(slot) - left) * texels, (low - v(slot)) * texels];
     context.save();
@@ -363,8 +383,10 @@ export class Picture {
     for (const slots of triangles) {
       const [[u0, v0], [u1, v1], [u2, v2]] = slots.map(texel), p = this.#points(slots);
       const d = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
-      const a = ((p[2] - p[0]) * (v2 - v0) - (p[4] - p[0]) * (v1 - v0)) / d, c = ((p[4] - p[0]) * (u1 - u0) - (p[2] - p[0]) * (u2 - u0)) / d;
-      const b = ((p[3] - p[1]) * (v2 - v0) - (p[5] - p[1]) * (v1 - v0)) / d, e = ((p[5] - p[1]) * (u1 - u0) - (p[3] - p[1]) * (u2 - u0)) / d;
+      const a = ((p[2] - p[0]) * (v2 - v0) - (p[4] - p[0]) * (v1 - v0)) / d,
+        c = ((p[4] - p[0]) * (u1 - u0) - (p[2] - p[0]) * (u2 - u0)) / d;
+      const b = ((p[3] - p[1]) * (v2 - v0) - (p[5] - p[1]) * (v1 - v0)) / d,
+        e = ((p[5] - p[1]) * (u1 - u0) - (p[3] - p[1]) * (u2 - u0)) / d;
       context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
       context.transform(a, b, c, e, p[0] - a * u0 - c * v0, p[1] - b * u0 - e * v0);
       context.beginPath();
@@ -383,15 +405,18 @@ export class Picture {
 
   #sizeOf(wheel) {
     const [x, y] = [this.at[2 * wheel.hub], this.at[2 * wheel.hub + 1]];
-    return wheel.outer.reduce((sum, slot) => sum + Math.hypot(this.at[2 * slot] - x, this.at[2 * slot + 1] - y), 0) / wheel.outer.length;
+    return wheel.outer.reduce((sum, slot) => sum + Math.hypot(this.at[2 * slot] - x, this.at[2 * slot + 1] - y),
+      0) / wheel.outer.length;
   }
 
   #drawLugs(wheel) {
-    const size = this.#sizeOf(wheel), [x, y] = this.#points([wheel.hub]), path = new Path2D(), feet = this.#points(wheel.outer);
+    const size = this.#sizeOf(wheel), [x, y] = this.#points([wheel.hub]), path = new Path2D(),
+      feet = this.#points(wheel.outer);
     if (wheel.body.skin === 'steel wheel' || size < 22) return;
     for (let k = 0; k < feet.length; k += 2) {
       const next = (k + 2) % feet.length;
-      for (const [fx, fy] of [[feet[k], feet[k + 1]], [(feet[k] + feet[next]) / 2, (feet[k + 1] + feet[next + 1]) / 2]]) {
+      for (const [fx, fy] of [[feet[k], feet[k + 1]],
+        [(feet[k] + feet[next]) / 2, (feet[k + 1] + feet[next + 1]) / 2]]) {
         const out = (1.075 * size + wheel.body.radius * this.camera.zoom) / (Math.hypot(fx - x, fy - y) || 1);
         path.moveTo(fx, fy);
         path.lineTo(x + (fx - x) * out, y + (fy - y) * out);
@@ -401,15 +426,18 @@ export class Picture {
   }
 
   #drawWheel(wheel) {
-    const context = this.#context, size = this.#sizeOf(wheel), [x, y] = this.#points([wheel.hub]), isTyre = wheel.body.skin !== 'steel wheel';
-    if (isTyre && size > 14) drawBar(context, pathOf([this.#points(wheel.inner)], 0.25, 2), Math.max(1.6, 0.045 * size), 'steel');
+    const context = this.#context, size = this.#sizeOf(wheel), [x, y] = this.#points([wheel.hub]),
+      isTyre = wheel.body.skin !== 'steel wheel';
+    if (isTyre && size > 14) drawBar(context, pathOf([this.#points(wheel.inner)], 0.25, 2), Math.max(1.6, 0.045 * size),
+      'steel');
     const spokes = new Path2D(), inner = this.#points(wheel.inner), step = wheel.body.segments >= 10 ? 4 : 2;
     for (let k = 0; k < inner.length; k += step) {
       spokes.moveTo(x, y);
       spokes.lineTo(inner[k], inner[k + 1]);
     }
     drawBar(context, spokes, Math.max(1.2, Math.min(0.034 * size, 4 * this.scale)), 'steel');
-    const hub = Math.max(2.5, Math.min(0.15 * size, 22 * this.scale)), [firstX, firstY] = this.#points([wheel.outer[0]]);
+    const hub = Math.max(2.5, Math.min(0.15 * size, 22 * this.scale)),
+      [firstX, firstY] = this.#points([wheel.outer[0]]);
     disc(context, x, y, hub + 0.8 * this.scale, DARK, 0.8);
     ball(context, x, y, hub, -Math.atan2(firstY - y, firstX - x), 'steel', '#aeb9cc');
   }
@@ -419,7 +447,8 @@ export class Picture {
     points.forEach((value, k) => { mean[k & 1] += value / count; });
     let radius = 0;
     for (let k = 0; k < count; k++) radius += Math.hypot(points[2 * k] - mean[0], points[2 * k + 1] - mean[1]) / count;
-    for (const [x, y, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85], [-0.2, -0.56, 0.09, 0.8], [0.34, 0.5, 0.4, 0.16]]) {
+    for (const [x, y, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85], [-0.2, -0.56, 0.09, 0.8],
+      [0.34, 0.5, 0.4, 0.16]]) {
       glow(context, mean[0] + radius * x, mean[1] + radius * y, radius * size, '#ffffff', alpha);
     }
     // A knot where something is tied.
@@ -440,7 +469,8 @@ export class Picture {
   #drawFace(body, number) {
     const [spotX, spotY, room] = body.face, size = Math.min(2 * room * this.camera.zoom, 120 * this.scale);
     if (size < SMALLEST_FACE * this.scale) return;
-    const origin = this.#world.view('state.origin'), velocity = this.#world.view('state.velocity'), { slots } = body, { at } = this;
+    const origin = this.#world.view('state.origin'), velocity = this.#world.view('state.velocity'), { slots } = body,
+      { at } = this;
     const mean = { x: 0, y: 0, u: 0, v: 0, w: 0, z: 0 }, count = slots.length;
     for (const slot of slots) {
       mean.x += at[2 * slot] / count;
@@ -452,13 +482,15 @@ export class Picture {
     }
     let cosine = 0, sine = 0, load = 0;
     for (const slot of slots) {
-      const x = origin[2 * slot] - mean.u, y = mean.v - origin[2 * slot + 1], dx = at[2 * slot] - mean.x, dy = at[2 * slot + 1] - mean.y;
+      const x = origin[2 * slot] - mean.u, y = mean.v - origin[2 * slot + 1], dx = at[2 * slot] - mean.x,
+        dy = at[2 * slot + 1] - mean.y;
       cosine += x * dx + y * dy;
       sine += x * dy - y * dx;
     }
     const turn = Math.atan2(sine, cosine), springs = body.springs.length;
     for (const [spring] of body.springs) load += Math.abs(this.strain[spring]) / springs;
-    const speed = Math.hypot(mean.w, mean.z), context = this.#context, zoom = this.camera.zoom, beat = 3.4 + 0.77 * (number % 4);
+    const speed = Math.hypot(mean.w, mean.z), context = this.#context, zoom = this.camera.zoom,
+      beat = 3.4 + 0.77 * (number % 4);
     const isSqueezed = load > 0.1, isShut = !isSqueezed && (this.seconds + 1.7 * number) % beat > beat - 0.13;
     context.save();
     context.translate(mean.x, mean.y);
@@ -467,8 +499,10 @@ export class Picture {
     context.rotate(-body.angle);
     context.scale(size, size);
     // What is seen of a face turns with it, but for where it looks and where the light is.
-    const back = -(turn - body.angle), seen = (x, y) => [x * Math.cos(back) - y * Math.sin(back), x * Math.sin(back) + y * Math.cos(back)];
-    const far = 0.42 * 0.118 * Math.min(1, 0.3 + speed / 4), gaze = speed <= 0.25 ? seen(0, 0.3 * 0.05) : seen((mean.w / speed) * far, (mean.z / speed) * far);
+    const back = -(turn - body.angle),
+      seen = (x, y) => [x * Math.cos(back) - y * Math.sin(back), x * Math.sin(back) + y * Math.cos(back)];
+    const far = 0.42 * 0.118 * Math.min(1, 0.3 + speed / 4),
+      gaze = speed <= 0.25 ? seen(0, 0.3 * 0.05) : seen((mean.w / speed) * far, (mean.z / speed) * far);
     const light = seen(-0.021, -0.028), least = 0.9 / size;
     const line = (path, half) => stroke(context, path, INK, Math.max(half, least));
     context.lineCap = context.lineJoin = 'round';
@@ -506,7 +540,8 @@ export class Picture {
   }
 
   #eachBall(act) {
-    const active = this.#world.view('state.particle_active'), radius = this.#world.view('state.radius'), inverse = this.#world.view('state.inverse_mass');
+    const active = this.#world.view('state.particle_active'), radius = this.#world.view('state.radius'),
+      inverse = this.#world.view('state.inverse_mass');
     this.#scene.balls.forEach((one, k) => {
       if (!active[one.slot] || (inverse[one.slot] === 0 && radius[one.slot] <= 0.1)) return;
       const size = Math.max(radius[one.slot] * this.camera.zoom, 2.5 * this.scale);
@@ -523,12 +558,15 @@ export class Picture {
 
   // A pin is a screw.
   #drawPins() {
-    const inverse = this.#world.view('state.inverse_mass'), active = this.#world.view('state.particle_active'), context = this.#context;
+    const inverse = this.#world.view('state.inverse_mass'), active = this.#world.view('state.particle_active'),
+      context = this.#context;
     const bumpers = new Set(this.#scene.balls.filter((one) => one.kind === 'bumper').map((one) => one.slot));
     const balls = new Set(this.#scene.balls.map((one) => one.slot)), hands = this.#world.hands;
     inverse.forEach((value, slot) => {
-      if (value !== 0 || !active[slot] || bumpers.has(slot) || (slot >= hands.particle && slot < hands.particle + hands.count)) return;
-      const k = this.scale * (balls.has(slot) ? 0.55 : 1), x = this.at[2 * slot], y = this.at[2 * slot + 1], slit = new Path2D();
+      if (value !== 0 || !active[slot] || bumpers.has(slot)
+        || (slot >= hands.particle && slot < hands.particle + hands.count)) return;
+      const k = this.scale * (balls.has(slot) ? 0.55 : 1), x = this.at[2 * slot], y = this.at[2 * slot + 1],
+        slit = new Path2D();
       disc(context, x, y, 4.4 * k, '#141924', 0.9);
       disc(context, x, y, 3.5 * k, '#b4bcc9');
       slit.moveTo(x - 2.5 * k, y - 2.5 * k);

@@ -7,7 +7,8 @@ const UNITS = [[1e6, 'MN'], [1e3, 'kN'], [1, 'N'], [1e-3, 'mN']];
 class Near {
   constructor(world) {
     this.world = world;
-    for (const name of ['position', 'radius', 'inverse_mass', 'particle_active', 'owner', 'origin', 'mass', 'particle_a', 'particle_b',
+    for (const name of ['position', 'radius', 'inverse_mass', 'particle_active', 'owner', 'origin', 'mass',
+      'particle_a', 'particle_b',
       'spring_active', 'material']) this[name] = world.view(`state.${name}`);
   }
 
@@ -30,10 +31,11 @@ class Near {
   }
 
   particle(point, within) {
-    return this.#nearest(this.mass.length, (k) => (this.isShown(k) ? this.#away(k, point) - this.radius[k] : Infinity), within);
+    return this.#nearest(this.mass.length, (k) => (this.isShown(k) ? this.#away(k, point) - this.radius[k] : Infinity),
+      within);
   }
 
-  // The free particle that a press takes: one within reach, else the nearest of a body whose springs are around the point.
+  // The free particle that a press takes: one within reach, else the nearest of a body with springs around the point.
   free(point, within) {
     const pressed = this.particle(point, within);
     if (pressed !== null && this.inverse_mass[pressed] > 0) return pressed;
@@ -43,7 +45,8 @@ class Near {
       for (const u of [0, 1]) {
         const low = this.position[2 * a + u], high = this.position[2 * b + u], v = 1 - u;
         if (low <= point[u] === high <= point[u]) continue;
-        const part = (point[u] - low) / (high - low), at = this.position[2 * a + v] + (this.position[2 * b + v] - this.position[2 * a + v]) * part;
+        const part = (point[u] - low) / (high - low),
+          at = this.position[2 * a + v] + (this.position[2 * b + v] - this.position[2 * a + v]) * part;
         of.add(`${u}${at <= point[v]}`);
       }
     });
@@ -76,8 +79,10 @@ class Near {
     const found = [], area = (ux, uy, vx, vy, wx, wy) => (vx - ux) * (wy - uy) - (vy - uy) * (wx - ux);
     this.#eachSpring((s, a, b) => {
       const [ax, ay, bx, by] = this.#ends(a, b);
-      const straddles = area(...p, ...q, ax, ay) * area(...p, ...q, bx, by) <= 0 && area(ax, ay, bx, by, ...p) * area(ax, ay, bx, by, ...q) <= 0;
-      const meets = (u, start, end) => Math.min(start, end) <= Math.max(p[u], q[u]) && Math.max(start, end) >= Math.min(p[u], q[u]);
+      const straddles = area(...p, ...q, ax, ay) * area(...p, ...q, bx, by) <= 0
+        && area(ax, ay, bx, by, ...p) * area(ax, ay, bx, by, ...q) <= 0;
+      const meets = (u, start, end) => Math.min(start, end) <= Math.max(p[u], q[u])
+        && Math.max(start, end) >= Math.min(p[u], q[u]);
       if (straddles && meets(0, ax, bx) && meets(1, ay, by)) found.push(s);
     });
     return found;
@@ -87,18 +92,22 @@ class Near {
   grip(particle) {
     const view = (name) => this.world.view(`state.constraint_${name}`), active = view('active'), kind = view('kind');
     const first = view('first'), corner = this.world.view('state.corner_particle'), owner = this.owner[particle];
-    if (!active.some((is, k) => is && kind[k] === this.world.areaKind && this.owner[corner[first[k]]] === owner)) return 0;
+    if (!active.some((is, k) => is && kind[k] === this.world.areaKind
+      && this.owner[corner[first[k]]] === owner)) return 0;
     let most = 0;
     for (let k = 0; k < this.mass.length; k++) {
       if (this.particle_active[k] && this.owner[k] === owner) {
-        most = Math.max(most, Math.hypot(this.origin[2 * k] - this.origin[2 * particle], this.origin[2 * k + 1] - this.origin[2 * particle + 1]));
+        most = Math.max(most,
+          Math.hypot(this.origin[2 * k] - this.origin[2 * particle],
+          this.origin[2 * k + 1] - this.origin[2 * particle + 1]));
       }
     }
     return SOFT_REACH * most;
   }
 
   bodyMass(particle) {
-    return this.mass.reduce((sum, mass, k) => sum + (this.particle_active[k] && this.owner[k] === this.owner[particle] ? mass : 0), 0);
+    return this.mass.reduce((sum, mass, k) =>
+      sum + (this.particle_active[k] && this.owner[k] === this.owner[particle] ? mass : 0), 0);
   }
 }
 
@@ -126,7 +135,8 @@ export class Hands {
     event.preventDefault();
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(event.pointerId);
-    const point = this.camera.toWorld(event.offsetX, event.offsetY), within = REACH[event.pointerType] / this.camera.zoom;
+    const point = this.camera.toWorld(event.offsetX, event.offsetY),
+      within = REACH[event.pointerType] / this.camera.zoom;
     const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan' };
     this.#pointers.set(event.pointerId, pointer);
     if (event.button !== 0 || event.altKey) return;
@@ -139,7 +149,9 @@ export class Hands {
     } else {
       const particle = near.free(point, within);
       if (particle !== null && this.hold(particle, point, within)) pointer.kind = particle;
-      else if (particle === null && near.particle(point, within) !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
+      else if (particle === null
+        && near.particle(point,
+        within) !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
     }
   }
 
@@ -151,31 +163,36 @@ export class Hands {
   }
 
   #cut(pointer, springs) {
-    if (springs.length && !this.run.submit({ type: 'cut_springs', springs }, pointer.gesture)) this.say('This page cannot cut.');
+    if (springs.length && !this.run.submit({ type: 'cut_springs', springs },
+      pointer.gesture)) this.say('This page cannot cut.');
   }
 
   // Take a particle into a free hand and draw it to a point [m]. Whether one was free.
   hold(particle, point, within) {
     const near = new Near(this.run.world), { count } = this.run.world.hands, { position } = near;
-    const hand = Array.from({ length: count }, (_, k) => k).find((k) => ![...this.#held.values()].some((each) => each.hand === k));
+    const hand = Array.from({ length: count },
+      (_, k) => k).find((k) => ![...this.#held.values()].some((each) => each.hand === k));
     if (hand === undefined) return false;
     const dx = position[2 * particle] - point[0], dy = position[2 * particle + 1] - point[1];
     // A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
-    const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy], gesture = this.run.newGesture();
+    const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy],
+      gesture = this.run.newGesture();
     const target = [point[0] + beside[0], point[1] + beside[1]];
     const record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
     if (!this.run.submit(record, gesture)) {
       this.say('This page cannot hold anything.');
       return false;
     }
-    this.#held.set(particle, { hand, gesture, beside, target, isMoved: false, limit: STRENGTH * near.bodyMass(particle) });
+    this.#held.set(particle,
+      { hand, gesture, beside, target, isMoved: false, limit: STRENGTH * near.bodyMass(particle) });
     return true;
   }
 
   #move(event) {
     const pointer = this.#pointers.get(event.pointerId);
     if (!pointer) return;
-    const [x, y] = [event.offsetX, event.offsetY], point = this.camera.toWorld(x, y), held = this.#held.get(pointer.kind);
+    const [x, y] = [event.offsetX, event.offsetY], point = this.camera.toWorld(x, y),
+      held = this.#held.get(pointer.kind);
     if (held) this.#aim(held, point);
     else if (pointer.kind === 'cut') {
       this.#cut(pointer, new Near(this.run.world).crossing(pointer.point, point));
@@ -236,7 +253,8 @@ export class Hands {
 
   // Keys: N marks the next particle, Enter takes it, arrows move it. Whether the key was of use.
   key(event) {
-    const near = new Near(this.run.world), way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const near = new Near(this.run.world),
+      way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     const held = this.#held.get(this.marked);
     if (event.key === 'n' || event.key === 'N') {
       const free = Array.from(near.mass.keys()).filter((k) => near.isShown(k) && near.inverse_mass[k] > 0);
@@ -256,11 +274,13 @@ export class Hands {
 
   // Lines from what is held to its cursor, with the force of each hand.
   draw(context, at, theme) {
-    const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'), force = world.view('state.hand_force');
+    const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'),
+      force = world.view('state.hand_force');
     if (this.marked !== null) circle(context, at, this.marked, 10, theme.accent);
     for (let hand = 0; hand < count; hand++) {
       if (!world.isHeld(hand)) continue;
-      const held = b[spring + hand], pull = Math.hypot(force[2 * hand], force[2 * hand + 1]), own = this.#held.get(held);
+      const held = b[spring + hand], pull = Math.hypot(force[2 * hand], force[2 * hand + 1]),
+        own = this.#held.get(held);
       const colour = own && pull > AT_LIMIT * own.limit ? '#ffb454' : theme.accent;
       context.strokeStyle = context.fillStyle = colour;
       context.lineWidth = 1.6;
@@ -269,7 +289,8 @@ export class Hands {
       context.lineTo(at[2 * (first + hand)], at[2 * (first + hand) + 1]);
       context.stroke();
       circle(context, at, held, 7, colour);
-      const [scale, unit] = UNITS.find(([size]) => pull >= size) ?? UNITS.at(-1), text = `${Number((pull / scale).toPrecision(3))} ${unit}`;
+      const [scale, unit] = UNITS.find(([size]) => pull >= size) ?? UNITS.at(-1),
+        text = `${Number((pull / scale).toPrecision(3))} ${unit}`;
       context.font = '600 13px system-ui, sans-serif';
       context.lineWidth = 3;
       context.strokeStyle = theme.card;

@@ -22,6 +22,7 @@ class Page {
     Object.assign(this, { level, fresh, world: fresh(), camera: new Camera(), canvas: byId('picture') });
     const { commands = [], hashes = [''] } = level.recording ?? {};
     this.run = new Run(this.world, commands, hashes.length - 1);
+    if (level.begin) this.run.seek(level.begin);
     this.picture = new Picture(this.canvas, level.scene, this.world);
     this.hands = new Hands(this.canvas, this.run, this.camera, {
       changed: () => { this.#isMoved = this.#isDirty = true; }, say: (text) => this.say(text),
@@ -58,7 +59,9 @@ class Page {
 
   // Show the level above what covers the lower edge.
   #fit() {
-    const panel = byId('panel'), covers = innerWidth < 640 && !panel.hidden ? innerHeight - panel.getBoundingClientRect().top : byId('bars').offsetHeight;
+    const panel = byId('panel'),
+      covers = innerWidth < 640
+      && !panel.hidden ? innerHeight - panel.getBoundingClientRect().top : byId('bars').offsetHeight;
     this.camera.fit(this.level.scene.view, covers);
   }
 
@@ -179,16 +182,19 @@ class Page {
       if (!this.isPaused) this.toggle('play');
       this.jump(() => this.run.seek(Number(byId('time').value)));
     });
-    const keys = { ' ': 'play', '.': 'step', s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', m: 'sound', h: 'tune' };
+    const keys = { ' ': 'play', '.': 'step', s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', m: 'sound',
+      h: 'tune' };
     addEventListener('keydown', (event) => {
       if (event.target.matches('input, select, .pad')) return;
       const driven = this.keys.nameOf(event), isCommand = event.ctrlKey || event.metaKey;
       if (isCommand && event.key === 'z') acts.undo();
-      else if (isCommand || event.altKey || (event.target.matches('button') && [' ', 'Enter'].includes(event.key))) return;
+      else if (isCommand || event.altKey
+        || (event.target.matches('button') && [' ', 'Enter'].includes(event.key))) return;
       else if (driven) this.keys.press(driven);
       else if (event.key in keys) acts[keys[event.key]]();
       else if (event.key === '+' || event.key === '-') {
-        this.camera.zoomAbout(this.camera.width / 2, this.camera.height / 2, event.key === '+' ? CLICK_ZOOM : 1 / CLICK_ZOOM);
+        this.camera.zoomAbout(this.camera.width / 2, this.camera.height / 2,
+          event.key === '+' ? CLICK_ZOOM : 1 / CLICK_ZOOM);
       } else if (!this.hands.key(event)) return;
       this.#isDirty = true;
       event.preventDefault();
@@ -199,7 +205,8 @@ class Page {
   }
 
   async #verify() {
-    const progress = (done, all) => done % 60 === 0 && this.say(`Comparing each tick: ${Math.round((100 * done) / all)} %`);
+    const progress = (done, all) => done % 60 === 0
+      && this.say(`Comparing each tick: ${Math.round((100 * done) / all)} %`);
     try {
       const wrong = await verified(this.fresh(), this.level.recording, progress);
       const count = this.level.recording.hashes.length - 1;
@@ -213,7 +220,8 @@ class Page {
   // What was done as a file that `sandbox replay` verifies.
   async recording() {
     const { run, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
-    const progress = (done, all) => done % 60 === 0 && this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`);
+    const progress = (done, all) => done % 60 === 0
+      && this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`);
     return written(this.fresh(), level.about, level.header, commands, run.time, progress);
   }
 
@@ -239,7 +247,8 @@ export async function open() {
   } catch {
     throw new Refusal('This page was cut off or damaged. Ask for it again.');
   }
-  const [data, image, kernels] = parts.map((part) => new Uint8Array(part)), level = JSON.parse(new TextDecoder().decode(data));
+  const [data, image, kernels] = parts.map((part) => new Uint8Array(part)),
+    level = JSON.parse(new TextDecoder().decode(data));
   const module = await WebAssembly.compile(kernels);
   return new Page(level, () => new World(new WebAssembly.Instance(module, {}).exports, image, level.about));
 }

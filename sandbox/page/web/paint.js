@@ -26,7 +26,8 @@ export function pathOf(loops, keep = 0, rounds = 0) {
   for (const points of loops) {
     const count = points.length / 2;
     for (let k = 0; k < count; k++) {
-      const x = points[2 * k], y = points[2 * k + 1], before = 2 * ((k + count - 1) % count), after = 2 * ((k + 1) % count);
+      const x = points[2 * k], y = points[2 * k + 1], before = 2 * ((k + count - 1) % count),
+        after = 2 * ((k + 1) % count);
       const startX = x + (points[before] - x) * cut, startY = y + (points[before + 1] - y) * cut;
       if (k === 0) path.moveTo(startX, startY);
       else path.lineTo(startX, startY);
@@ -48,7 +49,8 @@ export function grown(points, by) {
   const side = area > 0 ? by : -by;
   for (let k = 0; k < count; k++) {
     const before = 2 * ((k + count - 1) % count), after = 2 * ((k + 1) % count);
-    const dx = points[after] - points[before], dy = points[after + 1] - points[before + 1], length = Math.hypot(dx, dy) || 1;
+    const dx = points[after] - points[before], dy = points[after + 1] - points[before + 1],
+      length = Math.hypot(dx, dy) || 1;
     result[2 * k] = points[2 * k] + (dy / length) * side;
     result[2 * k + 1] = points[2 * k + 1] - (dx / length) * side;
   }
@@ -110,7 +112,7 @@ export function fillGround(context, path, near, deep, depth, light, dark, alpha 
   context.restore();
 }
 
-// Of each kind of line: its outline, its colour, and a pattern: [colour, its part of the width, dash, gap in half widths].
+// Of each kind of line: its outline, its colour, a pattern: [colour, part of the width, dash, gap in half widths].
 const LINES = {
   rope: ['#5b3d20', '#c89b62', ['#80542c', 0.9, 0.9, 2.3]], cable: ['#3a4252', '#a3adbf', ['#5c667a', 0.9, 0.6, 1.5]],
   deck: ['#4a2e16', '#c48e58', ['#4a2e16', 1, 0.25, 1.75]],
@@ -174,9 +176,11 @@ export function disc(context, x, y, radius, colour, alpha = 1) {
 
 // Noise that tiles, of patches about `reach` texels wide.
 function noise(size, reach) {
-  let values = Float32Array.from({ length: size * size }, ((seed) => () => (seed = (seed * 16807) % 2147483647) / 1073741824 - 1)(7));
+  let values = Float32Array.from({ length: size * size },
+    ((seed) => () => (seed = (seed * 16807) % 2147483647) / 1073741824 - 1)(7));
   for (const step of [1, size, 1, size]) {
-    const at = (k, by) => (step === 1 ? (k & ~(size - 1)) | ((k + by) & (size - 1)) : (k + by * size) & (size * size - 1));
+    const at = (k, by) =>
+      (step === 1 ? (k & ~(size - 1)) | ((k + by) & (size - 1)) : (k + by * size) & (size * size - 1));
     const smooth = values.slice();
     for (let k = 0; k < values.length; k++) {
       let sum = 0;
@@ -192,10 +196,12 @@ function noise(size, reach) {
 // The grain of earth or wood: what is lighter and darker of it, as a picture to lay over.
 function grains(kind) {
   return sprite(`grain ${kind}`, 256, (own) => {
-    const size = 256, picture = own.createImageData(size, size), fine = noise(size, 2), coarse = noise(size, 9), wide = noise(size, 16);
+    const size = 256, picture = own.createImageData(size, size), fine = noise(size, 2), coarse = noise(size, 9),
+      wide = noise(size, 16);
     for (let k = 0; k < size * size; k++) {
       const x = ((k & 255) * Math.PI) / 128, y = ((k >> 8) * Math.PI) / 128, bent = 0.6 * Math.sin(x) + 0.3 * wide[k];
-      const earth = 1.2 * fine[k] + 1.8 * coarse[k] + 4 * Math.tanh(2 * Math.sin(4 * y + 1.6 * bent)) + (fine[k] > 3.6 ? 18 : fine[k] < -3.6 ? -15 : 0);
+      const earth = 1.2 * fine[k] + 1.8 * coarse[k] + 4 * Math.tanh(2 * Math.sin(4 * y + 1.6 * bent))
+        + (fine[k] > 3.6 ? 18 : fine[k] < -3.6 ? -15 : 0);
       const wood = 5 * Math.sin(18 * y + 1.5 * Math.sin(x)) + 3 * Math.sin(46 * y + Math.sin(2 * x)) + fine[k];
       const value = kind === 'wood' ? wood : earth;
       picture.data.fill(value > 0 ? 255 : 0, 4 * k, 4 * k + 3);
@@ -215,7 +221,8 @@ export function turfOf(context, [light, dark]) {
     own.fillStyle = fade;
     for (let x = 0; x < 64; x++) {
       const u = ((x + 0.5) / 64) * Math.PI;
-      const top = -0.45 + 0.38 * Math.abs(Math.sin(5 * u)) + 0.16 * Math.sin(6 * u + 0.7), low = 0.52 + 0.2 * Math.sin(4 * u + 0.5) + 0.1 * Math.sin(10 * u);
+      const top = -0.45 + 0.38 * Math.abs(Math.sin(5 * u)) + 0.16 * Math.sin(6 * u + 0.7),
+        low = 0.52 + 0.2 * Math.sin(4 * u + 0.5) + 0.1 * Math.sin(10 * u);
       own.fillRect(x, 12 + 12 * top, 1, 12 * (low - top));
     }
   }), 'repeat');
@@ -296,7 +303,8 @@ export function ball(context, x, y, radius, angle, kind, colour) {
     own.arc(0, 0, 0.98, 0, 7);
     own.clip();
     const shade = own.createRadialGradient(-0.3, -0.45, 0, -0.1, -0.15, 1.12);
-    [[0, '#ffffff38'], [0.35, '#ffffff08'], [0.6, '#00000028'], [0.85, '#0000006a'], [1, '#00000080']].forEach((stop) => shade.addColorStop(...stop));
+    [[0, '#ffffff38'], [0.35, '#ffffff08'], [0.6, '#00000028'], [0.85, '#0000006a'],
+      [1, '#00000080']].forEach((stop) => shade.addColorStop(...stop));
     own.fillStyle = shade;
     own.fillRect(-1, -1, 2, 2);
     const gleam = own.createRadialGradient(-0.38, -0.5, 0, -0.38, -0.5, 0.3);

@@ -7,7 +7,8 @@ const placeOf = (value) => (value <= LOWEST ? 0 : Math.min((height(Math.min(valu
 
 function valueAt(place) {
   if (place >= 0.9995) return 1;
-  const power = 10 ** (LOW + Math.max(place, 0) * (HIGH - LOW)), value = Math.min(1, (power * (1 + REST)) / (1 + power));
+  const power = 10 ** (LOW + Math.max(place, 0) * (HIGH - LOW)),
+    value = Math.min(1, (power * (1 + REST)) / (1 + power));
   return value < 0.9 ? Number(value.toPrecision(3)) : 1 - Number((1 - value).toPrecision(2));
 }
 
@@ -36,10 +37,13 @@ export class Panel {
     this.pad = element('canvas', { tabIndex: 0, className: 'pad' });
     this.pad.setAttribute('role', 'img');
     this.sliders = ['Stiffness Cs', 'Damping Cd'].map((text, k) => {
-      const slider = element('input', { type: 'range', min: 0, max: 1, step: 'any', id: `slider${k}` }), output = element('output');
-      slider.addEventListener('input', () => this.#set(...this.pair.map((old, n) => (n === k ? valueAt(Number(slider.value)) : old))));
+      const slider = element('input', { type: 'range', min: 0, max: 1, step: 'any', id: `slider${k}` }),
+        output = element('output');
+      slider.addEventListener('input',
+        () => this.#set(...this.pair.map((old, n) => (n === k ? valueAt(Number(slider.value)) : old))));
       slider.addEventListener('change', () => this.#end());
-      return { row: element('label', { htmlFor: slider.id, className: 'slider' }, element('span', { textContent: text }), slider, output), slider, output };
+      return { row: element('label', { htmlFor: slider.id, className: 'slider' },
+        element('span', { textContent: text }), slider, output), slider, output };
     });
     root.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
     for (const name of ['pointerdown', 'pointermove']) this.pad.addEventListener(name, (event) => this.#drag(event));
@@ -70,7 +74,8 @@ export class Panel {
     if (!(event.buttons & 1)) return;
     event.preventDefault();
     this.pad.setPointerCapture(event.pointerId);
-    const { clientWidth: width, clientHeight: tall } = this.pad, inside = (at, size) => Math.min(Math.max((at - MARGIN) / (size - 2 * MARGIN), 0), 1);
+    const { clientWidth: width, clientHeight: tall } = this.pad,
+      inside = (at, size) => Math.min(Math.max((at - MARGIN) / (size - 2 * MARGIN), 0), 1);
     this.#set(valueAt(inside(event.offsetX, width)), valueAt(1 - inside(event.offsetY, tall)));
   }
 
@@ -86,13 +91,15 @@ export class Panel {
   // The word whose stiffness k = Cs / (1 - Cd) is nearest.
   #wordFor([stiffness, damping]) {
     const firmness = ([cs, cd]) => Math.log(Math.max(cs, 1e-9) / (1 - cd + 1e-9)), own = firmness([stiffness, damping]);
-    return Object.entries(this.chosen.words).reduce((best, each) => (Math.abs(firmness(each[1]) - own) < Math.abs(firmness(best[1]) - own) ? each : best))[0];
+    return Object.entries(this.chosen.words).reduce((best, each) =>
+      (Math.abs(firmness(each[1]) - own) < Math.abs(firmness(best[1]) - own) ? each : best))[0];
   }
 
   show() {
     const { pair } = this, word = this.#wordFor(pair), { words } = this.chosen;
     if (this.words.childElementCount !== Object.keys(words).length) {
-      this.words.replaceChildren(...Object.keys(words).map((name) => element('button', { type: 'button', textContent: name, onclick: () => {
+      this.words.replaceChildren(...Object.keys(words).map((name) =>
+        element('button', { type: 'button', textContent: name, onclick: () => {
         this.#set(...this.chosen.words[name]);
         this.#end();
       } })));
@@ -108,12 +115,14 @@ export class Panel {
   }
 
   #draw(pair, word) {
-    const context = this.pad.getContext('2d'), ratio = devicePixelRatio || 1, { clientWidth: width, clientHeight: tall } = this.pad;
+    const context = this.pad.getContext('2d'), ratio = devicePixelRatio || 1,
+      { clientWidth: width, clientHeight: tall } = this.pad;
     if (!width) return;
     this.pad.width = width * ratio;
     this.pad.height = tall * ratio;
     context.scale(ratio, ratio);
-    const style = getComputedStyle(this.pad), across = (place) => MARGIN + place * (width - 2 * MARGIN), up = (place) => tall - MARGIN - place * (tall - 2 * MARGIN);
+    const style = getComputedStyle(this.pad), across = (place) => MARGIN + place * (width - 2 * MARGIN),
+      up = (place) => tall - MARGIN - place * (tall - 2 * MARGIN);
     context.strokeStyle = style.getPropertyValue('--line');
     context.fillStyle = style.getPropertyValue('--muted');
     context.font = '11px system-ui, sans-serif';
@@ -175,7 +184,8 @@ export class DriveKeys {
   press(name) {
     if (this.#held.has(name)) return;
     this.#held.set(name, this.run.newGesture());
-    for (const [part, value] of this.keys[name]) this.run.submit({ type: 'set_drive', part, value }, this.#held.get(name));
+    for (const [part, value] of this.keys[name]) this.run.submit({ type: 'set_drive', part, value },
+      this.#held.get(name));
     this.buttons.get(name).setAttribute('aria-pressed', true);
   }
 
@@ -184,7 +194,8 @@ export class DriveKeys {
     const gesture = this.#held.get(name);
     if (!this.#held.delete(name)) return;
     for (const [part] of this.keys[name]) {
-      const still = [...this.#held.keys()].flatMap((other) => this.keys[other]).filter(([other]) => other === part).at(-1);
+      const still = [...this.#held.keys()].flatMap((other) => this.keys[other]).filter(([other]) =>
+        other === part).at(-1);
       this.run.submit({ type: 'set_drive', part, value: still ? still[1] : 0 }, gesture);
     }
     this.buttons.get(name).setAttribute('aria-pressed', false);

@@ -43,7 +43,8 @@ export async function written(world, about, header, commands, ticks, progress) {
   };
   const line = (values) => write(spaced(values).slice(0, -1));
   const writeState = async (hash) => {
-    const present = new Map([...columns].map(([name, column]) => [name, `${hash.arrays.get(name)} ${world.rows(column).length}`]));
+    const present = new Map([...columns].map(([name, column]) =>
+      [name, `${hash.arrays.get(name)} ${world.rows(column).length}`]));
     const state = {};
     for (const [name, column] of columns) {
       if (present.get(name) !== stored.get(name)) state[name] = await packed(canonical(world.rows(column)));

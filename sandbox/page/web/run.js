@@ -1,4 +1,5 @@
 // Run: what was done to a world and when, so that time can go back; the commands of a run make it again, bit for bit.
+import { Refusal } from './world.js';
 
 // Ticks from one kept state to the next at first, and how many are kept before every second one is dropped.
 const KEEP_EVERY = 60, KEPT = 120;
@@ -6,7 +7,8 @@ const KEEP_EVERY = 60, KEPT = 120;
 export class Run {
   // commands: [{ tick, gesture, record }] of a recording, with slots in place of names, in order; ticks: of it.
   constructor(world, commands = [], ticks = 0) {
-    Object.assign(this, { world, commands, last: ticks, every: KEEP_EVERY, kept: [world.save()], next: 0, revision: 0 });
+    Object.assign(this, { world, commands, last: ticks, every: KEEP_EVERY, kept: [world.save()], next: 0,
+      revision: 0 });
     this.gesture = commands.reduce((most, each) => Math.max(most, each.gesture), 0);
     this.#follow();
   }
@@ -59,7 +61,7 @@ export class Run {
   // The commands of this tick that a recording has.
   #follow() {
     while (this.next < this.commands.length && this.commands[this.next].tick === this.time) {
-      this.world.command(this.commands[this.next].record);
+      if (!this.world.command(this.commands[this.next].record)) throw new Refusal('This page cannot do what was done here.');
       this.next += 1;
     }
   }
@@ -79,7 +81,8 @@ export class Run {
   // Go back to before the last gesture. Whether there was one.
   undo() {
     if (!this.next) return false;
-    const { gesture } = this.commands[this.next - 1], place = this.commands.findIndex((each) => each.gesture === gesture);
+    const { gesture } = this.commands[this.next - 1],
+      place = this.commands.findIndex((each) => each.gesture === gesture);
     const { tick } = this.commands[place];
     this.seek(tick, place);
     this.takeOver();

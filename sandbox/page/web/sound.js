@@ -24,7 +24,7 @@ export class Sound {
   #voices = 0;
   isOn = false;
 
-  // bodies: of each particle its body; of each body mass, pitch, weight, stuff and whether it is a string. stuffs: modes.
+  // bodies: of each particle its body; of each body mass, pitch, weight, stuff, if it is a string. stuffs: modes.
   constructor(world, { bodies, stuffs, motors }) {
     Object.assign(this, { world, bodies, stuffs, motors });
     this.forget();
@@ -76,12 +76,15 @@ export class Sound {
   }
 
   #hearBlows(velocity, earlier, pan) {
-    const { of, mass, pitch, weight, stuff } = this.bodies, view = (name) => this.world.view(`state.${name}`), count = mass.length;
-    const { gravity, tick_rate } = this.world.settings(), own = view('mass'), inverse = view('inverse_mass'), scale = view('gravity_scale');
+    const { of, mass, pitch, weight, stuff } = this.bodies, view = (name) => this.world.view(`state.${name}`),
+      count = mass.length;
+    const { gravity, tick_rate } = this.world.settings(), own = view('mass'), inverse = view('inverse_mass'),
+      scale = view('gravity_scale');
     const speed = new Float64Array(count), blow = new Float64Array(count), place = new Int32Array(count);
     for (const p of new Set(this.world.contacts())) {
       if (!inverse[p]) continue;
-      const jump = Math.hypot(...[0, 1].map((k) => velocity[2 * p + k] - earlier[2 * p + k] - (gravity[k] * scale[p]) / tick_rate)), b = of[p];
+      const jump = Math.hypot(...[0,
+        1].map((k) => velocity[2 * p + k] - earlier[2 * p + k] - (gravity[k] * scale[p]) / tick_rate)), b = of[p];
       if (jump > speed[b]) [speed[b], place[b]] = [jump, p];
       blow[b] += jump * own[p];
     }
@@ -94,9 +97,11 @@ export class Sound {
   #hearStrings(pan) {
     const { of, mass, strand } = this.bodies;
     if (!strand.some(Boolean)) return;
-    const a = this.world.view('state.particle_a'), tension = this.world.view('state.tension'), rest = this.world.view('state.rest_length');
+    const a = this.world.view('state.particle_a'), tension = this.world.view('state.tension'),
+      rest = this.world.view('state.rest_length');
     const active = this.world.view('state.spring_active'), material = this.world.view('state.material');
-    const most = new Float64Array(mass.length), long = most.slice(), place = new Int32Array(mass.length), { tick_rate } = this.world.settings();
+    const most = new Float64Array(mass.length), long = most.slice(), place = new Int32Array(mass.length),
+      { tick_rate } = this.world.settings();
     a.forEach((p, s) => {
       const b = of[p];
       if (!strand[b] || !active[s] || material[s] < 0) return;
@@ -105,20 +110,23 @@ export class Sound {
     });
     const jerk = most.map((value, b) => value / mass[b]);
     for (const b of this.#new(jerk, this.#jerks, JERK)) {
-      const pull = Math.max(most[b] * tick_rate, 3 * mass[b]), pitch = Math.min((24 * Math.sqrt((pull * long[b]) / mass[b])) / (2 * long[b]), 700);
+      const pull = Math.max(most[b] * tick_rate, 3 * mass[b]),
+        pitch = Math.min((24 * Math.sqrt((pull * long[b]) / mass[b])) / (2 * long[b]), 700);
       this.#play('pluck', b, pitch, 0.8 * (jerk[b] / HARD_JERK) ** 0.8, pan(place[b]));
     }
   }
 
   #hearBreak(springs, pan) {
-    const [spring] = springs, p = this.world.view('state.particle_a')[spring], length = this.world.view('state.rest_length')[spring];
+    const [spring] = springs, p = this.world.view('state.particle_a')[spring],
+      length = this.world.view('state.rest_length')[spring];
     const pitch = 420 * Math.sqrt(0.3 / Math.max(length, 1e-3)) * (0.6 + this.world.view('state.stiffness')[spring]);
     this.#play('snap', this.bodies.of[p], pitch, 0.55 + 0.12 * Math.log2(springs.length), pan(p));
   }
 
   #play(kind, body, wanted, loudness, pan, stuff) {
     const context = this.#context, now = context.currentTime, key = `${kind}${body}`, pitch = noteOf(wanted);
-    if (this.#voices >= VOICES || 1000 * (now - (this.#last.get(key) ?? -1)) < REST || !Number.isFinite(pitch * loudness)) return;
+    if (this.#voices >= VOICES || 1000 * (now - (this.#last.get(key) ?? -1)) < REST
+      || !Number.isFinite(pitch * loudness)) return;
     this.#last.set(key, now);
     const gain = LEVELS[kind] * Math.min(loudness, 1), out = this.#out(gain, pan);
     if (kind === 'thud') {
@@ -161,12 +169,14 @@ export class Sound {
 
   #burst(out, strength, cut, decay, at = 0) {
     const noise = new AudioBufferSourceNode(this.#context, { buffer: this.#noise, loop: true });
-    noise.connect(new BiquadFilterNode(this.#context, { type: 'lowpass', frequency: cut })).connect(this.#fading(noise, out, strength, decay, at));
+    noise.connect(new BiquadFilterNode(this.#context, { type: 'lowpass', frequency: cut })).connect(this.#fading(noise,
+      out, strength, decay, at));
   }
 
   // Motors that are driven hum, the faster the higher.
   #hearMotors() {
-    const value = this.world.view('state.actuator_value'), position = this.world.view('state.position'), velocity = this.world.view('state.velocity');
+    const value = this.world.view('state.actuator_value'), position = this.world.view('state.position'),
+      velocity = this.world.view('state.velocity');
     for (const { part, hub, rim, speed } of this.motors) {
       let turning = 0;
       for (const p of rim) {
@@ -180,7 +190,8 @@ export class Sound {
         hum.start();
         this.#motors.set(part, { hum, out });
       }
-      const { hum, out } = this.#motors.get(part), effort = value[part] ? 0.2 + 0.8 * Math.min(turning / (Math.abs(speed) || 1), 1) : 0;
+      const { hum, out } = this.#motors.get(part),
+        effort = value[part] ? 0.2 + 0.8 * Math.min(turning / (Math.abs(speed) || 1), 1) : 0;
       hum.frequency.setTargetAtTime(70 + 9 * turning, this.#context.currentTime, 0.05);
       out.gain.setTargetAtTime(0.35 * LEVELS.motor * effort, this.#context.currentTime, 0.12);
     }

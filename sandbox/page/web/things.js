@@ -9,10 +9,12 @@ const BRACE = 0.62, HANGER = 0.62;
 
 // The scene with the slots of each body's particles and its springs as [spring, first end, second end].
 export function unfolded(scene, world) {
-  const a = world.view('state.particle_a'), b = world.view('state.particle_b'), key = (p, q) => Math.min(p, q) * 0x4000000 + Math.max(p, q);
+  const a = world.view('state.particle_a'), b = world.view('state.particle_b'),
+    key = (p, q) => Math.min(p, q) * 0x4000000 + Math.max(p, q);
   const bodies = scene.bodies.map((body) => {
     const slots = body.slots.flatMap(([first, count]) => Array.from({ length: count }, (_, k) => first + k));
-    const springs = Array.from({ length: body.springs }, (_, k) => [body.spring + k, a[body.spring + k], b[body.spring + k]]);
+    const springs = Array.from({ length: body.springs },
+      (_, k) => [body.spring + k, a[body.spring + k], b[body.spring + k]]);
     if (!body.triangles) return { ...body, slots, springs };
     // The springs along the sides of each triangle.
     const between = new Map(springs.map(([spring, p, q]) => [key(p, q), spring])), { triangles } = body;
@@ -38,7 +40,8 @@ export function thingsOf(scene, active) {
 }
 
 function addBody(things, body, active) {
-  const springs = body.springs.filter(([spring]) => active[spring]), isWhole = springs.length === body.springs.length, shape = { springs, keep: 0.25, rounds: 2, extra: 0, ...own(body) };
+  const springs = body.springs.filter(([spring]) => active[spring]), isWhole = springs.length === body.springs.length,
+    shape = { springs, keep: 0.25, rounds: 2, extra: 0, ...own(body) };
   if (body.skin === 'lattice') addLines(things, body, springs, MESH);
   else if (body.triangles) addFilled(things, body, springs, active);
   else if (body.type === 'ring' && isWhole) {
@@ -52,7 +55,8 @@ function addBody(things, body, active) {
   } else if (body.panel) {
     const panel = { springs: [], grown: 0, layer: 0, keep: 0.2, rounds: 2 };
     things.shapes.push({ ...panel, loops: [body.hull], skin: 'rubber', colour: body.panel, extra: 4 });
-    if (body.window.length > 2) things.shapes.push({ ...panel, loops: [body.window], skin: 'window', colour: '#bfe6ff', extra: -3 });
+    if (body.window.length > 2) things.shapes.push({ ...panel, loops: [body.window], skin: 'window', colour: '#bfe6ff',
+      extra: -3 });
   } else addLines(things, body, springs, ['bridge', 'girder'].includes(body.type) ? TRUSS : MESH);
 }
 
@@ -76,12 +80,15 @@ function addLines(things, look, springs, size) {
     const isChord = ([, a, b]) => row(a) === row(b);
     const isDeck = (spring) => look.type === 'bridge' && isChord(spring) && !row(spring[1]);
     const bar = { kind: look.line, colour: look.colour, cell: look.cell, size };
-    things.bars.push({ ...bar, springs: springs.filter((each) => !isChord(each)), share: BRACE * look.width, bolts: [] });
+    things.bars.push({ ...bar, springs: springs.filter((each) => !isChord(each)), share: BRACE * look.width,
+      bolts: [] });
     const bolts = [...new Set(springs.flatMap(([, a, b]) => [a, b]))];
-    things.bars.push({ ...bar, springs: springs.filter(isChord), share: look.width, bolts, deck: springs.filter(isDeck) });
+    things.bars.push({ ...bar, springs: springs.filter(isChord), share: look.width, bolts,
+      deck: springs.filter(isDeck) });
   } else {
     const bolts = size === MESH ? [...new Set(springs.flatMap(([, a, b]) => [a, b]))] : [];
-    things.bars.push({ kind: look.line, colour: look.colour, cell: look.cell, size, springs, share: look.width, bolts });
+    things.bars.push({ kind: look.line, colour: look.colour, cell: look.cell, size, springs, share: look.width,
+      bolts });
   }
 }
 
@@ -98,7 +105,8 @@ function addFilled(things, body, springs, active) {
   const isLaid = LAID.includes(body.skin);
   if (left.length) {
     const shape = { ...own(body), loops, springs: isLaid ? [] : springs.filter(inside), extra: 0 };
-    if (!isCloth) things.shapes.push({ ...shape, layer: isLaid ? 0 : 1, keep: isLaid ? 0.12 : body.keep, rounds: isLaid ? 1 : 2 });
+    if (!isCloth) things.shapes.push({ ...shape, layer: isLaid ? 0 : 1, keep: isLaid ? 0.12 : body.keep,
+      rounds: isLaid ? 1 : 2 });
     if (isCloth || isLaid) things.sheets.push({ body, triangles: left, loops, isCloth });
     if (body.face) things.faces.push(body);
   }
@@ -107,18 +115,21 @@ function addFilled(things, body, springs, active) {
 
 function wheelOf(body) {
   const { segments, slots } = body;
-  return { body, hub: slots[0], inner: slots.slice(1, segments + 1), outer: slots.slice(segments + 1, 2 * segments + 1) };
+  return { body, hub: slots[0], inner: slots.slice(1, segments + 1),
+    outer: slots.slice(segments + 1, 2 * segments + 1) };
 }
 
 // Whether both rings of a wheel are closed.
 function hasRings(body, active) {
-  return body.numbers.every((number, k) => number < body.segments || number >= 3 * body.segments || active[body.spring + k]);
+  return body.numbers.every((number, k) => number < body.segments || number >= 3 * body.segments
+    || active[body.spring + k]);
 }
 
 // Loops of particles around triangles of one winding.
 function bordersOf(triangles) {
   const sides = new Map(), key = (a, b) => a * 0x4000000 + b, loops = [];
-  for (const corners of triangles) corners.forEach((a, k) => sides.set(key(a, corners[(k + 1) % 3]), [a, corners[(k + 1) % 3]]));
+  for (const corners of triangles) corners.forEach((a, k) =>
+    sides.set(key(a, corners[(k + 1) % 3]), [a, corners[(k + 1) % 3]]));
   const follow = new Map();
   for (const [a, b] of sides.values()) if (!sides.has(key(b, a))) follow.set(a, [...(follow.get(a) ?? []), b]);
   while (follow.size) {
@@ -149,7 +160,8 @@ function chainsOf(springs) {
     }
     chains.push(chain);
   };
-  for (const [slot, near] of at) if (near.length !== 2) near.forEach((spring) => left.has(spring) && walk(slot, spring));
+  for (const [slot, near] of at) if (near.length !== 2) near.forEach((spring) => left.has(spring)
+    && walk(slot, spring));
   for (const spring of springs) if (left.has(spring)) walk(spring[1], spring);
   return chains;
 }

@@ -60,7 +60,8 @@ export class World {
     this.#reserve(image.length);
     const memory = new Uint8Array(kernels.memory.buffer);
     memory.set(image, this.#base);
-    for (const [to, from, size] of about.copies) memory.copyWithin(this.#base + to, this.#base + from, this.#base + from + size);
+    for (const [to, from, size] of about.copies) memory.copyWithin(this.#base + to, this.#base + from,
+      this.#base + from + size);
     const words = new Uint32Array(kernels.memory.buffer);
     for (const [word] of Object.values(about.table)) words[this.#place(word) + 2 * ADDRESS] += this.#base;
     if (about.kernels.make_room) this.#derive(0);
@@ -86,7 +87,8 @@ export class World {
     if (found && found.buffer === this.#kernels.memory.buffer) return found;
     const place = this.#about.table[path];
     if (!place) throw new Error(`there is no array ${path}`);
-    const [word, kind, dimensions] = place, words = new Uint32Array(this.#kernels.memory.buffer), at = this.#place(word);
+    const [word, kind, dimensions] = place, words = new Uint32Array(this.#kernels.memory.buffer),
+      at = this.#place(word);
     let size = 1;
     for (let k = 0; k < dimensions; k++) size *= words[at + 2 * (SHAPE + k)];
     const view = new KINDS[kind](this.#kernels.memory.buffer, words[at + 2 * ADDRESS], size);
@@ -128,7 +130,8 @@ export class World {
     }
     if (code === UNSOUND || code === LOST) throw new Refusal('This level came to values that no physics gives.');
     this.time += 1;
-    this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number) : [];
+    this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number)
+      : [];
     if (this.broken.length) this.#apply({ type: 'break_springs', springs: this.broken });
   }
 
@@ -145,7 +148,8 @@ export class World {
     const [slots, numbers] = pack(record, this.hands, tick_rate), at = this.#arguments + ARGUMENTS * WORD;
     new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
     new Float64Array(buffer, at, numbers.length).set(numbers);
-    const given = [this.#about.commands[record.type], [at + RECORD * WORD, slots.length, WORD], [at, numbers.length, WORD]];
+    const given = [this.#about.commands[record.type], [at + RECORD * WORD, slots.length, WORD],
+      [at, numbers.length, WORD]];
     this.#inArena('command', ...given);
     if (derives !== null) this.#derive(derives);
     return true;
@@ -154,7 +158,8 @@ export class World {
   // Gravity and air are numbers that a tick reads.
   #set(record) {
     const numbers = this.view('numbers');
-    for (const [name, place] of SETTINGS[record.type]) if (record[name] != null) numbers.set([record[name]].flat(), place);
+    for (const [name, place] of SETTINGS[record.type]) if (record[name] != null) numbers.set([record[name]].flat(),
+      place);
     return true;
   }
 
@@ -171,7 +176,8 @@ export class World {
       this.view('state.actuator_value')[record.part] = record.value;
     } else if (record.type === 'set_coefficients') {
       const material = record.material ?? null, a = this.view('state.particle_a'), b = this.view('state.particle_b');
-      for (const [family, of] of [['', this.view('state.material')], ['constraint_', this.view('state.constraint_material')]]) {
+      for (const [family, of] of [['', this.view('state.material')],
+        ['constraint_', this.view('state.constraint_material')]]) {
         of.forEach((own, k) => {
           if (material === null ? own < 0 : own !== material) return;
           for (const name of ['stiffness', 'damping']) {
@@ -287,7 +293,8 @@ export class World {
       if (kept.digest) arrays.set(column.stored, kept.digest);
     }
     const { gravity, tick_rate, substeps, solver, iterations, warm_start, wind, drag } = this.settings();
-    const settings = [...gravity.map(hexOf), tick_rate, substeps, solver, iterations, ...[warm_start, ...wind, drag].map(hexOf)];
+    const settings = [...gravity.map(hexOf), tick_rate, substeps, solver, iterations,
+      ...[warm_start, ...wind, drag].map(hexOf)];
     const text = [...arrays.values(), this.time, ...settings].join('\n');
     return { whole: blake2b(new TextEncoder().encode(text), 16), arrays };
   }

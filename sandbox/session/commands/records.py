@@ -2,8 +2,9 @@
 
 import functools
 import json
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import Any, get_type_hints
+from typing import Any, Protocol, get_type_hints
 
 from pydantic import ValidationError
 
@@ -62,3 +63,19 @@ def from_record(record: dict[str, Any], world: World) -> Command:
     except (ValidationError, ValueError) as error:
         text = plain_fault(error) if isinstance(error, ValidationError) else str(error)
         raise CommandError(f"{type_name}: {text}") from None
+
+
+class Applied(Protocol):
+    """A command that was applied to a world."""
+
+    tick: int
+    gesture: int
+    command: Command
+
+
+def script_of(entries: Iterable[Applied], world: World) -> tuple[ScriptLine, ...]:
+    """The lines of a script that carries out what was applied to a world."""
+    return tuple(
+        ScriptLine(each.tick, each.gesture, to_record(each.command, world), number)
+        for number, each in enumerate(entries, 1)
+    )
