@@ -16,11 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.geometry.polygon import polygon_area
 from sandbox.physics.geometry.segment import doubled_areas
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
-from sandbox.physics.state import Floats, StateArrays
+from sandbox.physics.state import StateArrays
 
 AREA = 0
 BEND = 1

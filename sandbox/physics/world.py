@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.capacity import Capacity
 from sandbox.physics.constraints import (
     AREA,
@@ -22,7 +23,7 @@ from sandbox.physics.events import Containment
 from sandbox.physics.forms import FirmBody
 from sandbox.physics.names import Names
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, Floats, Slots, StateArrays
+from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, StateArrays
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
 
 Derived = TypeVar("Derived")

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from sandbox.app.sound.bank import Note, note
 from sandbox.app.sound.timbre import Timbres, timbres_of
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP
-from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import GRAB_COUNT, World
 

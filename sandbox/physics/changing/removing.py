@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sandbox.physics.state import Slots
+from sandbox.physics.arrays import Slots
 from sandbox.physics.world import GRAB_COUNT, World
 
 

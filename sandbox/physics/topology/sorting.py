@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from sandbox.physics.arrays import Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Slots
 
 
 @inner_kernel

@@ -9,13 +9,13 @@ it is paid with: energy that the two have lost before.
 import math
 from typing import NamedTuple
 
+from sandbox.physics.arrays import Flags, Floats
 from sandbox.physics.collision.edge_geometry import edge_normal, place_on, winds
 from sandbox.physics.collision.outline import Outline
-from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.rigid import RigidMotion, WeightedSums, centre_of, with_point
 from sandbox.physics.geometry.segment import difference, segment_of
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats
 from sandbox.physics.untangling.overlaps import OVERLAPS, Overlaps, mark_separating
 from sandbox.physics.world import BANK_UNOPENED
 
