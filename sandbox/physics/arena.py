@@ -2,7 +2,7 @@
 
 An arena is an array of words, the first of which says how many of them are in use. Whoever runs out of room leaves that
 larger than the arena, and what it got may not be touched: ask `is_full` after laying out arrays and before using them.
-Arrays begin at 0, as those of numpy's zeros.
+Arrays begin at 0, as those of numpy's zeros; so must an arena when it is new.
 """
 
 from collections.abc import Callable
@@ -34,9 +34,18 @@ MORE = 2
 
 
 @inner_kernel
+def give_back(arena: Arena, to: int) -> None:
+    """Give back what was laid out since a mark."""
+    # What lies beyond is 0 at all times, so that nothing is to be done where an array begins.
+    for at in range(to, min(arena[0], arena.shape[0])):
+        arena[at] = 0
+    arena[0] = to
+
+
+@inner_kernel
 def begin(arena: Arena) -> None:
     """Give back all that was laid out."""
-    arena[0] = 1
+    give_back(arena, 1)
 
 
 @inner_kernel
@@ -52,21 +61,10 @@ def mark(arena: Arena) -> int:
 
 
 @inner_kernel
-def give_back(arena: Arena, to: int) -> None:
-    """Give back what was laid out since a mark, where all found room."""
-    if not is_full(arena):
-        arena[0] = to
-
-
-@inner_kernel
 def _take(arena: Arena, words: int) -> int:
     first = arena[0]
     arena[0] = first + words
-    if first + words > arena.shape[0]:
-        return 1
-    for at in range(first, first + words):
-        arena[at] = 0
-    return first
+    return first if first + words <= arena.shape[0] else 1
 
 
 @inlined_kernel

@@ -35,3 +35,4 @@ def call_every_kernel() -> None:
     lowest_mode.precompile_modes()
     body_of(world, 0)
     outline_of(world)
+    world.pin(0)

@@ -38,7 +38,8 @@ def test_a_full_arena_is_asked_for_again_and_nothing_is_lost(monkeypatch):
 @pytest.mark.parametrize("words", [1, 50, 400])
 def test_what_finds_no_room_touches_nothing_beyond_its_arena(words):
     block = block_of(tangle(1))
-    memory = np.full(FIRST_ARENA, 7, np.int64)
+    memory = np.zeros(FIRST_ARENA, np.int64)
+    memory[words:] = 7
     derive_topology(block.pointer, memory[:words])
     assert memory[0] > words
     assert (memory[words:] == 7).all()

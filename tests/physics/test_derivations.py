@@ -12,12 +12,12 @@ from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_RIGHT
 from sandbox.physics.collision.outline import new_colliders, outline_of
 from sandbox.physics.collision.pinned_edges import pinned_edges
 from sandbox.physics.components import label_joined
+from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.state import state_of
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.topology import sorting
 from sandbox.physics.untangling.jellies import group_triangles
-from sandbox.physics.world import GRAB_MATERIAL
 from tests.support.laid_out import laid_out
 from tests.support.tangles import tangle
 

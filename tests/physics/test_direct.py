@@ -10,12 +10,13 @@ import pytest
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
 from sandbox.physics.analysis.stability import coefficient_limits, report
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers.linear import matrix_layout
 from sandbox.physics.step import step
-from sandbox.physics.world import LAW_HOOKE, World
+from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
 from tests.support.physics_scenes import run
 

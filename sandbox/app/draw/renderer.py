@@ -26,7 +26,7 @@ from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.pulls import Pull
 from sandbox.physics.analysis.query import shown_particles, shown_springs
-from sandbox.physics.equipment import Joined
+from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.terrain import Terrain
 

@@ -32,7 +32,7 @@ from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coeffic
 from sandbox.physics.analysis.firmness import WORDS
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
 from sandbox.physics.arrays import Floats
-from sandbox.physics.world import LAW_HOOKE
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients
 
 # Sizes in layout units.

@@ -33,7 +33,7 @@ from sandbox.physics.arrays import Slots
 from sandbox.physics.changing.joining import Place, append_state, equipped
 from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.driving import drive_muscles
-from sandbox.physics.equipment import Joined
+from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.world import World
 
 SOURCE = "add_body"

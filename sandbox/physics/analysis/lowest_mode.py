@@ -15,9 +15,9 @@ import numpy as np
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.forms import StiffForm
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.jit import kernel
+from sandbox.physics.keeping.forms import StiffForm
 from sandbox.physics.solvers.linear.matrix_layout import find_blocks, matrix_of_graph
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix, back_substitute, factorise
 from sandbox.physics.world import World

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.pipeline.making import block_of
-from sandbox.physics.world import GRAB_MATERIAL, World
+from sandbox.physics.world import World
 
 # A hand that pulls with this share of what it can is at its limit.
 AT_LIMIT = 0.99

@@ -24,10 +24,11 @@ from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RI
 from sandbox.physics.collision.pinned_edges import no_pins, pinned_edges
 from sandbox.physics.collision.types import Colliders
 from sandbox.physics.jit import bundle, contents, inner_kernel, items_of, kernel, put
+from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.state import State, state_of
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.topology.sorting import list_by_key, list_ends, list_neighbours, sort_by_key, sort_by_value
-from sandbox.physics.world import GRAB_MATERIAL, World
+from sandbox.physics.world import World
 
 # Owner of the first chain of terrain, the others below it; particles and bodies are above.
 TERRAIN_OWNER = -2_000_000_000

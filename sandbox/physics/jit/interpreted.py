@@ -20,7 +20,7 @@ class Unsigned(int):
 unsigned: Any = Unsigned
 
 
-class Lent:
+class LentTuple:
     """A named tuple that was lent: its items by name, which kernels may write others in place of."""
 
     def __init__(self, kind: Any, items: Iterable[Any]) -> None:
@@ -39,7 +39,7 @@ def _lent(item: Any) -> Any:
     if not isinstance(item, tuple):
         return _viewed(item)
     items = map(_lent, item)
-    return Lent(type(item), items) if hasattr(item, "_make") else tuple(items)
+    return LentTuple(type(item), items) if hasattr(item, "_make") else tuple(items)
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def items_of(bundle: Any, path: tuple[str, ...] = ()) -> Any:
 
 def _returned(item: Any, given: Any) -> Any:
     if isinstance(given, tuple):
-        parts = vars(item).values() if isinstance(item, Lent) else item
+        parts = vars(item).values() if isinstance(item, LentTuple) else item
         returned = [_returned(part, other) for part, other in zip(parts, given, strict=True)]
         return cast(Any, given)._make(returned) if hasattr(given, "_make") else tuple(returned)
     return item.obj if isinstance(item, memoryview) and item.obj is given else np.asarray(item)
@@ -118,7 +118,7 @@ def _returned(item: Any, given: Any) -> Any:
 
 def put(place: Any, field: str, value: Any) -> None:
     """Write an array, or a named tuple of arrays, where a lent named tuple has the field of that name."""
-    if isinstance(value, Lent):
+    if isinstance(value, LentTuple):
         vars(vars(place)[field]).update(vars(value))
     else:
         setattr(place, field, _lent(value))

@@ -29,8 +29,8 @@ from sandbox.physics.geometry.rigid import best_turn, rotated, with_pair
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, shortened
+from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.state import State
-from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL
 
 # No hand wants what it holds to be faster than this [m/s]. Higher lets a mouse shoot one body through others.
 FASTEST_HAND = 30.0

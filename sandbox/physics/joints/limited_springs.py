@@ -18,9 +18,9 @@ from sandbox.physics.equation import direction, implicit_masses, reduced_mass
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, clamped
+from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.settings import DIRECT, SINGLE_PASS
 from sandbox.physics.state import State
-from sandbox.physics.world import LAW_NISSEN
 
 # K at least, as a share of the reduced mass: of a spring without damping it would be 0, and 1/K infinite.
 LEAST_SHARE = 1e-9

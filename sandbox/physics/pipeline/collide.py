@@ -16,6 +16,7 @@ from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terr
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
 from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch
 from sandbox.physics.solvers.contact.free_contacts import solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, sort_free_contacts
@@ -25,7 +26,6 @@ from sandbox.physics.untangling.crossing_candidates import ShapeBounds
 from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted
 from sandbox.physics.untangling.overlaps import CROSSINGS, OVERLAPS, Overlaps, find_crossings, pair_overlaps
 from sandbox.physics.untangling.parting import MovedParticles, part_overlaps
-from sandbox.physics.world import GRAB_COUNT
 
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
 # crossings of outlines, pairs of shapes that overlap; contacts that are left to a solver.

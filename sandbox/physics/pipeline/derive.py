@@ -27,6 +27,7 @@ from sandbox.physics.joints.joint_set import lay_out_joints
 from sandbox.physics.joints.joint_sweep import joints_by_mass, new_joints
 from sandbox.physics.joints.limited_springs import new_spring_forces
 from sandbox.physics.joints.motors import new_motor_sides
+from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
 from sandbox.physics.pipeline.block import (
     GRAB_PARTICLE,
     GRAB_SPRING,
@@ -60,7 +61,7 @@ from sandbox.physics.untangling.crossing_candidates import new_shape_bounds
 from sandbox.physics.untangling.inversion import new_inversions
 from sandbox.physics.untangling.overlaps import new_overlaps
 from sandbox.physics.untangling.triangle_clamp import lay_out_world_triangles
-from sandbox.physics.world import GRAB_COUNT, LAW_HOOKE, TRIANGLE
+from sandbox.physics.world import TRIANGLE
 
 # Places in `wanted`: those of the counts of collisions, then numbers and columns of blocks of bodies.
 BLOCK_NUMBERS, BLOCK_COLUMNS, WANTED = BOUND, BOUND + 1, BOUND + 2

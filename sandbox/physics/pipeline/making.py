@@ -98,6 +98,7 @@ class Block:
         self.pointer = bundle(self.given, self.pointer)
         self._arenas[0] = lay_out(derive_topology, self.pointer, self._arenas[0])
         self._lay_out_hands()
+        self.given.collisions.counts[:] = 0
         self._make_room(kept)
         self._share_contacts(world)
         if self.given.plan[HAS_FORKS]:

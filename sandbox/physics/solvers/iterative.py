@@ -23,6 +23,7 @@ from sandbox.physics.constraints import (
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import iterate_joints, warm_start_joints
+from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
@@ -38,7 +39,6 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import sort_by_value
-from sandbox.physics.world import LAW_NISSEN
 
 # The share of what an area still wants that it gets in an iteration after the first. With all of it jellies and rings,
 # which have more constraints than ways to move, gain energy several times over; with 0.3 or less a crushed jelly stays

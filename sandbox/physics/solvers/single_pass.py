@@ -15,11 +15,11 @@ from sandbox.physics.equation import direction, explicit_spring_constant, reduce
 from sandbox.physics.jit import inner_kernel, put
 from sandbox.physics.joints.joint_sweep import Joints, couple_masses, iterate_joint
 from sandbox.physics.joints.rows import PAIR, SCALAR, clamped, row_velocity
+from sandbox.physics.marks import LAW_HOOKE, LAW_NISSEN
 from sandbox.physics.solvers.contact.body_impacts import sweep_masses
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
-from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN
 
 # Cs and Cd of a joint: (Cs + 2 Cd) n < 4 for n = 1, which leaves room for the springs of what it acts on.
 JOINT_STIFFNESS = 0.05

@@ -16,8 +16,8 @@ from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.rigid import RigidMotion, WeightedSums, centre_of, with_point
 from sandbox.physics.geometry.segment import difference, segment_of
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.untangling.overlaps import OVERLAPS, Overlaps, mark_separating
-from sandbox.physics.world import BANK_UNOPENED
 
 # Bodies that overlap part at this speed [m/s]. Faster frees no more of them, slower takes longer.
 PARTING_SPEED = 1.0

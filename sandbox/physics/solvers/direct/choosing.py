@@ -5,8 +5,8 @@ from typing import NamedTuple
 from sandbox.physics.arena import Arena, is_full, new_floats, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.state import State
-from sandbox.physics.world import LAW_NISSEN
 
 # Corners at most of a constraint that is added to the matrix; one of more is wide.
 NARROW = 3
