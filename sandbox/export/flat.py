@@ -24,9 +24,9 @@ from sandbox.export.outlines import outlines_of
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import ContactsDef, Level, NissenMaterial, ParticleDef
 from sandbox.level.format.limits import DEFAULT_MATERIAL
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.constraints import AREA
-from sandbox.physics.state import Floats
 from sandbox.physics.world import World
 
 # Keys of the text whose items go one to a line.

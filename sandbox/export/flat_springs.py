@@ -11,10 +11,12 @@ from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.analysis.firmness import LARGEST_READ, lowest_mode_of
 from sandbox.physics.analysis.stability import BOUND, effective_count
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.filter import NO_EDGE
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.substeps import substep_time
-from sandbox.physics.world import LAW_HOOKE, Floats, World
+from sandbox.physics.world import World
 
 
 def flat_springs(world: World, level: Level) -> tuple[int, tuple[FlatSpring, ...]]:

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.arrays import Floats, Slots
 
 NEVER = np.inf
 

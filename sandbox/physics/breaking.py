@@ -6,9 +6,9 @@ Both only take energy out: a spring that yields is less strained than before, a 
 import math
 from typing import NamedTuple
 
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats, GoodValues, Slots, State
+from sandbox.physics.state import GoodValues, State
 
 
 class MaterialLimits(NamedTuple):

@@ -3,12 +3,10 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sandbox.physics.arrays import Flags, Slots
 from sandbox.physics.jit import contents, inner_kernel, kernel
-from sandbox.physics.state import Slots, State, StateArrays, lent_state
-
-Flags = NDArray[np.bool_]
+from sandbox.physics.state import State, StateArrays, lent_state
 
 
 @inner_kernel

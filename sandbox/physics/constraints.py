@@ -16,11 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.geometry.polygon import polygon_area
 from sandbox.physics.geometry.segment import doubled_areas
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
-from sandbox.physics.state import Floats, StateArrays
+from sandbox.physics.state import StateArrays
 
 AREA = 0
 BEND = 1
@@ -182,29 +183,6 @@ def explicit_mass(
         present += w * (slope[c, 0] * slope[c, 0] + slope[c, 1] * slope[c, 1])
     most = max(rest, present)
     return (1.0 / most, present / most) if most > 0.0 else (0.0, 0.0)
-
-
-def sides_gone(
-    constraints: ConstraintArrays,
-    particle_a: NDArray[np.int32],
-    particle_b: NDArray[np.int32],
-    spring_active: NDArray[np.bool_],
-    springs: NDArray[np.int64],
-) -> NDArray[np.int32]:
-    """The constraints, each at least once, that lost a side with these springs: no active spring is there any more."""
-    cut = _sides(particle_a[springs], particle_b[springs])
-    loose = np.setdiff1d(cut, _sides(particle_a[spring_active], particle_b[spring_active]))
-    owner = np.repeat(np.arange(len(constraints.kind)), constraints.corners)
-    corner, first = np.arange(len(owner)), constraints.first[owner]
-    previous = np.where(corner == first, first + constraints.corners[owner] - 1, corner - 1)
-    # A bend's two outer corners are no side of it.
-    is_side = (constraints.kind[owner] == AREA) | (corner != first)
-    return owner[is_side & np.isin(_sides(constraints.particle[previous], constraints.particle), loose)]
-
-
-def _sides(a: NDArray[np.int32], b: NDArray[np.int32]) -> NDArray[np.int64]:
-    """One number for each pair of particles, whichever comes first."""
-    return np.minimum(a, b).astype(np.int64) << 32 | np.maximum(a, b)
 
 
 def rest_of_area(places: Floats, inflation: ArrayLike) -> tuple[Floats, Floats]:

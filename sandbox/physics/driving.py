@@ -10,12 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sandbox.physics.actuators import Actuators
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, reduced_mass
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel, scalar_kernel
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import DIRECT
-from sandbox.physics.state import Floats, GoodValues, Slots, State, good_of, state_of
-from sandbox.physics.world import LAW_HOOKE, World
+from sandbox.physics.state import GoodValues, State, good_of, state_of
+from sandbox.physics.world import World
 
 # How far a wave goes in a part of its period, at its steepest: the slope of its parabolas where they meet.
 STEEPEST = 8.0

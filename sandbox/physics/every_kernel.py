@@ -4,15 +4,13 @@ import numpy as np
 
 from sandbox.physics.actuators import Actuators, Motors, Muscles
 from sandbox.physics.analysis import lowest_mode
-from sandbox.physics.collision.close_edges import close_edges
 from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.pinned_edges import pinned_edges
+from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.components import body_of, label_joined
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.pipeline.tick import find_broken
-from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.linear import parallel
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -32,12 +30,9 @@ def call_every_kernel() -> None:
     find_broken(block_of(world).pointer)
     label_joined(world, world.spring_active, world.particle_active)
     # It is too small to need a second thread.
-    system = layout_of(world).system
+    system = block_of(world).arrays.system
     parallel.precompile_help(system.fronts, system.rows.delta_v)
     lowest_mode.precompile_modes()
-    # Nor has any an edge, let alone one that is pinned at both ends.
-    for particle in (0, 1):
-        world.pin(particle)
-    pinned_edges(world, np.array([0]), np.array([1]), np.array([0]))
     body_of(world, 0)
-    close_edges(world.origin, np.array([0]), np.array([1]), np.zeros(2, np.int64), np.array([-1]))
+    outline_of(world)
+    world.pin(0)

@@ -10,13 +10,12 @@ step, unless the body is held or touches something.
 
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.arena import Arena, new_flags, new_floats, new_slots
+from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.components import find_joined
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.settings import DRAG, GRAVITY_X
-from sandbox.physics.state import Floats, Slots, State
+from sandbox.physics.state import State
 
 
 class Flight(NamedTuple):
@@ -31,11 +30,12 @@ class Flight(NamedTuple):
     pulled: Floats
 
 
-def new_flight(particles: int) -> Flight:
+@inner_kernel
+def new_flight(particles: int, arena: Arena) -> Flight:
     """Scratch to be filled in."""
     return Flight(
-        np.zeros(particles, np.int64), np.zeros(particles, np.bool_), np.zeros(particles, np.int64),
-        *np.zeros((2, particles)),
+        new_slots(arena, particles), new_flags(arena, particles), new_slots(arena, particles),
+        new_floats(arena, particles), new_floats(arena, particles),
     )  # fmt: skip
 
 

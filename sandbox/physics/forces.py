@@ -1,8 +1,9 @@
 """Gravity and air, which act on particles before the springs do. To the springs they are work from outside."""
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.settings import DRAG, GRAVITY_X, GRAVITY_Y, WIND_X, WIND_Y
-from sandbox.physics.state import Floats, State
+from sandbox.physics.state import State
 
 
 @inner_kernel

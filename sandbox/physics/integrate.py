@@ -2,9 +2,9 @@
 
 import math
 
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.arrays import Flags, Floats
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats, State
+from sandbox.physics.state import State
 
 # s += c,  c = SLOW_SHARE (v' - s);  r += SLOW_SHARE (c - r), per step.
 SLOW_SHARE = 0.3

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.analysis.query import slot_name
+from sandbox.physics.arrays import Floats
 from sandbox.physics.events import Containment
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import GUARDED, Family, Floats, GoodValues, State
+from sandbox.physics.state import GUARDED, Family, GoodValues, State
 from sandbox.physics.world import World
 
 # Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that

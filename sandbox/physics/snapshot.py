@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.equipment import Equipment
+from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import COLUMNS, MOVING, TOPOLOGY, Column, StateArrays
 from sandbox.physics.terrain import Terrain

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from sandbox.physics.jit import bundle
 
-Floats = NDArray[np.float64]
-Slots = NDArray[np.int64]
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 

@@ -24,13 +24,13 @@ def step(world: World) -> None:
     code = tick(block.pointer)
     while code in (NO_ROOM, UNSOUND):
         if code == NO_ROOM:
-            block.grow(world)
+            block.grow()
         else:
             contain_inputs(world)
             block = block_of(world)
             block.begin(world)
             # What was good is not always: nothing is looked at twice.
-            block.arrays.progress[CHECKED] = 1
+            block.given.progress[CHECKED] = 1
         code = tick(block.pointer)
     block.end(world)
     world.may_fly = False
@@ -39,4 +39,4 @@ def step(world: World) -> None:
         contain_outcome(world)
         code = BROKE if find_broken(block.pointer) else code
     if code == BROKE:
-        world.break_springs(block.arrays.limits.broken[: block.arrays.progress[BROKEN]].copy())
+        world.break_springs(block.given.limits.broken[: block.given.progress[BROKEN]].copy())

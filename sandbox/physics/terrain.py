@@ -8,12 +8,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.geometry.polygon import signed_area, winding_number
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.jit import inner_kernel
-
-Floats = NDArray[np.float64]
-Slots = NDArray[np.int64]
 
 # Cells of the grid along its longer side, at most: more cost memory, fewer make particles look at edges far away.
 MOST_CELLS = 256
@@ -52,7 +50,7 @@ class Terrain(NamedTuple):
     in tip) likewise: cell_tip[tip_start[c]:tip_start[c + 1]].
     """
 
-    vertex: Floats
+    vertex: FloatRows
     edge_a: Slots
     edge_b: Slots
     solid: Slots
@@ -66,7 +64,7 @@ class Terrain(NamedTuple):
     cell_edge: Slots
     tip: Slots
     way_start: Slots
-    way: Floats
+    way: FloatRows
     tip_start: Slots
     cell_tip: Slots
 

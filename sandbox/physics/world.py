@@ -7,7 +7,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
-from sandbox.physics.capacity import Capacity
+from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.command import (
+    BREAK,
+    CUT,
+    DRIVE,
+    FREEZE,
+    GRAB,
+    MOVE_GRAB,
+    PIN,
+    PUSH,
+    RELEASE,
+    SET_COEFFICIENTS,
+    UNPIN,
+    carry_out,
+    lend,
+)
 from sandbox.physics.constraints import (
     AREA,
     BEND,
@@ -15,40 +30,27 @@ from sandbox.physics.constraints import (
     constraints_of,
     rest_of_area,
     rest_of_bend,
-    sides_gone,
 )
-from sandbox.physics.equipment import Equipment, Joined
 from sandbox.physics.events import Containment
-from sandbox.physics.forms import FirmBody
-from sandbox.physics.names import Names
+from sandbox.physics.keeping.capacity import Capacity
+from sandbox.physics.keeping.equipment import Equipment, Joined
+from sandbox.physics.keeping.forms import FirmBody
+from sandbox.physics.keeping.names import Names
+from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_MATERIAL, LAW_NISSEN
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, Floats, Slots, StateArrays
+from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
 
 Derived = TypeVar("Derived")
+Point = tuple[float, float]
 
-# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
-BANK_UNOPENED = -1.0
-# One of a body that goes on, but has nothing any more.
-BANK_EMPTIED = -2.0
-
-# The last is of a grab's spring while it holds: it pulls at nothing, its hand does (joints/hands.py).
-LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
-
-# How many particles can be held at once. A grab is a pinned cursor particle and one spring, in slots reserved when
-# the world is built, so that grabbing never moves another slot.
-GRAB_COUNT = 10
 _GRAB_NAMES = [f"+hand.{grab}" for grab in range(GRAB_COUNT)]
-# The material index of a grab's spring: of no material, so that no slider reaches it.
-GRAB_MATERIAL = -1
 # Cs and Cd of a grab's spring, which nothing reads; hashes hold them.
 GRAB_STIFFNESS, GRAB_DAMPING = 0.2, 0.3
 # Largest force of a hand over the mass of the body that it holds [m/s^2], where nothing else is said: ten times its
 # weight. Lower lags behind the mouse, higher tears what is soft.
 HAND_STRENGTH = 100.0
 
-# The material index of a constraint with Cs and Cd of its own, which no slider reaches.
-OWN_MATERIAL = -1
 # Corners of an area that is all shape: it and its sides agree in one.
 TRIANGLE = 3
 # Cs and Cd at most of an area of more corners, whose size its sides may not allow: at 0.999 a rigid skin that is blown
@@ -425,17 +427,8 @@ class World(StateArrays):
 
         Grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
         """
-        for family, materials in (("", self.material), ("constraint_", self.constraint_material)):
-            chosen = materials >= 0 if material is None else materials == material
-            for name, value in ((f"{family}stiffness", stiffness), (f"{family}damping", damping)):
-                if value is not None:
-                    getattr(self, name)[chosen] = value
-                self.good[name][chosen] = getattr(self, name)[chosen]
-            self.change(f"{family}lowest_mode", 0.0, chosen)
-            if not family:
-                self.disturb(self.particle_a[chosen], self.particle_b[chosen])
-            else:
-                self.disturb(self.corner_particle[np.repeat(chosen, self.constraint_corners)])
+        which = -1 if material is None else material, int(stiffness is not None), int(damping is not None)
+        self._command(SET_COEFFICIENTS, which, (stiffness or 0.0, damping or 0.0))
 
     def reserve_grabs(self) -> None:
         """Reserve the slots of all grabs, inactive; done once, when the world is built."""
@@ -452,45 +445,47 @@ class World(StateArrays):
         self.change("particle_active", False, slice(self.grab_particle, None))
         self.change("spring_active", False, slice(self.grab_spring, None))
 
+    def _command(self, kind: int, slots: Sequence[int] | Slots, numbers: Sequence[float] = ()) -> int:
+        """Let a kernel carry out a command, see command.py."""
+        return carry_out(self.derived(_lend, of_hands=False), kind, slots, numbers)
+
     def pin(self, particle: int) -> None:
         """Hold a particle where it is."""
-        self.change("inverse_mass", 0.0, particle)
-        self.velocity[particle] = 0.0
-        self.slow_velocity[particle] = 0.0
-        self.spin[particle] = 0.0
-        self.disturb(particle)
+        self._command(PIN, [particle])
+        self.topology_version += 1
 
     def freeze(self, particle: int) -> None:
         """Bring a particle back to its last good values and pin it there."""
-        for name in ("position", "angle", "mass", "radius", "gravity_scale", "friction", "restitution", "rolling"):
-            getattr(self, name)[particle] = self.good[name][particle]
-        self.pin(particle)
+        self._command(FREEZE, [particle])
+        self.topology_version += 1
 
     def unpin(self, particle: int) -> None:
         """Let a pinned particle move again, with the mass it has."""
-        self.change("inverse_mass", 1.0 / self.mass[particle], particle)
-        self.slow_velocity[particle] = self.velocity[particle]
-        self.disturb(particle)
+        self._command(UNPIN, [particle])
+        self.topology_version += 1
 
     def cut(self, springs: Sequence[int]) -> None:
-        """Take springs out of the world; their slots stay."""
-        slots = np.asarray(springs, dtype=np.int64)
-        self._take_out(slots)
-        self.disturb(self.particle_a[slots], self.particle_b[slots])
+        """Take springs out of the world, and the constraints that they were a side of; their slots stay."""
+        self._command(CUT, springs)
+        self.topology_version += 1
 
     def break_springs(self, springs: Slots) -> None:
         """Take out springs that broke by themselves: the pieces of a body keep its energy."""
-        self._take_out(springs)
+        self._command(BREAK, springs)
+        self.topology_version += 1
         self.broken = springs
 
-    def _take_out(self, springs: Slots) -> None:
-        """Take springs out, and the constraints that they were a side of, unless another spring holds that side."""
-        self.change("spring_active", False, springs)
-        self.impulse[springs] = 0.0
-        self.tension[springs] = 0.0
-        if self.constraint_count:
-            gone = sides_gone(self.constraints, self.particle_a, self.particle_b, self.spring_active, springs)
-            self.change("constraint_active", False, gone)
+    def push(self, place: Point, impulse: Point, outward: float, radius: float) -> bool:
+        """Give the free particles nearer to place [m] than radius [m] an impulse [N s] together; False: there are none.
+
+        outward [N s]: the sum of the impulses that also drive each one straight away from the place. A particle at a
+        distance d gets the velocity
+
+            dv_i = (J + outward n_i) w_i / sum m w,     w_i = 1 - (d_i / radius)^2
+
+        so that what is near moves more, whatever its mass, and the momentum grows by J.
+        """
+        return self._command(PUSH, [self.grab_particle], (*place, *impulse, outward, radius)) > 0
 
     def fit(self, driven: Actuators, values: ArrayLike) -> None:
         """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
@@ -500,7 +495,7 @@ class World(StateArrays):
 
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
-        self.actuator_value[part] = value
+        self._command(DRIVE, [part], [value])
 
     def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
         """Give springs other rest lengths [m]; the length by which they have yielded does not change."""
@@ -508,7 +503,7 @@ class World(StateArrays):
         self.good["rest_length"][springs] = lengths
 
     def hold(
-        self, grab: int, particle: int, target: tuple[float, float], strength: float = HAND_STRENGTH,
+        self, grab: int, particle: int, target: Point, strength: float = HAND_STRENGTH,
         radius: float = 0.0,
     ) -> None:  # fmt: skip
         """Let a hand hold a particle and draw it to its cursor, at target [m]: a mouse joint (joints/hands.py).
@@ -517,23 +512,8 @@ class World(StateArrays):
         are nearer to this one share the force; 0: it bears all of it.
         """
         self.reserve_grabs()
-        cursor = self._set_hand(grab, particle, True)
-        self.position[cursor] = target
-        self.velocity[cursor] = 0.0
-        self.slow_velocity[cursor] = 0.0
-        self.hand_strength[grab], self.hand_radius[grab] = strength, radius
-        self.hand_force[grab] = 0.0
-        self.spin[particle] = 0.0
-        self.disturb(particle)
-
-    def _set_hand(self, grab: int, particle: int, holds: bool) -> int:
-        """Let a hand hold a particle, or nothing; its cursor."""
-        cursor, spring = self.grab_particle + grab, self.grab_spring + grab
-        self.particle_active[cursor] = self.spring_active[spring] = holds
-        self.particle_b[spring] = particle
-        self.law[spring] = LAW_HAND if holds else LAW_NISSEN
+        self._command(GRAB, (self.grab_particle, self.grab_spring, grab, particle), (*target, strength, radius))
         self.hand_version += 1
-        return cursor
 
     def is_held(self, grab: int) -> bool:
         """Whether a grab holds a particle."""
@@ -543,10 +523,9 @@ class World(StateArrays):
         """Whether any grab holds a particle."""
         return any(self.is_held(grab) for grab in range(GRAB_COUNT))
 
-    def move_grab(self, grab: int, target: tuple[float, float]) -> None:
+    def move_grab(self, grab: int, target: Point) -> None:
         """Send a grab's cursor to target [m]: it travels there in the coming tick."""
-        cursor = self.grab_particle + grab
-        self.velocity[cursor] = (np.asarray(target) - self.position[cursor]) * float(self.settings.tick_rate)
+        self._command(MOVE_GRAB, (self.grab_particle, grab), (*target, self.settings.tick_rate))
 
     def end_tick(self) -> None:
         """Count a tick, past the watch over attributes, which takes as long as a tenth of it."""
@@ -554,13 +533,8 @@ class World(StateArrays):
 
     def release(self, grab: int) -> None:
         """Let go; the hand's slots wait for its next use. No bank keeps energy that the hand's work put into it."""
-        # Not begun anew: what overlaps where a hand lets go is no start, at which parting costs nothing.
-        held = np.arange(self.particle_count) == self.particle_b[self.grab_spring + grab]
-        self.energy_bank[(self.energy_bank > 0.0) | (held & (self.energy_bank == 0.0))] = BANK_EMPTIED
-        cursor = self._set_hand(grab, 0, False)
-        self.position[cursor] = self.velocity[cursor] = self.slow_velocity[cursor] = 0.0
-        self.hand_strength[grab] = self.hand_radius[grab] = 0.0
-        self.hand_force[grab] = 0.0
+        self._command(RELEASE, (self.grab_particle, self.grab_spring, grab))
+        self.hand_version += 1
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""
@@ -575,6 +549,10 @@ class World(StateArrays):
         """Drop the names of slots that a restored state does not have."""
         self.particle_naming.forget_beyond(particle_count)
         self.spring_naming.forget_beyond(spring_count)
+
+
+def _lend(world: World) -> Any:
+    return lend(state_of(world), good_of(world))
 
 
 def _collides(world: World) -> bool:

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from sandbox.physics.analysis.motor_readings import MotorReading, motor_readings
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.collision.outline import outline_of
-from sandbox.physics.joints.readings import MotorReading, motor_readings
 from sandbox.physics.world import World
 
 # How names begin of what commands add.

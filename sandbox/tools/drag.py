@@ -4,8 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from sandbox.physics.analysis.query import free_particle_at, grip_radius, nearest_particle
+from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.world import GRAB_COUNT, HAND_STRENGTH
+from sandbox.physics.world import HAND_STRENGTH
 from sandbox.session.commands import Grab, MoveBody, MoveGrab, Release
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.tool import CLICK_SHARE, NOTHING, Point, PointerEvent, Response, Submission, Tool

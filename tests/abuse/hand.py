@@ -11,9 +11,9 @@ from functools import partial
 
 import numpy as np
 
+from sandbox.physics.analysis.pulls import pulls_of
 from sandbox.physics.analysis.query import grip_radius
 from sandbox.physics.analysis.stability import report
-from sandbox.physics.joints.pulls import pulls_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import World
 from sandbox.tools.drag import STRENGTHS

@@ -8,8 +8,8 @@ from sandbox.app.draw.colours import ACCENT
 from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.play.palette import MORE, NAMES
 from sandbox.app.play.stage import CATALOGUE
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.snapshot import state_hash
-from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
 from sandbox.tools.parts import PARTS
 from sandbox.tools.tool import DropPicture
@@ -69,9 +69,9 @@ def test_what_joins_has_its_ticks_laid_out_in_a_frame_before_the_first_and_that_
     before = state_hash(player.world)
     player.frames(1)
     assert player.playback.session.tick == tick and state_hash(player.world) == before
-    layout = layout_of(player.world)
+    pointer = block_of(player.world).pointer
     player.frames(1)
-    assert player.playback.session.tick == tick + 1 and layout_of(player.world) is layout
+    assert player.playback.session.tick == tick + 1 and block_of(player.world).pointer is pointer
 
 
 def test_a_ghost_goes_before_a_click_drops_and_the_run_goes_on(player):

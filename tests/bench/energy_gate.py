@@ -12,12 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.physics.analysis.energy import measure_constraints
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.settings import Substeps, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.substeps import tick_constraint_coefficients
-from sandbox.physics.world import Floats, Slots, World
+from sandbox.physics.world import World
 
 # Kinds of coefficients, and the multiple of its starting energy that no graph may exceed (solver `direct`).
 BOUNDS = {

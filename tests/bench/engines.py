@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.step import step
-from sandbox.physics.world import Floats
 from tests.bench.scenes import GRAVITY, Scene
 
 FRAME = 1.0 / 60.0

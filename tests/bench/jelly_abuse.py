@@ -15,9 +15,10 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level, NissenMaterial, Settings
 from sandbox.level.kinds.jelly import BoxShape, CircleShape, JellyDef, PolygonShape, Shape
 from sandbox.physics.analysis.energy import total_energy
+from sandbox.physics.arrays import Floats
 from sandbox.physics.settings import AUTO
 from sandbox.physics.step import step
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import World
 from sandbox.session.commands import Grab, MoveGrab, Release
 from sandbox.session.session import Session
 

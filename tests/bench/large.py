@@ -11,10 +11,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.every_kernel import call_every_kernel
-from sandbox.physics.solvers.direct.layout import make_layout
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.step import step
-from sandbox.physics.world import Floats
 from tests.bench import scenes
 from tests.bench.engines import pymunk_setting
 
@@ -46,7 +46,8 @@ def row(side: int, seconds: int, with_pymunk: bool) -> str:
     world = scene.world()
     peer = pymunk_setting(1, 10).build(scene) if with_pymunk else None
     first = milliseconds(lambda: step(world))
-    symbolic = milliseconds(lambda: make_layout(world))
+    world.change("spring_active", world.spring_active)
+    symbolic = milliseconds(lambda: block_of(world))
     start = scenes.total_energy(world)
     times, peer_times, squares = [], [], []
     ticks = 60 * seconds

@@ -6,8 +6,9 @@ import numpy as np
 
 from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.analysis.query import load_bearing, strain
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.world import Floats, Slots, World
+from sandbox.physics.world import World
 
 LINK = 0.1
 GRAVITY = 9.81

@@ -133,7 +133,6 @@ class Image:
         return 0, 0, array.size, array.itemsize, where, *array.shape, *array.strides
 
     def _bundle(self, bundle: np.ndarray) -> int:
-        base: Any = bundle.base
         values: list[int] = []
 
         def add(item: Any) -> None:
@@ -143,10 +142,10 @@ class Image:
                 for part in item:
                     add(part)
 
-        add((base.obj if isinstance(base, memoryview) else base).whole.item)
         start = bundle.ctypes.data
         where = self._place(start, bundle.nbytes)
         if start not in self._bundles:
+            add(jit.items_of(bundle))
             self._bundles[start] = bundle
             self._add(PATCH, where, struct.pack(f"<{len(values)}q", *values))
         return where

@@ -44,8 +44,9 @@ def busy_world(solver: str, substeps: int):
 
     from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
     from sandbox.physics.constraints import AREA, BEND
+    from sandbox.physics.marks import LAW_HOOKE
     from sandbox.physics.settings import WorldSettings
-    from sandbox.physics.world import LAW_HOOKE, World
+    from sandbox.physics.world import World
 
     settings = WorldSettings(
         (0.3, -9.81), substeps=substeps, solver=solver, iterations=6, warm_start=0.5, wind=(3.0, 0.5), drag=0.4
@@ -186,7 +187,7 @@ def modes():
     import numpy as np
 
     from sandbox.physics.analysis.firmness import lowest_mode_of
-    from sandbox.physics.forms import StiffForm
+    from sandbox.physics.keeping.forms import StiffForm
 
     generator = np.random.default_rng(1)
     for count in (4, 9, 30):

@@ -12,7 +12,7 @@ from sandbox.level.format.limits import MOTOR_LIMIT
 from sandbox.level.plan.actuators import actuators, driving_keys
 from sandbox.level.reading.parse import parse_level
 from sandbox.level.reading.salvage import salvage
-from sandbox.physics.joints.limited_springs import force_limits
+from sandbox.physics.pipeline.making import block_of
 
 WHEEL = {"type": "wheel", "id": "w", "radius": 1, "thickness": 0.3, "segments": 6}
 ROPE = {"type": "rope", "id": "r", "start": [0, 5], "end": [4, 5], "segments": 4}
@@ -188,5 +188,5 @@ def test_the_force_of_a_muscle_is_that_of_each_of_its_springs_and_of_a_hydraulic
     drive = {"amplitude": 0.2, "period": 9, "force": 5}
     springs = [{"a": "p", "b": "q", "hydraulic": {**HYDRAULIC, "force": 70}}, {"a": "p", "b": "q"}]
     built = build_world(level(bodies=[{**ROPE, "drive": drive}], **ENDS, springs=springs))
-    limits = force_limits(built)[: built.grab_spring]
+    limits = block_of(built).arrays.forces.limit[: built.grab_spring]
     assert limits.tolist() == [5.0] * (len(limits) - 2) + [70.0, np.inf]

@@ -13,9 +13,9 @@ from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.polygon import polygon_grid
 from sandbox.level.plan.plan import kept_plan
 from sandbox.level.reading.files import parse_level
+from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE, LAW_NISSEN
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
-from sandbox.physics.world import GRAB_COUNT, LAW_HOOKE, LAW_NISSEN
 from tests.support.malformed_levels import GOOD, encoded
 
 

@@ -9,14 +9,16 @@ import pytest
 from sandbox.physics.actuators import Actuators, Motors
 from sandbox.physics.collision import close_edges as close
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_RIGHT
-from sandbox.physics.collision.outline import colliders_of, outline_of
+from sandbox.physics.collision.outline import new_colliders, outline_of
 from sandbox.physics.collision.pinned_edges import pinned_edges
 from sandbox.physics.components import label_joined
-from sandbox.physics.joints.motors import motor_groups
+from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.state import state_of
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.topology import sorting
 from sandbox.physics.untangling.jellies import group_triangles
-from sandbox.physics.world import GRAB_MATERIAL
+from tests.support.laid_out import laid_out
 from tests.support.tangles import tangle
 
 SEEDS = range(6)
@@ -115,7 +117,7 @@ def test_an_outline_knows_its_shapes_and_what_lies_inside_and_what_is_held(seed)
 
 def test_terrain_is_filled_in_among_the_colliders():
     world = tangle(0)
-    colliders, count = colliders_of(world, outline_of(world), 3), world.particle_count
+    colliders, count = laid_out(new_colliders, world.terrain, outline_of(world), 3), world.particle_count
     assert np.array_equal(colliders.position[count:], world.terrain.vertex)
     assert np.array_equal(colliders.friction[count + world.terrain.edge_b], world.terrain.friction)
     assert not colliders.position[:count].any() and not colliders.friction[:count].any()
@@ -139,7 +141,7 @@ def test_pinned_edges_are_the_terrain_that_their_ends_make(seed):
     for name in wanted._fields:
         assert np.array_equal(getattr(wanted, name), getattr(outline.pins, name)), name
     none = np.zeros(0, np.int64)
-    assert not len(pinned_edges(world, none, none, none).edge_a)
+    assert not len(laid_out(pinned_edges, state_of(world), none, none, none).edge_a)
 
 
 def apart(one, other, form):
@@ -161,7 +163,7 @@ def test_the_closest_edges_of_lines_come_first_and_all_others_are_beyond(seed, m
     form, shape = generator.uniform(-1.0, 1.0, (40, 2)), np.repeat([0, 1], 20)
     a = generator.permutation(40)[:30]
     b = np.where(shape[a] == 0, (a + 1) % 20, 20 + (a - 19) % 20)
-    found = close.close_edges(form, a, b, shape, np.array([-1, -1 if seed % 2 else 4]))
+    found = laid_out(close.close_edges, form, a, b, shape, np.array([-1, -1 if seed % 2 else 4]))
     for s, pairs in enumerate(lists(found.start, np.arange(len(found.edge)))):
         own = np.flatnonzero(shape[a] == s).tolist()
         wanted = {}
@@ -190,7 +192,7 @@ def test_triangles_that_share_sides_are_one_jelly(seed):
     corners[6:9] = [[27, 28 + k, 29 + k] for k in range(3)]
     is_left = generator.random(count) < 0.1 * seed
     is_left[:9] = True
-    jellies = group_triangles(corners, is_left, 40)
+    jellies = laid_out(group_triangles, corners, is_left, 40)
     sides = [[frozenset((row[c], row[(c + 1) % 3])) for c in range(3)] for row in corners.tolist()]
     for t, u in itertools.combinations(range(count), 2):
         if set(sides[t]) & set(sides[u]):
@@ -281,4 +283,6 @@ def test_a_motor_has_its_wheel_on_one_side_and_its_mount_on_the_other(seed):
     )  # fmt: skip
     world.fit(Actuators(("wheel",), motors=motors), [1.0])
     wanted = [sides_of_motor(world, hub, rim.tolist()) for hub, rim in zip(hubs, rims, strict=True)]
-    assert [(wheel.tolist(), mount.tolist()) for wheel, mount in motor_groups(world)] == wanted
+    sides = block_of(world).arrays.sides
+    groups = lists(sides.first, sides.particle)
+    assert list(zip(groups[::2], groups[1::2], strict=True)) == wanted

@@ -10,13 +10,13 @@ import pytest
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
 from sandbox.physics.analysis.stability import coefficient_limits, report
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.joints.joint_set import joints_of
+from sandbox.physics.marks import LAW_HOOKE
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.linear import matrix_layout
 from sandbox.physics.step import step
-from sandbox.physics.world import LAW_HOOKE, World
+from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
 from tests.support.physics_scenes import run
 
@@ -290,7 +290,7 @@ def test_a_dragged_body_gains_at_most_the_work_that_hand_and_gravity_do(stiffnes
         step(world)
         mean = 0.5 * (before + world.velocity)
         work = h * np.sum(world.mass[free, None] * mean[free] * world.settings.gravity)
-        rows = joints_of(world).rows
+        rows = block_of(world).arrays.joints.rows
         for row in range(2):
             entries = slice(rows.first[row], rows.first[row + 1])
             work += rows.impulse[row] * np.sum(rows.gradient[entries] * mean[rows.particle[entries]])
@@ -361,7 +361,7 @@ def test_a_matrix_too_large_for_its_table_of_updates_gives_the_same_bits(monkeyp
 def test_the_factor_solves_what_a_dense_solver_solves():
     world = energy_gate.random_graphs("any Cs, Cd", 1.0, 3, seed=5).world
     run(world, 1)
-    made = layout_of(world).system
+    made = block_of(world).arrays.system
     matrix, rows, springs, bodies = made.matrix, made.rows, made.springs, made.bodies
     assert sorted(rows.particle.tolist()) == sorted(set(world.particle_a.tolist()) | set(world.particle_b.tolist()))
     count = len(matrix.diagonal)

@@ -5,13 +5,24 @@ import itertools
 import numpy as np
 import pytest
 
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.solvers.direct import choosing
-from sandbox.physics.solvers.direct.layout import make_layout
+from sandbox.physics.solvers.direct.layout import cut_to
+from sandbox.physics.solvers.direct.tuning import tuning
 from sandbox.physics.solvers.linear import dissection, elimination
-from sandbox.physics.solvers.linear.elimination import BODIES, BORDERS, FRONTS, Links, order_for_elimination
+from sandbox.physics.solvers.linear.elimination import (
+    BODIES,
+    BORDERS,
+    COUNTS,
+    FRONTS,
+    SMALL,
+    Links,
+    order_for_elimination,
+)
 from sandbox.physics.solvers.linear.front_layout import new_fronts
 from sandbox.physics.solvers.linear.matrix_layout import new_matrix
 from sandbox.physics.solvers.linear.minimum_degree import order_by_degree
+from tests.support.laid_out import laid_out
 from tests.support.tangles import tangle
 
 SEEDS = range(5)
@@ -35,6 +46,12 @@ def graph(seed, count=90):
     return Links(a, b, np.ascontiguousarray(place[:, 0]), np.ascontiguousarray(place[:, 1]))
 
 
+def ordered(links):
+    """The elimination order of nodes, and how much there is of all."""
+    counts = np.zeros(COUNTS, np.int64)
+    return laid_out(order_for_elimination, links, tuning(), counts), counts.tolist()
+
+
 def fill(count, rank, links):
     """The later rows that each row is joined to by the time that it is eliminated."""
     joined = [set() for _ in range(count)]
@@ -49,7 +66,7 @@ def fill(count, rank, links):
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_order_is_a_permutation_body_by_body(seed, smallest_body):
     links = graph(seed)
-    made, _, _, counts = order_for_elimination(links)
+    (made, _, _), counts = ordered(links)
     count = len(links.x)
     assert sorted(made.order.tolist()) == list(range(count))
     assert np.array_equal(made.rank[made.order], np.arange(count))
@@ -68,11 +85,12 @@ def test_the_order_is_a_permutation_body_by_body(seed, smallest_body):
 @pytest.mark.parametrize("seed", SEEDS)
 def test_every_block_of_the_factor_has_its_place(seed, smallest_body):
     links = graph(seed)
-    made, room, small, counts = order_for_elimination(links)
+    (made, room, small), counts = ordered(links)
     count = len(links.x)
     joined = fill(count, made.rank, links)
-    fronts = new_fronts(count, made.first_front, counts[BODIES], room, counts[FRONTS], counts[BORDERS])
-    matrix = new_matrix(count, small.order[: counts[elimination.SMALL]], small.columns, made.row_of)
+    found = cut_to(room, counts[FRONTS], counts[BORDERS])
+    fronts = laid_out(new_fronts, count, made.first_front, counts[BODIES], found, 10**9)
+    matrix = laid_out(new_matrix, count, small.order[: counts[SMALL]], small.columns, made.row_of)
     of_body = np.diff(made.first_front[: counts[BODIES] + 1]) > 0
     assert np.array_equal(fronts.of_row >= 0, of_body[made.body])
     for row in np.flatnonzero(fronts.of_row < 0).tolist():
@@ -99,27 +117,28 @@ def test_too_little_room_is_asked_for_again(monkeypatch):
     links = graph(1)
     monkeypatch.setattr(dissection, "SMALLEST_BODY", 40)
     monkeypatch.setattr(dissection, "NARROWEST_BORDER", 0.0)
-    wanted = order_for_elimination(links)
-    assert wanted[3][FRONTS] > 1 and wanted[3][elimination.SMALL] > 0
+    wanted, counts = ordered(links)
+    assert counts[FRONTS] > 1 and counts[SMALL] > 0
     monkeypatch.setattr(elimination, "FILL_GUESS", 0)
     monkeypatch.setattr(elimination, "BORDER_GUESS", 1)
-    rooms, room_for_fronts = [], elimination.room_for_fronts
+    rooms, new_dissection = [], elimination.new_dissection
 
-    def less_room(nodes, borders):
+    def less_room(nodes, borders, arena):
         rooms.append(borders)
-        return room_for_fronts(nodes, borders // 8)
+        return new_dissection(nodes, borders // 8, arena)
 
-    monkeypatch.setattr(elimination, "room_for_fronts", less_room)
-    made = order_for_elimination(links)
+    monkeypatch.setattr(elimination, "new_dissection", less_room)
+    made, counts_made = ordered(links)
     assert len(set(rooms)) > 2
-    assert made[3] == wanted[3] and np.array_equal(made[0].order, wanted[0].order)
+    assert counts_made == counts and np.array_equal(made.elimination.order, wanted.elimination.order)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_graph_is_eliminated_with_little_fill(seed):
     links = graph(seed)
     count = len(links.x)
-    order, columns = order_by_degree(count, links.a, links.b)
+    made = laid_out(order_by_degree, count, links.a, links.b)
+    order, columns = made.order, made.columns
     rank = np.empty(count, np.int64)
     rank[order] = np.arange(count)
     joined = fill(count, rank, links)
@@ -133,7 +152,7 @@ def test_a_graph_is_eliminated_with_little_fill(seed):
 def test_everything_lies_where_its_rows_do(seed, narrow, smallest_body, monkeypatch):
     monkeypatch.setattr(choosing, "NARROW", narrow)
     world = tangle(seed)
-    system = make_layout(world).system
+    system = block_of(world).arrays.system
     rows, bodies, springs, constraints = system.rows, system.bodies, system.springs, system.constraints
     free = len(system.matrix.diagonal)
     assert (world.inverse_mass[rows.particle] > 0.0).tolist() == [row < free for row in range(len(rows.particle))]

@@ -10,9 +10,10 @@ from sandbox.physics.analysis.energy import (
     spring_energy,
     spring_lengths,
 )
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
-from sandbox.physics.world import LAW_HOOKE, World
+from sandbox.physics.world import World
 from tests.support.physics_scenes import network, run
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach, least_ratio, lowest_mode_of
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.forms import Firmness, StiffForm
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.keeping.forms import Firmness, StiffForm
 from sandbox.physics.settings import AUTO
 from sandbox.physics.step import step
 from tests.abuse import sag as table

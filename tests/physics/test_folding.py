@@ -10,11 +10,13 @@ import pytest
 from sandbox.physics.analysis.energy import spring_energy, total_energy
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
-from sandbox.physics.untangling.inversion import find_inverted, new_inversions, triangles_of
+from sandbox.physics.untangling.inversion import find_inverted, new_inversions
 from tests.bench import jelly_abuse
 from tests.support import folding
+from tests.support.laid_out import laid_out
 from tests.support.overlaps import overlaps
 from tests.support.physics_scenes import network, run, scaled
 
@@ -94,7 +96,7 @@ def test_a_triangle_that_is_listed_clockwise_keeps_its_side_too(solver):
 
 def test_what_a_moved_pin_folds_is_let_go_and_comes_back():
     world = jelly_abuse.jelly(6, 5)
-    a, b, c = corners = triangles_of(world).corners[0].tolist()
+    a, b, c = corners = block_of(world).arrays.triangles.of_world.corners[0].tolist()
     for corner in corners:
         world.pin(corner)
     way = 0.5 * (world.position[b] + world.position[c]) - world.position[a]
@@ -119,8 +121,8 @@ def test_triangles_that_go_on_round_a_particle_of_the_outline_are_seen_from_ever
     world = network(points, [])
     ring = [[0, 1 + k, 1 + (k + 1) % corners][::way] for k in range(corners if inner else corners - 1)]
     world.add_constraints(AREA, ring)
-    triangles = triangles_of(world)
-    found, marked = new_inversions(triangles), np.zeros(world.particle_count, np.bool_)
+    triangles = block_of(world).arrays.triangles.of_world
+    found, marked = laid_out(new_inversions, triangles.jellies), np.zeros(world.particle_count, np.bool_)
     for between, turned in itertools.product((0.98, 1.02), np.linspace(0.0, math.tau, 17)):
         apart = math.tau / corners if inner else between * math.tau / (corners - 1)
         turn = turned + apart * np.arange(corners)
@@ -174,8 +176,8 @@ def test_a_gap_in_an_outline_opens_and_closes_freely_while_it_is_wide(solver):
 def test_triangles_that_lie_over_each_other_in_their_own_form_are_not_out_of_shape(triangles, way):
     world = network([(0, 0), (1, 0), (0.6, 1), (0.9, 0.3)], [(0, 3)])
     world.add_constraints(AREA, [each[::way] for each in triangles])
-    made = triangles_of(world)
-    found, marked = new_inversions(made), np.zeros(world.particle_count, np.bool_)
+    made = block_of(world).arrays.triangles.of_world
+    found, marked = laid_out(new_inversions, made.jellies), np.zeros(world.particle_count, np.bool_)
     for turned in np.linspace(0.0, math.tau, 17):
         x, y = world.origin.T
         world.position[:4] = np.stack(

@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from sandbox.physics.analysis.pulls import pulls_of
 from sandbox.physics.analysis.query import grip_radius
 from sandbox.physics.analysis.stability import report
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.joints.hands import FASTEST_HAND, grips_of
-from sandbox.physics.joints.pulls import pulls_of
+from sandbox.physics.joints.hands import FASTEST_HAND
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_STRENGTH
@@ -205,7 +206,7 @@ def test_a_hand_reaches_into_soft_bodies_alone_and_all_through_them():
     assert grip_radius(soft, corner) == pytest.approx(2.0 * math.sqrt(2.0))
     assert grip_radius(stiff, 0) == grip_radius(rope(), 3) == 0.0
     soft.hold(0, corner, (-0.5, 0.5), radius=grip_radius(soft, corner))
-    grips = grips_of(soft)
+    grips = block_of(soft).arrays.joints.hands.grips
     assert len(grips.particle) == 81 and grips.share.sum() == pytest.approx(1.0)
     assert grips.particle[np.argmax(grips.share)] == corner
 
@@ -230,10 +231,13 @@ def test_a_hand_keeps_the_part_of_a_torn_body_that_it_has_its_point_in():
     world = network([(x, 0.0) for x in range(6)], [(x, x + 1) for x in range(5)], solver="direct")
     world.change("owner", 0, slice(6))
     world.hold(0, 1, (1.0, 0.0), radius=10.0)
-    assert grips_of(world).mass.tolist() == [6.0] and len(grips_of(world).particle) == 6
+    assert (
+        block_of(world).arrays.joints.hands.grips.mass.tolist() == [6.0]
+        and len(block_of(world).arrays.joints.hands.grips.particle) == 6
+    )
     world.cut([2])
-    assert grips_of(world).mass.tolist() == [3.0]
-    assert grips_of(world).particle.tolist() == [0, 1, 2]
+    assert block_of(world).arrays.joints.hands.grips.mass.tolist() == [3.0]
+    assert block_of(world).arrays.joints.hands.grips.particle.tolist() == [0, 1, 2]
 
 
 @pytest.mark.parametrize("solver", list(SOLVERS))

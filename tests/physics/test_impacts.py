@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.contact_points import contact_points
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, TERRAIN_GROUP
 from sandbox.physics.solvers.contact.small_steps import small_steps
-from sandbox.physics.state import Floats
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, FLOOR, Chain, add_discs, world

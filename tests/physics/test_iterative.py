@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.query import strain
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
-from sandbox.physics.world import LAW_HOOKE
 from tests.support.physics_scenes import grid, grid_with_diagonals, lengths, network, random_graph, run, scaled
 
 

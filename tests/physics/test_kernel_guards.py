@@ -110,7 +110,6 @@ def of_bundle(numbers, share):
 def of_tuple(whole, share):
     fill(whole, share)
 
-assert jit.COMPILED
 whole = Whole(Part(np.array([0.1, 0.2, 0.7]), np.array([0.3])), np.zeros(3))
 of_bundle(jit.bundle(whole), 1.1)
 outcome = [whole.total.tobytes().hex()]

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.linear import dissection, parallel
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -19,7 +19,7 @@ from tests.support.physics_scenes import run
 
 
 def by_fronts(world: World) -> bool:
-    return len(layout_of(world).system.fronts.first) > 0
+    return len(block_of(world).arrays.system.fronts.first) > 0
 
 
 def mesh(seed: int, count: int = 500) -> World:
@@ -62,7 +62,7 @@ def play(world: World, ticks: int) -> World:
 @pytest.mark.parametrize("seed", [1, 2])
 def test_every_front_holds_all_that_its_rows_are_joined_to(seed):
     world = mesh(seed)
-    system = layout_of(world).system
+    system = block_of(world).arrays.system
     fronts, springs = system.fronts, system.springs
     borders = np.split(fronts.border, fronts.border_start[1:-1])
     own = [list(range(first, last)) for first, last in zip(fronts.first, fronts.last, strict=True)]
@@ -85,7 +85,7 @@ def test_the_order_follows_from_springs_pins_and_creation_alone():
     for particle in (50,):
         built.pin(particle)
     built.cut([333, 10, 200])
-    assert np.array_equal(layout_of(played).system.rows.particle, layout_of(built).system.rows.particle)
+    assert np.array_equal(block_of(played).arrays.system.rows.particle, block_of(built).arrays.system.rows.particle)
     assert not np.array_equal(played.position, built.position)
 
 

@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 
 from sandbox.physics.jit import COMPILED, waiting_kernel
+from sandbox.physics.pipeline import making
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.snapshot import state_hash
-from sandbox.physics.solvers.direct import layout
-from sandbox.physics.solvers.direct.layout import layout_of
 from sandbox.physics.solvers.linear import dissection, parallel
 from sandbox.physics.solvers.linear.locks import give, has_locks, take
 from tests.bench import scenes
 from tests.physics.test_large import mesh, play, run
+from tests.support.laid_out import laid_out
 
 
 @waiting_kernel
@@ -37,14 +38,14 @@ def small_bodies_have_halves(monkeypatch):
 @pytest.fixture
 def hired(monkeypatch):
     """The second threads that a test brings about."""
-    threads, start_helper = [], parallel.start_helper
+    helpers, start_helper = [], parallel.start_helper
 
     def hire_and_tell(*arguments):
-        threads.append(start_helper(*arguments))
-        return threads[-1]
+        helpers.append(start_helper(*arguments))
+        return helpers[-1]
 
-    monkeypatch.setattr(layout, "start_helper", hire_and_tell)
-    return threads
+    monkeypatch.setattr(making, "start_helper", hire_and_tell)
+    return helpers
 
 
 def hash_after_play(seed):
@@ -53,7 +54,7 @@ def hash_after_play(seed):
 
 @pytest.mark.parametrize("build", [lambda: mesh(1), lambda: mesh(2), lambda: scenes.lattice(24).world()])
 def test_neither_half_of_a_body_is_joined_to_the_other(build):
-    fronts = layout_of(build()).system.fronts
+    fronts = block_of(build()).arrays.system.fronts
     begin, end = fronts.fork[-1]
     assert 0 < begin < end < len(fronts.first)
     half = np.select([np.arange(len(fronts.first)) < begin, np.arange(len(fronts.first)) < end], [0, 1], 2)
@@ -66,7 +67,7 @@ def test_neither_half_of_a_body_is_joined_to_the_other(build):
 
 @pytest.mark.parametrize("build", [lambda: mesh(1), lambda: scenes.lattice(24).world()])
 def test_halves_wait_for_what_is_above_them_in_places_of_their_own(build):
-    fronts = layout_of(build()).system.fronts
+    fronts = block_of(build()).arrays.system.fronts
     begin, end = fronts.fork[-1]
     border = 2 * np.diff(fronts.border_start)
     ends = fronts.remains + border * border
@@ -77,7 +78,7 @@ def test_halves_wait_for_what_is_above_them_in_places_of_their_own(build):
 def test_the_second_half_is_the_one_that_leaves_the_least_to_do_in_turn():
     child = np.array([[-1, -1], [-1, -1], [0, 1], [-1, -1], [-1, -1], [3, 4], [2, 5]])
     before = np.zeros(8, dtype=np.int64)
-    fronts = dissection.room_for_fronts(7, 0)._replace(child=child)
+    fronts = laid_out(dissection.new_dissection, 7, 0)._replace(child=child)
     for last, halves in (np.arange(10, 80, 10), (3, 6)), (np.array([1, 2, 3, 13, 23, 33, 43]), (4, 5)):
         fronts = fronts._replace(first=np.append(0, last[:-1]), last=last)
         assert parallel.find_fork(0, 7, fronts, before, 1) == halves
@@ -85,8 +86,8 @@ def test_the_second_half_is_the_one_that_leaves_the_least_to_do_in_turn():
 
 def test_a_body_that_gains_too_little_has_one_half_only(monkeypatch):
     monkeypatch.undo()
-    assert not layout_of(scenes.lattice(24).world()).system.fronts.fork.any()
-    assert layout_of(scenes.lattice(64).world()).system.fronts.fork.any()
+    assert not block_of(scenes.lattice(24).world()).arrays.system.fronts.fork.any()
+    assert block_of(scenes.lattice(64).world()).arrays.system.fronts.fork.any()
 
 
 @pytest.mark.parametrize("seed", [11, 12])
@@ -98,7 +99,7 @@ def test_one_thread_and_two_give_the_same_bits(seed, monkeypatch):
 
 def test_halves_and_the_sparse_factorisation_agree(monkeypatch):
     world = play(mesh(4), 8)
-    assert layout_of(world).system.fronts.fork.any()
+    assert block_of(world).arrays.system.fronts.fork.any()
     monkeypatch.setattr(dissection, "SMALLEST_BODY", 10**9)
     assert np.abs(play(mesh(4), 8).position - world.position).max() < 1e-9
 
@@ -116,21 +117,20 @@ def test_a_fresh_process_computes_the_same_bits_of_halves(interpreted):
 def test_the_second_thread_ends_with_the_pattern_that_it_serves(hired):
     world = mesh(13)
     run(world, 2)
-    assert [thread.is_alive() for thread in hired] == [True]
+    assert [helper.thread.is_alive() for helper in hired] == [True]
     world.cut([10])
     run(world, 2)
-    hired[0].join()
-    assert [thread.is_alive() for thread in hired] == [False, True]
+    assert [helper.thread.is_alive() for helper in hired] == [False, True]
     del world
-    hired[1].join()
-    assert not hired[1].is_alive()
+    hired[1].thread.join()
+    assert not hired[1].thread.is_alive()
 
 
 @pytest.mark.skipif(not has_locks(), reason="there is one thread only")
 def test_the_second_thread_takes_the_half_that_is_offered_and_touches_no_other_row():
     world, alone = mesh(14), mesh(14)
-    fronts = layout_of(world).system.fronts
-    change = layout_of(world).system.rows.delta_v
+    fronts = block_of(world).arrays.system.fronts
+    change = block_of(world).arrays.system.rows.delta_v
     run(world, 1)
     run(alone, 1)
     body = len(fronts.first) - 1

@@ -5,9 +5,9 @@ import pytest
 
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
 from sandbox.physics.analysis.stability import report
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
-from sandbox.physics.world import LAW_HOOKE
 from tests.support.physics_scenes import SCENES, STILL, lengths, network, random_graph, run, scaled
 
 SUBSTEPS = (1, 2, 4, 8, 16, 32, 64)

@@ -14,8 +14,9 @@ from sandbox.physics.analysis.stability import (
     largest_eigenvalue,
     report,
 )
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.substeps import substep_coefficients, substep_time
-from sandbox.physics.world import LAW_HOOKE, World
+from sandbox.physics.world import World
 from tests.support.physics_scenes import (
     SCENES,
     girder,

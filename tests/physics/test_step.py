@@ -5,12 +5,13 @@ import math
 import numpy as np
 import pytest
 
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.substeps import halve, substep_coefficients, substep_time
-from sandbox.physics.world import LAW_HOOKE, World
+from sandbox.physics.world import World
 from tests.support.physics_scenes import STILL, grid_with_diagonals, lengths, network, run, scaled
 
 every_solver = pytest.mark.parametrize("solver", list(SOLVERS))

@@ -5,12 +5,13 @@ import pytest
 
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
 from sandbox.physics.constraints import AREA
+from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import take
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import FAMILIES, Family
 from sandbox.physics.step import step
-from sandbox.physics.world import GRAB_COUNT, LAW_HOOKE, World
+from sandbox.physics.world import World
 from tests.support.physics_scenes import STILL, grid_with_diagonals, network, rope, run, scaled
 
 

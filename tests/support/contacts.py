@@ -1,11 +1,12 @@
 """The contacts of a world's last step, for tests."""
 
-from sandbox.physics.collision.types import Contacts, room_for
+from sandbox.physics.arrays import empty
+from sandbox.physics.collision.types import Contacts
 from sandbox.physics.pipeline.collide import CONTACTS, Collisions
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.world import World
 
-NO_CONTACTS = room_for(0)
+NO_CONTACTS = empty(Contacts)
 
 
 def collisions_of(world: World) -> Collisions:

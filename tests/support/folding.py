@@ -8,9 +8,12 @@ import numpy as np
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import total_energy
+from sandbox.physics.arrays import Floats
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.step import step
-from sandbox.physics.untangling.inversion import find_inverted, new_inversions, triangles_of
-from sandbox.physics.world import Floats, World
+from sandbox.physics.untangling.inversion import find_inverted, new_inversions
+from sandbox.physics.world import World
+from tests.support.laid_out import laid_out
 
 DEEDS = ("dropped", "squeezed", "thrown", "stirred")
 SHAPES: dict[str, Any] = {
@@ -111,7 +114,7 @@ def drawn_through() -> World:
 
 def areas(world: World, body: str = "") -> Floats:
     """Areas of all triangles of a world, or of a body, as shares of those wanted."""
-    triangles = triangles_of(world)
+    triangles = block_of(world).arrays.triangles.of_world
     place = world.position[triangles.corners]
     a, b = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
     area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / world.constraint_rest[triangles.constraint, 0]
@@ -121,8 +124,8 @@ def areas(world: World, body: str = "") -> Floats:
 
 def is_any_wound(world: World) -> bool:
     """Whether triangles about a particle of an outline go on round it, of a jelly that is not inverted."""
-    triangles = triangles_of(world)
-    found, marked = new_inversions(triangles), np.zeros(world.particle_count, np.bool_)
+    triangles = block_of(world).arrays.triangles.of_world
+    found, marked = laid_out(new_inversions, triangles.jellies), np.zeros(world.particle_count, np.bool_)
     find_inverted(world.position, world.constraint_rest, triangles, found, marked)
     return bool(marked[triangles.corners[triangles.jellies.first, 0]][~found.is_inverted].any())
 

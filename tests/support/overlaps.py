@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.outline import Outline, outline_of
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import World
 
 
 class Found(NamedTuple):

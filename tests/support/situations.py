@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session
 

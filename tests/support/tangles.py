@@ -3,9 +3,10 @@
 import numpy as np
 
 from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.marks import LAW_HOOKE, LAW_NISSEN
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.terrain import Chain, make_terrain
-from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN, World
+from sandbox.physics.world import World
 
 
 def tangle(seed: int, count: int = 40) -> World:

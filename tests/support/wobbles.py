@@ -9,9 +9,10 @@ import numpy as np
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
+from sandbox.physics.arrays import Floats
 from sandbox.physics.constraints import AREA
 from sandbox.physics.step import step
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import World
 
 # How far the body is bent at first, as a share of its size: little enough to move as linear theory has it.
 BENT = 1e-5

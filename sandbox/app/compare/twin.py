@@ -5,7 +5,8 @@ from typing import Self
 import numpy as np
 
 from sandbox.app.run.playback import Playback
-from sandbox.physics.world import LAW_HOOKE, World
+from sandbox.physics.marks import LAW_HOOKE
+from sandbox.physics.world import World
 from sandbox.session.commands import Command, SetCoefficients, SetFirmness, SetSolver
 from sandbox.session.log import Branch
 

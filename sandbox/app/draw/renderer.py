@@ -24,9 +24,9 @@ from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
+from sandbox.physics.analysis.pulls import Pull
 from sandbox.physics.analysis.query import shown_particles, shown_springs
-from sandbox.physics.equipment import Joined
-from sandbox.physics.joints.pulls import Pull
+from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.terrain import Terrain
 

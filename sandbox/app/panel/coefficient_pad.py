@@ -17,7 +17,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.body_motion import BodyMotion, word_edges
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones
 from sandbox.physics.analysis.spring_motion import swings_back
-from sandbox.physics.world import Floats
+from sandbox.physics.arrays import Floats
 
 # Sizes in layout units: what stands around the map, and of what is on it.
 LEFT, RIGHT, TOP, BOTTOM = 38.0, 8.0, 18.0, 34.0

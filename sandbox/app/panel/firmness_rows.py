@@ -19,7 +19,7 @@ from sandbox.physics.analysis.body_motion import BodyMotion, BodyReading, presen
 from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, lowest_mode_of
 from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.analysis.standing import StandingRun
-from sandbox.physics.forms import Firmness
+from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import SetFirmness
 

@@ -31,7 +31,8 @@ from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.analysis.firmness import WORDS
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
-from sandbox.physics.world import LAW_HOOKE, Floats
+from sandbox.physics.arrays import Floats
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients
 
 # Sizes in layout units.

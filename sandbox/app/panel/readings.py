@@ -7,8 +7,8 @@ import numpy as np
 from sandbox.physics.analysis.body_motion import FLAT
 from sandbox.physics.analysis.spring_motion import SpringMotion
 from sandbox.physics.analysis.stability import CoefficientLimits
+from sandbox.physics.arrays import Floats
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.world import Floats
 
 # Names of powers of a thousand, the least first.
 _PREFIXES = {-9: "n", -6: "\u00b5", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}

@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from sandbox.app.draw.camera import Camera
+from sandbox.physics.arrays import Slots
 from sandbox.physics.components import body_of
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.state import Slots
 from sandbox.physics.world import World
 
 # The camera makes up all but a third of what it is behind in so long [s].

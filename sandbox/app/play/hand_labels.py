@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import BACKGROUND, TEXT, WARNING
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.joints.pulls import Pull
+from sandbox.physics.analysis.pulls import Pull
 from sandbox.physics.snapshot import Snapshot
 
 # Sizes in layout units: of the text, and how far from the cursor it is.

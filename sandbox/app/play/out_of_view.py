@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from sandbox.app.draw.camera import Box
 from sandbox.app.run.playback import Playback
 from sandbox.physics.analysis.query import shown_particles
+from sandbox.physics.arrays import Slots
 from sandbox.physics.components import body_of
-from sandbox.physics.state import Slots
 from sandbox.physics.world import World
 from sandbox.session.commands import MoveBody
 

@@ -44,8 +44,8 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.document.model import Level
+from sandbox.physics.analysis.motor_readings import motor_readings
 from sandbox.physics.analysis.query import shown_particles, shown_springs
-from sandbox.physics.joints.readings import motor_readings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.tools.drag import STRENGTHS
 from sandbox.tools.play_tool import PlayTool

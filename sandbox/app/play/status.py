@@ -10,7 +10,7 @@ from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFAC
 from sandbox.app.panel.readings import number
 from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.joints.readings import MotorReading
+from sandbox.physics.analysis.motor_readings import MotorReading
 
 # Sizes in layout units.
 STATUS_HEIGHT = 30.0

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from sandbox.app.sound.bank import Note, note
 from sandbox.app.sound.timbre import Timbres, timbres_of
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.substeps import substep_time
-from sandbox.physics.world import GRAB_COUNT, World
+from sandbox.physics.world import World
 
 # A blow is heard from this change of velocity on [m/s], and is as loud as any at the other.
 SOFTEST, HARDEST = 0.35, 9.0

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sandbox.app.draw.looks import GRAINS, STRANDS, Look, ball_look, body_looks
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.document.model import Level
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.world import World
 
 # What the stuff of a skin, a line or a ball sounds like.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.physics.world import Floats
+from sandbox.physics.arrays import Floats
 
 # Sags (k,) of pairs of Cs and Cd (k,) each.
 SagOf = Callable[[Floats, Floats], Floats]

@@ -11,7 +11,7 @@ from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
-from sandbox.physics.equipment import Joined
+from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.world import World
 
 Shift = tuple[float, float]

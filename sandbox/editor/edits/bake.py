@@ -19,7 +19,7 @@ from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.geometry import Points
 from sandbox.physics.analysis.firmness import FirmnessRange
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.forms import Firmness
+from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.world import World
 
 # Digits of the frequency and damping ratio that a body keeps.

@@ -11,9 +11,10 @@ from sandbox.level.plan.constraints import add_constraints
 from sandbox.level.plan.forms import add_forms
 from sandbox.level.plan.materials import coefficients
 from sandbox.physics.analysis.stability import BOUND, spring_loads
+from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.world import LAW_NISSEN, World
+from sandbox.physics.world import World
 
 
 def springs_past_limits(level: Level, scene: Scene) -> Rule:

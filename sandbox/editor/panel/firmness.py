@@ -18,7 +18,7 @@ from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
 from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach
 from sandbox.physics.equation import of_body
-from sandbox.physics.forms import Firmness
+from sandbox.physics.keeping.forms import Firmness
 
 # What the menu of words says of a body that is as its material is, and of one whose firmness has no word.
 OF_MATERIAL = "as material"

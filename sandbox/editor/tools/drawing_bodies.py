@@ -19,7 +19,7 @@ from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach
-from sandbox.physics.forms import Firmness
+from sandbox.physics.keeping.forms import Firmness
 
 AnyBodyOptions = TypeVar("AnyBodyOptions", bound=BodyOptions)
 AnyLineOptions = TypeVar("AnyLineOptions", bound=LineOptions)

@@ -29,11 +29,11 @@ from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.axles import free_wheels
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
 from sandbox.level.reading.parse import parse_level
+from sandbox.physics.arrays import Slots
 from sandbox.physics.changing.joining import Place, append_state, equipped
 from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.driving import drive_muscles
-from sandbox.physics.equipment import Joined
-from sandbox.physics.state import Slots
+from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.world import World
 
 SOURCE = "add_body"

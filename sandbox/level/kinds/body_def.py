@@ -27,7 +27,7 @@ from sandbox.level.format.quantities import (
     empty,
     unit,
 )
-from sandbox.physics.forms import Firmness
+from sandbox.physics.keeping.forms import Firmness
 
 End = Literal["start", "end"]
 

@@ -14,7 +14,7 @@ from sandbox.level.format.quantities import Description
 from sandbox.level.kinds.body_def import BendingDef, BodyDef
 from sandbox.level.kinds.geometry import Pairs, Points, distances
 from sandbox.physics.collision.filter import LINE
-from sandbox.physics.forms import StiffForm
+from sandbox.physics.keeping.forms import StiffForm
 
 Body = TypeVar("Body", bound=BodyDef)
 Floats = NDArray[np.float64]

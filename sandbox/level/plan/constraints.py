@@ -11,7 +11,8 @@ from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion
 from sandbox.level.plan.layout import Layout
 from sandbox.level.plan.welds import Slots
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.world import OWN_MATERIAL, World
+from sandbox.physics.marks import OWN_MATERIAL
+from sandbox.physics.world import World
 
 
 def add_constraints(

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from sandbox.level.document.model import HookeMaterial, Material
 from sandbox.physics.actuators import NEVER, StrainLimits
-from sandbox.physics.world import LAW_HOOKE, LAW_NISSEN
+from sandbox.physics.marks import LAW_HOOKE, LAW_NISSEN
 
 
 def coefficients(material: NDArray[np.int64], materials: dict[str, Material]) -> dict[str, NDArray[np.generic]]:

@@ -11,12 +11,13 @@ import numpy as np
 
 from sandbox.physics.analysis.firmness import STANDING, WORDS, lowest_mode_of
 from sandbox.physics.analysis.spring_motion import SpringMotion, motion_of
+from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
-from sandbox.physics.forms import StiffForm, strength_of
+from sandbox.physics.keeping.forms import StiffForm, strength_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import divide, halve, substep_coefficients, substep_time
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import World
 
 # Beyond this share of its height a body lies flat, and a sag says little.
 FLAT = 0.5

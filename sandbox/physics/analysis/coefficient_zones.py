@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.physics.analysis.stability import BOUND, demand_limit, largest_eigenvalue, most_springs
+from sandbox.physics.arrays import Floats
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import halve
-from sandbox.physics.world import Floats, World
+from sandbox.physics.world import World
 
 # Steps of the bisection that finds where a zone ends: to 1e-6 of the range.
 BISECTIONS = 20

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.filter import LINE, SOLID_RIGHT
 from sandbox.physics.collision.narrow_phase import DISC, EDGE, INSIDE, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.geometry.segment import lengths, nearest_on_segments
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.state import Floats, Slots
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
 

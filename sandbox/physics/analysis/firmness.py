@@ -19,8 +19,9 @@ from sandbox.physics.equation import (
     frequency_from_coefficients,
     of_springs,
 )
-from sandbox.physics.forms import Firmness, StiffForm, strength_of
-from sandbox.physics.world import BANK_UNOPENED, World
+from sandbox.physics.keeping.forms import Firmness, StiffForm, strength_of
+from sandbox.physics.marks import BANK_UNOPENED
+from sandbox.physics.world import World
 
 # F^2 sag H / g of a box that stands on the floor, which holds its foot: 0.75 of that of a free column.
 STANDING = 0.0565

@@ -13,14 +13,14 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.forms import StiffForm
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.jit import kernel
-from sandbox.physics.solvers.linear.matrix_layout import find_blocks, new_matrix
-from sandbox.physics.solvers.linear.minimum_degree import order_by_degree
+from sandbox.physics.keeping.forms import StiffForm
+from sandbox.physics.solvers.linear.matrix_layout import find_blocks, matrix_of_graph
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix, back_substitute, factorise
-from sandbox.physics.world import Floats, Slots, World
+from sandbox.physics.world import World
 
 # S + SHIFT M is factored, as S itself has no inverse. A higher one slows the iteration down in slender forms, whose
 # lowest modes are as small; a lower one loses digits.
@@ -133,10 +133,7 @@ def _find(form: StiffForm) -> float:
                 owner.append(chosen)
     joined = _CornerPairs(*(np.concatenate([np.zeros(0, np.int64), *part]) for part in (one, other, owner)))
     apart = np.flatnonzero(rows.node[joined.one] != rows.node[joined.other])
-    order, columns = order_by_degree(count, rows.node[joined.one[apart]], rows.node[joined.other[apart]])
-    rank = np.empty(count, dtype=np.int64)
-    rank[order] = np.arange(count)
-    matrix = new_matrix(count, order, columns, rank)
+    matrix, order, rank = matrix_of_graph(count, rows.node[joined.one[apart]], rows.node[joined.other[apart]])
     _assemble(matrix, rows, joined, mass, rank)
     vector, rigid = _start(points[order], mass[order])
     rows = rows._replace(node=rank[rows.node])

@@ -3,11 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.geometry.segment import distances_from_segments, doubled_areas, lengths
+from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.state import BY_STORED, Family
-from sandbox.physics.world import GRAB_COUNT, Floats, Slots, World
+from sandbox.physics.world import World
 
 Point = tuple[float, float]
 

@@ -20,9 +20,11 @@ from numpy.typing import NDArray
 
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
 from sandbox.physics.analysis.query import slot_name
+from sandbox.physics.arrays import Floats
+from sandbox.physics.marks import LAW_HAND, LAW_HOOKE
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import halve, substep_time
-from sandbox.physics.world import LAW_HAND, LAW_HOOKE, Floats, World
+from sandbox.physics.world import World
 
 # (Cs + 2 Cd) times an eigenvalue stays below this, or the mode grows; from the linear theory, not a setting.
 BOUND = 4.0

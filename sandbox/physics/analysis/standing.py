@@ -6,7 +6,7 @@ import numpy as np
 
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.forms import StiffForm
+from sandbox.physics.keeping.forms import StiffForm
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain, make_terrain

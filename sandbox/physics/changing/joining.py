@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
-from sandbox.physics.equipment import Equipment
-from sandbox.physics.state import FAMILIES, Family, Slots
+from sandbox.physics.arrays import Slots
+from sandbox.physics.keeping.equipment import Equipment
+from sandbox.physics.state import FAMILIES, Family
 from sandbox.physics.world import World
 
 Parts = TypeVar("Parts", Muscles, Hydraulics)

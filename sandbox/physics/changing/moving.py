@@ -3,7 +3,8 @@
 import numpy as np
 
 from sandbox.physics.components import body_of
-from sandbox.physics.world import BANK_UNOPENED, World
+from sandbox.physics.marks import BANK_UNOPENED
+from sandbox.physics.world import World
 
 
 def move_body(world: World, particle: int, by: tuple[float, float], limit: float, at_rest: bool = False) -> bool:

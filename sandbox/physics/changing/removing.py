@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from sandbox.physics.state import Slots
-from sandbox.physics.world import GRAB_COUNT, World
+from sandbox.physics.arrays import Slots
+from sandbox.physics.marks import GRAB_COUNT
+from sandbox.physics.world import World
 
 
 def remove_particles(world: World, particles: Slots) -> None:

@@ -7,12 +7,10 @@ looked at by everybody. Buckets hold objects in ascending order, so the order of
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slot_rows, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel, unsigned
-from sandbox.physics.state import Floats, Slots
 
 # Cell in units of the mean box: smaller puts an object into many cells, larger many objects into a cell.
 CELL_SIZE = 1.0
@@ -32,7 +30,7 @@ class Boxes(NamedTuple):
     (o,): whether others look for it. filter (n,): the groups that a particle looks for.
     """
 
-    box: Floats
+    box: FloatRows
     is_target: Flags
     filter: Slots
 
@@ -45,7 +43,7 @@ class Grid(NamedTuple):
     number, + 1 in the first column of its cells, + 2 in their first row; object and cell have room for more.
     """
 
-    cells: Slots
+    cells: SlotRows
     large: Slots
     start: Slots
     at: Slots
@@ -68,7 +66,7 @@ class Candidates(NamedTuple):
 
     pairs: Pairs
     terrain: Pairs
-    box: Floats
+    box: FloatRows
 
 
 @inner_kernel
@@ -247,22 +245,25 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
     return count
 
 
-def new_boxes(particles: int, objects: int) -> Boxes:
+@inner_kernel
+def new_boxes(particles: int, objects: int, arena: Arena) -> Boxes:
     """Boxes to be filled in."""
-    return Boxes(np.zeros((objects, 4)), np.zeros(objects, np.bool_), np.zeros(particles, np.int64))
+    return Boxes(new_float_rows(arena, objects, 4), new_flags(arena, objects), new_slots(arena, particles))
 
 
-def new_grid(objects: int, entries: int) -> Grid:
+@inner_kernel
+def new_grid(objects: int, entries: int, arena: Arena) -> Grid:
     """A grid for a number of objects, with room for a number of entries."""
     buckets = 16
     while buckets < 4 * objects:
         buckets *= 2
     return Grid(
-        np.zeros((objects, 4), np.int64), np.zeros(objects, np.int64), np.zeros(buckets + 1, np.int64),
-        np.zeros(buckets, np.int64), np.zeros(entries, np.int64), np.zeros(entries, np.int64),
+        new_slot_rows(arena, objects, 4), new_slots(arena, objects), new_slots(arena, buckets + 1),
+        new_slots(arena, buckets), new_slots(arena, entries), new_slots(arena, entries),
     )  # fmt: skip
 
 
-def new_pairs(particles: int, capacity: int) -> Pairs:
+@inner_kernel
+def new_pairs(particles: int, capacity: int, arena: Arena) -> Pairs:
     """Empty pairs, with room for a number of them."""
-    return Pairs(np.zeros(particles + 1, np.int64), np.zeros(capacity, np.int64))
+    return Pairs(new_slots(arena, particles + 1), new_slots(arena, capacity))

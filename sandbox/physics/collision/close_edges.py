@@ -3,11 +3,10 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_floats, new_slot_rows, new_slots
+from sandbox.physics.arrays import Floats, SlotRows, Slots
 from sandbox.physics.equation import SHORTEST
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import list_by_key, sort_by_value
 
 # Forms of more edges are not looked at, their pairs are too many; of the others so many pairs for each edge are kept.
@@ -25,7 +24,7 @@ class CloseEdges(NamedTuple):
     """
 
     start: Slots
-    edge: Slots
+    edge: SlotRows
     distance: Floats
     beyond: Floats
 
@@ -51,9 +50,6 @@ class PairScratch(NamedTuple):
     order: Slots
     spare: Slots
     distance: Floats
-
-
-NO_CLOSE_EDGES = CloseEdges(np.zeros(1, np.int64), np.zeros((0, 2), np.int64), np.zeros(0), np.zeros(0))
 
 
 @inner_kernel
@@ -159,21 +155,30 @@ def find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) -> 
     return top
 
 
-@kernel
-def _find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) -> int:
-    return find_close_edges(given, found, work)
+@inner_kernel
+def no_close_edges(arena: Arena) -> CloseEdges:
+    """Of no edges."""
+    return CloseEdges(new_slots(arena, 1), new_slot_rows(arena, 0, 2), new_floats(arena, 0), new_floats(arena, 0))
 
 
-def close_edges(form: Floats, a: Slots, b: Slots, shape: Slots, solid_of: Slots) -> CloseEdges:
+@inner_kernel
+def close_edges(form: Floats, a: Slots, b: Slots, shape: Slots, solid_of: Slots, arena: Arena) -> CloseEdges:
     """The close edges, a[k] to b[k], of forms [m] (n, 2); shape (n,): of each place; solid_of (s,): -1: looked at."""
-    edges, shapes = len(a), len(solid_of)
-    if not edges:
-        return NO_CLOSE_EDGES
-    longest = min(edges, MOST_EDGES)
-    pairs, room = max(longest * longest // 2, CLASSES), KEPT * edges
-    key, listed = np.zeros((2, edges), np.int64)
-    one, other, order, spare = np.zeros((4, pairs), np.int64)
-    work = PairScratch(key, listed, np.zeros(shapes + 1, np.int64), one, other, order, spare, np.zeros(pairs))
-    found = CloseEdges(np.zeros(shapes + 1, np.int64), np.zeros((room, 2), np.int64), np.zeros(room), np.zeros(shapes))
-    count = _find_close_edges(FormEdges(form, a, b, shape, solid_of), found, work)
-    return found._replace(edge=found.edge[:count], distance=found.distance[:count])
+    edges, shapes = a.shape[0], solid_of.shape[0]
+    if edges == 0:
+        return no_close_edges(arena)
+    longest, room = min(edges, MOST_EDGES), KEPT * edges
+    pairs = max(longest * longest // 2, CLASSES)
+    found = CloseEdges(
+        new_slots(arena, shapes + 1), new_slot_rows(arena, room, 2), new_floats(arena, room), new_floats(arena, shapes)
+    )
+    start = mark(arena)
+    work = PairScratch(
+        new_slots(arena, edges), new_slots(arena, edges), new_slots(arena, shapes + 1), new_slots(arena, pairs),
+        new_slots(arena, pairs), new_slots(arena, pairs), new_slots(arena, pairs), new_floats(arena, pairs),
+    )  # fmt: skip
+    if is_full(arena):
+        return found
+    count = find_close_edges(FormEdges(form, a, b, shape, solid_of), found, work)
+    give_back(arena, start)
+    return CloseEdges(found.start, found.edge[:count], found.distance[:count], found.beyond)

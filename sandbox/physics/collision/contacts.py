@@ -7,6 +7,7 @@ manifold: two points at which two bodies touch are two contacts.
 
 import math
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.broad_phase import WITH_ALL, WITH_EDGES, WITH_NOTHING, Boxes, Candidates, Pairs
 from sandbox.physics.collision.edge_geometry import CORNER, is_enclosed
 from sandbox.physics.collision.entered import find_entered
@@ -27,7 +28,6 @@ from sandbox.physics.collision.tips import find_tips
 from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near
 from sandbox.physics.geometry.segment import closest_on_segment, doubled_area_of
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats
 from sandbox.physics.terrain import Terrain, cells_between
 
 # A particle that is near no edge of a solid body is looked for deep inside it once in so many ticks; one that is found

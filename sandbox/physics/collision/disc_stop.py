@@ -1,12 +1,12 @@
 """Discs do not go through jellies: one that is pressed flat, so that no triangle gives way, stops them as a whole."""
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.entered import edge_of_spring
 from sandbox.physics.collision.narrow_phase import EDGE, INSIDE, KINDS, TIP
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats
 
 # How near the centre of a disc comes to an edge, as a share of the radii.
 CLOSEST = 0.5

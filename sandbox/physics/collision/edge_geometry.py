@@ -2,11 +2,11 @@
 
 import math
 
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.polygon import winding_of_side
 from sandbox.physics.geometry.segment import difference, doubled_area, unit
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.state import Floats, Slots
 
 # Parts of an edge by which a path may miss it: a path through a corner meets one of the two edges.
 CORNER = 1e-9

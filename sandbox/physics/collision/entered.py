@@ -2,13 +2,13 @@
 
 import math
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.edge_geometry import is_behind, is_in
 from sandbox.physics.collision.narrow_phase import EDGE, INSIDE, KINDS, may_collide, push_out
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts
 from sandbox.physics.geometry.segment import closest_on_segment
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats
 
 # Edges along which it is followed, at most, where a disc is that has come into a body.
 MOST_WALK = 64

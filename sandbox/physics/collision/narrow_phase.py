@@ -6,6 +6,7 @@ is pushed out there. What moves fast is followed along its way, and meets what s
 
 import math
 
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.edge_geometry import (
     CORNER,
     corner_normal,
@@ -22,7 +23,6 @@ from sandbox.physics.collision.types import MOST_NEAR, Colliders, Contacts, Near
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.geometry.segment import closest_on_segment, difference, segment_of, unit
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.state import Floats, Slots
 
 # A contact exists from this gap on, as a share of the radii together, so that what rests keeps its contacts; a larger
 # share costs contacts that do nothing, a smaller one lets crowded particles overlap when they are pushed.

@@ -4,15 +4,31 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.collision.close_edges import NO_CLOSE_EDGES, CloseEdges, close_edges
+from sandbox.physics.arena import (
+    FIRST_ARENA,
+    Arena,
+    begin,
+    give_back,
+    is_full,
+    lay_out,
+    mark,
+    new_flags,
+    new_float_rows,
+    new_floats,
+    new_slot_rows,
+    new_slots,
+)
+from sandbox.physics.arrays import Flags, SlotRows, Slots, with_empty
+from sandbox.physics.collision.close_edges import CloseEdges, close_edges, no_close_edges
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
-from sandbox.physics.collision.pinned_edges import pinned_edges
-from sandbox.physics.collision.types import Colliders, Flags
-from sandbox.physics.jit import contents, inner_kernel, kernel
-from sandbox.physics.state import Slots, State, lent_state
-from sandbox.physics.terrain import NO_TERRAIN, Terrain
+from sandbox.physics.collision.pinned_edges import no_pins, pinned_edges
+from sandbox.physics.collision.types import Colliders
+from sandbox.physics.jit import bundle, contents, inner_kernel, items_of, kernel, put
+from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.state import State, state_of
+from sandbox.physics.terrain import Terrain
 from sandbox.physics.topology.sorting import list_by_key, list_ends, list_neighbours, sort_by_key, sort_by_value
-from sandbox.physics.world import GRAB_MATERIAL, World
+from sandbox.physics.world import World
 
 # Owner of the first chain of terrain, the others below it; particles and bodies are above.
 TERRAIN_OWNER = -2_000_000_000
@@ -40,7 +56,7 @@ class Outline(NamedTuple):
     edge_of: Slots
     near_start: Slots
     near_of: Slots
-    solid: Slots
+    solid: SlotRows
     owner: Slots
     shielded: Flags
     attached: Flags
@@ -237,48 +253,71 @@ def derive_edges(state: State, outline: Outline, counts: Slots, work: OutlineScr
         outline.spring_end[s] = state.particle_a[s]
 
 
+@inner_kernel
+def new_outline(state: State, arena: Arena) -> Outline:
+    """The outline of a world's bodies, as its topology is now; nothing of it may be read where the arena is full."""
+    particles, springs = state.owner.shape[0], state.spring_active.shape[0]
+    vertices = particles + state.terrain.vertex.shape[0]
+    room, counts = _room(particles, springs, vertices, state.terrain.edge_a.shape[0], arena), new_slots(arena, COUNTS)
+    start, longest = mark(arena), max(vertices, 2 * springs)
+    work = OutlineScratch(
+        new_slots(arena, vertices + 1), new_slots(arena, vertices + 1), new_slots(arena, vertices + 1),
+        new_flags(arena, vertices), new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest),
+    )  # fmt: skip
+    if is_full(arena):
+        return room
+    derive_edges(state, room, counts, work)
+    give_back(arena, start)
+    every, shapes = counts[ALL_EDGES], counts[SHAPES]
+    a, b, side = room.edge_a[: counts[EDGES]], room.edge_b[: counts[EDGES]], room.side[:every]
+    solid_of = room.solid_of[:shapes]
+    return Outline(
+        room.edge_a[:every], room.edge_b[:every], side, room.number[:every], room.edge_start, room.edge_of[: 2 * every],
+        room.near_start, room.near_of[: 2 * counts[JOINED]], room.solid[: counts[SPANS]], room.owner, room.shielded,
+        room.attached, room.dynamic, room.shape, solid_of, room.member_start[: shapes + 1],
+        room.member[: counts[MEMBERS]], close_edges(state.origin, a, b, room.shape, solid_of, arena), room.spring_end,
+        pinned_edges(state, a, b, side, arena),
+    )  # fmt: skip
+
+
+@inner_kernel
+def _room(particles: int, springs: int, vertices: int, edges: int, arena: Arena) -> Outline:
+    # With room for edges of all springs; edges: of terrain.
+    every = springs + edges
+    return Outline(
+        new_slots(arena, every), new_slots(arena, every), new_slots(arena, every), new_slots(arena, every),
+        new_slots(arena, vertices + 1), new_slots(arena, 2 * every), new_slots(arena, particles + 1),
+        new_slots(arena, 2 * springs), new_slot_rows(arena, every, 2), new_slots(arena, vertices),
+        new_flags(arena, particles), new_flags(arena, particles), new_slots(arena, 2), new_slots(arena, vertices),
+        new_slots(arena, springs), new_slots(arena, springs + 1), new_slots(arena, particles), no_close_edges(arena),
+        new_slots(arena, springs), no_pins(arena),
+    )  # fmt: skip
+
+
+class OutlinePlace(NamedTuple):
+    """A world's state, and where its outline is put."""
+
+    state: State
+    outline: Outline
+
+
 @kernel
-def _derive_edges(lent: Any, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
-    derive_edges(contents(lent), outline, counts, work)
+def _derive_outline(lent: Any, arena: Arena) -> None:
+    place: OutlinePlace = contents(lent)
+    begin(arena)
+    put(place, "outline", new_outline(place.state, arena))
 
 
 def outline_of(world: World) -> Outline:
-    """The outline of a world's bodies, made again after a change of topology."""
+    """The outline of a world's bodies, whether anything can touch or not; made again after a change of topology."""
     return world.derived(_make_outline, of_hands=False)
 
 
 def _make_outline(world: World) -> Outline:
-    terrain, counts = world.terrain, np.zeros(COUNTS, np.int64)
-    room = _room(world.particle_count, world.spring_count, len(terrain.vertex), len(terrain.edge_a))
-    vertices = len(room.owner)
-    longest = max(vertices, 2 * world.spring_count)
-    rank, start, ways = np.zeros((3, vertices + 1), np.int64)
-    work = OutlineScratch(rank, start, ways, np.zeros(vertices, np.bool_), *np.zeros((3, longest), np.int64))
-    _derive_edges(lent_state(world), room, counts, work)
-    edges, all_edges, joined, spans, shapes, members = counts.tolist()
-    a, b, side = room.edge_a[:edges], room.edge_b[:edges], room.side[:all_edges]
-    return room._replace(
-        edge_a=room.edge_a[:all_edges], edge_b=room.edge_b[:all_edges], side=side, number=room.number[:all_edges],
-        near_of=room.near_of[: 2 * joined], solid=room.solid[:spans], edge_of=room.edge_of[: 2 * all_edges],
-        solid_of=room.solid_of[:shapes], member_start=room.member_start[: shapes + 1], member=room.member[:members],
-        close=close_edges(world.origin, a, b, room.shape, room.solid_of[:shapes]),
-        pins=pinned_edges(world, a, b, side),
-    )  # fmt: skip
-
-
-def _room(particles: int, springs: int, vertices: int, edges: int) -> Outline:
-    """An outline to be filled in, with room for edges of all springs; vertices, edges: of terrain."""
-    every, total = springs + edges, particles + vertices
-    edge_a, edge_b, side, number = np.zeros((4, every), np.int64)
-    owner, shape = np.zeros((2, total), np.int64)
-    shielded, attached = np.zeros((2, particles), np.bool_)
-    return Outline(
-        edge_a, edge_b, side, number, np.zeros(total + 1, np.int64), np.zeros(2 * every, np.int64),
-        np.zeros(particles + 1, np.int64), np.zeros(2 * springs, np.int64), np.zeros((every, 2), np.int64), owner,
-        shielded, attached, np.zeros(2, np.int64), shape, np.zeros(springs, np.int64),
-        np.zeros(springs + 1, np.int64), np.zeros(particles, np.int64), NO_CLOSE_EDGES, np.zeros(springs, np.int64),
-        NO_TERRAIN,
-    )  # fmt: skip
+    lent = bundle(with_empty(OutlinePlace, state=state_of(world)))
+    lay_out(_derive_outline, lent, np.zeros(FIRST_ARENA, np.int64))
+    outline: Outline = items_of(lent, ("outline",))
+    return outline
 
 
 @inner_kernel
@@ -301,26 +340,21 @@ def fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
         colliders.restitution[particles + terrain.edge_b[e]] = terrain.restitution[e]
 
 
-@kernel
-def _fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
-    fill_in_terrain(terrain, colliders)
-
-
-def colliders_of(world: World, outline: Outline, pairs: int) -> Colliders:
+@inner_kernel
+def new_colliders(terrain: Terrain, outline: Outline, pairs: int, arena: Arena) -> Colliders:
     """The colliders of an outline: terrain is filled in; each tick and step fills in the particles.
 
     pairs: room for this many pairs of shapes that are separated.
     """
-    total = len(outline.owner)
-    position, velocity, origin = np.zeros((3, total, 2))
-    radius, friction, restitution, inverse_mass, turning, rolling = np.zeros((6, total))
-    group, collides = np.zeros((2, total), np.int64)
-    inverted, parting, caught = np.zeros((3, total), np.bool_)
+    total = outline.owner.shape[0]
     colliders = Colliders(
-        position, velocity, origin, radius, friction, restitution, outline.owner, group, collides, inverse_mass,
-        turning, rolling, outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start,
-        outline.edge_of, outline.near_start, outline.near_of, outline.shielded, inverted, outline.shape, parting,
-        caught, np.zeros((pairs, 3), np.int64), np.zeros(1, np.int64),
+        new_float_rows(arena, total, 2), new_float_rows(arena, total, 2), new_float_rows(arena, total, 2),
+        new_floats(arena, total), new_floats(arena, total), new_floats(arena, total), outline.owner,
+        new_slots(arena, total), new_slots(arena, total), new_floats(arena, total), new_floats(arena, total),
+        new_floats(arena, total), outline.edge_a, outline.edge_b, outline.side, outline.number, outline.edge_start,
+        outline.edge_of, outline.near_start, outline.near_of, outline.shielded, new_flags(arena, total), outline.shape,
+        new_flags(arena, total), new_flags(arena, total), new_slot_rows(arena, pairs, 3), new_slots(arena, 1),
     )  # fmt: skip
-    _fill_in_terrain(world.terrain, colliders)
+    if not is_full(arena):
+        fill_in_terrain(terrain, colliders)
     return colliders

@@ -1,18 +1,16 @@
 """Edges of bodies of which both ends are pinned: terrain of their own, as they stand while topology does not change."""
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.jit import contents, inner_kernel, kernel
-from sandbox.physics.state import Floats, Slots, State, lent_state
-from sandbox.physics.terrain import CELL_SLACK, LEAST_CELL, MOST_CELLS, Chain, Terrain, make_terrain
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_float_rows, new_floats, new_slots
+from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.state import State
+from sandbox.physics.terrain import CELL_SLACK, LEAST_CELL, MOST_CELLS, Chain, Terrain
 from sandbox.physics.topology.sorting import sort_by_value
-from sandbox.physics.world import World
 
 FRICTION, RESTITUTION = Chain.friction, Chain.restitution
-NO_PINS = make_terrain([])
 
 
 class PinScratch(NamedTuple):
@@ -136,38 +134,62 @@ def fill_cells(count: int, pins: Terrain) -> int:
     return total
 
 
-@kernel
-def _find_pinned(lent: Any, edge_a: Slots, edge_b: Slots, side: Slots, pins: Terrain, work: PinScratch) -> int:
-    return find_pinned(contents(lent), edge_a, edge_b, side, pins, work)
+@inner_kernel
+def no_pins(arena: Arena) -> Terrain:
+    """Of no edges."""
+    none, nothing = new_slots(arena, 0), new_float_rows(arena, 0, 2)
+    pins = Terrain(
+        nothing, none, none, none, none, new_floats(arena, 0), new_floats(arena, 0), new_floats(arena, 2),
+        new_floats(arena, 1), new_slots(arena, 2), new_slots(arena, 1), none, none, new_slots(arena, 1), nothing,
+        new_slots(arena, 1), none,
+    )  # fmt: skip
+    if not is_full(arena):
+        pins.cell[0] = 1.0
+    return pins
 
 
-@kernel
-def _fill_cells(count: int, pins: Terrain) -> int:
-    return fill_cells(count, pins)
+@inner_kernel
+def _with_cells(pins: Terrain, count: int, cell_start: Slots, cell_edge: Slots, tip_start: Slots) -> Terrain:
+    # The first `count` edges, with these lists of cells.
+    return Terrain(
+        pins.vertex[: 2 * count], pins.edge_a[:count], pins.edge_b[:count], pins.solid[:count], pins.chain[:count],
+        pins.friction[:count], pins.restitution[:count], pins.corner, pins.cell, pins.size, cell_start, cell_edge,
+        pins.tip, pins.way_start, pins.way, tip_start, pins.cell_tip,
+    )  # fmt: skip
 
 
-def pinned_edges(world: World, edge_a: Slots, edge_b: Slots, side: Slots) -> Terrain:
+@inner_kernel
+def _room(edges: int, arena: Arena) -> Terrain:
+    none = no_pins(arena)
+    return Terrain(
+        new_float_rows(arena, 2 * edges, 2), new_slots(arena, edges), new_slots(arena, edges), new_slots(arena, edges),
+        new_slots(arena, edges), new_floats(arena, edges), new_floats(arena, edges), none.corner, none.cell, none.size,
+        none.cell_start, none.cell_edge, none.tip, none.way_start, none.way, none.tip_start, none.cell_tip,
+    )  # fmt: skip
+
+
+@inner_kernel
+def pinned_edges(state: State, edge_a: Slots, edge_b: Slots, side: Slots, arena: Arena) -> Terrain:
     """Those of the edges a to b of bodies that pins hold at both ends, as terrain; chain = the edge."""
-    room = len(edge_a)
-    if not room:
-        return NO_PINS
-    a, b, solid, chain, order, spare = np.zeros((6, room), np.int64)
-    friction, restitution, length = np.zeros((3, room))
-    pins = NO_PINS._replace(
-        vertex=np.zeros((2 * room, 2)), edge_a=a, edge_b=b, solid=solid, chain=chain, friction=friction,
-        restitution=restitution, corner=np.zeros(2), cell=np.ones(1), size=np.zeros(2, np.int64),
-    )  # fmt: skip
-    count = _find_pinned(lent_state(world), edge_a, edge_b, side, pins, PinScratch(length, order, spare))
-    cells = int(pins.size[0] * pins.size[1])
-    if not count:
-        return NO_PINS
-    pins = pins._replace(
-        vertex=pins.vertex[: 2 * count], edge_a=a[:count], edge_b=b[:count], solid=solid[:count], chain=chain[:count],
-        friction=friction[:count], restitution=restitution[:count], cell_start=np.zeros(cells + 1, np.int64),
-        cell_edge=np.zeros(4 * count, np.int64), tip_start=np.zeros(cells + 1, np.int64),
-    )  # fmt: skip
-    entries = _fill_cells(count, pins)
-    if entries > len(pins.cell_edge):
-        pins = pins._replace(cell_edge=np.zeros(entries, np.int64))
-        _fill_cells(count, pins)
-    return pins._replace(cell_edge=pins.cell_edge[:entries])
+    edges = edge_a.shape[0]
+    found = _room(edges, arena)
+    start = mark(arena)
+    work = PinScratch(new_floats(arena, edges), new_slots(arena, edges), new_slots(arena, edges))
+    if is_full(arena):
+        return found
+    count = find_pinned(state, edge_a, edge_b, side, found, work)
+    give_back(arena, start)
+    if count == 0:
+        return no_pins(arena)
+    cells, entries = found.size[0] * found.size[1], 4 * count
+    cell_start, tip_start = new_slots(arena, cells + 1), new_slots(arena, cells + 1)
+    found = _with_cells(found, count, cell_start, new_slots(arena, entries), tip_start)
+    if is_full(arena):
+        return found
+    needed = fill_cells(count, found)
+    if needed > entries:
+        found = _with_cells(found, count, cell_start, new_slots(arena, needed), tip_start)
+        if is_full(arena):
+            return found
+        fill_cells(count, found)
+    return _with_cells(found, count, cell_start, found.cell_edge[:needed], tip_start)

@@ -2,9 +2,9 @@
 
 import math
 
-from sandbox.physics.collision.types import Contacts, Flags, weight_of
+from sandbox.physics.arrays import Flags, Floats
+from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats
 
 # Bodies that meet more slowly [m/s] do not bounce. Lower makes what rests tremble, higher cuts off a last bounce.
 SLOWEST_BOUNCE = 0.5

@@ -2,13 +2,13 @@
 
 import math
 
+from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.narrow_phase import are_joined, may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.tips import meet_tip
-from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.collision.types import Colliders
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.state import Floats, Slots
 from sandbox.physics.terrain import Terrain, cells_between
 
 # A particle that would cross a line of terrain is stopped this far in front of it, in units of its distance, and at

@@ -6,12 +6,12 @@ with shares 1 - s and s, and end_a is -1. At its ends an edge meets terrain as a
 
 import math
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.narrow_phase import KINDS, TIP, TIP_SHIFT, add_contact, may_collide
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.geometry.segment import segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.state import Floats
 from sandbox.physics.terrain import Terrain, cells_between
 
 # Sine of the angle by which an edge may lean beyond a side of a corner of terrain and still lie on that.

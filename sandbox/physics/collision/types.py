@@ -2,13 +2,9 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from sandbox.physics.arena import Arena, new_float_rows, new_floats, new_int32s, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats, Slots
-
-Flags = NDArray[np.bool_]
 
 # Edges near one particle, at most; further ones are not looked at.
 MOST_NEAR = 64
@@ -27,9 +23,9 @@ class Colliders(NamedTuple):
     with itself. parted (k, 3): these pairs of shapes, the lower first, and 1 where both are lines; parted_count (1,).
     """
 
-    position: Floats
-    velocity: Floats
-    origin: Floats
+    position: FloatRows
+    velocity: FloatRows
+    origin: FloatRows
     radius: Floats
     friction: Floats
     restitution: Floats
@@ -52,7 +48,7 @@ class Colliders(NamedTuple):
     shape: Slots
     parting: Flags
     caught: Flags
-    parted: Slots
+    parted: SlotRows
     parted_count: Slots
 
 
@@ -85,26 +81,26 @@ class Contacts(NamedTuple):
     end_a: Slots
     end_b: Slots
     share: Floats
-    normal: Floats
+    normal: FloatRows
     gap: Floats
     friction: Floats
     restitution: Floats
     bounce: Floats
-    impulse: Floats
-    turning: Floats
-    arm: Floats
-    ratio: Floats
+    impulse: FloatRows
+    turning: FloatRows
+    arm: FloatRows
+    ratio: FloatRows
     rolling: Floats
-    couple: Floats
+    couple: FloatRows
     impact: Floats
 
 
 class KeptContacts(NamedTuple):
     """The part of a step's contacts that the next step reads: see Contacts."""
 
-    particle: NDArray[np.int32]
+    particle: Int32s
     feature: Slots
-    impulse: Floats
+    impulse: FloatRows
     impact: Floats
 
 
@@ -124,26 +120,30 @@ def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
     return contacts.end_b[c], -contacts.share[c]
 
 
-def room_for(count: int) -> Contacts:
+@inner_kernel
+def new_contacts(arena: Arena, count: int) -> Contacts:
     """Contacts to be filled in."""
-    slots, numbers, pairs = np.zeros((4, count), dtype=np.int64), np.zeros((7, count)), np.zeros((6, count, 2))
-    gap, friction, restitution, bounce, share, rolling, impact = numbers
-    particle, feature, end_a, end_b = slots
     return Contacts(
-        particle, feature, end_a, end_b, share, pairs[0], gap, friction, restitution, bounce, pairs[1], pairs[2],
-        pairs[3], pairs[4], rolling, pairs[5], impact,
+        new_slots(arena, count), new_slots(arena, count), new_slots(arena, count), new_slots(arena, count),
+        new_floats(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count), new_floats(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, count, 2),
+        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
+        new_floats(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count),
     )  # fmt: skip
 
 
-def room_to_keep(count: int) -> KeptContacts:
+@inner_kernel
+def new_kept_contacts(arena: Arena, count: int) -> KeptContacts:
     """Empty kept contacts, to be filled in."""
-    return KeptContacts(np.zeros(count, np.int32), np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count))
+    return KeptContacts(
+        new_int32s(arena, count), new_slots(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count)
+    )
 
 
-def room_near() -> Near:
+@inner_kernel
+def new_near(arena: Arena) -> Near:
     """Edges near a particle, to be filled in."""
-    slots, numbers = np.zeros((2, MOST_NEAR), dtype=np.int64), np.zeros((3, MOST_NEAR))
-    return Near(slots[0], numbers[0], numbers[1], numbers[2], slots[1])
-
-
-NOTHING_KEPT = room_to_keep(0)
+    return Near(
+        new_slots(arena, MOST_NEAR), new_floats(arena, MOST_NEAR), new_floats(arena, MOST_NEAR),
+        new_floats(arena, MOST_NEAR), new_slots(arena, MOST_NEAR),
+    )  # fmt: skip

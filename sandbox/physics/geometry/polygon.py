@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.geometry.segment import doubled_area_of, doubled_areas
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.state import Floats
 
 
 @inner_kernel

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.geometry.sums import sum_in_order
 from sandbox.physics.jit import inlined_kernel, scalar_kernel
-from sandbox.physics.state import Floats
 
 
 class WeightedSums(NamedTuple):

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.state import Floats
 
 # A segment whose length squared is below this [m^2] is a point.
 LEAST_SQUARE = 1e-300

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sandbox.physics.state import Floats
+from sandbox.physics.arrays import Floats
 
 
 def sum_in_order(values: Floats) -> float:

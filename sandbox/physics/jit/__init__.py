@@ -29,6 +29,17 @@ COMPILED: bool
 unsigned: Any = interpreted.unsigned
 # In kernels: the items of a bundle, as they were given to it.
 contents: Any = interpreted.contents
+# In kernels: write an array, or a named tuple of arrays, in place of what a lent named tuple has by that name.
+put: Any = interpreted.put
+# In kernels: arrays in the memory of another, an int64 array, from an item on; (memory, first, rows) or, for rows of
+# some width, (memory, first, rows, width).
+slots_in: Any = interpreted.slots_in
+slot_rows_in: Any = interpreted.slot_rows_in
+floats_in: Any = interpreted.floats_in
+float_rows_in: Any = interpreted.float_rows_in
+float_tables_in: Any = interpreted.float_tables_in
+flags_in: Any = interpreted.flags_in
+int32s_in: Any = interpreted.int32s_in
 
 _ENTRIES = ("kernel", "waiting_kernel")
 # Functions, of which it is looked up which kernel they run.
@@ -111,8 +122,8 @@ def _modules(*homes: str) -> list[ModuleType]:
 
 def _can_compile() -> bool:
     try:
-        importlib.import_module("numba")
-    except ImportError:  # also what an installed numba raises that is too old for this numpy
+        importlib.import_module(f"{__name__}.lending")
+    except (ImportError, AttributeError):  # also of a numba that is too old for this numpy, or has other inner parts
         return False
     return True
 
@@ -255,3 +266,16 @@ def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
         TypeError: for what is neither array nor tuple, and for arrays that are not contiguous.
     """
     return _chosen().bundle(items, like)
+
+
+def hold(bundle: Any, memory: Any) -> None:
+    """Let an array live as long as a bundle: kernels lay out in it what they put there."""
+    _chosen().hold(bundle, memory)
+
+
+def items_of(bundle: Any, path: tuple[str, ...] = ()) -> Any:
+    """The items of a bundle as they are now, which kernels may have put others in place of.
+
+    path: names of fields that lead to the tuple that is wanted.
+    """
+    return _chosen().items_of(bundle, path)

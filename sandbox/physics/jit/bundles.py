@@ -8,6 +8,7 @@ import ctypes
 import functools
 import hashlib
 import struct
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,9 +39,13 @@ class _Packed(NamedTuple):
 
 
 class _Words(bytearray):
-    """What a bundle points to, and the arrays that its words are the addresses of, which live as long."""
+    """What a bundle points to, and what its words are the addresses of, which lives as long.
+
+    whole: the arrays that it was made of; memories: in which kernels put others.
+    """
 
     whole: _Packed
+    memories: list[Any]
 
 
 def owner_of(bundle: Any) -> Any:
@@ -104,5 +109,60 @@ def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
     """
     whole = _part(items, None if like is None else owner_of(like).whole)
     owner = _Words(whole.words)
-    owner.whole = whole
+    owner.whole, owner.memories = whole, []
     return np.frombuffer(owner, dtype=_dtype(whole.signature, len(owner) // WORD))
+
+
+def hold(bundle: Any, memory: Any) -> None:
+    """Let an array of words live as long as a bundle: what kernels put there lies in it."""
+    memories = owner_of(bundle).memories
+    if not any(memory is one for one in memories):
+        memories.append(memory)
+
+
+def items_of(bundle: Any, path: tuple[str, ...] = ()) -> Any:
+    """The items of a bundle as they are now: what kernels put there is an item of it, or lies in what it holds.
+
+    path: names of fields that lead to the tuple that is wanted.
+    """
+    owner = owner_of(bundle)
+    start, part = 0, owner.whole
+    for name in path:
+        place = part.item._fields.index(name)
+        start += sum(len(other.words) for other in part.parts[:place]) // WORD
+        part = part.parts[place]
+    given = {packed.words: packed.item for packed in _arrays_in(owner.whole)}
+    return _item_at(start, np.frombuffer(owner, np.int64), part, given, owner.memories)
+
+
+def _arrays_in(packed: _Packed) -> Iterator[_Packed]:
+    if not packed.parts:
+        yield packed
+    for part in packed.parts:
+        yield from _arrays_in(part)
+
+
+def _item_at(start: int, words: Any, was: _Packed, given: dict[bytes, Any], memories: Sequence[Any]) -> Any:
+    present = words[start : start + len(was.words) // WORD]
+    if present.tobytes() == was.words:
+        return was.item
+    if not was.parts:
+        found = given.get(present.tobytes())
+        return _array_at(present.tolist(), was.signature, memories) if found is None else found
+    items = []
+    for part in was.parts:
+        items.append(_item_at(start, words, part, given, memories))
+        start += len(part.words) // WORD
+    return was.item._make(items) if hasattr(was.item, "_make") else tuple(items)
+
+
+def _array_at(words: list[int], signature: Signature, memories: Sequence[Any]) -> Any:
+    dtype, dimensions = signature
+    size, address, shape = words[2] * words[3], words[4], words[HEAD_WORDS : HEAD_WORDS + dimensions]
+    if size == 0:
+        return np.zeros(shape, dtype)
+    for memory in memories:
+        begin = address - memory.ctypes.data
+        if 0 <= begin <= memory.nbytes - size:
+            return memory.view(np.uint8)[begin : begin + size].view(dtype).reshape(shape)
+    raise ValueError(f"an array of {size} bytes lies in none of the memories")

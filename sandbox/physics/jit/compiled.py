@@ -8,7 +8,7 @@ import numba
 import numpy as np
 
 from sandbox.physics import jit
-from sandbox.physics.jit import bundles, interpreted
+from sandbox.physics.jit import bundles, interpreted, lending
 from sandbox.physics.jit.needs import is_own, named, names_in
 
 COMPILED = True
@@ -22,7 +22,7 @@ def _using_numba(name: str) -> Any:
         return None
 
 
-_cache, _lending, _linking = map(_using_numba, ("cache", "lending", "linking"))
+_cache, _linking = map(_using_numba, ("cache", "linking"))
 
 # Kernels hold no array longer than their call, so numba need not count who holds which: some 800 counts, 4 us, in a
 # step of the direct solver. One that makes an array, or keeps one, does not compile with this.
@@ -49,13 +49,23 @@ def make(kernel: Any) -> Any:
     return dispatcher
 
 
+# What stands for numba's own functions in the sources of kernels.
+_INTRINSICS: dict[Any, Any] = {
+    getattr(interpreted, name): getattr(lending, name)
+    for name in (
+        "contents", "put", "slots_in", "slot_rows_in", "floats_in", "float_rows_in", "float_tables_in", "flags_in",
+        "int32s_in",
+    )
+}  # fmt: skip
+
+
 def _part(kernel: Any) -> Any:
     """A dispatcher for a kernel that other kernels call, which links it into each of them."""
     if kernel.part is None:
         options = {} if _linking is None else {"pipeline_class": _linking.PartCompiler}
         kernel.part = _dispatcher(kernel, _PART | _OPTIONS[kernel.role] | options)
-        if kernel.role != "inlined_kernel" and _lending is not None:
-            _lending.lend_to(kernel.part)
+        if kernel.role != "inlined_kernel":
+            lending.lend_to(kernel.part)
     return kernel.part
 
 
@@ -65,7 +75,7 @@ def lowered(kernel: Any, signature: tuple[Any, ...]) -> Any:
     Raises:
         RuntimeError: where this numba has other inner parts.
     """
-    if _linking is None or _lending is None or not _linking.links_once():
+    if _linking is None or not _linking.links_once():
         raise RuntimeError("this numba has other inner parts than the maker of libraries knows")
     options = _PART | _OPTIONS[kernel.role] | {"pipeline_class": _linking.PartCompiler}
     dispatcher = _dispatcher(kernel, options)
@@ -116,8 +126,8 @@ def _known(value: Any, function: FunctionType) -> Any:
         return _part(kernel)
     if value is interpreted.unsigned or type(value) is interpreted.Unsigned:
         return np.uint64 if value is interpreted.unsigned else np.uint64(value)
-    if value is interpreted.contents:
-        return contents
+    if type(value) is FunctionType and value in _INTRINSICS:
+        return _INTRINSICS[value]
     if isinstance(value, interpreted.InterpreterFunction):
         # By name, so that a cached kernel finds it again in the next process; its address would not last.
         kinds = numba.types
@@ -135,21 +145,12 @@ def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
     kernel.ready().compile(types_of(arguments))
 
 
-def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
-    """Arrays and named tuples as one argument; where numba's inner parts are unknown, as many as they are."""
-    return items if _lending is None else bundles.bundle(items, like)
-
-
-def _contents(bundle: Any) -> Any:
-    return bundle
-
-
-contents: Any = numba.njit(_contents) if _lending is None else _lending.contents
-
-
 def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
     """The types for which a kernel is compiled that is called with such arguments, those of interpreted ones too."""
     return tuple(
-        numba.typeof(bundle(argument.given) if isinstance(argument, interpreted.Bundle) else argument)
+        numba.typeof(bundles.bundle(argument.given) if isinstance(argument, interpreted.Bundle) else argument)
         for argument in arguments
     )
+
+
+bundle, hold, items_of = bundles.bundle, bundles.hold, bundles.items_of

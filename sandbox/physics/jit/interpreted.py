@@ -1,7 +1,8 @@
 """Kernels that the interpreter runs: where there is neither a library nor numba."""
 
 import functools
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -19,16 +20,26 @@ class Unsigned(int):
 unsigned: Any = Unsigned
 
 
+class LentTuple:
+    """A named tuple that was lent: its items by name, which kernels may write others in place of."""
+
+    def __init__(self, kind: Any, items: Iterable[Any]) -> None:
+        self.__dict__.update(zip(kind._fields, items, strict=True))
+
+
 class Bundle:
     """A bundle: what kernels get, and the objects that it was made of."""
 
-    def __init__(self, items: tuple[Any, ...], like: "Bundle | None" = None) -> None:
+    def __init__(self, items: tuple[Any, ...]) -> None:
         self.given = items
-        views = [
-            like.items[k] if like is not None and item is like.given[k] else _viewed(item)
-            for k, item in enumerate(items)
-        ]
-        self.items: Any = items._make(views) if hasattr(items, "_make") else tuple(views)
+        self.items = _lent(items)
+
+
+def _lent(item: Any) -> Any:
+    if not isinstance(item, tuple):
+        return _viewed(item)
+    items = map(_lent, item)
+    return LentTuple(type(item), items) if hasattr(item, "_make") else tuple(items)
 
 
 @dataclass(frozen=True)
@@ -76,10 +87,57 @@ def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
 
 
 def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
-    """Arrays and named tuples as one argument, viewed once; like: a bundle whose items some of these are."""
-    return Bundle(items, like)
+    """Arrays and named tuples as one argument, viewed once."""
+    return Bundle(items)
 
 
 def contents(bundle: Any) -> Any:
     """The items of a bundle."""
     return bundle.items
+
+
+def hold(bundle: Any, memory: Any) -> None:
+    """Nothing: the views of a bundle hold what they are of."""
+
+
+def items_of(bundle: Any, path: tuple[str, ...] = ()) -> Any:
+    """The items of a bundle as they are now."""
+    items, given = bundle.items, bundle.given
+    for name in path:
+        items, given = getattr(items, name), getattr(given, name)
+    return _returned(items, given)
+
+
+def _returned(item: Any, given: Any) -> Any:
+    if isinstance(given, tuple):
+        parts = vars(item).values() if isinstance(item, LentTuple) else item
+        returned = [_returned(part, other) for part, other in zip(parts, given, strict=True)]
+        return cast(Any, given)._make(returned) if hasattr(given, "_make") else tuple(returned)
+    return item.obj if isinstance(item, memoryview) and item.obj is given else np.asarray(item)
+
+
+def put(place: Any, field: str, value: Any) -> None:
+    """Write an array, or a named tuple of arrays, where a lent named tuple has the field of that name."""
+    if isinstance(value, LentTuple):
+        vars(vars(place)[field]).update(vars(value))
+    else:
+        setattr(place, field, _lent(value))
+
+
+def _array_in(dtype: Any) -> Any:
+    item = np.dtype(dtype).itemsize
+
+    def array_in(memory: Any, first: int, *shape: int) -> Any:
+        count = math.prod(shape)
+        words = -(-count * item // 8)
+        # What finds no room is not touched, and need not lie there.
+        lies = np.asarray(memory)[first : first + words] if memory[0] <= len(memory) else np.zeros(words, np.int64)
+        return memoryview(lies.view(dtype)[:count].reshape(shape))
+
+    return array_in
+
+
+# Arrays in the memory of another, an int64 array, from its item `first` on: of so many rows, or rows and columns.
+slots_in, slot_rows_in = _array_in(np.int64), _array_in(np.int64)
+floats_in, float_rows_in, float_tables_in = _array_in(np.float64), _array_in(np.float64), _array_in(np.float64)
+flags_in, int32s_in = _array_in(np.bool_), _array_in(np.int32)

@@ -25,6 +25,7 @@ from numba.extending import (
     models,
     register_model,
 )
+from numba.np.arrayobj import populate_array
 
 from sandbox.physics.jit.bundles import HAS_KNOWN_ARRAYS, HEAD_WORDS, SIGNATURES, WORD, Signature
 
@@ -121,8 +122,17 @@ def _lower_attribute(context: Any, builder: Any, kind: Lent, value: Any, attribu
 @lower_cast(types.NamedTuple, Lent)
 @lower_cast(types.NamedUniTuple, Lent)
 def _lend(context: Any, builder: Any, given: Any, wanted: Lent, value: Any) -> Any:
-    # All fields are whole words, so the tuple lies in memory as the words of its fields.
-    return builder.bitcast(cgutils.alloca_once_value(builder, value), context.get_value_type(wanted))
+    if not _holds_lent(given):
+        # All fields are whole words, so the tuple lies in memory as the words of its fields.
+        return builder.bitcast(cgutils.alloca_once_value(builder, value), context.get_value_type(wanted))
+    words = cgutils.alloca_once(builder, ir.ArrayType(ir.IntType(64), wanted.offsets[-1] // WORD))
+    pointer = builder.bitcast(words, context.get_value_type(wanted))
+    _store(context, builder, pointer, 0, given, value)
+    return pointer
+
+
+def _holds_lent(kind: Any) -> bool:
+    return isinstance(kind, Lent) or (isinstance(kind, types.BaseTuple) and any(map(_holds_lent, kind.types)))
 
 
 def lend_to(part: Any) -> None:
@@ -174,3 +184,66 @@ def contents(typing_context: Any, bundle: Any) -> Any:
         return context.make_tuple(builder, result, items)
 
     return result(bundle), generate
+
+
+def _store(context: Any, builder: Any, pointer: Any, offset: int, kind: Any, value: Any) -> None:
+    # What was lent is a pointer, also in a tuple, and its words are copied.
+    if isinstance(kind, Lent):
+        size = ir.Constant(ir.IntType(64), kind.offsets[-1])
+        cgutils.raw_memcpy(builder, _place(builder, pointer, offset, _CHAR.as_pointer()), value, size, 1)
+    elif isinstance(kind, types.BaseTuple):
+        for index, part in enumerate(kind.types):
+            _store(context, builder, pointer, offset, part, builder.extract_value(value, index))
+            offset += _size(lent(part))
+    else:
+        builder.store(value, _place(builder, pointer, offset, context.get_value_type(kind).as_pointer()))
+
+
+@intrinsic(prefer_literal=True)
+def put(typing_context: Any, place: Any, field: Any, value: Any) -> Any:
+    """Write an array, or a tuple of arrays, where a lent named tuple has the field of that name."""
+    if not isinstance(place, Lent) or not isinstance(field, types.StringLiteral):
+        return None
+    if lent(value) != place.kind_of(field.literal_value):
+        raise TypeError(f"{field.literal_value} of {place} is {place.kind_of(field.literal_value)}, not {value}")
+    offset = place.offsets[place.fields.index(field.literal_value)]
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        _store(context, builder, arguments[0], offset, value, arguments[2])
+        return context.get_dummy_value()
+
+    return types.void(place, field, value), generate
+
+
+def _array_in(dtype: Any, dimensions: int = 1) -> Any:
+    """The intrinsic that makes an array of so many dimensions in the memory of another, an int64 array."""
+    kind = types.Array(dtype, dimensions, "C")
+    item = ir.Constant(ir.IntType(64), 1 if dtype is types.boolean else dtype.bitwidth // WORD)
+    whole = types.int64
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        memory, first, *shape = arguments
+        start = builder.gep(context.make_array(signature.args[0])(context, builder, memory).data, [first])
+        made = context.make_array(kind)(context, builder)
+        strides = [item]
+        for width in shape[:0:-1]:
+            strides.insert(0, builder.mul(width, strides[0]))
+        data = builder.bitcast(start, made.data.type)
+        populate_array(made, data=data, shape=shape, strides=strides, itemsize=item, meminfo=None)
+        return made._getvalue()
+
+    def of_one(typing_context: Any, memory: Any, first: Any, rows: Any) -> Any:
+        return kind(memory, whole, whole), generate
+
+    def of_two(typing_context: Any, memory: Any, first: Any, rows: Any, width: Any) -> Any:
+        return kind(memory, whole, whole, whole), generate
+
+    def of_three(typing_context: Any, memory: Any, first: Any, tables: Any, rows: Any, width: Any) -> Any:
+        return kind(memory, whole, whole, whole, whole), generate
+
+    return intrinsic((of_one, of_two, of_three)[dimensions - 1])
+
+
+slots_in, slot_rows_in = _array_in(types.int64), _array_in(types.int64, 2)
+floats_in, float_rows_in, float_tables_in = (_array_in(types.float64, dimensions) for dimensions in (1, 2, 3))
+flags_in, int32s_in = _array_in(types.boolean), _array_in(types.int32)

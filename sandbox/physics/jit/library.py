@@ -232,4 +232,4 @@ def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
     kernel.ready()
 
 
-bundle = bundles.bundle
+bundle, hold, items_of = bundles.bundle, bundles.hold, bundles.items_of

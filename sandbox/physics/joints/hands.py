@@ -22,16 +22,15 @@ that follows the one place and moves another can give energy to what swings.
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.components import label_joined
+from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
+from sandbox.physics.components import find_joined
 from sandbox.physics.geometry.rigid import best_turn, rotated, with_pair
-from sandbox.physics.geometry.segment import difference, lengths
-from sandbox.physics.geometry.sums import sum_in_order
+from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, shortened
+from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.state import State
-from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, Floats, Slots, World
 
 # No hand wants what it holds to be faster than this [m/s]. Higher lets a mouse shoot one body through others.
 FASTEST_HAND = 30.0
@@ -65,75 +64,131 @@ class Grips(NamedTuple):
     spring: Slots
     held: Slots
     mass: Floats
-    arm: Floats
+    arm: FloatRows
     lead: Floats
     start: Slots
     particle: Slots
     share: Floats
-    form: Floats
+    form: FloatRows
 
 
-def bodies_of(world: World) -> Slots:
-    """A label for each particle (n,): what springs and constraints join by free particles has the same."""
-    return world.derived(_label_bodies, of_hands=False)
+@inner_kernel
+def label_bodies(state: State, joins: Flags, free: Flags, label: Slots) -> None:
+    """Label particles (n,): what springs and constraints join by free particles has the same label.
+
+    joins (m,), free (n,): scratch.
+    """
+    for s in range(joins.shape[0]):
+        joins[s] = state.spring_active[s] and state.material[s] != GRAB_MATERIAL
+    for p in range(free.shape[0]):
+        free[p] = state.inverse_mass[p] > 0.0
+    find_joined(state, joins, free, label)
 
 
-def _label_bodies(world: World) -> Slots:
-    springs = world.spring_active & (world.material != GRAB_MATERIAL)
-    return label_joined(world, springs, world.inverse_mass > 0.0)
-
-
-def grips_of(world: World) -> Grips:
-    """The grips of a world's hands, made again after a change of topology."""
-    return world.derived(_make_grips)
-
-
-def _make_grips(world: World) -> Grips:
-    hands, masses, arms, leads, particles, shares, forms = [], [], [], [], [], [], []
-    for hand in range(GRAB_COUNT):
-        if not world.is_held(hand):
-            continue
-        held = world.particle_b[world.grab_spring + hand]
-        label = bodies_of(world)
-        # Of a body that is torn the hand keeps the part that it has its point in.
-        body = np.flatnonzero((label == label[held]) & (world.inverse_mass > 0.0))
-        chosen, weight = _gripped(world, body, int(held), float(world.hand_radius[hand]))
-        if len(chosen):
-            share = weight / sum_in_order(weight)
-            middle = [sum_in_order(share * world.origin[chosen, axis]) for axis in range(2)]
-            hands.append(hand)
-            masses.append(sum_in_order(world.mass[body]))
-            form = world.origin[chosen] - middle
-            arms.append(world.origin[held] - middle)
-            leads.append(LARGEST_LEAD * math.sqrt(sum_in_order(share * (form[:, 0] ** 2 + form[:, 1] ** 2))))
-            particles.append(chosen)
-            shares.append(share)
-            forms.append(form)
-    number = np.array(hands, dtype=np.int64)
-    return Grips(
-        number,
-        world.grab_particle + number,
-        world.grab_spring + number,
-        world.particle_b[world.grab_spring + number].astype(np.int64),
-        np.array(masses),
-        np.reshape(np.array(arms), (-1, 2)),
-        np.array(leads),
-        np.append(0, np.cumsum([len(chosen) for chosen in particles])).astype(np.int64),
-        np.concatenate([number[:0], *particles]),
-        np.concatenate([np.zeros(0), *shares]),
-        np.concatenate([np.zeros((0, 2)), *forms]),
-    )
-
-
-def _gripped(world: World, body: Slots, held: int, radius: float) -> tuple[Slots, Floats]:
-    """The free particles of a body that a hand grips which holds one of them, and the weight of each."""
+@inner_kernel
+def _weight_in_grip(state: State, label: Slots, hand: int, held: int, p: int) -> float:
+    # Of the free particles of a body those that a hand grips which holds one of them; -1: of what it does not.
+    if label[p] != label[held] or not state.inverse_mass[p] > 0.0:
+        return -1.0
+    radius = state.hand_radius[hand]
     if not radius > 0.0:
-        chosen = body[body == held]
-        return chosen, world.mass[chosen]
+        return state.mass[p] if p == held else -1.0
     # What else is joined to the body, a rope or a weight, is not gripped with it.
-    chosen = body[world.owner[body] == world.owner[held]]
-    near = 1.0 - lengths(world.origin[chosen] - world.origin[held]) / radius
-    return chosen[near > 0.0], (near * world.mass[chosen])[near > 0.0]
+    if state.owner[p] != state.owner[held]:
+        return -1.0
+    dx = state.origin[p, 0] - state.origin[held, 0]
+    dy = state.origin[p, 1] - state.origin[held, 1]
+    near = 1.0 - math.sqrt(dx * dx + dy * dy) / radius
+    return near * state.mass[p] if near > 0.0 else -1.0
+
+
+@inner_kernel
+def _list_gripped(state: State, label: Slots, hand: int, spring: int, first: int, grips: Grips) -> int:
+    # List what a hand grips, from an entry on, where there is room, with its weight; where it ends.
+    last, held = first, state.particle_b[spring]
+    if not state.spring_active[spring]:
+        return last
+    for p in range(label.shape[0]):
+        weight = _weight_in_grip(state, label, hand, held, p)
+        if weight >= 0.0:
+            if last < grips.particle.shape[0]:
+                grips.particle[last] = p
+                grips.share[last] = weight
+            last += 1
+    return last
+
+
+@inner_kernel
+def _sum_in_order(values: Floats, first: int, last: int) -> float:
+    total = values[first]
+    for k in range(first + 1, last):
+        total += values[k]
+    return total
+
+
+@inner_kernel
+def _fill_in_grip(state: State, label: Slots, i: int, spring: int, work: Floats, grips: Grips) -> None:
+    # Shares by weight, and the frame of what is gripped. Of a body that is torn the hand keeps the part that it has its
+    # point in. work (k,): scratch.
+    first, last, held = grips.start[i], grips.start[i + 1], state.particle_b[spring]
+    grips.held[i] = held
+    begun = False
+    for p in range(label.shape[0]):
+        if label[p] == label[held] and state.inverse_mass[p] > 0.0:
+            grips.mass[i] = grips.mass[i] + state.mass[p] if begun else state.mass[p]
+            begun = True
+    whole = _sum_in_order(grips.share, first, last)
+    for k in range(first, last):
+        grips.share[k] /= whole
+    for axis in range(2):
+        for k in range(first, last):
+            work[k] = grips.share[k] * state.origin[grips.particle[k], axis]
+        middle = _sum_in_order(work, first, last)
+        for k in range(first, last):
+            grips.form[k, axis] = state.origin[grips.particle[k], axis] - middle
+        grips.arm[i, axis] = state.origin[held, axis] - middle
+    for k in range(first, last):
+        x, y = grips.form[k, 0], grips.form[k, 1]
+        work[k] = grips.share[k] * (x * x + y * y)
+    grips.lead[i] = LARGEST_LEAD * math.sqrt(_sum_in_order(work, first, last))
+
+
+@inner_kernel
+def _room_to_grip(hands: int, particles: int, arena: Arena) -> Grips:
+    return Grips(
+        new_slots(arena, hands), new_slots(arena, hands), new_slots(arena, hands), new_slots(arena, hands),
+        new_floats(arena, hands), new_float_rows(arena, hands, 2), new_floats(arena, hands),
+        new_slots(arena, hands + 1), new_slots(arena, particles), new_floats(arena, particles),
+        new_float_rows(arena, particles, 2),
+    )  # fmt: skip
+
+
+@inner_kernel
+def new_grips(state: State, label: Slots, grab_particle: int, grab_spring: int, arena: Arena) -> Grips:
+    """The grips of a world's hands; label (n,): see label_bodies; the slots of the first hand, or -1."""
+    grips = _room_to_grip(0, 0, arena)
+    hands, particles = 0, 0
+    if grab_spring >= 0:
+        for hand in range(GRAB_COUNT):
+            end = _list_gripped(state, label, hand, grab_spring + hand, particles, grips)
+            hands += 1 if end > particles else 0
+            particles = end
+    grips = _room_to_grip(hands, particles, arena)
+    work = new_floats(arena, particles)
+    if hands == 0 or is_full(arena):
+        return grips
+    i, first = 0, 0
+    for hand in range(GRAB_COUNT):
+        end = _list_gripped(state, label, hand, grab_spring + hand, first, grips)
+        if end > first:
+            grips.hand[i] = hand
+            grips.cursor[i] = grab_particle + hand
+            grips.spring[i] = grab_spring + hand
+            grips.start[i + 1] = end
+            _fill_in_grip(state, label, i, grab_spring + hand, work, grips)
+            i += 1
+            first = end
+    return grips
 
 
 class HandRows(NamedTuple):
@@ -144,7 +199,7 @@ class HandRows(NamedTuple):
 
 
 @inner_kernel
-def _load_gradients(rows: JointRows, hands: HandRows, position: Floats, i: int) -> tuple[float, float]:
+def _load_gradients(rows: JointRows, hands: HandRows, position: FloatRows, i: int) -> tuple[float, float]:
     # The two rows of a hand, u along x and along y; where the point is in the frame.
     grips = hands.grips
     first, last = grips.start[i], grips.start[i + 1]

@@ -1,24 +1,21 @@
 """All joints of a world: their rows, made when topology changes, and their numbers, filled in at every substep."""
 
-import itertools
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.hands import HandRows, grips_of, load_hands, store_hands
+from sandbox.physics.arena import Arena, is_full, new_floats, new_slots
+from sandbox.physics.arrays import Floats
+from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.joints.hands import Grips, HandRows, load_hands, store_hands
 from sandbox.physics.joints.limited_springs import (
     LimitedRows,
-    limited_particles,
-    limited_rows,
-    limited_springs,
+    SpringForces,
+    list_limited,
     load_limited,
     store_limited,
 )
-from sandbox.physics.joints.motors import MotorRows, load_motors, motor_groups, store_motors
-from sandbox.physics.joints.rows import PAIR, SCALAR, SECOND_OF_TWO, JointRows, any_on, new_rows
-from sandbox.physics.state import Floats, State
-from sandbox.physics.world import World
+from sandbox.physics.joints.motors import DrivenWheels, MotorRows, MotorSides, list_motors, load_motors, store_motors
+from sandbox.physics.joints.rows import PAIR, SECOND_OF_TWO, JointRows, any_on, new_rows
+from sandbox.physics.state import State
 
 
 class JointSet(NamedTuple):
@@ -30,24 +27,42 @@ class JointSet(NamedTuple):
     limited: LimitedRows
 
 
-def joints_of(world: World) -> JointSet:
-    """The joints of a world, made again after a change of topology."""
-    return world.derived(_make_joints)
-
-
-def _make_joints(world: World) -> JointSet:
-    motors, grips = world.actuators.motors, grips_of(world)
-    groups, count, springs = motor_groups(world), len(grips.hand), limited_springs(world)
-    particles = [np.concatenate(group) for group in groups] + limited_particles(world, springs)
-    alone = len(particles)
-    for first, last in itertools.pairwise(grips.start.tolist()):
-        particles += [grips.particle[first:last]] * 2
-    rows = new_rows(particles, [SCALAR] * alone + [PAIR, SECOND_OF_TWO] * count)
-    middle = rows.first[: len(groups)] + np.array([len(wheel) for wheel, _ in groups], dtype=np.int64)
-    return JointSet(
-        rows, MotorRows(middle, motors.speed, motors.torque, motors.part),
-        HandRows(alone + 2 * np.arange(count), grips), limited_rows(world, springs, len(groups)),
-    )  # fmt: skip
+@inner_kernel
+def lay_out_joints(
+    state: State, wheels: DrivenWheels, sides: MotorSides, forces: SpringForces, grips: Grips, arena: Arena,
+    out: JointSet,
+) -> None:  # fmt: skip
+    """Lay out the joints of a world: its motors with their sides, its springs of limited force, its hands' grips."""
+    count, limited, hands = wheels.hub.shape[0], forces.limited.shape[0], grips.hand.shape[0]
+    alone = count + limited
+    gripped = grips.start[hands]
+    # A spring has two free ends at most; a hand has two rows.
+    entries = sides.first[2 * count] + 2 * limited + 2 * gripped
+    rows = new_rows(alone + 2 * hands, entries, arena)
+    motor_rows = MotorRows(new_slots(arena, count), wheels.speed, wheels.torque, wheels.part)
+    limited_rows = LimitedRows(new_slots(arena, 1), forces.limited, new_floats(arena, limited))
+    first_of_hand = new_slots(arena, hands)
+    if is_full(arena):
+        return
+    list_motors(sides, rows, motor_rows)
+    list_limited(state, forces, count, rows, limited_rows)
+    for i in range(hands):
+        first_of_hand[i] = alone + 2 * i
+        rows.pair[alone + 2 * i], rows.pair[alone + 2 * i + 1] = PAIR, SECOND_OF_TWO
+        for row in range(alone + 2 * i, alone + 2 * i + 2):
+            e = rows.first[row]
+            for k in range(grips.start[i], grips.start[i + 1]):
+                rows.particle[e] = grips.particle[k]
+                e += 1
+            rows.first[row + 1] = e
+    used = rows.first[alone + 2 * hands]
+    put(out, "rows", JointRows(
+        rows.first, rows.particle[:used], rows.pair, rows.gradient[:used], rows.target, rows.softness, rows.limit,
+        rows.impulse,
+    ))  # fmt: skip
+    put(out, "motors", motor_rows)
+    put(out, "limited", limited_rows)
+    put(out, "hands", HandRows(first_of_hand, grips))
 
 
 @inner_kernel

@@ -4,22 +4,14 @@ A joint takes in many particles of a body, so it is swept through what each of i
 Z = A^-1 g, kept by row: an impulse at one particle changes u by Z there, that of another joint by g . Z.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slots
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.rows import (
-    PAIR,
-    SECOND_OF_TWO,
-    JointRows,
-    clamped,
-    new_rows,
-    row_velocity,
-    shortened,
-)
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.joints.rows import PAIR, SECOND_OF_TWO, JointRows, clamped, row_velocity, shortened
+from sandbox.physics.topology.sorting import list_by_key, place_among
 
 
 class Joints(NamedTuple):
@@ -40,68 +32,111 @@ class Joints(NamedTuple):
     body_answer: Slots
     answer_first: Slots
     answer_particle: Slots
-    answer: Floats
+    answer: FloatRows
     at_first: Slots
     at: Slots
     at_row: Slots
-    response: Floats
+    response: FloatRows
     velocity: Floats
     last_impulse: Floats
     search_direction: Floats
-    push: Floats
+    push: FloatRows
 
 
-_SLOTS = ("body_first", "body", "body_answer", "answer_first", "answer_particle", "at_first", "at", "at_row")
+@inner_kernel
+def _find_bodies(rows: JointRows, k: int, row_of: Slots, row_start: Slots, first: int, body: Slots) -> int:
+    # List the bodies of a row, each once, ascending, from body[first] on; where they end.
+    last = first
+    for e in range(rows.first[k], rows.first[k + 1]):
+        row = row_of[rows.particle[e]]
+        if row < 0:
+            continue
+        found = place_among(row + 1, row_start, 0, row_start.shape[0]) - 1
+        at = last
+        while at > first and body[at - 1] > found:
+            at -= 1
+        if at > first and body[at - 1] == found:
+            continue
+        for other in range(last, at, -1):
+            body[other] = body[other - 1]
+        body[at] = found
+        last += 1
+    return last
 
 
-def new_joints(rows: JointRows, row_of: Slots, row_start: Slots, particle_count: int) -> Joints:
-    """Room for joints; row_of (n,): the row of each particle in the matrix, -1: in none; row_start: of each body."""
-    count = len(rows.limit)
-    bodies: list[Slots] = []
-    body_answers: list[Slots] = []
-    answers: list[Slots] = []
-    particle_of = np.zeros(row_start[-1], dtype=np.int64)
-    inside = np.flatnonzero(row_of >= 0)
-    particle_of[row_of[inside]] = inside
-    begun = 0
-    for k in range(count):
-        taken = rows.particle[rows.first[k] : rows.first[k + 1]]
-        places = row_of[taken]
-        touched = np.unique(np.searchsorted(row_start, places[places >= 0], side="right") - 1)
-        spans = [particle_of[row_start[body] : row_start[body + 1]] for body in touched]
-        spans.append(taken[places < 0])
-        bodies.append(touched)
-        body_answers.append(begun + np.cumsum([0, *map(len, spans[:-1])], dtype=np.int64)[:-1])
-        answers.append(np.concatenate(spans))
-        begun += len(answers[-1])
-    answer_particle = np.concatenate([*answers, np.zeros(0, dtype=np.int64)])
-    at = np.argsort(answer_particle, kind="stable")
-    return joints_by_mass(rows)._replace(
-        body_first=np.cumsum([0, *map(len, bodies)], dtype=np.int64),
-        body=np.concatenate([*bodies, np.zeros(0, dtype=np.int64)]),
-        body_answer=np.concatenate([*body_answers, np.zeros(0, dtype=np.int64)]),
-        answer_first=np.cumsum([0, *map(len, answers)], dtype=np.int64),
-        answer_particle=answer_particle,
-        answer=np.zeros((begun, 2)),
-        at_first=np.searchsorted(answer_particle[at], np.arange(particle_count + 1)),
-        at=at,
-        at_row=np.repeat(np.arange(count), list(map(len, answers)))[at],
-        push=np.zeros((particle_count if count else 0, 2)),
-    )
+@inner_kernel
+def _list_answers(rows: JointRows, particle: Slots, row_of: Slots, row_start: Slots, joints: Joints) -> None:
+    # The particles of each row's bodies, then its own that are in none; and the same by particle.
+    top = 0
+    for k in range(rows.limit.shape[0]):
+        for b in range(joints.body_first[k], joints.body_first[k + 1]):
+            for row in range(row_start[joints.body[b]], row_start[joints.body[b] + 1]):
+                joints.answer_particle[top] = particle[row]
+                top += 1
+        for e in range(rows.first[k], rows.first[k + 1]):
+            if row_of[rows.particle[e]] < 0:
+                joints.answer_particle[top] = rows.particle[e]
+                top += 1
+    list_by_key(joints.answer_particle, top, joints.at_first.shape[0] - 1, joints.at_first, joints.at)
+    for i in range(top):
+        # Answers ascend from row to row.
+        joints.at_row[i] = place_among(joints.at[i] + 1, joints.answer_first, 0, joints.answer_first.shape[0]) - 1
 
 
-def joints_by_mass(rows: JointRows) -> Joints:
+@inner_kernel
+def _joints(
+    rows: JointRows, body_first: Slots, body: Slots, body_answer: Slots, answer_first: Slots, answers: int,
+    particles: int, arena: Arena,
+) -> Joints:  # fmt: skip
+    count = rows.limit.shape[0]
+    return Joints(
+        rows, body_first, body, body_answer, answer_first, new_slots(arena, answers),
+        new_float_rows(arena, answers, 2), new_slots(arena, particles + 1), new_slots(arena, answers),
+        new_slots(arena, answers), new_float_rows(arena, count, count), new_floats(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, particles if count > 0 else 0, 2),
+    )  # fmt: skip
+
+
+@inner_kernel
+def new_joints(rows: JointRows, particle: Slots, row_of: Slots, row_start: Slots, arena: Arena) -> Joints:
+    """Room for joints.
+
+    particle: of each row of the matrix; row_of (n,): the row of each particle, -1: in none; row_start: of each body.
+    """
+    count, entries = rows.limit.shape[0], rows.particle.shape[0]
+    body_first, answer_first = new_slots(arena, count + 1), new_slots(arena, count + 1)
+    body, body_answer = new_slots(arena, entries), new_slots(arena, entries)
+    bodies, answers = 0, 0
+    if not is_full(arena):
+        for k in range(count):
+            last = _find_bodies(rows, k, row_of, row_start, bodies, body)
+            for b in range(bodies, last):
+                body_answer[b] = answers
+                answers += row_start[body[b] + 1] - row_start[body[b]]
+            for e in range(rows.first[k], rows.first[k + 1]):
+                if row_of[rows.particle[e]] < 0:
+                    answers += 1
+            bodies = last
+            body_first[k + 1] = bodies
+            answer_first[k + 1] = answers
+    joints = _joints(
+        rows, body_first, body[:bodies], body_answer[:bodies], answer_first, answers, row_of.shape[0], arena
+    )  # fmt: skip
+    if not is_full(arena):
+        _list_answers(rows, particle, row_of, row_start, joints)
+    return joints
+
+
+@inner_kernel
+def joints_by_mass(rows: JointRows, arena: Arena) -> Joints:
     """Joints whose particles answer by their own mass alone."""
-    count = len(rows.limit)
-    slots: dict[str, Any] = {name: np.zeros(0, dtype=np.int64) for name in _SLOTS}
-    numbers: dict[str, Any] = {name: np.zeros(count) for name in ("velocity", "last_impulse", "search_direction")}
-    response = np.zeros((count, count))
-    return Joints(rows, **slots, answer=np.zeros((0, 2)), response=response, **numbers, push=np.zeros((0, 2)))
-
-
-def no_joints() -> Joints:
-    """Of a world without joints, or for a solver that takes them in elsewhere."""
-    return joints_by_mass(new_rows([], []))
+    none = new_slots(arena, 0)
+    count = rows.limit.shape[0]
+    return Joints(
+        rows, none, none, none, none, none, new_float_rows(arena, 0, 2), none, none, none,
+        new_float_rows(arena, count, count), new_floats(arena, count), new_floats(arena, count),
+        new_floats(arena, count), new_float_rows(arena, 0, 2),
+    )  # fmt: skip
 
 
 @inner_kernel

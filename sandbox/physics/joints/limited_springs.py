@@ -8,18 +8,19 @@ Clamped is what the equation gives, |J| <= force h, in the form of the solver th
 The single pass clamps the spring itself.
 """
 
+import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from sandbox.physics.arena import Arena, is_full, new_flags, new_floats, new_slots
+from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.driving import Drives
 from sandbox.physics.equation import direction, implicit_masses, reduced_mass
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, clamped
+from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.settings import DIRECT, SINGLE_PASS
 from sandbox.physics.state import State
-from sandbox.physics.world import LAW_NISSEN, Floats, Slots, World
 
 # K at least, as a share of the reduced mass: of a spring without damping it would be 0, and 1/K infinite.
 LEAST_SHARE = 1e-9
@@ -33,45 +34,54 @@ class LimitedRows(NamedTuple):
     force: Floats
 
 
-def force_limits(world: World) -> Floats:
-    """The force [N] (m,) that each spring gives at most; infinite: without a limit."""
-    return world.derived(_find_limits, of_hands=False)
+class SpringForces(NamedTuple):
+    """Limits of force: limit [N] (m,), infinite: none; limited (k,): slots of the springs that solvers take as rows.
+
+    Those are active, of the article's law, with an end that moves. unlimited (m,): which are active and no rows.
+    """
+
+    limit: Floats
+    limited: Slots
+    unlimited: Flags
 
 
-def _find_limits(world: World) -> Floats:
-    limits = np.full(world.spring_count, np.inf)
-    for driven in (world.actuators.muscles, world.actuators.hydraulics):
-        if len(driven.force):
-            limits[driven.spring] = np.minimum(limits[driven.spring], driven.force)
-    return limits
+@inner_kernel
+def new_spring_forces(state: State, drives: Drives, arena: Arena) -> SpringForces:
+    """The limits of force of a world's springs, as its topology is now."""
+    springs = state.law.shape[0]
+    limit, limited, unlimited = new_floats(arena, springs), new_slots(arena, springs), new_flags(arena, springs)
+    if is_full(arena):
+        return SpringForces(limit, limited, unlimited)
+    for s in range(springs):
+        limit[s] = math.inf
+    for k in range(drives.muscle.shape[0]):
+        limit[drives.muscle[k]] = min(limit[drives.muscle[k]], drives.muscle_force[k])
+    for k in range(drives.hydraulic.shape[0]):
+        limit[drives.hydraulic[k]] = min(limit[drives.hydraulic[k]], drives.hydraulic_force[k])
+    count = 0
+    for s in range(springs):
+        moves = state.inverse_mass[state.particle_a[s]] > 0.0 or state.inverse_mass[state.particle_b[s]] > 0.0
+        is_row = limit[s] < math.inf and state.spring_active[s] and state.law[s] == LAW_NISSEN and moves
+        unlimited[s] = state.spring_active[s] and not is_row
+        if is_row:
+            limited[count] = s
+            count += 1
+    return SpringForces(limit, limited[:count], unlimited)
 
 
-def limited_springs(world: World) -> Slots:
-    """The springs that solvers take as rows: of limited force, active, of the article's law, with an end that moves."""
-    moves = (world.inverse_mass[world.particle_a] > 0.0) | (world.inverse_mass[world.particle_b] > 0.0)
-    return np.flatnonzero(np.isfinite(force_limits(world)) & world.spring_active & (world.law == LAW_NISSEN) & moves)
-
-
-def unlimited_active(world: World) -> NDArray[np.bool_]:
-    """Which springs (m,) are active and no rows."""
-    return world.derived(_find_unlimited, of_hands=False)
-
-
-def _find_unlimited(world: World) -> NDArray[np.bool_]:
-    rest = world.spring_active.copy()
-    rest[limited_springs(world)] = False
-    return rest
-
-
-def limited_particles(world: World, springs: Slots) -> list[Slots]:
-    """The free particles of each row: both ends, or one."""
-    ends = np.stack([world.particle_a[springs], world.particle_b[springs]], axis=1).astype(np.int64)
-    return [pair[world.inverse_mass[pair] > 0.0] for pair in ends]
-
-
-def limited_rows(world: World, springs: Slots, first: int) -> LimitedRows:
-    """The input from which kernels fill the rows of these springs, which begin at the row `first`."""
-    return LimitedRows(np.array([first]), springs, force_limits(world)[springs])
+@inner_kernel
+def list_limited(state: State, forces: SpringForces, first_row: int, rows: JointRows, out: LimitedRows) -> None:
+    """List the free particles of each spring's row, both ends or one, from row `first_row` on, and its force."""
+    out.first[0] = first_row
+    for i in range(forces.limited.shape[0]):
+        s, e = forces.limited[i], rows.first[first_row + i]
+        out.force[i] = forces.limit[s]
+        for end in range(2):
+            p = state.particle_a[s] if end == 0 else state.particle_b[s]
+            if state.inverse_mass[p] > 0.0:
+                rows.particle[e] = p
+                e += 1
+        rows.first[first_row + i + 1] = e
 
 
 @inner_kernel

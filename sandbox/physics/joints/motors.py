@@ -1,16 +1,15 @@
 """Motors: each a row between the turning of a wheel and of what its hub is mounted on."""
 
-import itertools
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.components import Flags, join, root_of
+from sandbox.physics.actuators import Actuators
+from sandbox.physics.arena import Arena, is_full, new_flags, new_slots
+from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.components import join, root_of
 from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
-from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, clamped
-from sandbox.physics.state import Floats, Slots, State, lent_state
-from sandbox.physics.world import World
+from sandbox.physics.state import State
 
 # Below this moment of inertia [kg m^2] a group of particles has no direction to be turned in.
 LEAST_INERTIA = 1e-150
@@ -33,12 +32,21 @@ class MotorRows(NamedTuple):
     part: Slots
 
 
-class Wheels(NamedTuple):
-    """The wheels of motors, see Motors."""
+class DrivenWheels(NamedTuple):
+    """The motors of a world as kernels read them, see Motors."""
 
     hub: Slots
     rim_start: Slots
     rim: Slots
+    speed: Floats
+    torque: Floats
+    part: Slots
+
+
+def wheels_of(actuators: Actuators) -> DrivenWheels:
+    """The motors of some actuators."""
+    given = actuators.motors
+    return DrivenWheels(given.hub, given.rim_start, given.rim, given.speed, given.torque, given.part)
 
 
 class MotorSides(NamedTuple):
@@ -70,7 +78,7 @@ def _label_free(state: State, label: Slots) -> None:
 
 
 @inner_kernel
-def _mark_wheel(k: int, state: State, wheels: Wheels, sides: MotorSides) -> bool:
+def _mark_wheel(k: int, state: State, wheels: DrivenWheels, sides: MotorSides) -> bool:
     # Mark the rim, what springs join to the hub, and what turns with it; whether anything holds the rim to the hub.
     hub = wheels.hub[k]
     for p in range(sides.label.shape[0]):
@@ -119,7 +127,7 @@ def _enter(p: int, top: int, sides: MotorSides) -> None:
 
 
 @inner_kernel
-def list_motor_sides(state: State, wheels: Wheels, sides: MotorSides) -> int:
+def list_motor_sides(state: State, wheels: DrivenWheels, sides: MotorSides) -> int:
     """List the sides of all motors; how many particles they have, which may be more than there is room for."""
     _label_free(state, sides.label)
     top = 0
@@ -143,35 +151,40 @@ def list_motor_sides(state: State, wheels: Wheels, sides: MotorSides) -> int:
     return top
 
 
-@kernel
-def _list_motor_sides(lent: Any, wheels: Wheels, sides: MotorSides) -> int:
-    return list_motor_sides(contents(lent), wheels, sides)
-
-
-def motor_groups(world: World) -> list[tuple[Slots, Slots]]:
-    """The two sides that each motor turns against each other: particles of its wheel and of its mount; a side that the
-    ground holds has none.
+@inner_kernel
+def new_motor_sides(state: State, wheels: DrivenWheels, arena: Arena) -> MotorSides:
+    """The two sides that each motor turns against each other; a side that the ground holds has no particles.
 
     The mount is the hub and what springs join to it outside the wheel. Where springs hold nothing of the wheel to the
     hub, or nothing but the wheel, both are empty: there is nothing to turn, or to push against. What has come off the
     wheel is no part of it.
     """
-    motors, count = world.actuators.motors, world.particle_count
-    if not len(motors.hub):
-        return []
-    wheels = Wheels(motors.hub, motors.rim_start, motors.rim)
-    on_rim, at_hub, turns = np.zeros((3, count), np.bool_)
+    particles, count = state.owner.shape[0], wheels.hub.shape[0]
+    room = particles if count > 0 else 0
     sides = MotorSides(
-        np.zeros(2 * len(motors.hub) + 1, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64), on_rim,
-        at_hub, turns,
+        new_slots(arena, 2 * count + 1), new_slots(arena, room), new_slots(arena, room), new_flags(arena, room),
+        new_flags(arena, room), new_flags(arena, room),
     )  # fmt: skip
-    needed = _list_motor_sides(lent_state(world), wheels, sides)
-    if needed > len(sides.particle):
-        sides = sides._replace(particle=np.zeros(needed, np.int64))
-        _list_motor_sides(lent_state(world), wheels, sides)
-    first = sides.first.tolist()
-    groups = [sides.particle[begin:end] for begin, end in itertools.pairwise(first)]
-    return list(zip(groups[::2], groups[1::2], strict=True))
+    if count == 0 or is_full(arena):
+        return sides
+    needed = list_motor_sides(state, wheels, sides)
+    if needed > room:
+        sides = MotorSides(
+            sides.first, new_slots(arena, needed), sides.label, sides.on_rim, sides.at_hub, sides.turns
+        )  # fmt: skip
+        if not is_full(arena):
+            list_motor_sides(state, wheels, sides)
+    return sides
+
+
+@inner_kernel
+def list_motors(sides: MotorSides, rows: JointRows, motors: MotorRows) -> None:
+    """List the particles of motors in the first rows."""
+    for k in range(motors.middle.shape[0]):
+        for at in range(sides.first[2 * k], sides.first[2 * k + 2]):
+            rows.particle[at] = sides.particle[at]
+        motors.middle[k] = sides.first[2 * k + 1]
+        rows.first[k + 1] = sides.first[2 * k + 2]
 
 
 @inner_kernel

@@ -14,10 +14,9 @@ Another kind of joint makes its rows in `joint_set.py` and fills in their number
 import math
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, new_float_rows, new_floats, new_slots
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats, Slots
 
 # Of a row: alone; the first of two whose impulses together are clamped by their length; the second of them.
 SCALAR, PAIR, SECOND_OF_TWO = 0, 1, -1
@@ -34,19 +33,21 @@ class JointRows(NamedTuple):
     first: Slots
     particle: Slots
     pair: Slots
-    gradient: Floats
+    gradient: FloatRows
     target: Floats
     softness: Floats
     limit: Floats
     impulse: Floats
 
 
-def new_rows(particles: list[Slots], pair: list[int]) -> JointRows:
-    """Rows over lists of particles, whose numbers are to be filled in."""
-    first = np.cumsum([0, *map(len, particles)], dtype=np.int64)
-    every = np.concatenate([*particles, np.zeros(0, dtype=np.int64)])
-    numbers = np.zeros((4, len(pair)))
-    return JointRows(first, every, np.array(pair, dtype=np.int64), np.zeros((len(every), 2)), *numbers)
+@inner_kernel
+def new_rows(rows: int, entries: int, arena: Arena) -> JointRows:
+    """So many rows of so many entries, to be filled in."""
+    return JointRows(
+        new_slots(arena, rows + 1), new_slots(arena, entries), new_slots(arena, rows),
+        new_float_rows(arena, entries, 2), new_floats(arena, rows), new_floats(arena, rows), new_floats(arena, rows),
+        new_floats(arena, rows),
+    )  # fmt: skip
 
 
 @inner_kernel

@@ -6,6 +6,7 @@ has changed nothing by then but scratch.
 
 from typing import NamedTuple
 
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Candidates, Grid, cell_size, fill_grid, find_pairs
 from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
 from sandbox.physics.collision.disc_stop import stop_discs
@@ -13,18 +14,18 @@ from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.restitution import find_bounces
 from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terrain, clamp_at_tips
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
-from sandbox.physics.collision.types import Colliders, Contacts, Flags, KeptContacts, Near
+from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch
 from sandbox.physics.solvers.contact.free_contacts import solve_free_contacts
 from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, sort_free_contacts
 from sandbox.physics.solvers.contact.small_steps import small_steps
-from sandbox.physics.state import Floats, Slots, State
+from sandbox.physics.state import State
 from sandbox.physics.untangling.crossing_candidates import ShapeBounds
 from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted
 from sandbox.physics.untangling.overlaps import CROSSINGS, OVERLAPS, Overlaps, find_crossings, pair_overlaps
 from sandbox.physics.untangling.parting import MovedParticles, part_overlaps
-from sandbox.physics.world import GRAB_COUNT
 
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
 # crossings of outlines, pairs of shapes that overlap; contacts that are left to a solver.
@@ -47,7 +48,7 @@ class Collisions(NamedTuple):
     boxes: Boxes
     grid: Grid
     candidates: Candidates
-    bounds: Floats
+    bounds: FloatRows
     near: Near
     contacts: Contacts
     bound: Contacts

@@ -9,6 +9,7 @@ from sandbox.physics.forces import integrate_velocities
 from sandbox.physics.integrate import integrate_positions
 from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.joints.joint_set import prepare_joints, store_joint_impulses
+from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline.block import (
     BROKEN,
     CHECKED,
@@ -66,7 +67,6 @@ from sandbox.physics.substeps import (
     turn_into_substep,
 )
 from sandbox.physics.untangling.triangle_clamp import clamp_world
-from sandbox.physics.world import GRAB_COUNT
 
 # What a tick says at its end. It has changed nothing where something that it begins with is not sound, and goes on
 # where it was, once there is more room. Something that it has moved is not sound; springs broke.

@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sandbox.physics.world import Floats
+    from sandbox.physics.arrays import Floats
 
 
 @dataclass(frozen=True)

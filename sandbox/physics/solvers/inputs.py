@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.world import Floats
+from sandbox.physics.arrays import Floats
 
 
 class Inputs(NamedTuple):

@@ -4,10 +4,11 @@ No proven limit. Only springs are warm-started. Hooke springs are no constraints
 iterations. Source: Nissen's demo programs after the article.
 """
 
+import math
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_float_rows, new_floats, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import (
     AREA,
@@ -22,7 +23,7 @@ from sandbox.physics.constraints import (
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import iterate_joints, warm_start_joints
-from sandbox.physics.joints.limited_springs import unlimited_active
+from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
@@ -37,7 +38,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
 )
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
-from sandbox.physics.world import LAW_NISSEN, Floats, Slots, World
+from sandbox.physics.topology.sorting import sort_by_value
 
 # The share of what an area still wants that it gets in an iteration after the first. With all of it jellies and rings,
 # which have more constraints than ways to move, gain energy several times over; with 0.3 or less a crushed jelly stays
@@ -53,8 +54,8 @@ class Wanted(NamedTuple):
     kept + Cd m / present mass. Of an area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
     """
 
-    place: Floats
-    slope: Floats
+    place: FloatRows
+    slope: FloatRows
     wanted: Floats
     damped: Floats
     kept: Floats
@@ -69,10 +70,10 @@ class Pulling(NamedTuple):
     """
 
     slot: Slots
-    normal: Floats
+    normal: FloatRows
     wanted: Floats
     mass: Floats
-    change: Floats
+    change: FloatRows
 
 
 class Iteration(NamedTuple):
@@ -237,24 +238,42 @@ def solve(
     store_spins(terms, state.spin, state.radius)
 
 
-def iteration_of(world: World) -> Iteration:
-    """The springs of a world that are iterated, made again after a change of topology, with scratch."""
-    return world.derived(_make_iteration, of_hands=False)
-
-
-def _make_iteration(world: World) -> Iteration:
-    listed = np.flatnonzero(unlimited_active(world) & (world.law == LAW_NISSEN))
-    moved = np.where(world.inverse_mass > 0.0, world.inverse_mass, np.inf)
-    lightness = np.minimum(moved[world.particle_a[listed]], moved[world.particle_b[listed]])
-    count = len(listed)
+@inner_kernel
+def new_iteration(state: State, unlimited: Flags, arena: Arena) -> Iteration:
+    """The springs of a world that are iterated, with scratch; unlimited (m,): active ones of no limited force."""
+    springs, corners, constraints = state.law.shape[0], state.corner_particle.shape[0], state.constraint_kind.shape[0]
+    listed, heavy_first = new_slots(arena, springs), new_slots(arena, springs)
+    scratch = mark(arena)
+    lightness, order, spare = new_floats(arena, springs), new_slots(arena, springs), new_slots(arena, springs)
+    count = 0
+    if not is_full(arena):
+        for s in range(springs):
+            if unlimited[s] and state.law[s] == LAW_NISSEN:
+                listed[count] = s
+                order[count] = count
+                lightness[count] = min(_lightness(state, state.particle_a[s]), _lightness(state, state.particle_b[s]))
+                count += 1
+        sort_by_value(lightness, order, 0, count, spare)
+        for k in range(count):
+            heavy_first[k] = listed[order[k]]
+        give_back(arena, scratch)
     return Iteration(
-        listed, listed[np.argsort(lightness, kind="stable")],
+        listed[:count], heavy_first[:count],
         Pulling(
-            np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count), np.zeros(count),
-            np.zeros((world.particle_count, 2)),
+            new_slots(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count),
+            new_floats(arena, count), new_float_rows(arena, state.owner.shape[0], 2),
         ),
-        Wanted(*np.zeros((2, len(world.corner_particle), 2)), *np.zeros((5, world.constraint_count))),
+        Wanted(
+            new_float_rows(arena, corners, 2), new_float_rows(arena, corners, 2), new_floats(arena, constraints),
+            new_floats(arena, constraints), new_floats(arena, constraints), new_floats(arena, constraints),
+            new_floats(arena, constraints),
+        ),
     )  # fmt: skip
+
+
+@inner_kernel
+def _lightness(state: State, p: int) -> float:
+    return state.inverse_mass[p] if state.inverse_mass[p] > 0.0 else math.inf
 
 
 spring_constant = explicit_spring_constant

@@ -7,20 +7,19 @@ clamped at carries only what springs as soft as these pass on, no wheel under a 
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Contacts, Flags
+from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows
+from sandbox.physics.arrays import Flags, FloatRows, Floats
+from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import constraint_rate, constraints_of, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, put
 from sandbox.physics.joints.joint_sweep import Joints, couple_masses, iterate_joint
-from sandbox.physics.joints.limited_springs import force_limits
 from sandbox.physics.joints.rows import PAIR, SCALAR, clamped, row_velocity
+from sandbox.physics.marks import LAW_HOOKE, LAW_NISSEN
 from sandbox.physics.solvers.contact.body_impacts import sweep_masses
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
-from sandbox.physics.world import LAW_NISSEN, Floats, World
 
 # Cs and Cd of a joint: (Cs + 2 Cd) n < 4 for n = 1, which leaves room for the springs of what it acts on.
 JOINT_STIFFNESS = 0.05
@@ -38,22 +37,36 @@ class ExplicitPass(NamedTuple):
     joints: Joints
     chosen: Flags
     limit: Floats
-    impulse: Floats
-    still: Floats
-    change: Floats
-    place: Floats
-    slope: Floats
+    impulse: FloatRows
+    still: FloatRows
+    change: FloatRows
+    place: FloatRows
+    slope: FloatRows
     mass: Floats
     given: Floats
 
 
-def new_explicit_pass(world: World, joints: Joints, chosen: Flags) -> ExplicitPass:
-    """The explicit pass of a world over the chosen springs, with these joints."""
-    return ExplicitPass(
-        joints, chosen, force_limits(world), *np.zeros((3, world.particle_count, 2)),
-        *np.zeros((2, len(world.corner_particle), 2)),
-        *np.zeros((2, len(joints.rows.limit))),
-    )  # fmt: skip
+@inner_kernel
+def lay_out_explicit_pass(state: State, limit: Floats, hooke: bool, arena: Arena, out: ExplicitPass) -> None:
+    """Lay out an explicit pass over all active springs, or those of Hooke's law alone; its joints are made apart.
+
+    limit [N] (m,): the force that each spring gives at most.
+    """
+    springs, particles, corners = state.law.shape[0], state.owner.shape[0], state.corner_particle.shape[0]
+    put(out, "limit", limit)
+    put(out, "impulse", new_float_rows(arena, particles, 2))
+    put(out, "still", new_float_rows(arena, particles, 2))
+    put(out, "change", new_float_rows(arena, particles, 2))
+    put(out, "place", new_float_rows(arena, corners, 2))
+    put(out, "slope", new_float_rows(arena, corners, 2))
+    if not hooke:
+        put(out, "chosen", state.spring_active)
+        return
+    chosen = new_flags(arena, springs)
+    put(out, "chosen", chosen)
+    if not is_full(arena):
+        for s in range(springs):
+            chosen[s] = state.spring_active[s] and state.law[s] == LAW_HOOKE
 
 
 @inner_kernel

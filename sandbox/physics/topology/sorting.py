@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from sandbox.physics.arrays import Int32s, Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Slots
 
 
 @inner_kernel
@@ -52,7 +52,9 @@ def _end_lists(bound: int, start: Slots) -> None:
 
 
 @inner_kernel
-def list_ends(end_a: Slots, end_b: Slots, count: int, bound: int, start: Slots, listed: Slots) -> None:
+def list_ends(
+    end_a: Slots | Int32s, end_b: Slots | Int32s, count: int, bound: int, start: Slots, listed: Slots
+) -> None:  # fmt: skip
     """List `count` links by both of their ends, ascending: those of node k are listed[start[k]:start[k + 1]]."""
     for k in range(bound + 1):
         start[k] = 0

@@ -7,14 +7,13 @@ it under its wheels alone. So most edges need not be compared with any other to 
 import math
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.outline import Outline
-from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.rigid import WeightedSums, best_turn, centre_of, rotated, with_pair, with_point
 from sandbox.physics.geometry.segment import doubled_area
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats, Slots
 
 # By this share of a radius two outlines are taken apart before they are compared, so that ones that lie exactly on each
 # other cross.
@@ -29,18 +28,20 @@ class ShapeBounds(NamedTuple):
     intact (s,): it crosses itself nowhere but where it was made so.
     """
 
-    box: Floats
-    crossing: Floats
+    box: FloatRows
+    crossing: FloatRows
     group: Slots
     collides: Slots
     intact: Flags
 
 
-def new_shape_bounds(shapes: int) -> ShapeBounds:
+@inner_kernel
+def new_shape_bounds(shapes: int, arena: Arena) -> ShapeBounds:
     """ShapeBounds to be filled in."""
-    box, crossing = np.zeros((2, shapes, 4))
-    group, collides = np.zeros((2, shapes), np.int64)
-    return ShapeBounds(box, crossing, group, collides, np.zeros(shapes, np.bool_))
+    return ShapeBounds(
+        new_float_rows(arena, shapes, 4), new_float_rows(arena, shapes, 4), new_slots(arena, shapes),
+        new_slots(arena, shapes), new_flags(arena, shapes),
+    )  # fmt: skip
 
 
 @inner_kernel

@@ -8,18 +8,16 @@ folded over in its own form, some of its triangles counter-clockwise and others 
 number of them that is right.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.arena import Arena, is_full, new_flags, new_slot_rows, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.constraints import AREA
 from sandbox.physics.geometry.polygon import winding_of_side
 from sandbox.physics.geometry.segment import doubled_area, doubled_area_of
-from sandbox.physics.jit import contents, inlined_kernel, inner_kernel, kernel
-from sandbox.physics.state import Floats, Slots, State, lent_state
-from sandbox.physics.untangling.jellies import NO_JELLIES, Jellies, group_triangles
-from sandbox.physics.world import World
+from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.state import State
+from sandbox.physics.untangling.jellies import Jellies, group_triangles
 
 # A jelly of which a triangle is drawn out to so many times its area wants to be back in a step, and cannot be without
 # turning others over on its way: held from that, it would stand still. The softest jelly comes to a hundredth of it
@@ -34,7 +32,7 @@ def _crossing(px: float, py: float, ax: float, ay: float, bx: float, by: float) 
 
 
 @inlined_kernel
-def wind(place: Floats, a: int, b: int, c: int, member: Slots, at: int, turns: Slots) -> float:
+def wind(place: FloatRows, a: int, b: int, c: int, member: SlotRows, at: int, turns: Slots) -> float:
     """Count the turns of triangle a b c, whose corners are member[at], round each of them; its area, doubled."""
     ax = place[a, 0]
     ay = place[a, 1]
@@ -49,7 +47,7 @@ def wind(place: Floats, a: int, b: int, c: int, member: Slots, at: int, turns: S
 
 
 @inner_kernel
-def is_wound(g: int, once: int, place: Floats, fan: Slots, fan_start: Slots) -> bool:
+def is_wound(g: int, once: int, place: FloatRows, fan: SlotRows, fan_start: Slots) -> bool:
     """Whether jelly g is wound. once: 1 where its triangles run counter-clockwise, else -1; fan: see Jellies."""
     for f in range(fan_start[g], fan_start[g + 1]):
         p = fan[f, 0]
@@ -66,11 +64,8 @@ class Triangles(NamedTuple):
     """The triangles of a world that keep their areas, t of them: constraint (t,), corners (t, 3), and their jellies."""
 
     constraint: Slots
-    corners: Slots
+    corners: SlotRows
     jellies: Jellies
-
-
-NO_TRIANGLES = Triangles(np.zeros(0, np.int64), np.zeros((0, 3), np.int64), NO_JELLIES)
 
 
 class Inversions(NamedTuple):
@@ -88,7 +83,7 @@ def is_out_of_shape(area: float, wanted: float, form: float) -> bool:
 
 @inner_kernel
 def find_inverted(
-    position: Floats, constraint_rest: Floats, triangles: Triangles, found: Inversions, inverted: Flags
+    position: FloatRows, constraint_rest: FloatRows, triangles: Triangles, found: Inversions, inverted: Flags
 ) -> None:
     """Find the inverted jellies; mark the particles, of all those in jellies, that belong to them or to wound ones."""
     corners = triangles.corners
@@ -116,7 +111,7 @@ def find_inverted(
 
 
 @inner_kernel
-def choose_triangles(state: State, constraint: Slots, corners: Slots, is_left: Flags) -> int:
+def choose_triangles(state: State, constraint: Slots, corners: SlotRows, is_left: Flags) -> int:
     """Choose the constraints that are triangles; how many there are."""
     count = 0
     for k in range(state.constraint_kind.shape[0]):
@@ -129,23 +124,19 @@ def choose_triangles(state: State, constraint: Slots, corners: Slots, is_left: F
     return count
 
 
-@kernel
-def _choose_triangles(lent: Any, constraint: Slots, corners: Slots, is_left: Flags) -> int:
-    return choose_triangles(contents(lent), constraint, corners, is_left)
-
-
-def triangles_of(world: World) -> Triangles:
+@inner_kernel
+def triangles_of(state: State, arena: Arena) -> Triangles:
     """The triangles of a world, as its constraints are now."""
-    room = world.constraint_count
-    if not room:
-        return NO_TRIANGLES
-    constraint, corners, is_left = np.zeros(room, np.int64), np.zeros((room, 3), np.int64), np.zeros(room, np.bool_)
-    count = _choose_triangles(lent_state(world), constraint, corners, is_left)
-    jellies = group_triangles(corners[:count], is_left[:count], world.particle_count)
+    room = state.constraint_kind.shape[0]
+    constraint, corners, is_left = new_slots(arena, room), new_slot_rows(arena, room, 3), new_flags(arena, room)
+    count = 0
+    if not is_full(arena):
+        count = choose_triangles(state, constraint, corners, is_left)
+    jellies = group_triangles(corners[:count], is_left[:count], state.owner.shape[0], arena)
     return Triangles(constraint[:count], corners[:count], jellies)
 
 
-def new_inversions(triangles: Triangles) -> Inversions:
+@inner_kernel
+def new_inversions(jellies: Jellies, arena: Arena) -> Inversions:
     """Inversions to be filled in."""
-    jellies = triangles.jellies
-    return Inversions(np.zeros(len(jellies.particle), np.int64), np.zeros(len(jellies.first), np.bool_))
+    return Inversions(new_slots(arena, jellies.particle.shape[0]), new_flags(arena, jellies.first.shape[0]))

@@ -2,12 +2,10 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slot_rows, new_slots
+from sandbox.physics.arrays import Flags, SlotRows, Slots
 from sandbox.physics.components import join, root_of
-from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
-from sandbox.physics.state import Slots
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.topology.sorting import list_by_key, sort_by_key
 
 # Places in `counts`: jellies, their particles, rows of fans and of gaps.
@@ -28,15 +26,15 @@ class Jellies(NamedTuple):
     """
 
     group: Slots
-    member: Slots
+    member: SlotRows
     first: Slots
     start: Slots
     particle: Slots
     corner: Slots
     inner: Flags
-    fan: Slots
+    fan: SlotRows
     fan_start: Slots
-    gap: Slots
+    gap: SlotRows
 
 
 class TriangleScratch(NamedTuple):
@@ -60,7 +58,7 @@ class TriangleScratch(NamedTuple):
 
 
 @inner_kernel
-def _group(corners: Slots, bound: int, jellies: Jellies, work: TriangleScratch) -> int:
+def _group(corners: SlotRows, bound: int, jellies: Jellies, work: TriangleScratch) -> int:
     # Find the sides that triangles share, work.one in the order of their ends, and number what hangs together.
     triangles = corners.shape[0]
     for t in range(triangles):
@@ -97,7 +95,7 @@ def _is_same(side: int, other: int, work: TriangleScratch) -> bool:
 
 
 @inner_kernel
-def _number_corners(corners: Slots, bound: int, groups: int, jellies: Jellies, work: TriangleScratch) -> int:
+def _number_corners(corners: SlotRows, bound: int, groups: int, jellies: Jellies, work: TriangleScratch) -> int:
     # Number the particles of jellies by jelly and slot; how many there are. work.other becomes corners in that order.
     count = 3 * corners.shape[0]
     for i in range(count):
@@ -167,7 +165,9 @@ def _find_rims(members: int, jellies: Jellies, work: TriangleScratch) -> None:
 
 
 @inner_kernel
-def _find_fans(corners: Slots, members: int, groups: int, jellies: Jellies, work: TriangleScratch) -> tuple[int, int]:
+def _find_fans(
+    corners: SlotRows, members: int, groups: int, jellies: Jellies, work: TriangleScratch
+) -> tuple[int, int]:
     # The fans of triangles about particles of outlines, and their gaps; how many rows there are of both.
     _find_rims(members, jellies, work)
     gaps = 0
@@ -201,7 +201,7 @@ def _find_fans(corners: Slots, members: int, groups: int, jellies: Jellies, work
 
 @inner_kernel
 def derive_jellies(
-    corners: Slots, is_left: Flags, bound: int, jellies: Jellies, counts: Slots, work: TriangleScratch
+    corners: SlotRows, is_left: Flags, bound: int, jellies: Jellies, counts: Slots, work: TriangleScratch
 ) -> None:
     """Fill in the jellies of triangles of particles below a bound, and say in counts (COUNTS,) how much of them."""
     groups = _group(corners, bound, jellies, work)
@@ -214,50 +214,45 @@ def derive_jellies(
     counts[GAPS] = gaps
 
 
-@kernel
-def _derive_jellies(
-    corners: Slots, is_left: Flags, bound: int, jellies: Jellies, counts: Slots, work: TriangleScratch
-) -> None:
-    derive_jellies(corners, is_left, bound, jellies, counts, work)
-
-
-def room_for_jellies(triangles: int) -> Jellies:
+@inner_kernel
+def new_jellies(triangles: int, arena: Arena) -> Jellies:
     """Jellies of so many triangles, to be filled in."""
     corners = 3 * triangles
-    group, first = np.zeros((2, triangles), np.int64)
-    particle, corner = np.zeros((2, corners), np.int64)
-    start, fan_start = np.zeros((2, triangles + 1), np.int64)
-    member, fan, gap = (np.zeros(shape, np.int64) for shape in ((triangles, 3), (corners, 4), (corners, 4)))
     return Jellies(
-        group, member, first, start, particle, corner, np.zeros(corners, np.bool_), fan, fan_start, gap
+        new_slots(arena, triangles), new_slot_rows(arena, triangles, 3), new_slots(arena, triangles),
+        new_slots(arena, triangles + 1), new_slots(arena, corners), new_slots(arena, corners),
+        new_flags(arena, corners), new_slot_rows(arena, corners, 4), new_slots(arena, triangles + 1),
+        new_slot_rows(arena, corners, 4),
     )  # fmt: skip
 
 
-NO_JELLIES = room_for_jellies(0)
-
-
-def new_triangle_scratch(triangles: int, bound: int) -> TriangleScratch:
-    """Scratch for triangles of particles below a bound."""
+@inner_kernel
+def _new_scratch(triangles: int, bound: int, arena: Arena) -> TriangleScratch:
     corners = 3 * triangles
-    low, high, one, other, begin, end, number = np.zeros((7, corners), np.int64)
     return TriangleScratch(
-        np.zeros(triangles, np.int64), np.zeros(max(bound, corners) + 1, np.int64), low, high, one, other,
-        np.zeros(corners, np.bool_), np.zeros(triangles, np.bool_), begin, end, number,
+        new_slots(arena, triangles), new_slots(arena, max(bound, corners) + 1), new_slots(arena, corners),
+        new_slots(arena, corners), new_slots(arena, corners), new_slots(arena, corners), new_flags(arena, corners),
+        new_flags(arena, triangles), new_slots(arena, corners), new_slots(arena, corners), new_slots(arena, corners),
     )  # fmt: skip
 
 
-def group_triangles(corners: Slots, is_left: Flags, bound: int) -> Jellies:
+@inner_kernel
+def group_triangles(corners: SlotRows, is_left: Flags, bound: int, arena: Arena) -> Jellies:
     """The jellies that triangles of particles below a bound (t, 3) make, in the order of their first triangles.
 
     is_left (t,): whether their forms have them run counter-clockwise.
     """
-    if not len(corners):
-        return NO_JELLIES
-    room, counts = room_for_jellies(len(corners)), np.zeros(COUNTS, np.int64)
-    _derive_jellies(corners, is_left, bound, room, counts, new_triangle_scratch(len(corners), bound))
-    groups, members, fans, gaps = counts.tolist()
-    return room._replace(
-        first=room.first[:groups], start=room.start[: groups + 1], particle=room.particle[:members],
-        corner=room.corner[:members], inner=room.inner[:members], fan=room.fan[:fans],
-        fan_start=room.fan_start[: groups + 1], gap=room.gap[:gaps],
+    triangles = corners.shape[0]
+    room, counts = new_jellies(triangles, arena), new_slots(arena, COUNTS)
+    start = mark(arena)
+    work = _new_scratch(triangles, bound, arena)
+    if triangles == 0 or is_full(arena):
+        return room
+    derive_jellies(corners, is_left, bound, room, counts, work)
+    give_back(arena, start)
+    groups, members = counts[GROUPS], counts[PARTICLES]
+    return Jellies(
+        room.group, room.member, room.first[:groups], room.start[: groups + 1], room.particle[:members],
+        room.corner[:members], room.inner[:members], room.fan[: counts[FANS]], room.fan_start[: groups + 1],
+        room.gap[: counts[GAPS]],
     )  # fmt: skip

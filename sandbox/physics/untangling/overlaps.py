@@ -8,16 +8,15 @@ a particle that is caught in a mesh narrower than itself must not hold it open.
 
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slot_rows, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
 from sandbox.physics.collision.edge_geometry import winds
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, may_collide
 from sandbox.physics.collision.outline import Outline
-from sandbox.physics.collision.types import Colliders, Flags, KeptContacts
+from sandbox.physics.collision.types import Colliders, KeptContacts
 from sandbox.physics.geometry.segment import closest_on_segment, nearest_share, segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.state import Floats, Slots
 from sandbox.physics.untangling.crossing_candidates import (
     ShapeBounds,
     cross,
@@ -40,10 +39,10 @@ class Overlaps(NamedTuple):
     they do; next_pair = of the same lower shape. first_pair = by shape.
     """
 
-    edge: Slots
-    share: Floats
+    edge: SlotRows
+    share: FloatRows
     following: Slots
-    shape: Slots
+    shape: SlotRows
     first: Slots
     separates: Flags
     next_pair: Slots
@@ -51,12 +50,13 @@ class Overlaps(NamedTuple):
     counts: Slots
 
 
-def new_overlaps(shapes: int, crossings: int, pairs: int) -> Overlaps:
+@inner_kernel
+def new_overlaps(shapes: int, crossings: int, pairs: int, arena: Arena) -> Overlaps:
     """Empty overlaps, with room for a number of them."""
     return Overlaps(
-        np.zeros((crossings, 2), np.int64), np.zeros((crossings, 2)), np.zeros(crossings, np.int64),
-        np.zeros((pairs, 2), np.int64), np.zeros(pairs, np.int64), np.zeros(pairs, np.bool_),
-        np.zeros(pairs, np.int64), np.zeros(shapes, np.int64), np.zeros(COUNTS, np.int64),
+        new_slot_rows(arena, crossings, 2), new_float_rows(arena, crossings, 2), new_slots(arena, crossings),
+        new_slot_rows(arena, pairs, 2), new_slots(arena, pairs), new_flags(arena, pairs), new_slots(arena, pairs),
+        new_slots(arena, shapes), new_slots(arena, COUNTS),
     )  # fmt: skip
 
 

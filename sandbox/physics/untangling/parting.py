@@ -9,15 +9,15 @@ it is paid with: energy that the two have lost before.
 import math
 from typing import NamedTuple
 
+from sandbox.physics.arrays import Flags, Floats
 from sandbox.physics.collision.edge_geometry import edge_normal, place_on, winds
 from sandbox.physics.collision.outline import Outline
-from sandbox.physics.collision.types import Colliders, Flags
+from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.rigid import RigidMotion, WeightedSums, centre_of, with_point
 from sandbox.physics.geometry.segment import difference, segment_of
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats
+from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.untangling.overlaps import OVERLAPS, Overlaps, mark_separating
-from sandbox.physics.world import BANK_UNOPENED
 
 # Bodies that overlap part at this speed [m/s]. Faster frees no more of them, slower takes longer.
 PARTING_SPEED = 1.0

@@ -11,11 +11,19 @@ are jellies that are inverted already (inversion.py), until they have found back
 import math
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import (
+    Arena,
+    give_back,
+    is_full,
+    mark,
+    new_flags,
+    new_float_rows,
+    new_slot_rows,
+    new_slots,
+)
+from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import stop_at_terrain, stopped
-from sandbox.physics.collision.types import Flags
 from sandbox.physics.components import root_of, united
 from sandbox.physics.geometry.rigid import (
     RigidMotion,
@@ -26,18 +34,12 @@ from sandbox.physics.geometry.rigid import (
     with_turn,
 )
 from sandbox.physics.geometry.segment import doubled_area_of
-from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.jit import inlined_kernel, inner_kernel, put
+from sandbox.physics.state import State
 from sandbox.physics.terrain import Terrain
-from sandbox.physics.untangling.inversion import (
-    Inversions,
-    Jellies,
-    Triangles,
-    find_inverted,
-    new_inversions,
-    triangles_of,
-)
-from sandbox.physics.world import World
+from sandbox.physics.topology.sorting import list_by_key
+from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
+from sandbox.physics.untangling.jellies import Jellies
 
 # A step leaves a triangle at least this share of the area wanted, or of the area that it has, if that is less. Higher
 # stiffens what is merely squeezed, lower lets triangles be pressed flat in fewer steps.
@@ -72,21 +74,21 @@ class ClampedTriangles(NamedTuple):
     fixed: what cannot move, sums.
     """
 
-    corner: Slots
+    corner: SlotRows
     gap: Flags
     group: Slots
     constraint: Slots
     start: Slots
-    rest: Floats
-    position: Floats
-    velocity: Floats
+    rest: FloatRows
+    position: FloatRows
+    velocity: FloatRows
     mass: Floats
     inverse_mass: Floats
     collides: Slots
     inverted: Flags
     label: Slots
     fixed: Flags
-    sums: Floats
+    sums: FloatRows
     terrain: Terrain
 
 
@@ -450,37 +452,82 @@ def clamp_world(triangles: WorldTriangles, matches: bool, h: float) -> None:
         clamp_triangles(0, clamped.rest.shape[0], 0, clamped.position.shape[0], clamped, h)
 
 
-def new_triangles(
-    constraint: Slots, corners: Slots, jellies: Jellies, rest: Floats, motion: tuple[Floats, Floats, Floats, Floats],
-    collides: Slots, inverted: Flags, terrain: Terrain,
-) -> ClampedTriangles:  # fmt: skip
-    """Triangles (t, 3) of these constraints (t,), with the gaps of their jellies and scratch.
+@inner_kernel
+def lay_out_triangles(
+    constraint: Slots, corners: SlotRows, jellies: Jellies, rests: int, rows: int, arena: Arena, out: ClampedTriangles
+) -> None:
+    """Lay out triangles (t, 3) of these constraints (t,), ascending, each followed by the gaps beside it.
 
-    motion: position, velocity, mass and inverse mass by row; collides: of all rows.
+    rests: of how many constraints; rows: that they join, of how many.
     """
-    count, gap = len(collides), jellies.gap
-    owner = np.append(np.arange(len(corners)), gap[:, 0])
-    order = np.argsort(owner, kind="stable")
-    owner, corner = owner[order], np.append(corners, gap[:, 1:], axis=0)[order]
-    owned = constraint[owner]
-    start = np.searchsorted(owned, np.arange(len(rest) + 1))
-    used = np.isin(np.arange(count), corners)
-    return ClampedTriangles(
-        corner, order >= len(corners), jellies.group[owner], owned, start, rest, *motion, np.where(used, collides, 0),
-        inverted, np.zeros(count, np.int64), np.zeros(count, np.bool_), np.zeros((count, COUNT + 1)), terrain,
-    )  # fmt: skip
+    count, gaps = corners.shape[0], jellies.gap.shape[0]
+    corner, gap = new_slot_rows(arena, count + gaps, 3), new_flags(arena, count + gaps)
+    group, owned, start = new_slots(arena, count + gaps), new_slots(arena, count + gaps), new_slots(arena, rests + 1)
+    put(out, "corner", corner)
+    put(out, "gap", gap)
+    put(out, "group", group)
+    put(out, "constraint", owned)
+    put(out, "start", start)
+    put(out, "label", new_slots(arena, rows))
+    put(out, "fixed", new_flags(arena, rows))
+    put(out, "sums", new_float_rows(arena, rows, COUNT + 1))
+    scratch = mark(arena)
+    beside, listed, first = new_slots(arena, gaps), new_slots(arena, gaps), new_slots(arena, count + 1)
+    if is_full(arena):
+        return
+    for k in range(gaps):
+        beside[k] = jellies.gap[k, 0]
+    list_by_key(beside, gaps, count, first, listed)
+    k = 0
+    for t in range(count):
+        for at in range(first[t] - 1, first[t + 1]):
+            is_gap = at >= first[t]
+            for c in range(3):
+                corner[k, c] = jellies.gap[listed[at], 1 + c] if is_gap else corners[t, c]
+            gap[k] = is_gap
+            group[k] = jellies.group[t]
+            owned[k] = constraint[t]
+            start[constraint[t] + 1] = k + 1
+            k += 1
+    for t in range(rests):
+        start[t + 1] = max(start[t + 1], start[t])
+    give_back(arena, scratch)
 
 
-def world_triangles(world: World) -> WorldTriangles:
-    """The triangles of a world, made again after a change of topology."""
-    return world.derived(_make_world_triangles, of_hands=False)
+@inner_kernel
+def lay_out_collides(corners: SlotRows, state: State, row: Slots, arena: Arena, out: ClampedTriangles) -> None:
+    """Lay out what the rows of triangles (t, 3) collide with, of particles row (n,); all others with nothing."""
+    collides = new_slots(arena, row.shape[0])
+    put(out, "collides", collides)
+    put(out, "terrain", state.terrain)
+    if not is_full(arena):
+        for t in range(corners.shape[0]):
+            for c in range(3):
+                collides[corners[t, c]] = state.collides[row[corners[t, c]]]
 
 
-def _make_world_triangles(world: World) -> WorldTriangles:
-    triangles = world.derived(triangles_of, of_hands=False)
-    motion, found = (world.position, world.velocity, world.mass, world.inverse_mass), new_inversions(triangles)
-    clamped = new_triangles(
-        triangles.constraint, triangles.corners, triangles.jellies, world.constraint_rest, motion, world.collides,
-        found.is_inverted, world.terrain,
-    )  # fmt: skip
-    return WorldTriangles(clamped, triangles, found, np.zeros(world.particle_count, np.bool_))
+@inner_kernel
+def lay_out_world_triangles(state: State, arena: Arena, out: WorldTriangles) -> None:
+    """Lay out the triangles of a world, as its topology is now."""
+    particles, clamped = state.owner.shape[0], out.clamped
+    put(out, "of_world", triangles_of(state, arena))
+    if is_full(arena):
+        return
+    found = out.of_world
+    put(out, "found", new_inversions(found.jellies, arena))
+    put(out, "marked", new_flags(arena, particles))
+    lay_out_triangles(
+        found.constraint, found.corners, found.jellies, state.constraint_rest.shape[0], particles, arena, clamped
+    )
+    every = new_slots(arena, particles)
+    if is_full(arena):
+        return
+    for p in range(particles):
+        every[p] = p
+    lay_out_collides(found.corners, state, every, arena, clamped)
+    put(clamped, "rest", state.constraint_rest)
+    put(clamped, "position", state.position)
+    put(clamped, "velocity", state.velocity)
+    put(clamped, "mass", state.mass)
+    put(clamped, "inverse_mass", state.inverse_mass)
+    put(clamped, "inverted", out.found.is_inverted)

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from sandbox.level.format.limits import PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.format.quantities import FrictionCoefficient, Length, Mass, Point, Share, Velocity
-from sandbox.physics.world import LAW_NISSEN, World
+from sandbox.physics.marks import LAW_NISSEN
+from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
 

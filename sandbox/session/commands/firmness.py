@@ -7,7 +7,7 @@ from pydantic import Field
 
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, set_firmness
-from sandbox.physics.forms import Firmness
+from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import FormSlot

@@ -7,7 +7,8 @@ from typing import Annotated
 from pydantic import Field
 
 from sandbox.level.format.quantities import Length, Point
-from sandbox.physics.world import GRAB_COUNT, HAND_STRENGTH, World
+from sandbox.physics.marks import GRAB_COUNT
+from sandbox.physics.world import HAND_STRENGTH, World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
 

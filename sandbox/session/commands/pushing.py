@@ -7,7 +7,6 @@ from pydantic import Field
 
 from sandbox.level.format.limits import FORCE_LIMIT
 from sandbox.level.format.quantities import Point, Size, unit
-from sandbox.physics.changing.pushing import push
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 
@@ -31,6 +30,6 @@ class Push(Command):
     outward: Impulse = 0.0
 
     def carry_out(self, world: World) -> None:
-        if not push(world, self.position, self.impulse, self.outward, self.radius):
+        if not world.push(self.position, self.impulse, self.outward, self.radius):
             x, y = self.position
             raise CommandError(f"there is nothing to push within {self.radius:.3g} m of ({x:.3g}, {y:.3g})")

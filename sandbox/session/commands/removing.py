@@ -6,9 +6,9 @@ import numpy as np
 
 from sandbox.level.format.level_error import suggestion
 from sandbox.level.format.quantities import Name
+from sandbox.physics.arrays import Slots
 from sandbox.physics.changing.removing import remove_particles
-from sandbox.physics.joints.hands import bodies_of
-from sandbox.physics.state import Slots
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
@@ -40,7 +40,7 @@ class Remove(Command):
 
 
 def _hanging_on(world: World, particle: int) -> Slots:
-    label = bodies_of(world)
+    label = block_of(world).arrays.body_label
     body = np.flatnonzero((label == label[particle]) & world.particle_active)
     ends = np.concatenate([world.particle_a, world.particle_b])[np.tile(_held_by(world, body), 2)]
     # What is pinned goes along where all that it holds does.

@@ -32,11 +32,12 @@ from sandbox.level.assembly.joining import Joiners
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import level_data
 from sandbox.physics.constraints import AREA
-from sandbox.physics.equipment import Equipment
+from sandbox.physics.keeping.equipment import Equipment
+from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, FAMILIES, Column, Family
 from sandbox.physics.terrain import NO_TERRAIN
-from sandbox.physics.world import GRAB_COUNT, GRAB_MATERIAL, World, WorldSettings
+from sandbox.physics.world import World, WorldSettings
 from sandbox.session.commands.adding import name_slots_to
 
 FORMAT = "spring-sandbox/replay"

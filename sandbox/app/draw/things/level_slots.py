@@ -16,7 +16,7 @@ from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.plan.plan import Plan, kept_plan
-from sandbox.physics.equipment import Joined
+from sandbox.physics.keeping.equipment import Joined
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]

@@ -7,7 +7,7 @@ import numpy as np
 
 from sandbox.app.draw.colours import FIELD, MUTED, Colour, mixed
 from sandbox.app.panel.sweeps.sweep_measures import SweepMeasure, measure_of, scale_of, shown_values
-from sandbox.physics.world import Floats
+from sandbox.physics.arrays import Floats
 from sandbox.session.sweep.sweep_map import edges
 
 # Colours from little to much, alike to every kind of colour vision (cividis, Nunez and others 2018).

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.physics.world import Floats
+from sandbox.physics.arrays import Floats
 
 # Two values further apart than this are seen on a logarithmic scale alone; what is that much smaller than the largest
 # counts as nothing.

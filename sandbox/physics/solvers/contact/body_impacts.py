@@ -9,6 +9,7 @@ and all that rests have their say in the sweeps.
 
 import math
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.restitution import SLOWEST_PASSED
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.jit import inner_kernel
@@ -24,7 +25,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     solve_contacts,
     store_spins,
 )
-from sandbox.physics.state import Floats, State
+from sandbox.physics.state import State
 
 # Passes at most; a row of n balls takes n - 1. Sweeps of each at most, which end where no hit changed its velocity by
 # more [m/s].

@@ -5,15 +5,14 @@ Islands that take as many small steps are solved side by side: what does not tou
 
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_slot_rows, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.turning import rolling_ratios
-from sandbox.physics.collision.types import Colliders, Contacts, Flags
+from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.contact.free_islands import Islands
 from sandbox.physics.solvers.contact.small_steps import MOST_SMALL_STEPS, small_steps
-from sandbox.physics.state import Floats, Slots
 
 # Part of an overlap that a small step removes, and 1 - Cd of a contact while it does. More of the first, or less of the
 # second, shakes heaps; less of the first, or more of the second, lets them sink into each other.
@@ -67,11 +66,11 @@ class FreeContactScratch(NamedTuple):
     last_across [N s]: across before the last friction; last [N s]: what pushed for that.
     """
 
-    place: Slots
+    place: SlotRows
     level: Slots
     way: Floats
-    constraint: Floats
-    end: Slots
+    constraint: FloatRows
+    end: SlotRows
     contact: Slots
     at: Slots
     begin: Slots
@@ -83,12 +82,12 @@ class FreeContactScratch(NamedTuple):
     particle: Slots
     weight: Floats
     turning: Floats
-    motion: Floats
-    gain: Floats
+    motion: FloatRows
+    gain: FloatRows
     highest: Slots
     local: Slots
-    ahead: Floats
-    added: Floats
+    ahead: FloatRows
+    added: FloatRows
     stamp: Slots
     since: Floats
     hit: Slots
@@ -323,16 +322,20 @@ def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: F
         row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
 
 
-def new_work(particles: int, contacts: int) -> FreeContactScratch:
+@inner_kernel
+def new_work(particles: int, contacts: int, arena: Arena) -> FreeContactScratch:
     """Work to be filled in, with room for so many contacts."""
-    places, hits = 2 * contacts, np.zeros((8, contacts))
+    places = 2 * contacts
     return FreeContactScratch(
-        np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64), np.zeros(contacts),
-        np.zeros((contacts, COLUMNS)), np.zeros((contacts, 2), np.int64), np.zeros(contacts, np.int64),
-        np.zeros(contacts + 1, np.int64), np.zeros(contacts + 1, np.int64), np.zeros(contacts, np.int64),
-        np.zeros(contacts), np.zeros(contacts, np.bool_), np.zeros(contacts), np.zeros(contacts, np.int64),
-        np.zeros(places, np.int64), np.zeros(places), np.zeros(places), np.zeros((places, 8)), np.zeros((places, 2)),
-        np.zeros(places, np.int64), np.zeros(particles, np.int64), np.zeros((particles, 2)),
-        np.zeros((places, 2)), np.zeros(places, np.int64), np.zeros(places), np.zeros(contacts, np.int64), hits[0],
-        hits[1], hits[2], hits[3], hits[4], hits[5], hits[6], hits[7], np.zeros(places),
+        new_slot_rows(arena, contacts, 2), new_slots(arena, contacts), new_floats(arena, contacts),
+        new_float_rows(arena, contacts, COLUMNS), new_slot_rows(arena, contacts, 2), new_slots(arena, contacts),
+        new_slots(arena, contacts + 1), new_slots(arena, contacts + 1), new_slots(arena, contacts),
+        new_floats(arena, contacts), new_flags(arena, contacts), new_floats(arena, contacts),
+        new_slots(arena, contacts), new_slots(arena, places), new_floats(arena, places), new_floats(arena, places),
+        new_float_rows(arena, places, 8), new_float_rows(arena, places, 2), new_slots(arena, places),
+        new_slots(arena, particles), new_float_rows(arena, particles, 2), new_float_rows(arena, places, 2),
+        new_slots(arena, places), new_floats(arena, places), new_slots(arena, contacts), new_floats(arena, contacts),
+        new_floats(arena, contacts), new_floats(arena, contacts), new_floats(arena, contacts),
+        new_floats(arena, contacts), new_floats(arena, contacts), new_floats(arena, contacts),
+        new_floats(arena, contacts), new_floats(arena, places),
     )  # fmt: skip

@@ -9,6 +9,7 @@ in small steps: where their number changed with what is near, a disc's energy wo
 
 import math
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, spin_of
 from sandbox.physics.collision.types import Colliders, Contacts
@@ -60,7 +61,6 @@ from sandbox.physics.solvers.contact.free_motion import apply, look, meet
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
 from sandbox.physics.solvers.contact.impacts import collide_fast
 from sandbox.physics.solvers.contact.small_steps import small_steps
-from sandbox.physics.state import Floats
 
 # In place of a number of small steps.
 SOLVED = 0

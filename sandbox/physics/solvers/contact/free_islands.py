@@ -5,12 +5,11 @@ An island with a particle that a spring or a constraint holds belongs to the sol
 
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Contacts, Flags, weight_of
+from sandbox.physics.arena import Arena, new_flags, new_slots
+from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats, Slots
 
 
 class Islands(NamedTuple):
@@ -100,10 +99,11 @@ def sort_free_contacts(count: int, islands: Islands) -> int:
     return found
 
 
-def new_islands(particles: int, contacts: int) -> Islands:
+@inner_kernel
+def new_islands(particles: int, contacts: int, arena: Arena) -> Islands:
     """Islands to be filled in, with room for so many contacts."""
     return Islands(
-        np.zeros(particles, np.int64), np.zeros(particles, np.bool_), np.zeros(contacts, np.int64),
-        np.zeros(contacts, np.bool_), np.zeros(contacts, np.int64), np.zeros(contacts + 1, np.int64),
-        np.zeros(particles + 1, np.int64),
+        new_slots(arena, particles), new_flags(arena, particles), new_slots(arena, contacts),
+        new_flags(arena, contacts), new_slots(arena, contacts), new_slots(arena, contacts + 1),
+        new_slots(arena, particles + 1),
     )  # fmt: skip

@@ -9,10 +9,10 @@ start with the impulses of the last step, so a body at rest is at rest from the 
 import math
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, new_float_rows, new_floats
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.turning import spin_of
-from sandbox.physics.collision.types import Contacts, Flags, weight_of
+from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import (
@@ -23,7 +23,6 @@ from sandbox.physics.joints.joint_sweep import (
     sweep_joints,
     swept_by,
 )
-from sandbox.physics.world import Floats, Slots
 
 # Cs / Cd of a contact that penetrates: the part of the penetration that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
@@ -76,17 +75,21 @@ class ContactConstraints(NamedTuple):
     normal: Floats
     coupling: Floats
     tangent: Floats
-    last_impulse: Floats
-    search_direction: Floats
+    last_impulse: FloatRows
+    search_direction: FloatRows
     resisted: Floats
     surface: Floats
     calm: Floats
 
 
-def new_contact_constraints(count: int, surface: Floats) -> ContactConstraints:
-    """Terms with room for a number of contacts, of particles whose surfaces have these velocities."""
-    numbers, pairs = np.zeros((6, count)), np.zeros((2, count, 2))
-    return ContactConstraints._make([*numbers[:4], *pairs, numbers[4], surface, numbers[5]])
+@inner_kernel
+def new_contact_constraints(count: int, particles: int, arena: Arena) -> ContactConstraints:
+    """Terms with room for a number of contacts, of so many particles."""
+    return ContactConstraints(
+        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
+        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_floats(arena, count),
+        new_floats(arena, particles), new_floats(arena, count),
+    )  # fmt: skip
 
 
 @inner_kernel
@@ -101,15 +104,6 @@ def store_spins(terms: ContactConstraints, spin: Floats, radius: Floats) -> None
     """Let particles turn as sweeps have left their surfaces."""
     for p in range(terms.surface.shape[0]):
         spin[p] = spin_of(terms.surface[p], spin[p], radius[p])
-
-
-def no_blocks(particle_count: int, joints: Joints) -> Delassus:
-    """Of particles that all answer by their own mass."""
-    none = np.zeros(0, dtype=np.int64)
-    numbers = np.zeros(0)
-    return Delassus(
-        np.full(particle_count, -1, dtype=np.int64), none, np.zeros(1, np.int64), none, none, numbers, numbers, joints
-    )
 
 
 @inner_kernel

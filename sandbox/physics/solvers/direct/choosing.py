@@ -1,19 +1,18 @@
 """What the matrix of the direct solver is made of: which springs, constraints and particles, and what those join."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Flags
-from sandbox.physics.jit import contents, inner_kernel, kernel
-from sandbox.physics.joints.limited_springs import unlimited_active
-from sandbox.physics.state import Floats, Slots, State, lent_state
-from sandbox.physics.world import LAW_NISSEN, World
+from sandbox.physics.arena import Arena, is_full, new_floats, new_slots
+from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import LAW_NISSEN
+from sandbox.physics.state import State
 
 # Corners at most of a constraint that is added to the matrix; one of more is wide.
 NARROW = 3
-# Places in `counts`: springs, constraints and their corners, free particles, pinned ones, links between free ones.
-SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, COUNTS = range(7)
+# Places in `counts`: springs, constraints and their corners, free particles, pinned ones, links between free ones; wide
+# constraints that a body has at most.
+SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, MOST_WIDE, COUNTS = range(8)
 
 
 class MatrixContents(NamedTuple):
@@ -144,22 +143,18 @@ def choose_for_matrix(state: State, unlimited: Flags, chosen: MatrixContents, na
     _find_links(state, chosen, narrow, counts)
 
 
-@kernel
-def _choose_for_matrix(lent: Any, unlimited: Flags, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
-    choose_for_matrix(contents(lent), unlimited, chosen, narrow, counts)
-
-
-def chosen_of(world: World) -> tuple[MatrixContents, list[int]]:
-    """What is in the matrix of a world, and how much it is, by place in `counts`."""
-    particles, springs, constraints = world.particle_count, world.spring_count, world.constraint_count
-    corners, counts = len(world.corner_particle), np.zeros(COUNTS, np.int64)
-    particle, number = np.zeros((2, particles), np.int64)
+@inner_kernel
+def chosen_for_matrix(state: State, unlimited: Flags, narrow: int, counts: Slots, arena: Arena) -> MatrixContents:
+    """What is in the matrix of a world, and in counts (COUNTS,) how much it is; narrow: see NARROW."""
+    particles, springs, constraints = state.owner.shape[0], state.law.shape[0], state.constraint_kind.shape[0]
+    corners = state.corner_particle.shape[0]
     # Of c corners a narrow constraint has c links, and a wide one fewer.
-    link_a, link_b = np.zeros((2, springs + corners), np.int64)
-    x, y = np.zeros((2, particles))
+    links = springs + corners
     chosen = MatrixContents(
-        np.zeros(springs, np.int64), np.zeros(constraints, np.int64), np.zeros(constraints + 1, np.int64),
-        np.zeros(corners, np.int64), particle, number, link_a, link_b, x, y,
+        new_slots(arena, springs), new_slots(arena, constraints), new_slots(arena, constraints + 1),
+        new_slots(arena, corners), new_slots(arena, particles), new_slots(arena, particles), new_slots(arena, links),
+        new_slots(arena, links), new_floats(arena, particles), new_floats(arena, particles),
     )  # fmt: skip
-    _choose_for_matrix(lent_state(world), unlimited_active(world), chosen, NARROW, counts)
-    return chosen, counts.tolist()
+    if not is_full(arena):
+        choose_for_matrix(state, unlimited, chosen, narrow, counts)
+    return chosen

@@ -1,12 +1,13 @@
 """The energy test of one body, and its energy bank: what its earlier losses still allow it."""
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.solvers.direct.families import potential, start_potential
 from sandbox.physics.solvers.direct.motion import kinetic
 from sandbox.physics.solvers.direct.rigid_turn import kinetic_at_end
 from sandbox.physics.solvers.direct.system import Span, System
 from sandbox.physics.state import State
-from sandbox.physics.world import BANK_UNOPENED, Floats
 
 # A body's bank holds at most this share of its energy: where every spring has Cs <= Cd, and where one has not (its
 # energy in this norm swings by up to 3 within a period). 0 would reject most steps at Cs = Cd = 1.

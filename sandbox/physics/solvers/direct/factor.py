@@ -4,6 +4,7 @@ Wide constraints are taken in after the factorisation: (A + K g g^T)^-1 = A^-1 -
 (Sherman and Morrison 1950). Right sides and solutions are in `delta_v`: the one array that a helping thread knows.
 """
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import gradient_dot
 from sandbox.physics.solvers.direct.families import assemble, load_residual
@@ -11,7 +12,6 @@ from sandbox.physics.solvers.direct.motion import copy
 from sandbox.physics.solvers.direct.system import Span, System
 from sandbox.physics.solvers.linear.parallel import solve_fronts
 from sandbox.physics.solvers.linear.sparse_ldl import back_substitute, factorise
-from sandbox.physics.world import Floats
 
 
 @inner_kernel

@@ -4,6 +4,7 @@ Each family loops over its own arrays; what calls them knows spans alone. Anothe
 else in this folder.
 """
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.integrate import SLOW_SHARE
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import (
@@ -33,7 +34,6 @@ from sandbox.physics.solvers.direct.system import Span, System
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import clear_fronts
 from sandbox.physics.state import State
-from sandbox.physics.world import Floats
 
 # The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of
 # 1 / CHANGE_AHEAD steps. Without it, or with less, smooth turning takes two solves where one is enough.

@@ -7,11 +7,13 @@ is stored, up to a limit, in the energy banks of bodies and particles; to push a
 
 import math
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH, PENETRATION_SHARE, ContactConstraints
 from sandbox.physics.solvers.direct.energy_bank import (
     BANK_SHARE,
@@ -44,7 +46,6 @@ from sandbox.physics.solvers.direct.system import (
 from sandbox.physics.state import State
 from sandbox.physics.untangling.overlaps import DEEP
 from sandbox.physics.untangling.parting import PARTING_SPEED
-from sandbox.physics.world import BANK_UNOPENED, Floats
 
 # Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
 INNER_HALVINGS = 3

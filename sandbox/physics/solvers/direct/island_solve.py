@@ -6,6 +6,7 @@ and one more substitution brings the impulses to the whole body. The energy test
 together that touch each other, so that one may take what another gives.
 """
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
@@ -67,7 +68,6 @@ from sandbox.physics.solvers.direct.system import Rows, Span, System, span_of
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
 from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS
-from sandbox.physics.world import Floats
 
 # Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
 SWEEPS = 20

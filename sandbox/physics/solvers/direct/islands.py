@@ -2,19 +2,18 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows, new_floats, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.components import root_of, united
-from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.joint_sweep import Joints, no_joints
+from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.joints.joint_sweep import Joints
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
-from sandbox.physics.solvers.direct.system import Flags, System
-from sandbox.physics.world import Floats, Slots
+from sandbox.physics.solvers.direct.system import System
 
 # Places in `counts`: bodies that contacts touch, members (those and free particles), islands, and the room that the
 # Delassus blocks of the bodies want: for their numbers, and for the columns of the largest.
-BODIES, MEMBERS, ISLANDS, NUMBERS, COLUMNS = range(5)
+BODIES, MEMBERS, ISLANDS, NUMBERS, COLUMNS, COUNTED = range(6)
 
 
 class BodyIslands(NamedTuple):
@@ -49,10 +48,10 @@ class BodyIslands(NamedTuple):
     total: Floats
     allowed: Floats
     fails: Flags
-    unpushed: Floats
-    pushed: Floats
-    given: Floats
-    delta_v: Floats
+    unpushed: FloatRows
+    pushed: FloatRows
+    given: FloatRows
+    delta_v: FloatRows
     label: Slots
     marked: Flags
 
@@ -65,35 +64,46 @@ class IslandWorkspace(NamedTuple):
     terms: ContactConstraints
 
 
-def new_islands(system: System, particle_count: int) -> BodyIslands:
-    """Empty islands for a system, in a world with a number of particles."""
-    bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
-    members = bodies + particle_count
-    row = np.full(particle_count, -1, dtype=np.int64)
-    row[system.rows.particle[:free_rows]] = np.arange(free_rows)
-    slots, energies = np.zeros((2, members), dtype=np.int64), np.zeros((7, members))
-    return BodyIslands(
-        counts=np.zeros(5, dtype=np.int64), body=np.zeros(bodies, dtype=np.int64),
-        free=np.zeros(particle_count, dtype=np.int64), island=slots[0],
-        member=np.full(particle_count, -1, dtype=np.int64), row=row, energy0=energies[0], bank=energies[1],
-        energy=energies[2], limit=energies[3], fresh=np.zeros(members, dtype=np.bool_), misfit=np.zeros(bodies),
-        due=np.zeros(bodies, dtype=np.bool_), driven=np.zeros(bodies, dtype=np.bool_),
-        rigid=np.zeros(bodies, dtype=np.bool_), number=np.zeros(bodies, dtype=np.int64), total=energies[4],
-        allowed=energies[5], mass=energies[6],
-        fails=np.zeros(members, dtype=np.bool_), unpushed=np.zeros((free_rows, 2)), pushed=np.zeros((free_rows, 2)),
-        given=np.zeros((particle_count, 2)), delta_v=np.zeros((particle_count, 2)), label=slots[1],
-        marked=np.zeros(particle_count, dtype=np.bool_),
+@inner_kernel
+def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWorkspace) -> None:
+    """Lay out islands and blocks for a system, in a world of so many particles; the room of blocks is made apart."""
+    bodies, free_rows = system.bodies.lowest.shape[0], system.matrix.diagonal.shape[0]
+    members = bodies + particles
+    islands = BodyIslands(
+        new_slots(arena, COUNTED), new_slots(arena, bodies), new_slots(arena, particles), new_slots(arena, members),
+        new_slots(arena, particles), new_slots(arena, particles), new_floats(arena, members),
+        new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_floats(arena, members),
+        new_flags(arena, members), new_floats(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
+        new_flags(arena, bodies), new_slots(arena, bodies), new_floats(arena, members), new_floats(arena, members),
+        new_flags(arena, members), new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2),
+        new_float_rows(arena, particles, 2), new_float_rows(arena, particles, 2), new_slots(arena, members),
+        new_flags(arena, particles),
     )  # fmt: skip
+    put(out, "islands", islands)
+    place, point, block = new_slots(arena, particles), new_slots(arena, free_rows), new_slots(arena, particles)
+    delassus = out.delassus
+    put(delassus, "block", block)
+    put(delassus, "place", place)
+    put(delassus, "point", point)
+    put(delassus, "start", new_slots(arena, bodies + 1))
+    put(delassus, "base", new_slots(arena, bodies + 1))
+    if is_full(arena):
+        return
+    for p in range(particles):
+        islands.row[p] = islands.member[p] = block[p] = place[p] = -1
+    for row in range(free_rows):
+        islands.row[system.rows.particle[row]] = row
 
 
-def new_blocks(particle_count: int, system: System, numbers: int, columns: int) -> Delassus:
-    """The Delassus blocks of a system's bodies, with room for so many numbers and columns, and without joints."""
-    bodies, free_rows = len(system.bodies.lowest), len(system.matrix.diagonal)
-    block, place = np.full((2, particle_count), -1, dtype=np.int64)
-    return Delassus(
-        block, place, np.zeros(bodies + 1, dtype=np.int64), np.zeros(free_rows, dtype=np.int64),
-        np.zeros(bodies + 1, dtype=np.int64), np.zeros(numbers), np.zeros(columns), no_joints(),
-    )  # fmt: skip
+@inner_kernel
+def lay_out_no_blocks(particles: int, arena: Arena, out: Delassus) -> None:
+    """Lay out that all particles answer by their own mass."""
+    block = new_slots(arena, particles)
+    put(out, "block", block)
+    put(out, "start", new_slots(arena, 1))
+    if not is_full(arena):
+        for p in range(particles):
+            block[p] = -1
 
 
 @inner_kernel

@@ -2,15 +2,15 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Flags
+from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows, new_slot_rows, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.constraints import AREA
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.solvers.direct.system import Constraints, ShapeMatchGroups
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.solvers.direct.system import ShapeMatchGroups, System
+from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import place_among
 from sandbox.physics.untangling.jellies import Jellies, group_triangles
+from sandbox.physics.untangling.triangle_clamp import lay_out_collides, lay_out_triangles
 
 
 class SystemTriangles(NamedTuple):
@@ -18,7 +18,7 @@ class SystemTriangles(NamedTuple):
     counter-clockwise."""
 
     constraint: Slots
-    row: Slots
+    row: SlotRows
     is_left: Flags
 
 
@@ -35,7 +35,7 @@ class PlacedConstraints(NamedTuple):
 
 
 @inner_kernel
-def choose_areas(given: PlacedConstraints, rest: Floats, found: SystemTriangles) -> int:
+def choose_areas(given: PlacedConstraints, rest: FloatRows, found: SystemTriangles) -> int:
     """Choose the triangles, rest (k, 2): see constraint_rest; how many there are."""
     count = 0
     for k in range(given.slot.shape[0]):
@@ -48,14 +48,9 @@ def choose_areas(given: PlacedConstraints, rest: Floats, found: SystemTriangles)
     return count
 
 
-@kernel
-def _choose_areas(given: PlacedConstraints, rest: Floats, found: SystemTriangles) -> int:
-    return choose_areas(given, rest, found)
-
-
 @inner_kernel
 def fill_groups(
-    given: PlacedConstraints, found: SystemTriangles, jellies: Jellies, corner_form: Floats, groups: ShapeMatchGroups
+    given: PlacedConstraints, found: SystemTriangles, jellies: Jellies, corner_form: FloatRows, groups: ShapeMatchGroups
 ) -> None:
     """Fill in where the groups lie and what their forms are; corner_form [m] (q, 2): of a world's corners."""
     for k in range(groups.group.shape[0]):
@@ -79,36 +74,33 @@ def fill_groups(
             groups.form[i, axis] = corner_form[corner, axis]
 
 
-@kernel
-def _fill_groups(
-    given: PlacedConstraints, found: SystemTriangles, jellies: Jellies, corner_form: Floats, groups: ShapeMatchGroups
-) -> None:
-    fill_groups(given, found, jellies, corner_form, groups)
-
-
-def group_constraints(
-    constraints: Constraints, constraint_start: Slots, particles: int, rest: Floats, corner_form: Floats
-) -> tuple[SystemTriangles, Jellies, ShapeMatchGroups]:
-    """The triangles among constraints, their jellies and the groups that those are of a system of some particles.
-
-    constraint_start (b+1,): first of each body. rest, corner_form: constraint_rest and corner_form of the world.
-    """
-    count = len(constraints.slot)
-    given = PlacedConstraints(
-        constraints.slot, constraints.kind, constraints.first, constraints.row, constraints.corner, constraints.wide,
-        constraint_start,
-    )  # fmt: skip
-    room = SystemTriangles(np.zeros(count, np.int64), np.zeros((count, 3), np.int64), np.zeros(count, np.bool_))
-    triangles = _choose_areas(given, rest, room)
-    found = SystemTriangles(room.constraint[:triangles], room.row[:triangles], room.is_left[:triangles])
-    jellies = group_triangles(found.row, found.is_left, particles)
-    members, jelly_count = len(jellies.particle), len(jellies.first)
-    inverted, drawn = np.zeros((2, jelly_count), np.bool_)
+@inner_kernel
+def lay_out_groups(state: State, constraint_start: Slots, arena: Arena, out: System) -> None:
+    """Lay out the groups of a system's constraints, and its triangles; constraint_start (b+1,): first of each body."""
+    made, count, rows = out.constraints, out.constraints.slot.shape[0], out.rows.particle.shape[0]
+    given = PlacedConstraints(made.slot, made.kind, made.first, made.row, made.corner, made.wide, constraint_start)
+    room = SystemTriangles(new_slots(arena, count), new_slot_rows(arena, count, 3), new_flags(arena, count))
+    if is_full(arena):
+        return
+    areas = choose_areas(given, state.constraint_rest, room)
+    found = SystemTriangles(room.constraint[:areas], room.row[:areas], room.is_left[:areas])
+    jellies = group_triangles(found.row, found.is_left, state.owner.shape[0], arena)
+    members, kinds = jellies.particle.shape[0], jellies.first.shape[0]
     groups = ShapeMatchGroups(
-        of_body=np.zeros(len(constraint_start), np.int64), start=jellies.start, row=jellies.particle,
-        form=np.zeros((members, 2)), sample=np.zeros(jelly_count, np.int64), group=np.zeros(count, np.int64),
-        member=np.zeros((count, 3), np.int64), inner=jellies.inner, fan=jellies.fan, fan_start=jellies.fan_start,
-        turns=np.zeros(members, np.int64), inverted=inverted, drawn=drawn,
+        new_slots(arena, constraint_start.shape[0]), jellies.start, jellies.particle,
+        new_float_rows(arena, members, 2), new_slots(arena, kinds), new_slots(arena, count),
+        new_slot_rows(arena, count, 3), jellies.inner, jellies.fan, jellies.fan_start, new_slots(arena, members),
+        new_flags(arena, kinds), new_flags(arena, kinds),
     )  # fmt: skip
-    _fill_groups(given, found, jellies, corner_form, groups)
-    return found, jellies, groups
+    put(out, "goals", groups)
+    lay_out_triangles(found.constraint, found.row, jellies, count, rows, arena, out.triangles)
+    lay_out_collides(found.row, state, out.rows.particle, arena, out.triangles)
+    if is_full(arena):
+        return
+    fill_groups(given, found, jellies, state.corner_form, groups)
+    put(out.triangles, "rest", made.rest)
+    put(out.triangles, "position", out.rows.position)
+    put(out.triangles, "velocity", out.rows.v)
+    put(out.triangles, "mass", out.rows.mass)
+    put(out.triangles, "inverse_mass", out.rows.inverse_mass)
+    put(out.triangles, "inverted", groups.inverted)

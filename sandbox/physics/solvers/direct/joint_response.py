@@ -1,11 +1,11 @@
 """Joints of bodies that are solved directly: how bodies answer to them, what they do to a body's spin and energy."""
 
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import Joints, couple_joints
 from sandbox.physics.solvers.direct.factor import respond
 from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.system import Rows, Span, System
-from sandbox.physics.world import Floats, Slots
 
 
 @inner_kernel

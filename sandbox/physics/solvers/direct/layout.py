@@ -1,110 +1,132 @@
 """Layout of the direct solver's system: which rows springs and constraints join, and the order of elimination.
 
-Symbolic work alone, in kernels: made again when topology or pins change, kept on the World meanwhile, no part of its
-state.
+Symbolic work alone: made again when topology or pins change, no part of a world's state.
 """
 
-from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-
-from sandbox.physics.solvers.direct.choosing import LINKS, NODES, chosen_of
-from sandbox.physics.solvers.direct.jelly_groups import group_constraints
+from sandbox.physics.arena import (
+    Arena,
+    is_full,
+    new_flags,
+    new_float_rows,
+    new_float_tables,
+    new_floats,
+    new_slots,
+)
+from sandbox.physics.arrays import Flags
+from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.solvers.direct.choosing import COUNTS, LINKS, MOST_WIDE, NODES, chosen_for_matrix
+from sandbox.physics.solvers.direct.jelly_groups import lay_out_groups
 from sandbox.physics.solvers.direct.placing import Lying, Places, places_of
 from sandbox.physics.solvers.direct.system import SPIN_NUMBERS, Bodies, Constraints, Rows, Springs, System
-from sandbox.physics.solvers.linear.elimination import BODIES, BORDERS, FRONTS, SMALL, Links, order_for_elimination
+from sandbox.physics.solvers.linear.dissection import Dissection
+from sandbox.physics.solvers.linear.elimination import (
+    BODIES,
+    BORDERS,
+    FRONTS,
+    HALVED,
+    SMALL,
+    WIDEST_NARROW,
+    Links,
+    Tuning,
+    order_for_elimination,
+)
+from sandbox.physics.solvers.linear.elimination import COUNTS as FOUND_COUNTS
 from sandbox.physics.solvers.linear.front_layout import FrontBlocks, new_fronts
 from sandbox.physics.solvers.linear.matrix_layout import new_matrix
-from sandbox.physics.solvers.linear.parallel import start_helper
-from sandbox.physics.state import Slots
-from sandbox.physics.untangling.triangle_clamp import new_triangles
-from sandbox.physics.world import World
+from sandbox.physics.state import State
 
 
-@dataclass(frozen=True, eq=False)
-class SystemLayout:
-    """Everything about a world's system that its topology and pins decide, with the scratch arrays of a step."""
+@inner_kernel
+def lay_out_system(state: State, unlimited: Flags, given: Tuning, arena: Arena, out: System) -> None:
+    """Order a world's free particles for elimination and lay out the matrix of its springs and constraints.
 
-    system: System
-
-
-def layout_of(world: World) -> SystemLayout:
-    """The layout of a world's system, made again after a change of topology or pins."""
-    return world.derived(_hired_layout, of_hands=False)
-
-
-def _hired_layout(world: World) -> SystemLayout:
-    layout = make_layout(world)
-    start_helper(layout, layout.system.fronts, layout.system.rows.delta_v)
-    return layout
-
-
-def make_layout(world: World) -> SystemLayout:
-    """Order a world's free particles for elimination and lay out the matrix of its springs and constraints."""
-    chosen, counts = chosen_of(world)
+    unlimited (m,): active springs of no limited force.
+    """
+    counts, found = new_slots(arena, COUNTS), new_slots(arena, FOUND_COUNTS)
+    chosen = chosen_for_matrix(state, unlimited, given.whole[WIDEST_NARROW], counts, arena)
+    if is_full(arena):
+        return
     nodes, links = counts[NODES], counts[LINKS]
     joined = Links(chosen.link_a[:links], chosen.link_b[:links], chosen.x[:nodes], chosen.y[:nodes])
-    elimination, room, small, found = order_for_elimination(joined)
-    bodies = found[BODIES]
-    fronts = new_fronts(nodes, elimination.first_front, bodies, room, found[FRONTS], found[BORDERS])
-    matrix = new_matrix(nodes, small.order[: found[SMALL]], small.columns, elimination.row_of)
-    blocks = FrontBlocks._make([getattr(fronts, name) for name in FrontBlocks._fields])
-    lying = Lying(
-        elimination.order, elimination.rank, elimination.body, elimination.first_row, elimination.lowest,
-        matrix.column_start, matrix.row, blocks,
-    )  # fmt: skip
-    places, most_wide = places_of(world, counts, bodies, chosen, lying)
-    rows = _rows(places.particle)
-    constraints = _constraints(places, nodes, most_wide)
-    triangles, jellies, groups = group_constraints(
-        constraints, places.constraint_start, world.particle_count, world.constraint_rest, world.corner_form
+    ordered = order_for_elimination(joined, given, found, arena)
+    if is_full(arena):
+        return
+    made, small, bodies = ordered.elimination, ordered.small, found[BODIES]
+    dissected = cut_to(ordered.fronts, found[FRONTS], found[BORDERS])
+    fronts = new_fronts(nodes, made.first_front, bodies, dissected, given.whole[HALVED], arena)
+    matrix = new_matrix(nodes, small.order[: found[SMALL]], small.columns, made.row_of, arena)
+    if is_full(arena):
+        return
+    blocks = FrontBlocks(
+        fronts.of_row, fronts.width, fronts.base, fronts.first, fronts.last, fronts.border_start, fronts.border
     )
-    motion, collides = (rows.position, rows.v, rows.mass, rows.inverse_mass), world.collides[rows.particle]
-    clamped = new_triangles(
-        triangles.constraint, triangles.row, jellies, constraints.rest, motion, collides, groups.inverted,
-        world.terrain,
+    lying = Lying(
+        made.order, made.rank, made.body, made.first_row, made.lowest, matrix.column_start, matrix.row, blocks
+    )
+    places = places_of(state, counts, bodies, given.whole[WIDEST_NARROW], chosen, lying, arena)
+    put(out, "fronts", fronts)
+    put(out, "matrix", matrix)
+    put(out, "bodies", _new_bodies(places, arena))
+    put(out, "rows", _new_rows(places, arena))
+    put(out, "springs", _new_springs(places, arena))
+    put(out, "constraints", _new_constraints(places, nodes, counts[MOST_WIDE], arena))
+    if not is_full(arena):
+        lay_out_groups(state, places.constraint_start, arena, out)
+
+
+@inner_kernel
+def cut_to(room: Dissection, fronts: int, borders: int) -> Dissection:
+    """The dissection that so much of it was filled in of."""
+    return Dissection(
+        room.first[:fronts], room.last[:fronts], room.child[:fronts], room.place[:fronts],
+        room.border_start[: fronts + 1], room.border[:borders], room.to_parent[:borders],
     )  # fmt: skip
-    system = System(_bodies(places), rows, _springs(places), constraints, matrix, fronts, groups, clamped)
-    return SystemLayout(system)
 
 
-def _bodies(places: Places) -> Bodies:
-    count = len(places.lowest)
-    scratch = (*np.zeros((4, count), dtype=np.bool_), *np.zeros((3, count)), np.zeros((count, SPIN_NUMBERS)))
+@inner_kernel
+def _new_bodies(places: Places, arena: Arena) -> Bodies:
+    count = places.lowest.shape[0]
     return Bodies(
         places.row_start, places.spring_start, places.constraint_start, places.lowest, places.pivot, places.anchored,
-        *scratch,
+        new_flags(arena, count), new_flags(arena, count), new_flags(arena, count), new_flags(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
+        new_float_rows(arena, count, SPIN_NUMBERS),
     )  # fmt: skip
 
 
-def _rows(particles: Slots) -> Rows:
-    count = len(particles)
-    shapes = {name: count for name in ("mass", "inverse_mass", "inertia")}
-    return Rows(**_scratch(Rows, {"particle": particles}, (count, 2), shapes))
+@inner_kernel
+def _new_rows(places: Places, arena: Arena) -> Rows:
+    count = places.particle.shape[0]
+    return Rows(
+        places.particle, new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
+        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
+        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
+        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
+        new_float_rows(arena, count, 2),
+    )  # fmt: skip
 
 
-def _springs(places: Places) -> Springs:
-    given = {
-        "slot": places.spring, "row_a": places.row_a, "row_b": places.row_b, "block": places.spring_block,
-    }  # fmt: skip
-    count = len(places.spring)
-    return Springs(**_scratch(Springs, given, count, {"normal": (count, 2)}))
+@inner_kernel
+def _new_springs(places: Places, arena: Arena) -> Springs:
+    count = places.spring.shape[0]
+    return Springs(
+        places.spring, places.row_a, places.row_b, places.spring_block, new_floats(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, count, 2),
+    )  # fmt: skip
 
 
-def _constraints(places: Places, rows: int, most_wide: int) -> Constraints:
-    """The constraints, ready for a step; most_wide: how many wide ones a body has at most."""
-    count, corners = len(places.constraint), len(places.row)
-    given = {
-        "slot": places.constraint, "kind": places.kind, "first": places.first, "row": places.row,
-        "corner": places.corner, "block": places.block, "wide": places.wide,
-    }  # fmt: skip
-    shapes = {"rest": (count, 2), "weight": corners, "scale": most_wide}
-    shapes |= {name: (corners, 2) for name in ("place", "gradient", "spare")}
-    shapes |= {"response": (most_wide, rows if most_wide else 0, 2)}
-    return Constraints(**_scratch(Constraints, given, count, shapes))
-
-
-def _scratch(kind: Any, given: dict[str, Slots], shape: Any, shapes: dict[str, Any]) -> dict[str, Any]:
-    """The fields of a named tuple: what is given, and scratch of the shapes of their names, or of the shape of all."""
-    return given | {name: np.zeros(shapes.get(name, shape)) for name in kind._fields if name not in given}
+@inner_kernel
+def _new_constraints(places: Places, rows: int, most_wide: int, arena: Arena) -> Constraints:
+    # Ready for a step; most_wide: how many wide ones a body has at most.
+    count, corners = places.constraint.shape[0], places.row.shape[0]
+    answered = rows if most_wide > 0 else 0
+    return Constraints(
+        places.constraint, places.kind, places.first, places.row, places.corner, places.block, places.wide,
+        new_float_rows(arena, count, 2), new_floats(arena, corners), new_float_rows(arena, corners, 2),
+        new_float_rows(arena, corners, 2), new_float_rows(arena, corners, 2), new_floats(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
+        new_floats(arena, count), new_float_tables(arena, most_wide, answered, 2), new_floats(arena, most_wide),
+    )  # fmt: skip

@@ -1,9 +1,9 @@
 """Velocities of one body's rows: copied, scaled, their energy, and what triangles leave of them."""
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.system import Span, System
 from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, clamp_triangles
-from sandbox.physics.world import Floats
 
 
 @inner_kernel

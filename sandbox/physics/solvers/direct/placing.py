@@ -1,25 +1,23 @@
 """Where rows, springs, constraints and bodies lie in the system of the direct solver."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.collision.types import Flags
-from sandbox.physics.jit import contents, inner_kernel, kernel
-from sandbox.physics.solvers.direct import choosing
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slot_rows, new_slots
+from sandbox.physics.arrays import Flags, SlotRows, Slots
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.choosing import (
     ANCHORS,
     CONSTRAINTS,
     CORNERS,
+    MOST_WIDE,
     NODES,
     SPRINGS,
     MatrixContents,
 )
 from sandbox.physics.solvers.linear.front_layout import FrontBlocks, block_in_front
 from sandbox.physics.solvers.linear.matrix_layout import block_below
-from sandbox.physics.state import Slots, State, lent_state
+from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import list_by_key, sort_by_key
-from sandbox.physics.world import World
 
 # In place of the row of a body's one pinned particle.
 NO_PIVOT, SEVERAL_PIVOTS = -1, -2
@@ -57,7 +55,7 @@ class Places(NamedTuple):
     first: Slots
     row: Slots
     corner: Slots
-    block: Slots
+    block: SlotRows
     wide: Slots
 
 
@@ -225,30 +223,29 @@ def place_all(
     return _place_constraints(counts[CONSTRAINTS], narrow, state, chosen, lying, places, work)
 
 
-@kernel
-def _place_all(
-    lent: Any, counts: Slots, bodies: int, narrow: int, chosen: MatrixContents, lying: Lying, places: Places,
-    work: PlaceScratch,
-) -> int:  # fmt: skip
-    return place_all(counts, bodies, narrow, contents(lent), chosen, lying, places, work)
+@inner_kernel
+def places_of(
+    state: State, counts: Slots, bodies: int, narrow: int, chosen: MatrixContents, lying: Lying, arena: Arena
+) -> Places:
+    """Where all lies in the system of so many bodies, and in counts[MOST_WIDE] how many wide ones a body has at most.
 
-
-def places_of(world: World, counts: list[int], bodies: int, chosen: MatrixContents, lying: Lying) -> tuple[Places, int]:
-    """Where all lies in the system of so many bodies, and how many wide constraints a body has at most."""
-    springs, constraints, corners, rows = (counts[k] for k in (SPRINGS, CONSTRAINTS, CORNERS, NODES))
-    row_start, spring_start, constraint_start = np.zeros((3, bodies + 1), np.int64)
-    lowest, pivot = np.zeros((2, bodies), np.int64)
-    spring, row_a, row_b, spring_block = np.zeros((4, springs), np.int64)
-    constraint, kind, wide = np.zeros((3, constraints), np.int64)
-    row, corner = np.zeros((2, corners), np.int64)
+    counts, narrow: see chosen_for_matrix.
+    """
+    springs, constraints, corners, rows = counts[SPRINGS], counts[CONSTRAINTS], counts[CORNERS], counts[NODES]
     places = Places(
-        np.zeros(rows + counts[ANCHORS], np.int64), row_start, spring_start, constraint_start, lowest, pivot,
-        np.zeros(bodies, np.bool_), spring, row_a, row_b, spring_block, constraint, kind,
-        np.zeros(constraints + 1, np.int64), row, corner, np.zeros((constraints, 3), np.int64), wide,
+        new_slots(arena, rows + counts[ANCHORS]), new_slots(arena, bodies + 1), new_slots(arena, bodies + 1),
+        new_slots(arena, bodies + 1), new_slots(arena, bodies), new_slots(arena, bodies), new_flags(arena, bodies),
+        new_slots(arena, springs), new_slots(arena, springs), new_slots(arena, springs), new_slots(arena, springs),
+        new_slots(arena, constraints), new_slots(arena, constraints), new_slots(arena, constraints + 1),
+        new_slots(arena, corners), new_slots(arena, corners), new_slot_rows(arena, constraints, 3),
+        new_slots(arena, constraints),
     )  # fmt: skip
-    key, low, order, items = np.zeros((4, max(springs, constraints)), np.int64)
-    work = PlaceScratch(key, low, order, items, np.zeros(rows + 1, np.int64))
-    most = _place_all(
-        lent_state(world), np.array(counts, np.int64), bodies, choosing.NARROW, chosen, lying, places, work
+    start, longest = mark(arena), max(springs, constraints)
+    work = PlaceScratch(
+        new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest),
+        new_slots(arena, rows + 1),
     )  # fmt: skip
-    return places, most
+    if not is_full(arena):
+        counts[MOST_WIDE] = place_all(counts, bodies, narrow, state, chosen, lying, places, work)
+        give_back(arena, start)
+    return places

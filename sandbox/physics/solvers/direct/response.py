@@ -3,13 +3,13 @@
 It says how particles P that contacts touch answer to impulses.
 """
 
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.solvers.contact.gauss_seidel import Delassus
 from sandbox.physics.solvers.direct.factor import respond
 from sandbox.physics.solvers.direct.system import Constraints, Span, System
 from sandbox.physics.solvers.linear.fronts import ONE, TWO, ZERO, subtract_pair
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
-from sandbox.physics.world import Floats, Slots
 
 
 @inner_kernel

@@ -13,6 +13,7 @@ None of the three changes the angular momentum L about the centre of mass, or ab
 
 import math
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.geometry.rigid import (
     RigidMotion,
     WeightedSums,
@@ -44,7 +45,6 @@ from sandbox.physics.solvers.direct.system import (
     span_of,
 )
 from sandbox.physics.state import State
-from sandbox.physics.world import Floats
 
 # Below this angle [rad] in a step the turn of a body is not foreseen, so that what falls without turning falls without
 # rounding.

@@ -11,6 +11,7 @@ Jacobian of a spring's length is its direction n, at its ends with opposite sign
 
 import math
 
+from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import (
     SHORTEST,
     direction,
@@ -24,7 +25,6 @@ from sandbox.physics.solvers.direct.system import Span, System
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import add_block
 from sandbox.physics.state import State
-from sandbox.physics.world import Floats
 
 # A linear solve is refined once where impulses that cancel are this many times those that are left: a violent step. A
 # higher bound loses the digits of one spring's step at Cd near 1, a lower one costs time on every step.

@@ -7,17 +7,11 @@ A kernel of one body is f(span, system, ...), with the body's Span of all three.
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from sandbox.physics.arrays import Flags, FloatRows, Floats, FloatTables, SlotRows, Slots
 from sandbox.physics.jit import inlined_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.untangling.triangle_clamp import ClampedTriangles
-from sandbox.physics.world import Floats, Slots
-
-Flags = NDArray[np.bool_]
-
 
 # Columns of `Bodies.spin`: the place [m] that a body turns about, the velocity [m/s] of that, inertia [kg m^2] and
 # angular momentum [kg m^2/s] about it; whether its angle, not the sine of that, follows from those; the rates [1/s] at
@@ -49,7 +43,7 @@ class Bodies(NamedTuple):
     energy0: Floats
     bank: Floats
     spared: Floats
-    spin: Floats
+    spin: FloatRows
 
 
 class Rows(NamedTuple):
@@ -64,16 +58,16 @@ class Rows(NamedTuple):
     mass: Floats
     inverse_mass: Floats
     inertia: Floats
-    position: Floats
-    start: Floats
-    v_star: Floats
-    v_star_matched: Floats
-    slow: Floats
-    x_moved: Floats
-    v: Floats
-    v_best: Floats
-    delta_v: Floats
-    saved_delta_v: Floats
+    position: FloatRows
+    start: FloatRows
+    v_star: FloatRows
+    v_star_matched: FloatRows
+    slow: FloatRows
+    x_moved: FloatRows
+    v: FloatRows
+    v_best: FloatRows
+    delta_v: FloatRows
+    saved_delta_v: FloatRows
 
 
 class Springs(NamedTuple):
@@ -100,7 +94,7 @@ class Springs(NamedTuple):
     impulse: Floats
     tangential: Floats
     tension: Floats
-    normal: Floats
+    normal: FloatRows
 
 
 class Constraints(NamedTuple):
@@ -119,13 +113,13 @@ class Constraints(NamedTuple):
     first: Slots
     row: Slots
     corner: Slots
-    block: Slots
+    block: SlotRows
     wide: Slots
-    rest: Floats
+    rest: FloatRows
     weight: Floats
-    place: Floats
-    gradient: Floats
-    spare: Floats
+    place: FloatRows
+    gradient: FloatRows
+    spare: FloatRows
     stiffness: Floats
     damping: Floats
     K: Floats
@@ -136,7 +130,7 @@ class Constraints(NamedTuple):
     error: Floats
     predicted: Floats
     impulse: Floats
-    response: Floats
+    response: FloatTables
     scale: Floats
 
 
@@ -151,12 +145,12 @@ class ShapeMatchGroups(NamedTuple):
     of_body: Slots
     start: Slots
     row: Slots
-    form: Floats
+    form: FloatRows
     sample: Slots
     group: Slots
-    member: Slots
+    member: SlotRows
     inner: Flags
-    fan: Slots
+    fan: SlotRows
     fan_start: Slots
     turns: Slots
     inverted: Flags

@@ -7,10 +7,9 @@ the order decides the last bits of a tick. Source: George 1973, in its geometric
 
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, new_slot_rows, new_slots
+from sandbox.physics.arrays import Floats, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats, Slots
 from sandbox.physics.topology.sorting import sort_by_value
 
 # Particles that are not split further. Fewer make many small fronts, more make needless zeros; measured best of 12..48.
@@ -44,8 +43,8 @@ class Halving(NamedTuple):
     same: Slots
     mark: Slots
     where: Slots
-    stack: Slots
-    waiting: Slots
+    stack: SlotRows
+    waiting: SlotRows
 
 
 class Dissection(NamedTuple):
@@ -58,8 +57,8 @@ class Dissection(NamedTuple):
 
     first: Slots
     last: Slots
-    child: Slots
-    place: Slots
+    child: SlotRows
+    place: SlotRows
     border_start: Slots
     border: Slots
     to_parent: Slots
@@ -153,7 +152,7 @@ def _dissect(begin: int, end: int, count: int, nodes: Halving, fronts: Dissectio
 
 
 @inner_kernel
-def _push(stack: Slots, top: int, begin: int, end: int, level: int, side: int) -> None:
+def _push(stack: SlotRows, top: int, begin: int, end: int, level: int, side: int) -> None:
     stack[top, 0] = begin
     stack[top, 1] = end
     stack[top, 2] = level
@@ -246,16 +245,25 @@ def dissect(
     return last_front
 
 
-def new_halving(start: Slots, near: Slots, x: Floats, y: Floats, nodes: int) -> Halving:
-    """Scratch for the dissection of bodies of n nodes in all, 0 where none is large enough: see Halving."""
-    by_x, by_y, part, spare, same, mark, where = np.zeros((7, nodes), np.int64)
-    stack, waiting = np.zeros((3 * DEEPEST, 5), np.int64), np.zeros((DEEPEST + 1, 2), np.int64)
-    return Halving(start, near, x, y, by_x, by_y, part, spare, same, mark, where, stack, waiting)
+@inner_kernel
+def new_halving(pairs: int, x: Floats, y: Floats, large: int, arena: Arena) -> Halving:
+    """Scratch for the dissection of nodes at x, y [m] (n,), which have this many pairs of neighbours.
+
+    large: nodes of bodies that may be dissected, 0 where none is large enough.
+    """
+    return Halving(
+        new_slots(arena, x.shape[0] + 1), new_slots(arena, 2 * pairs), x, y, new_slots(arena, large),
+        new_slots(arena, large), new_slots(arena, large), new_slots(arena, large), new_slots(arena, large),
+        new_slots(arena, large), new_slots(arena, large), new_slot_rows(arena, 3 * DEEPEST, 5),
+        new_slot_rows(arena, DEEPEST + 1, 2),
+    )  # fmt: skip
 
 
-def room_for_fronts(nodes: int, borders: int) -> Dissection:
+@inner_kernel
+def new_dissection(nodes: int, borders: int, arena: Arena) -> Dissection:
     """A dissection of so many nodes to be filled in, with room for borders of so many rows in all."""
-    first, last, border_start = np.zeros((3, nodes + 1), np.int64)
-    child, place = np.zeros((2, nodes, 2), np.int64)
-    border, to_parent = np.zeros((2, borders), np.int64)
-    return Dissection(first[:nodes], last[:nodes], child, place, border_start, border, to_parent)
+    return Dissection(
+        new_slots(arena, nodes), new_slots(arena, nodes), new_slot_rows(arena, nodes, 2),
+        new_slot_rows(arena, nodes, 2), new_slots(arena, nodes + 1), new_slots(arena, borders),
+        new_slots(arena, borders),
+    )  # fmt: skip

@@ -2,29 +2,28 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_slots
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.components import label_linked
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.solvers.linear import dissection
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.linear.dissection import (
-    LEAF_SIZE,
     TOO_SHORT,
     Dissection,
     Halving,
     begin_dissections,
     dissect,
+    new_dissection,
     new_halving,
-    room_for_fronts,
 )
-from sandbox.physics.solvers.linear.minimum_degree import FILL_GUESS, Ordering, order_graph, room_to_order
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.solvers.linear.minimum_degree import FILL_GUESS, Ordering, new_ordering, order_graph
 from sandbox.physics.topology.sorting import list_by_key, list_neighbours
 
 # First guess of rows in borders per node; too low costs one more pass, too high memory.
 BORDER_GUESS = 8
 # Places in `counts`: bodies, fronts, rows in borders, nodes that are ordered by minimum degree, blocks of their factor.
 BODIES, FRONTS, BORDERS, SMALL, BLOCKS, COUNTS = range(6)
+# Places in `whole` of a Tuning.
+SMALLEST, LEAF, HALVED, WIDEST_NARROW = range(4)
 # What ordering comes to.
 DONE, BORDERS_TOO_SHORT, BLOCKS_TOO_SHORT = range(3)
 
@@ -154,30 +153,51 @@ def eliminate(
     return DONE
 
 
-@kernel
-def _eliminate(
-    links: Links, smallest: int, narrowest: float, leaf: int, made: Elimination, nodes: Halving, fronts: Dissection,
-    small: Ordering, counts: Slots,
-) -> int:  # fmt: skip
-    return eliminate(links, smallest, narrowest, leaf, made, nodes, fronts, small, counts)
+class Tuning(NamedTuple):
+    """What decides how a system is laid out.
+
+    whole (4,): SMALLEST_BODY, LEAF_SIZE, see dissection.py, WORTH_HALVING, see parallel.py, NARROW, see choosing.py;
+    narrowest (1,): NARROWEST_BORDER.
+    """
+
+    whole: Slots
+    narrowest: Floats
 
 
-def order_for_elimination(links: Links) -> tuple[Elimination, Dissection, Ordering, list[int]]:
-    """The elimination order of nodes, with the dissection of large bodies, the order of all others, and `counts`."""
-    nodes, pairs, counts = len(links.x), len(links.a), np.zeros(COUNTS, np.int64)
-    large = nodes if nodes >= dissection.SMALLEST_BODY else 0
+class Ordered(NamedTuple):
+    """The order of nodes, with the dissection of large bodies and the order of all others."""
+
+    elimination: Elimination
+    fronts: Dissection
+    small: Ordering
+
+
+@inner_kernel
+def _new_elimination(nodes: int, arena: Arena) -> Elimination:
+    return Elimination(
+        new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes + 1),
+        new_slots(arena, nodes), new_slots(arena, nodes + 1), new_slots(arena, nodes), new_slots(arena, nodes),
+        new_slots(arena, nodes), new_slots(arena, nodes),
+    )  # fmt: skip
+
+
+@inner_kernel
+def order_for_elimination(links: Links, tuning: Tuning, counts: Slots, arena: Arena) -> Ordered:
+    """The elimination order of nodes; counts (COUNTS,): how much there is of all."""
+    nodes, pairs, smallest = links.x.shape[0], links.a.shape[0], tuning.whole[SMALLEST]
+    large = nodes if nodes >= smallest else 0
     blocks, borders = FILL_GUESS * nodes + 16, BORDER_GUESS * large
-    order, rank, body, lowest, label, number, row_of, ends = np.zeros((8, nodes), np.int64)
-    first_row, first_front, start = np.zeros((3, nodes + 1), np.int64)
-    made = Elimination(order, rank, body, first_row, lowest, first_front, label, number, row_of, ends)
-    halving = new_halving(start, np.zeros(2 * pairs, np.int64), links.x, links.y, large)
-    while True:
-        fronts, small = room_for_fronts(large, borders), room_to_order(nodes, pairs, blocks)
-        outcome = _eliminate(
-            links, dissection.SMALLEST_BODY, dissection.NARROWEST_BORDER, LEAF_SIZE, made, halving, fronts, small,
-            counts,
+    made, halving = _new_elimination(nodes, arena), new_halving(pairs, links.x, links.y, large, arena)
+    scratch = mark(arena)
+    fronts, small = new_dissection(large, borders, arena), new_ordering(nodes, pairs, blocks, arena)
+    outcome = BLOCKS_TOO_SHORT
+    while not is_full(arena) and outcome != DONE:
+        outcome = eliminate(
+            links, smallest, tuning.narrowest[0], tuning.whole[LEAF], made, halving, fronts, small, counts
         )  # fmt: skip
-        if outcome == DONE:
-            return made, fronts, small, counts.tolist()
-        blocks *= 2 if outcome == BLOCKS_TOO_SHORT else 1
-        borders *= 2 if outcome == BORDERS_TOO_SHORT else 1
+        if outcome != DONE:
+            give_back(arena, scratch)
+            blocks *= 2 if outcome == BLOCKS_TOO_SHORT else 1
+            borders *= 2 if outcome == BORDERS_TOO_SHORT else 1
+            fronts, small = new_dissection(large, borders, arena), new_ordering(nodes, pairs, blocks, arena)
+    return Ordered(made, fronts, small)

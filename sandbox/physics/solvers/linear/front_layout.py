@@ -2,16 +2,16 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.solvers.linear import parallel
+from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slot_rows, new_slots
+from sandbox.physics.arrays import SlotRows, Slots
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.linear.dissection import DEEPEST, Dissection
 from sandbox.physics.solvers.linear.fronts import PANEL, Fronts, Scratch
 from sandbox.physics.solvers.linear.parallel import CALL_LENGTH, find_fork
-from sandbox.physics.state import Slots
 from sandbox.physics.topology.sorting import place_among
 
+# Signed, for lengths.
+PANEL_ROWS = int(PANEL)
 # Places in `lengths`: of numbers, of what remains, of a row of the widest front.
 NUMBERS, REMAINDER, WIDEST, LENGTHS = range(4)
 
@@ -26,7 +26,7 @@ class FrontPlaces(NamedTuple):
     width: Slots
     base: Slots
     remains: Slots
-    fork: Slots
+    fork: SlotRows
     size: Slots
     beyond: Slots
     before: Slots
@@ -100,13 +100,6 @@ def lay_out_fronts(
     lengths[REMAINDER] = lengths[WIDEST] + (2 * half if forks else half)
 
 
-@kernel
-def _lay_out_fronts(
-    first_front: Slots, bodies: int, found: Dissection, places: FrontPlaces, worth: int, lengths: Slots
-) -> None:
-    lay_out_fronts(first_front, bodies, found, places, worth, lengths)
-
-
 class FrontBlocks(NamedTuple):
     """Where the blocks of large bodies lie: see Fronts."""
 
@@ -132,27 +125,31 @@ def block_in_front(low: int, high: int, fronts: FrontBlocks) -> int:
     return fronts.base[front] + 2 * (low - first) * fronts.width[front] + 2 * column
 
 
-def new_fronts(rows: int, first_front: Slots, bodies: int, room: Dissection, fronts: int, borders: int) -> Fronts:
-    """The fronts of a matrix of so many rows, of those found in room; first_front (b+1,): of each body."""
-    found = Dissection(
-        room.first[:fronts], room.last[:fronts], room.child[:fronts], room.place[:fronts],
-        room.border_start[: fronts + 1], room.border[:borders], room.to_parent[:borders],
-    )  # fmt: skip
-    of_row, diagonal, row_width = np.zeros((3, rows), np.int64)
-    width, base, remains = np.zeros((3, fronts), np.int64)
-    size, beyond = np.zeros((2, DEEPEST), np.int64)
-    fork, lengths = np.zeros((fronts, 2), np.int64), np.zeros(LENGTHS, np.int64)
+@inner_kernel
+def new_fronts(
+    rows: int, first_front: Slots, bodies: int, found: Dissection, worth: int, arena: Arena
+) -> Fronts:  # fmt: skip
+    """The fronts of a matrix of so many rows, as they were found; first_front (b+1,): of each body.
+
+    worth: multiplications that halves must spare.
+    """
+    fronts, lengths = found.first.shape[0], new_slots(arena, LENGTHS)
     places = FrontPlaces(
-        of_row, diagonal, row_width, width, base, remains, fork, size, beyond, np.zeros(fronts + 1, np.int64)
+        new_slots(arena, rows), new_slots(arena, rows), new_slots(arena, rows), new_slots(arena, fronts),
+        new_slots(arena, fronts), new_slots(arena, fronts), new_slot_rows(arena, fronts, 2), new_slots(arena, DEEPEST),
+        new_slots(arena, DEEPEST), new_slots(arena, fronts + 1),
     )  # fmt: skip
-    _lay_out_fronts(first_front, bodies, found, places, parallel.WORTH_HALVING, lengths)
-    numbers, remainder, widest = lengths.tolist()
+    if not is_full(arena):
+        lay_out_fronts(first_front, bodies, found, places, worth, lengths)
+    widest = lengths[WIDEST]
     return Fronts(
-        of_row, diagonal, row_width, found.first, found.last, found.child, found.border_start, found.border,
-        found.to_parent, width, base, remains, np.zeros(numbers), np.zeros(remainder), np.zeros(2 * rows), fork,
-        _scratch(widest), _scratch(widest), np.zeros((rows, 2)), np.zeros(CALL_LENGTH, np.int64),
+        places.of_row, places.diagonal, places.row_width, found.first, found.last, found.child, found.border_start,
+        found.border, found.to_parent, places.width, places.base, places.remains, new_floats(arena, lengths[NUMBERS]),
+        new_floats(arena, lengths[REMAINDER]), new_floats(arena, 2 * rows), places.fork, _new_scratch(widest, arena),
+        _new_scratch(widest, arena), new_float_rows(arena, rows, 2), new_slots(arena, CALL_LENGTH),
     )  # fmt: skip
 
 
-def _scratch(widest: int) -> Scratch:
-    return Scratch(np.zeros(int(PANEL) * widest), np.zeros(int(PANEL)), np.zeros(widest))
+@inner_kernel
+def _new_scratch(widest: int, arena: Arena) -> Scratch:
+    return Scratch(new_floats(arena, PANEL_ROWS * widest), new_floats(arena, PANEL_ROWS), new_floats(arena, widest))

@@ -8,9 +8,9 @@ Source: Duff and Reid 1983; George 1973.
 
 from typing import NamedTuple
 
+from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.solvers.linear.sparse_ldl import inverse_pivot
-from sandbox.physics.world import Floats, Slots
 
 ZERO, ONE, TWO, THREE, FOUR = unsigned(0), unsigned(1), unsigned(2), unsigned(3), unsigned(4)
 # Scalars eliminated at once: a row that waits is read and written once for all of them.
@@ -41,7 +41,7 @@ class Fronts(NamedTuple):
     row_width: Slots
     first: Slots
     last: Slots
-    child: Slots
+    child: SlotRows
     border_start: Slots
     border: Slots
     to_parent: Slots
@@ -51,10 +51,10 @@ class Fronts(NamedTuple):
     numbers: Floats
     remainder: Floats
     inverses: Floats
-    fork: Slots
+    fork: SlotRows
     here: Scratch
     aside: Scratch
-    apart: Floats
+    apart: FloatRows
     call: Slots
 
 

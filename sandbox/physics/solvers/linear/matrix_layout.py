@@ -1,11 +1,25 @@
 """Where the blocks of a sparse matrix lie, and of its factor."""
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.solvers.linear.minimum_degree import Columns, update_targets
+from sandbox.physics.arena import (
+    FIRST_ARENA,
+    Arena,
+    begin,
+    give_back,
+    is_full,
+    lay_out,
+    mark,
+    new_float_rows,
+    new_int32s,
+    new_slots,
+)
+from sandbox.physics.arrays import Slots, empty
+from sandbox.physics.jit import bundle, contents, inner_kernel, items_of, kernel, put
+from sandbox.physics.solvers.linear.minimum_degree import Columns, order_by_degree, update_targets
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
-from sandbox.physics.state import Slots
 from sandbox.physics.topology.sorting import place_among, sort_by_value
 
 # Updates of a factorisation whose places are kept in a table, 4 bytes each; a body of more, some 15,000 particles of a
@@ -45,14 +59,6 @@ def lay_out_columns(
     return longest
 
 
-@kernel
-def _lay_out_columns(
-    order: Slots, columns: Columns, row_of: Slots, column_start: Slots, row: Slots, pairs: Slots, same: Slots,
-    spare: Slots,
-) -> int:  # fmt: skip
-    return lay_out_columns(order, columns, row_of, column_start, row, pairs, same, spare)
-
-
 @inner_kernel
 def block_below(low: int, high: int, column_start: Slots, row: Slots) -> int:
     """The block that the rows low < high of a sparse matrix share."""
@@ -66,14 +72,52 @@ def find_blocks(row_a: Slots, row_b: Slots, column_start: Slots, row: Slots, blo
         block[k] = block_below(min(row_a[k], row_b[k]), max(row_a[k], row_b[k]), column_start, row)
 
 
-def new_matrix(rows: int, order: Slots, columns: Columns, row_of: Slots) -> Matrix:
+@inner_kernel
+def new_matrix(rows: int, order: Slots, columns: Columns, row_of: Slots, arena: Arena) -> Matrix:
     """A matrix of so many rows, ready for numbers; order, columns, row_of: see lay_out_columns."""
-    blocks = int(columns.start[len(order)])
-    column_start, pairs = np.zeros((2, rows + 1), np.int64)
-    row, where, same, spare = np.zeros(blocks, np.int64), *np.zeros((3, rows), np.int64)
-    longest = _lay_out_columns(order, columns, row_of, column_start, row, pairs, same, spare)
-    target = np.zeros(int(pairs[-1]) if pairs[-1] <= LARGEST_TABLE else 0, dtype=np.int32)
-    if len(target):
+    blocks = int(columns.start[order.shape[0]])
+    column_start, pairs, where = new_slots(arena, rows + 1), new_slots(arena, rows + 1), new_slots(arena, rows)
+    row, longest, updates = new_slots(arena, blocks), 0, 0
+    scratch = mark(arena)
+    same, spare = new_slots(arena, rows), new_slots(arena, rows)
+    if not is_full(arena):
+        longest = lay_out_columns(order, columns, row_of, column_start, row, pairs, same, spare)
+        give_back(arena, scratch)
+        updates = pairs[rows] if pairs[rows] <= LARGEST_TABLE else 0
+    target = new_int32s(arena, updates)
+    if updates > 0 and not is_full(arena):
         update_targets(column_start, row, target, where)
-    numbers = np.zeros((rows, 3)), np.zeros((blocks, 4)), np.zeros((longest, 4))
-    return Matrix(column_start, row, pairs, target, where, *numbers)
+    return Matrix(
+        column_start, row, pairs, target, where, new_float_rows(arena, rows, 3), new_float_rows(arena, blocks, 4),
+        new_float_rows(arena, longest, 4),
+    )  # fmt: skip
+
+
+class GraphMatrix(NamedTuple):
+    """The matrix of a graph of n nodes, and the order in which they are eliminated: order (n,) by row, rank by node."""
+
+    matrix: Matrix
+    order: Slots
+    rank: Slots
+
+
+@kernel
+def _lay_out_graph(lent: Any, arena: Arena, nodes: int, link_a: Slots, link_b: Slots) -> None:
+    begin(arena)
+    made = contents(lent)
+    ordered, rank = order_by_degree(nodes, link_a, link_b, arena), new_slots(arena, nodes)
+    if is_full(arena):
+        return
+    for row in range(nodes):
+        rank[ordered.order[row]] = row
+    put(made, "order", ordered.order)
+    put(made, "rank", rank)
+    put(made, "matrix", new_matrix(nodes, ordered.order, ordered.columns, rank, arena))
+
+
+def matrix_of_graph(nodes: int, link_a: Slots, link_b: Slots) -> GraphMatrix:
+    """A matrix of a block for each node and each link (l,), ready for numbers."""
+    lent = bundle(empty(GraphMatrix))
+    lay_out(_lay_out_graph, lent, np.zeros(FIRST_ARENA, np.int64), nodes, link_a, link_b)
+    made: GraphMatrix = items_of(lent)
+    return made

@@ -6,11 +6,9 @@ library's choice enters, because the order decides the last bits of a tick.
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sandbox.physics.jit import inner_kernel, kernel
-from sandbox.physics.state import Slots
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slots
+from sandbox.physics.arrays import Flags, Int32s, Slots
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import list_neighbours
 
 # First guess of blocks in the factor per node; too low costs one more pass, too high memory.
@@ -37,7 +35,7 @@ class Columns(NamedTuple):
 class Marks(NamedTuple):
     """By element: absorbed; outside: members beyond the newest one, counted: for which step. mark: step of a node."""
 
-    absorbed: NDArray[np.bool_]
+    absorbed: Flags
     mark: Slots
     outside: Slots
     counted: Slots
@@ -236,38 +234,43 @@ def order_graph(start: Slots, near: Slots, number: Slots, made: Ordering) -> boo
     return minimum_degree(count, graph, made.order, made.columns, made.marks, made.queue)
 
 
-def room_to_order(nodes: int, links: int, blocks: int) -> Ordering:
+@inner_kernel
+def new_ordering(nodes: int, links: int, blocks: int, arena: Arena) -> Ordering:
     """Room for ordering a graph; blocks: of the factor, below its diagonal."""
-    order, near_count, element_count, mark, outside, counted, node, place, degree = np.zeros((9, nodes), np.int64)
-    near, element = np.zeros((2, 2 * links), np.int64)
-    start, column_start = np.zeros((2, nodes + 1), np.int64)
     return Ordering(
-        QuotientGraph(start, near, near_count, element, element_count), order,
-        Columns(column_start, np.zeros(blocks, np.int64)),
-        Marks(np.zeros(nodes, np.bool_), mark, outside, counted), Heap(node, place, degree),
+        QuotientGraph(
+            new_slots(arena, nodes + 1), new_slots(arena, 2 * links), new_slots(arena, nodes),
+            new_slots(arena, 2 * links), new_slots(arena, nodes),
+        ),
+        new_slots(arena, nodes), Columns(new_slots(arena, nodes + 1), new_slots(arena, blocks)),
+        Marks(new_flags(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes)),
+        Heap(new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes)),
     )  # fmt: skip
 
 
-@kernel
-def _order_graph(link_a: Slots, link_b: Slots, start: Slots, near: Slots, number: Slots, made: Ordering) -> bool:
-    list_neighbours(link_a, link_b, link_a.shape[0], number.shape[0], start, near, made.graph.near, number)
-    for node in range(number.shape[0]):
+@inner_kernel
+def order_by_degree(nodes: int, link_a: Slots, link_b: Slots, arena: Arena) -> Ordering:
+    """The order in which a graph of so many nodes is eliminated, and its columns."""
+    links = link_a.shape[0]
+    start, near, number = new_slots(arena, nodes + 1), new_slots(arena, 2 * links), new_slots(arena, nodes)
+    blocks, scratch = FILL_GUESS * nodes + 16, mark(arena)
+    made = new_ordering(nodes, links, blocks, arena)
+    if is_full(arena):
+        return made
+    list_neighbours(link_a, link_b, links, nodes, start, near, made.graph.near, number)
+    for node in range(nodes):
         number[node] = node
-    return order_graph(start, near, number, made)
-
-
-def order_by_degree(nodes: int, link_a: Slots, link_b: Slots) -> tuple[Slots, Columns]:
-    """The elimination order of a graph (n,), and its columns."""
-    start, near, blocks = np.zeros(nodes + 1, np.int64), np.zeros(2 * len(link_a), np.int64), FILL_GUESS * nodes + 16
-    while True:
-        made = room_to_order(nodes, len(link_a), blocks)
-        if _order_graph(link_a, link_b, start, near, np.zeros(nodes, np.int64), made):
-            return made.order, made.columns
+    while not order_graph(start, near, number, made):
+        give_back(arena, scratch)
         blocks *= 2
+        made = new_ordering(nodes, links, blocks, arena)
+        if is_full(arena):
+            return made
+    return made
 
 
-@kernel
-def update_targets(column_start: Slots, row: Slots, target: NDArray[np.int32], where: Slots) -> None:
+@inner_kernel
+def update_targets(column_start: Slots, row: Slots, target: Int32s, where: Slots) -> None:
     """For each column and each pair of its blocks, upper then lower: the block of the factor that the pair updates.
 
     The order is that in which the factorisation meets them; where (n,) is scratch.

@@ -7,13 +7,15 @@ to be offered; whoever takes the offer works it through, and on a busy machine t
 
 import os
 import weakref
+from collections.abc import Callable
 from threading import Thread
+from typing import NamedTuple
 
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.jit import inner_kernel, precompile, waiting_kernel
 from sandbox.physics.solvers.linear.dissection import Dissection
 from sandbox.physics.solvers.linear.fronts import Fronts, Scratch, eliminate_rows, factorise_fronts, substitute_fronts
 from sandbox.physics.solvers.linear.locks import Lock, give, has_locks, take
-from sandbox.physics.world import Floats, Slots
 
 # Multiplications that a second thread must take off a body's factorisation: each word to it takes some 0.02 ms, and on
 # a busy machine a half that it has begun may be waited for. Lattices from 48x48 on have halves. The halves are part of
@@ -132,7 +134,19 @@ def _dismiss(call: Slots, offered: Lock, done: Lock) -> None:
     offered.give()
 
 
-def start_helper(owner: object, fronts: Fronts, change: Floats) -> Thread | None:
+class Helper(NamedTuple):
+    """A thread that takes second halves, and what dismisses it."""
+
+    thread: Thread
+    dismissal: Callable[[], object]
+
+    def dismiss(self) -> None:
+        """Let the thread end, which then reads nothing any more."""
+        self.dismissal()
+        self.thread.join()
+
+
+def start_helper(owner: object, fronts: Fronts, change: Floats) -> Helper | None:
     """Start a thread that takes second halves of what kernels do with fronts and change (n, 2).
 
     It ends with `owner`, which must hold both while kernels use them. None where a thread would be of no use, or has
@@ -145,8 +159,7 @@ def start_helper(owner: object, fronts: Fronts, change: Floats) -> Thread | None
     # The thread holds the locks too: they must not go before it ends.
     thread = Thread(target=lambda *_: _help(fronts, change), args=(offered, done), daemon=True)
     thread.start()
-    weakref.finalize(owner, _dismiss, fronts.call, offered, done)
-    return thread
+    return Helper(thread, weakref.finalize(owner, _dismiss, fronts.call, offered, done))
 
 
 def _processor_count() -> int:

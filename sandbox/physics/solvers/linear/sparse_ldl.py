@@ -2,11 +2,8 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from sandbox.physics.arrays import FloatRows, Floats, Int32s, Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import Floats, Slots
 
 # A pivot that is not above this share of the diagonal it came from is left out (its row does not move): only rounding,
 # overflow or NaN bring one there.
@@ -25,11 +22,11 @@ class Matrix(NamedTuple):
     column_start: Slots
     row: Slots
     target_start: Slots
-    target: NDArray[np.int32]
+    target: Int32s
     where: Slots
-    diagonal: Floats
-    lower: Floats
-    scaled: Floats
+    diagonal: FloatRows
+    lower: FloatRows
+    scaled: FloatRows
 
 
 @inner_kernel

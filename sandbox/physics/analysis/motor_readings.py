@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.joints.joint_set import joints_of
+from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
 
@@ -34,7 +34,7 @@ class MotorReading(NamedTuple):
 
 def motor_readings(world: World) -> list[MotorReading]:
     """The reading of every motor, in the order of a world's motors."""
-    motors, joints = world.actuators.motors, joints_of(world)
+    motors, joints = world.actuators.motors, block_of(world).arrays.joints
     # What is kept is that of a substep, with "auto" as if the tick were one.
     h = substep_time(world.settings)
     first = joints.rows.first

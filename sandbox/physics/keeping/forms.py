@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.state import Floats, Slots
+from sandbox.physics.arrays import Floats, Slots
 
 # Gravity [m/s^2] that a sag is meant for where there is none.
 USUAL_GRAVITY = 9.81

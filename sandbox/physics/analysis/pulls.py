@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.physics.joints.hands import bodies_of, grips_of
-from sandbox.physics.world import GRAB_MATERIAL, World
+from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.world import World
 
 # A hand that pulls with this share of what it can is at its limit.
 AT_LIMIT = 0.99
@@ -32,7 +33,7 @@ class Pull:
 
 def pulls_of(world: World) -> list[Pull]:
     """The pulls of the hands that hold something movable."""
-    grips, pulls = grips_of(world), []
+    grips, pulls = block_of(world).arrays.joints.hands.grips, []
     for i, hand in enumerate(grips.hand.tolist()):
         x, y = world.hand_force[hand].tolist()
         particle = int(world.particle_b[grips.spring[i]])
@@ -50,7 +51,7 @@ def _joined_to_pins(world: World) -> frozenset[int]:
 
 def _find_joined(world: World) -> frozenset[int]:
     """The particles of all bodies that springs join to something pinned."""
-    free, label = world.inverse_mass > 0.0, bodies_of(world)
+    free, label = world.inverse_mass > 0.0, block_of(world).arrays.body_label
     joins = world.spring_active & (world.material != GRAB_MATERIAL)
     a, b = world.particle_a[joins], world.particle_b[joins]
     bodies = np.concatenate([label[a[free[a] & ~free[b]]], label[b[free[b] & ~free[a]]]])

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from sandbox.physics.actuators import Actuators, StrainLimits
-from sandbox.physics.forms import FirmBody
+from sandbox.physics.keeping.forms import FirmBody
 
 
 @dataclass(frozen=True, eq=False)

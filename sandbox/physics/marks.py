@@ -1,0 +1,17 @@
+"""Values with a meaning of their own in state arrays."""
+
+# An energy bank that the direct solver begins anew at its next step: something outside changed the body.
+BANK_UNOPENED = -1.0
+# One of a body that goes on, but has nothing any more.
+BANK_EMPTIED = -2.0
+
+# The last is of a grab's spring while it holds: it pulls at nothing, its hand does (joints/hands.py).
+LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
+
+# How many particles can be held at once. A grab is a pinned cursor particle and one spring, in slots reserved when
+# the world is built, so that grabbing never moves another slot.
+GRAB_COUNT = 10
+# The material index of a grab's spring: of no material, so that no slider reaches it.
+GRAB_MATERIAL = -1
+# The material index of a constraint with Cs and Cd of its own, which no slider reaches.
+OWN_MATERIAL = -1

@@ -1,0 +1,235 @@
+"""What follows from the state of a world, laid out by kernels in the arenas that they are given.
+
+Three entries, each with an arena of its own: what follows from topology; what follows from what hands hold as well; and
+the room of a step, which grows with what steps ask for. After a change of topology all three are called, in this order.
+"""
+
+from typing import Any
+
+from sandbox.physics.arena import (
+    Arena,
+    begin,
+    give_back,
+    is_full,
+    mark,
+    new_flags,
+    new_float_rows,
+    new_floats,
+    new_slots,
+)
+from sandbox.physics.collision.broad_phase import Candidates, new_boxes, new_grid, new_pairs
+from sandbox.physics.collision.outline import new_colliders, new_outline
+from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
+from sandbox.physics.flight import new_flight
+from sandbox.physics.jit import contents, inner_kernel, kernel, put
+from sandbox.physics.joints.hands import label_bodies, new_grips
+from sandbox.physics.joints.joint_set import lay_out_joints
+from sandbox.physics.joints.joint_sweep import joints_by_mass, new_joints
+from sandbox.physics.joints.limited_springs import new_spring_forces
+from sandbox.physics.joints.motors import new_motor_sides
+from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
+from sandbox.physics.pipeline.block import (
+    GRAB_PARTICLE,
+    GRAB_SPRING,
+    HAS_CONTACTS,
+    HAS_FORKS,
+    HAS_HOOKE,
+    HAS_RINGS,
+    Coefficients,
+    WorldBlock,
+)
+from sandbox.physics.pipeline.collide import (
+    BOUND,
+    CONTACTS,
+    CROSSED,
+    ENTRIES,
+    KEPT,
+    OVERLAPPING,
+    PAIRS,
+    TERRAIN_PAIRS,
+    bound_terrain,
+)
+from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER
+from sandbox.physics.solvers.contact.free_constraints import new_work
+from sandbox.physics.solvers.contact.free_islands import new_islands as new_free_islands
+from sandbox.physics.solvers.contact.gauss_seidel import new_contact_constraints
+from sandbox.physics.solvers.direct.islands import COLUMNS, NUMBERS, lay_out_islands, lay_out_no_blocks
+from sandbox.physics.solvers.direct.layout import lay_out_system
+from sandbox.physics.solvers.iterative import new_iteration
+from sandbox.physics.solvers.single_pass import lay_out_explicit_pass
+from sandbox.physics.untangling.crossing_candidates import new_shape_bounds
+from sandbox.physics.untangling.inversion import new_inversions
+from sandbox.physics.untangling.overlaps import new_overlaps
+from sandbox.physics.untangling.triangle_clamp import lay_out_world_triangles
+from sandbox.physics.world import TRIANGLE
+
+# Places in `wanted`: those of the counts of collisions, then numbers and columns of blocks of bodies.
+BLOCK_NUMBERS, BLOCK_COLUMNS, WANTED = BOUND, BOUND + 1, BOUND + 2
+# What there is room for at least; and how much more than was asked for there is then.
+LEAST_ROOM = 64
+MORE_ROOM = 2
+
+
+@kernel
+def derive_topology(lent: Any, arena: Arena) -> None:
+    """Lay out what follows from the topology of a world, and its solver."""
+    world: WorldBlock = contents(lent)
+    begin(arena)
+    state = world.state
+    _find_plan(world)
+    _lay_out_scratch(world, arena)
+    put(world, "forces", new_spring_forces(state, world.drives, arena))
+    put(world, "sides", new_motor_sides(state, world.wheels, arena))
+    _lay_out_labels(world, arena)
+    lay_out_world_triangles(state, arena, world.triangles)
+    if world.plan[HAS_CONTACTS] != 0:
+        put(world.collisions, "outline", new_outline(state, arena))
+        put(world.collisions, "triangles", world.triangles.of_world)
+    if not is_full(arena):
+        _lay_out_solver(world, arena)
+
+
+@kernel
+def derive_hands(lent: Any, arena: Arena) -> None:
+    """Lay out the joints of a world, which follow from what hands hold as well."""
+    world: WorldBlock = contents(lent)
+    begin(arena)
+    state, solver = world.state, world.choices[SOLVER]
+    grips = new_grips(state, world.body_label, world.plan[GRAB_PARTICLE], world.plan[GRAB_SPRING], arena)
+    if not is_full(arena):
+        lay_out_joints(state, world.wheels, world.sides, world.forces, grips, arena, world.joints)
+    if is_full(arena):
+        return
+    rows = world.joints.rows
+    if solver == SINGLE_PASS:
+        put(world.explicit, "joints", joints_by_mass(rows, arena))
+        put(world.explicit, "mass", new_floats(arena, rows.limit.shape[0]))
+        put(world.explicit, "given", new_floats(arena, rows.limit.shape[0]))
+    elif solver == DIRECT:
+        system = world.system
+        joints = new_joints(
+            rows, system.rows.particle, world.workspace.islands.row, system.bodies.row_start, arena
+        )  # fmt: skip
+        put(world.workspace.delassus, "joints", joints)
+    else:
+        put(world.workspace.delassus, "joints", joints_by_mass(rows, arena))
+
+
+@kernel
+def make_room(lent: Any, arena: Arena) -> None:
+    """Lay out what a step fills in, with room for more than any has asked for. Contacts that were kept are lost."""
+    world: WorldBlock = contents(lent)
+    begin(arena)
+    collisions, wanted, particles = world.collisions, world.wanted, world.state.owner.shape[0]
+    for k in range(BOUND):
+        wanted[k] = max(wanted[k], collisions.counts[k])
+    wanted[ENTRIES] = max(wanted[ENTRIES], particles)
+    if world.choices[SOLVER] == DIRECT:
+        asked = world.workspace.islands.counts
+        wanted[BLOCK_NUMBERS] = max(wanted[BLOCK_NUMBERS], asked[NUMBERS])
+        wanted[BLOCK_COLUMNS] = max(wanted[BLOCK_COLUMNS], asked[COLUMNS])
+        put(world.workspace.delassus, "numbers", new_floats(arena, MORE_ROOM * wanted[BLOCK_NUMBERS]))
+        put(world.workspace.delassus, "columns", new_floats(arena, MORE_ROOM * wanted[BLOCK_COLUMNS]))
+    contacts = max(_room(world, CONTACTS), _room(world, KEPT))
+    put(world.collisions, "kept", new_kept_contacts(arena, contacts))
+    bound = contacts if world.plan[HAS_CONTACTS] != 0 else 0
+    put(world.workspace, "terms", new_contact_constraints(bound, particles, arena))
+    if bound > 0:
+        _lay_out_collisions(world, contacts, arena)
+        if not is_full(arena):
+            bound_terrain(world.collisions)
+
+
+@inner_kernel
+def _room(world: WorldBlock, k: int) -> int:
+    return MORE_ROOM * world.wanted[k] + LEAST_ROOM
+
+
+@inner_kernel
+def _find_plan(world: WorldBlock) -> None:
+    state, plan = world.state, world.plan
+    plan[HAS_CONTACTS] = plan[HAS_HOOKE] = plan[HAS_RINGS] = plan[HAS_FORKS] = 0
+    for p in range(state.collides.shape[0]):
+        if state.collides[p] != 0:
+            plan[HAS_CONTACTS] = 1
+    for s in range(state.law.shape[0]):
+        if state.spring_active[s] and state.law[s] == LAW_HOOKE:
+            plan[HAS_HOOKE] = 1
+    for k in range(state.constraint_corners.shape[0]):
+        if state.constraint_corners[k] > TRIANGLE:
+            plan[HAS_RINGS] = 1
+
+
+@inner_kernel
+def _lay_out_scratch(world: WorldBlock, arena: Arena) -> None:
+    state = world.state
+    particles, springs, constraints = state.owner.shape[0], state.law.shape[0], state.constraint_kind.shape[0]
+    put(world, "start", new_float_rows(arena, particles, 2))
+    put(world, "start_length", new_floats(arena, springs))
+    put(world, "shortest", new_floats(arena, GRAB_COUNT))
+    put(world, "flight", new_flight(particles, arena))
+    put(world, "coefficients", Coefficients(
+        new_floats(arena, springs), new_floats(arena, springs), new_floats(arena, constraints),
+        new_floats(arena, constraints),
+    ))  # fmt: skip
+
+
+@inner_kernel
+def _lay_out_labels(world: WorldBlock, arena: Arena) -> None:
+    state = world.state
+    label = new_slots(arena, state.owner.shape[0])
+    put(world, "body_label", label)
+    scratch = mark(arena)
+    joins, free = new_flags(arena, state.law.shape[0]), new_flags(arena, state.owner.shape[0])
+    if not is_full(arena):
+        label_bodies(state, joins, free, label)
+        give_back(arena, scratch)
+
+
+@inner_kernel
+def _lay_out_solver(world: WorldBlock, arena: Arena) -> None:
+    # What the present solver needs, and no other.
+    state, solver, forces, particles = world.state, world.choices[SOLVER], world.forces, world.state.owner.shape[0]
+    if solver == DIRECT:
+        lay_out_system(state, forces.unlimited, world.tuning, arena, world.system)
+        if is_full(arena):
+            return
+        lay_out_islands(world.system, particles, arena, world.workspace)
+        fork = world.system.fronts.fork
+        for front in range(fork.shape[0]):
+            if fork[front, 0] < fork[front, 1]:
+                world.plan[HAS_FORKS] = 1
+    else:
+        lay_out_no_blocks(particles, arena, world.workspace.delassus)
+    if solver == ITERATIVE:
+        put(world, "iteration", new_iteration(state, forces.unlimited, arena))
+    # These take springs of Hooke's law apart, the single pass takes all springs so.
+    if solver == SINGLE_PASS or world.plan[HAS_HOOKE] != 0:
+        lay_out_explicit_pass(state, forces.limit, solver != SINGLE_PASS, arena, world.explicit)
+
+
+@inner_kernel
+def _lay_out_collisions(world: WorldBlock, contacts: int, arena: Arena) -> None:
+    collisions, particles = world.collisions, world.state.owner.shape[0]
+    outline, jellies = collisions.outline, collisions.triangles.jellies
+    objects, shapes = particles + outline.dynamic[0], outline.solid_of.shape[0]
+    boxes = new_boxes(particles, objects, arena)
+    candidates = Candidates(
+        new_pairs(particles, _room(world, PAIRS), arena), new_pairs(particles, _room(world, TERRAIN_PAIRS), arena),
+        boxes.box,
+    )  # fmt: skip
+    put(collisions, "boxes", boxes)
+    put(collisions, "candidates", candidates)
+    put(collisions, "colliders", new_colliders(world.state.terrain, outline, _room(world, OVERLAPPING), arena))
+    put(collisions, "grid", new_grid(objects, _room(world, ENTRIES), arena))
+    put(collisions, "bounds", new_float_rows(arena, outline.solid.shape[0], 5))
+    put(collisions, "near", new_near(arena))
+    put(collisions, "contacts", new_contacts(arena, contacts))
+    put(collisions, "bound", new_contacts(arena, contacts))
+    put(collisions, "islands", new_free_islands(particles, contacts, arena))
+    put(collisions, "work", new_work(particles, contacts, arena))
+    put(collisions, "inversions", new_inversions(jellies, arena))
+    put(collisions, "shape_bounds", new_shape_bounds(shapes, arena))
+    put(collisions, "overlaps", new_overlaps(shapes, _room(world, CROSSED), _room(world, OVERLAPPING), arena))
+    put(collisions, "moved", new_flags(arena, particles))
+    put(collisions, "attached", new_flags(arena, particles))
