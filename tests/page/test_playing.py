@@ -1,6 +1,7 @@
 """A page in a browser comes to the bits of the desktop, and what it saves is verified there."""
 
 import base64
+import json
 from pathlib import Path
 
 import pytest
@@ -62,6 +63,51 @@ def test_what_a_page_saves_is_verified_bit_for_bit(browser: Browser, tmp_path: P
     assert verify(recording) is None
     assert recording.ticks == 700
     assert recording.script[0].record["type"] == "set_drive"
+
+
+# What hands do, by level: a record at a tick; slots of the level.
+_DONE = {
+    "rope": [
+        (5, {"type": "grab", "grab": 0, "particle": 9, "target": [1.0, 2.0], "strength": 100.0, "radius": 0.0}),
+        (9, {"type": "move_grab", "grab": 0, "target": [2.0, 3.0]}),
+        (40, {"type": "cut_springs", "springs": [4]}),
+        (60, {"type": "release", "grab": 0}),
+        (70, {"type": "pin", "particle": 7}),
+        (90, {"type": "unpin", "particle": 7}),
+    ],
+    "jelly_pile": [
+        (10, {"type": "grab", "grab": 1, "particle": 40, "target": [0.5, 2.0], "strength": 100.0, "radius": 0.4}),
+        (12, {"type": "grab", "grab": 3, "particle": 90, "target": [-0.5, 2.0], "strength": 60.0, "radius": 0.4}),
+        (30, {"type": "cut_springs", "springs": [3, 4, 50]}),
+        (50, {"type": "release", "grab": 1}),
+        (60, {"type": "push", "position": [0.0, 1.0], "radius": 2.0, "impulse": [3.0, 9.0], "outward": 1.0}),
+        (80, {"type": "pin", "particle": 44}),
+    ],
+    "breaking_bridge": [
+        (5, {"type": "grab", "grab": 0, "particle": 12, "target": [0.0, -9.0], "strength": 900.0, "radius": 0.0}),
+        (30, {"type": "set_coefficients", "stiffness": 0.2, "damping": 0.4, "material": None}),
+    ],
+}
+
+
+@pytest.mark.parametrize("name", _DONE)
+def test_what_hands_do_in_a_page_is_verified_bit_for_bit(browser: Browser, tmp_path: Path, name: str) -> None:
+    tab = _opened(browser, tmp_path, level_page(name))
+    tab.evaluate(_PAUSE)
+    broken = tab.evaluate(
+        f"""const done = {json.dumps(_DONE[name])}; let broken = 0;
+        for (let k = 0; k < 130; k++) {{
+          done.filter(([tick]) => tick === k).forEach(([, record], i) => page.run.submit(record, 100 + k + i));
+          page.tick();
+          broken += page.world.broken.length;
+        }}
+        broken"""
+    )
+    assert (broken > 0) == (name == "breaking_bridge")
+    recording = read_replay(_saved(tab, tmp_path))
+    assert len(recording.script) == len(_DONE[name]) and recording.ticks == 130
+    assert verify(recording) is None
+    assert tab.faults == []
 
 
 def test_an_undo_brings_back_the_state_before_the_gesture(browser: Browser, tmp_path: Path) -> None:

@@ -7,20 +7,21 @@ const KINDS = {
 };
 // What is derived, in this order, each by a kernel of its own with an arena of its own; and words that one begins with.
 const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_ARENA = 4096, MORE = 2;
+const HANDS = ['derive_hands'], ROOM = ['make_room'];
 const CONTACTS = ['particle', 'feature', 'impulse', 'impact'].map((name) => `collisions.kept.${name}`);
 // Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
 const ARGUMENTS = 64, RECORD = 16;
-// Of commands as records have them: whole numbers and floats as the kernel takes them, and the first derivation that
-// has to be made again. hands: first particle and spring of hands.
+// Of commands as records have them: whole numbers and floats as the kernel takes them, and what has to be derived
+// again. hands: first particle and spring of hands.
 const COMMANDS = {
-  grab: [1, (r, hands) => [[hands.particle, hands.spring, r.grab, r.particle], [...r.target, r.strength, r.radius]]],
+  grab: [HANDS, (r, hands) => [[hands.particle, hands.spring, r.grab, r.particle], [...r.target, r.strength, r.radius]]],
   move_grab: [null, (r, hands, rate) => [[hands.particle, r.grab], [...r.target, rate]]],
-  release: [1, (r, hands) => [[hands.particle, hands.spring, r.grab], []]],
-  pin: [0, (r) => [[r.particle], []]],
-  unpin: [0, (r) => [[r.particle], []]],
-  freeze: [0, (r) => [[r.particle], []]],
-  cut_springs: [0, (r) => [r.springs, []]],
-  break_springs: [0, (r) => [r.springs, []]],
+  release: [HANDS, (r, hands) => [[hands.particle, hands.spring, r.grab], []]],
+  pin: [DERIVATIONS, (r) => [[r.particle], []]],
+  unpin: [DERIVATIONS, (r) => [[r.particle], []]],
+  freeze: [DERIVATIONS, (r) => [[r.particle], []]],
+  cut_springs: [DERIVATIONS, (r) => [r.springs, []]],
+  break_springs: [DERIVATIONS, (r) => [r.springs, []]],
   set_coefficients: [null, (r) => [
     [r.material ?? -1, r.stiffness == null ? 0 : 1, r.damping == null ? 0 : 1], [r.stiffness ?? 0, r.damping ?? 0],
   ]],
@@ -43,6 +44,8 @@ export class World {
   #base;
   #end;
   #arenas = {};
+  // The words of what the block was given: what kernels derived lies in place of the others.
+  #given;
   #views = new Map();
   #hashed = new Map();
   #saved = new Map();
@@ -64,7 +67,8 @@ export class World {
       this.#base + from + size);
     const words = new Uint32Array(kernels.memory.buffer);
     for (const [word] of Object.values(about.table)) words[this.#place(word) + 2 * ADDRESS] += this.#base;
-    if (about.kernels.make_room) this.#derive(0);
+    this.#given = new Uint8Array(memory.buffer, this.#base, about.words * WORD).slice();
+    this.#derive(DERIVATIONS);
   }
 
   // Where there are so many more bytes of memory.
@@ -125,7 +129,7 @@ export class World {
     progress[COUNT] = progress[CHECKED] = 0n;
     let code = this.#call('tick', this.#block);
     while (code === NO_ROOM) {
-      this.#derive(2);
+      this.#derive(ROOM);
       code = this.#call('tick', this.#block);
     }
     if (code === UNSOUND || code === LOST) throw new Refusal('This level came to values that no physics gives.');
@@ -143,7 +147,6 @@ export class World {
   #apply(record) {
     if (!this.can(record.type)) return false;
     if (record.type in SETTINGS) return this.#set(record);
-    if (!this.#about.kernels.command) return this.#write(record);
     const [derives, pack] = COMMANDS[record.type], { tick_rate } = this.settings(), { buffer } = this.#kernels.memory;
     const [slots, numbers] = pack(record, this.hands, tick_rate), at = this.#arguments + ARGUMENTS * WORD;
     new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
@@ -165,45 +168,17 @@ export class World {
 
   // Whether a command of this type can be carried out.
   can(type) {
-    if (this.#about.kernels.command) return type in COMMANDS || type in SETTINGS;
-    return type in SETTINGS || ['set_coefficients', 'set_drive'].includes(type);
+    return type in COMMANDS || type in SETTINGS;
   }
 
-  // What commands write that change no topology.
-  #write(record) {
-    const disturb = (particle) => { this.view('state.energy_bank')[particle] = -1; };
-    if (record.type === 'set_drive') {
-      this.view('state.actuator_value')[record.part] = record.value;
-    } else if (record.type === 'set_coefficients') {
-      const material = record.material ?? null, a = this.view('state.particle_a'), b = this.view('state.particle_b');
-      for (const [family, of] of [['', this.view('state.material')],
-        ['constraint_', this.view('state.constraint_material')]]) {
-        of.forEach((own, k) => {
-          if (material === null ? own < 0 : own !== material) return;
-          for (const name of ['stiffness', 'damping']) {
-            if (record[name] != null) this.view(`state.${family}${name}`)[k] = record[name];
-            this.view(`good.${family}${name}`)[k] = this.view(`state.${family}${name}`)[k];
-          }
-          this.view(`state.${family}lowest_mode`)[k] = this.view(`good.${family}lowest_mode`)[k] = 0;
-          if (!family) [a[k], b[k]].forEach(disturb);
-          else {
-            const first = this.view('state.constraint_first')[k], corners = this.view('state.constraint_corners')[k];
-            this.view('state.corner_particle').subarray(first, first + corners).forEach(disturb);
-          }
-        });
-      }
-    } else {
-      return false;
-    }
-    return true;
-  }
-
-  // Derive what follows from topology and hands, from one of the derivations on; contacts of the last step stay.
-  #derive(first, contacts = this.#contactRows()) {
-    if (!this.#about.kernels.make_room) throw new Refusal('This page cannot follow what has changed.');
+  // Derive what follows from topology, which is everything, or from hands alone.
+  #derive(names, contacts = this.#contactRows()) {
+    if (names === DERIVATIONS) new Uint8Array(this.#kernels.memory.buffer).set(this.#given, this.#base);
+    this.#views.clear();
     this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
-    for (const name of DERIVATIONS.slice(first)) this.#inArena(name);
-    if (first !== 1) CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
+    for (const name of names) this.#inArena(name);
+    // New room has forgotten the contacts of the last step.
+    if (names !== HANDS) CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
   }
 
   // Call a kernel with the block and its own arena, which grows until there is room.
@@ -265,8 +240,8 @@ export class World {
     for (const [path, kept] of arrays) this.view(path).set(kept);
     this.time = time;
     this.broken = [];
-    if (isOther) this.#derive(0, contacts);
-    else if (contacts[0].length > this.view(CONTACTS[0]).length) this.#derive(2, contacts);
+    if (isOther) this.#derive(DERIVATIONS, contacts);
+    else if (contacts[0].length > this.view(CONTACTS[0]).length) this.#derive(ROOM, contacts);
     else {
       this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
       CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
