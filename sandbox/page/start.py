@@ -35,5 +35,6 @@ def start_of(level: Level, script: Any = (), ticks: int = TRIAL) -> Start:
     block._make(world)
     block.begin(world)
     image = image_of(block.arrays)
-    table = {path: list(place) for path, place in image.table.items()}
+    # Words follow each other as the arrays do.
+    table = {path: [place.dtype, place.dimensions] for path, place in image.table.items()}
     return Start(image, about(world, block.pointer.nbytes // 8) | {"table": table, "copies": image.copies})

@@ -43,6 +43,7 @@ export class World {
   #base;
   #end;
   #arenas = {};
+  #table = new Map();
   #views = new Map();
   #hashed = new Map();
   #saved = new Map();
@@ -63,7 +64,12 @@ export class World {
     for (const [to, from, size] of about.copies) memory.copyWithin(this.#base + to, this.#base + from,
       this.#base + from + size);
     const words = new Uint32Array(kernels.memory.buffer);
-    for (const [word] of Object.values(about.table)) words[this.#place(word) + 2 * ADDRESS] += this.#base;
+    let word = 0;
+    for (const [path, [kind, dimensions]] of Object.entries(about.table)) {
+      this.#table.set(path, { word, kind, dimensions });
+      words[this.#place(word) + 2 * ADDRESS] += this.#base;
+      word += SHAPE + 2 * dimensions;
+    }
     if (about.kernels.make_room) this.#derive(0);
   }
 
@@ -85,9 +91,9 @@ export class World {
   view(path) {
     const found = this.#views.get(path);
     if (found && found.buffer === this.#kernels.memory.buffer) return found;
-    const place = this.#about.table[path];
+    const place = this.#table.get(path);
     if (!place) throw new Error(`there is no array ${path}`);
-    const [word, kind, dimensions] = place, words = new Uint32Array(this.#kernels.memory.buffer),
+    const { word, kind, dimensions } = place, words = new Uint32Array(this.#kernels.memory.buffer),
       at = this.#place(word);
     let size = 1;
     for (let k = 0; k < dimensions; k++) size *= words[at + 2 * (SHAPE + k)];
