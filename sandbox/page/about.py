@@ -10,7 +10,7 @@ from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Family
 from sandbox.physics.world import GRAB_COUNT, World
 
-# Kernels that a page calls, where the library has them.
+# Kernels that a page calls.
 KERNELS = {
     "tick": "sandbox.physics.pipeline.tick.tick",
     "derive_topology": "sandbox.physics.pipeline.derive.derive_topology",
@@ -31,14 +31,11 @@ COMMANDS = (
 # What a page does beside these; undoing is left out of what it plays.
 SETTINGS = ("set_gravity", "set_air")
 HISTORY = ("undo", "redo")
-# What it can do where the library has no kernel for commands.
-WITHOUT_KERNEL = ("set_coefficients", "set_drive")
 
 
 def can_play(types: Iterable[str]) -> bool:
     """Whether a page can carry out commands of these types."""
-    has_kernel = KERNELS["command"] in read_manifest()["entries"]
-    return set(types) <= {*(COMMANDS if has_kernel else WITHOUT_KERNEL), *SETTINGS, *HISTORY}
+    return set(types) <= {*COMMANDS, *SETTINGS, *HISTORY}
 
 
 def about(world: World, words: int) -> dict[str, Any]:
@@ -46,7 +43,7 @@ def about(world: World, words: int) -> dict[str, Any]:
     entries = read_manifest()["entries"]
     kept = [f"state.{name}" for name in STATE_FIELDS] + [f"good.{column.name}" for column in GUARDED]
     return {
-        "kernels": {name: entries[path]["symbol"] for name, path in KERNELS.items() if path in entries},
+        "kernels": {name: entries[path]["symbol"] for name, path in KERNELS.items()},
         "words": words,
         "codes": {name: getattr(tick, name) for name in CODES},
         "progress": {name: getattr(block, name) for name in PROGRESS} | {"KEPT": collide.KEPT},

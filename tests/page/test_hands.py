@@ -3,18 +3,14 @@
 import base64
 from pathlib import Path
 
-import pytest
-
 from sandbox import Session, load_level
 from sandbox.app.share.playing import page_of
 from sandbox.commands import Grab, Release
-from sandbox.page.about import can_play
 from sandbox.replay import Replay, read_replay, verify
 from tests.page.browser import Browser, Tab, page_address
 from tests.page.levels import level_page
 from tests.page.test_playing import SAVE, START_OVER, VERDICT
 
-pytestmark = pytest.mark.skipif(not can_play(["grab"]), reason="the library has no kernel of commands")
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 
 

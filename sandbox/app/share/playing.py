@@ -13,10 +13,10 @@ from sandbox.level.document.model import Level
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.page.about import can_play
 from sandbox.page.page import page_text
-from sandbox.page.start import TRIAL, start_of
+from sandbox.page.start import start_of
 from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange
 from sandbox.physics.equation import of_springs
-from sandbox.physics.forms import Firmness
+from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.snapshot import state_hash, take
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
@@ -61,7 +61,7 @@ def page_in_slices(
         raise CommandError(f"a page cannot play {', '.join(sorted(unknown))}")
     world = Session(level).world
     recorded = None if ticks is None else (yield from _recorded(level, script, ticks))
-    start = start_of(level, recorded.script if recorded else (), TRIAL if ticks is None else ticks)
+    start = start_of(level)
     data = {
         "name": level.name,
         "about": start.about,

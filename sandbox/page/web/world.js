@@ -70,7 +70,7 @@ export class World {
       words[this.#place(word) + 2 * ADDRESS] += this.#base;
       word += SHAPE + 2 * dimensions;
     }
-    if (about.kernels.make_room) this.#derive(0);
+    this.#derive(0);
   }
 
   // Where there are so many more bytes of memory.
@@ -138,18 +138,13 @@ export class World {
     this.time += 1;
     this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number)
       : [];
-    if (this.broken.length) this.#apply({ type: 'break_springs', springs: this.broken });
+    if (this.broken.length) this.command({ type: 'break_springs', springs: this.broken });
   }
 
   // Carry out a command: the record of a recording with slots in place of names. Whether it could be.
   command(record) {
-    return this.#apply(record);
-  }
-
-  #apply(record) {
-    if (!this.can(record.type)) return false;
     if (record.type in SETTINGS) return this.#set(record);
-    if (!this.#about.kernels.command) return this.#write(record);
+    if (!(record.type in COMMANDS)) return false;
     const [derives, pack] = COMMANDS[record.type], { tick_rate } = this.settings(), { buffer } = this.#kernels.memory;
     const [slots, numbers] = pack(record, this.hands, tick_rate), at = this.#arguments + ARGUMENTS * WORD;
     new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
@@ -169,44 +164,8 @@ export class World {
     return true;
   }
 
-  // Whether a command of this type can be carried out.
-  can(type) {
-    if (this.#about.kernels.command) return type in COMMANDS || type in SETTINGS;
-    return type in SETTINGS || ['set_coefficients', 'set_drive'].includes(type);
-  }
-
-  // What commands write that change no topology.
-  #write(record) {
-    const disturb = (particle) => { this.view('state.energy_bank')[particle] = -1; };
-    if (record.type === 'set_drive') {
-      this.view('state.actuator_value')[record.part] = record.value;
-    } else if (record.type === 'set_coefficients') {
-      const material = record.material ?? null, a = this.view('state.particle_a'), b = this.view('state.particle_b');
-      for (const [family, of] of [['', this.view('state.material')],
-        ['constraint_', this.view('state.constraint_material')]]) {
-        of.forEach((own, k) => {
-          if (material === null ? own < 0 : own !== material) return;
-          for (const name of ['stiffness', 'damping']) {
-            if (record[name] != null) this.view(`state.${family}${name}`)[k] = record[name];
-            this.view(`good.${family}${name}`)[k] = this.view(`state.${family}${name}`)[k];
-          }
-          this.view(`state.${family}lowest_mode`)[k] = this.view(`good.${family}lowest_mode`)[k] = 0;
-          if (!family) [a[k], b[k]].forEach(disturb);
-          else {
-            const first = this.view('state.constraint_first')[k], corners = this.view('state.constraint_corners')[k];
-            this.view('state.corner_particle').subarray(first, first + corners).forEach(disturb);
-          }
-        });
-      }
-    } else {
-      return false;
-    }
-    return true;
-  }
-
   // Derive what follows from topology and hands, from one of the derivations on; contacts of the last step stay.
   #derive(first, contacts = this.#contactRows()) {
-    if (!this.#about.kernels.make_room) throw new Refusal('This page cannot follow what has changed.');
     this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
     for (const name of DERIVATIONS.slice(first)) this.#inArena(name);
     if (first !== 1) CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
