@@ -1,4 +1,4 @@
-"""Start: the block of a level's world before its first tick."""
+"""Start: the block of a level's world before its first tick, as a page is given it."""
 
 from typing import Any, NamedTuple
 
@@ -17,10 +17,11 @@ class Start(NamedTuple):
 
 
 def start_of(level: Level) -> Start:
-    """The start of a level's run: what its block was given; kernels derive all else in the page."""
+    """The start of a level's run."""
     world = Session(level).world
     block = block_of(world)
     block.begin(world)
     image = image_of(block.given)
-    table = {path: list(place) for path, place in image.table.items()}
+    # Words follow each other as the arrays do.
+    table = {path: [place.dtype, place.dimensions] for path, place in image.table.items()}
     return Start(image, about(world, block.pointer.nbytes // 8) | {"table": table, "copies": image.copies})

@@ -15,8 +15,14 @@ from tests.page.browser import Browser, Tab, page_address
 from tests.page.levels import LEVELS, level_page
 
 TICKS = 90
-_PAUSE = "page.isPaused || page.toggle('play'); page.jump(() => { page.run.seek(0); page.run.takeOver(); });"
-_SAVE = """page.recording().then(async (file) => {
+START_OVER = "page.isPaused || page.toggle('play'); page.jump(() => { page.run.seek(0); page.run.takeOver(); });"
+# What a page says of a recording at last.
+VERDICT = """new Promise((done) => {
+  const state = document.getElementById('state');
+  const look = () => (state.className ? done(state.textContent) : requestAnimationFrame(look));
+  look();
+})"""
+SAVE = """page.recording().then(async (file) => {
   const bytes = new Uint8Array(await file.arrayBuffer());
   return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
 })"""
@@ -30,7 +36,7 @@ def _opened(browser: Browser, folder: Path, text: str, **how: object) -> Tab:
 
 def _saved(tab: Tab, folder: Path) -> Path:
     file = folder / "saved.replay.gz"
-    file.write_bytes(base64.b64decode(tab.evaluate(_SAVE)))
+    file.write_bytes(base64.b64decode(tab.evaluate(SAVE)))
     return file
 
 
@@ -39,7 +45,7 @@ def test_a_page_opens_without_a_fault_and_steps_as_the_desktop_does(
     browser: Browser, tmp_path: Path, name: str
 ) -> None:
     tab = _opened(browser, tmp_path, level_page(name))
-    tab.evaluate(_PAUSE)
+    tab.evaluate(START_OVER)
     found = tab.evaluate(f"for (let k = 0; k < {TICKS}; k++) page.tick(); page.world.hash().whole")
     session = Session(load_level(name))
     for _ in range(TICKS):
@@ -50,7 +56,7 @@ def test_a_page_opens_without_a_fault_and_steps_as_the_desktop_does(
 
 def test_what_a_page_saves_is_verified_bit_for_bit(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, level_page("suspension_car"))
-    tab.evaluate(_PAUSE)
+    tab.evaluate(START_OVER)
     tab.evaluate(
         """for (let k = 0; k < 700; k++) {
           if (k === 20) page.keys.press(Object.keys(page.keys.keys)[0]);
@@ -112,7 +118,7 @@ def test_what_hands_do_in_a_page_is_verified_bit_for_bit(browser: Browser, tmp_p
 
 def test_an_undo_brings_back_the_state_before_the_gesture(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, level_page("rope"))
-    tab.evaluate(_PAUSE)
+    tab.evaluate(START_OVER)
     before = tab.evaluate("for (let k = 0; k < 70; k++) page.tick(); page.world.hash().whole")
     tab.evaluate("page.run.submit({ type: 'set_coefficients', stiffness: 0.2, damping: 0.3, material: null }, 1)")
     tab.evaluate("for (let k = 0; k < 100; k++) page.tick(); document.getElementById('undo').click()")
@@ -136,11 +142,7 @@ def _recorded(folder: Path) -> Path:
 def test_a_recording_is_verified_scrubbed_and_taken_over(browser: Browser, tmp_path: Path) -> None:
     replay = read_replay(_recorded(tmp_path))
     tab = _opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
-    tab.evaluate(
-        """new Promise((done) => { const state = document.getElementById('state');
-          const look = () => state.className ? done() : requestAnimationFrame(look); look(); })"""
-    )
-    assert tab.evaluate("document.getElementById('state').textContent").startswith("Verified")
+    assert tab.evaluate(VERDICT).startswith("Verified")
     tab.evaluate("page.isPaused || page.toggle('play')")
     for tick in (150, 30, 90):
         hashed = tab.evaluate(f"page.jump(() => page.run.seek({tick})); page.world.hash().whole")

@@ -124,3 +124,12 @@ def test_keys_pause_step_and_drive(browser: Browser, tmp_path: Path) -> None:
     types = tab.evaluate("page.run.commands.map(({ record }) => [record.type, Math.abs(record.value)])")
     assert types[-1] == ["set_drive", 0]
     assert tab.faults == []
+
+
+def test_sound_is_off_until_it_is_touched_and_then_plays_without_a_fault(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
+    assert not tab.evaluate("page.sound.isOn")
+    _tap(tab, "#sound")
+    tab.evaluate("page.keys.press('d'); for (let k = 0; k < 200; k++) page.tick(); page.keys.releaseAll()")
+    assert tab.evaluate("page.sound.isOn")
+    assert tab.faults == []

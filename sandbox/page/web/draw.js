@@ -40,6 +40,12 @@ export class Camera {
   }
 }
 
+// A box around points, with room for what is drawn beside them, as rect() takes it.
+function boxOf(xs, ys, room = 60) {
+  const left = Math.min(...xs) - room, top = Math.min(...ys) - room;
+  return [left, top, Math.max(...xs) + room - left, Math.max(...ys) + room - top];
+}
+
 export class Picture {
   #canvas;
   #context;
@@ -122,6 +128,7 @@ export class Picture {
     const xs = loops[0].filter((_, k) => k % 2 === 0), ys = loops[0].filter((_, k) => k % 2);
     const size = Math.sqrt((Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys)));
     shape.size = size;
+    shape.box = boxOf(xs, ys);
     shape.depth = Math.min(Math.max(size * (ROUNDING[shape.skin] ?? 0.17), 6 * this.scale), 34 * this.scale);
   }
 
@@ -217,7 +224,8 @@ export class Picture {
         glass: ['#d4eefa', '#8cc4e6', 0.6, 0.3, 0.42],
       }[kind] ?? [...metal, 0.45, 0.45, 1];
       const isEarth = ['soil', 'rock'].includes(kind), grain = isEarth ? 'earth' : kind === 'wood' ? 'wood' : null;
-      fillGround(context, path, near, deep, (isEarth ? 26 : 9) * scale, light, dark, alpha, grain);
+      fillGround(context, path, boxOf(points.filter((_, n) => n % 2 === 0), points.filter((_, n) => n % 2)), near, deep,
+        (isEarth ? 26 : 9) * scale, light, dark, alpha, grain);
       stroke(context, path, mixed(kind === 'glass' ? '#6fa8c8' : deep, '#000000', 0.35), 0.9 * scale,
         kind === 'glass' ? 0.5 : 0.9);
       if (kind === 'soil') this.#layTurf(context, edges);
@@ -333,7 +341,7 @@ export class Picture {
       path.moveTo(x, y);
       path.quadraticCurveTo(...point(0.5, 2 * belly), ...point(1, 0));
       path.quadraticCurveTo(...point(0.5, -2 * belly), x, y);
-      fillSkin(context, path, 'rubber', '#de5462', belly);
+      fillSkin(context, path, boxOf([x, x + dx], [y, y + dy], 2 * belly), 'rubber', '#de5462', belly);
       stroke(context, path, '#4a1622', 0.8 * scale);
     } else {
       const half = clamp(0.07 * rest, 2, 4.5), rod = new Path2D(), tube = new Path2D();
@@ -348,7 +356,7 @@ export class Picture {
 
   #drawShape(shape) {
     const context = this.#context;
-    fillSkin(context, shape.path, shape.skin, shape.colour, shape.depth, () => {
+    fillSkin(context, shape.path, shape.box, shape.skin, shape.colour, shape.depth, () => {
       if (!['jelly', 'rubber'].includes(shape.skin)) return;
       // A particle's strain is the mean of that of its springs.
       const sums = new Map();

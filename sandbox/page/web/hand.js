@@ -178,13 +178,15 @@ export class Hands {
     const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy],
       gesture = this.run.newGesture();
     const target = [point[0] + beside[0], point[1] + beside[1]];
-    const record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
+    // What a command changes may lie elsewhere after it: all is asked before.
+    const limit = STRENGTH * near.bodyMass(particle),
+      record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
     if (!this.run.submit(record, gesture)) {
       this.say('This page cannot hold anything.');
       return false;
     }
     this.#held.set(particle,
-      { hand, gesture, beside, target, isMoved: false, limit: STRENGTH * near.bodyMass(particle) });
+      { hand, gesture, beside, target, isMoved: false, limit });
     return true;
   }
 

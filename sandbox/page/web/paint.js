@@ -17,8 +17,9 @@ const SKINS = {
   wood: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1], stone: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1],
   brick: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1], rubber: ['#ffffff', 0.32, '#140028', 0.38, 0.15, 1],
 };
-// How far inwards light and shade reach, in depths of a skin: thin crescents laid over each other.
-const SOFTLY = [0.08, 0.17, 0.27, 0.38, 0.5, 0.64, 0.8, 0.98, 1.2];
+// Light and shade of a skin are thin crescents laid over each other: one for so many pixels of its depth, so many at
+// most, and how far inwards they reach, in depths.
+const CRESCENT = 2.5, MOST_CRESCENTS = 9, REACH = 1.2;
 
 // Closed loops of points [x, y, ...] as one path, with their corners cut by `keep` of their sides.
 export function pathOf(loops, keep = 0, rounds = 0) {
@@ -58,7 +59,7 @@ export function grown(points, by) {
 }
 
 // Fill a path with a skin that bulges: `depth` is how far its edge is rounded. over: what is drawn on it, unlit.
-export function fillSkin(context, path, skin, colour, depth, over) {
+export function fillSkin(context, path, box, skin, colour, depth, over) {
   const [light, up, shade, down, gloss, alpha] = SKINS[skin] ?? SKINS.rubber;
   context.save();
   context.globalAlpha = alpha;
@@ -66,31 +67,32 @@ export function fillSkin(context, path, skin, colour, depth, over) {
   context.fill(path, 'evenodd');
   context.clip(path, 'evenodd');
   over?.();
-  crescents(context, path, light, 0.8 * up, 0.22 * depth, 0.8 * depth);
-  crescents(context, path, shade, down, -0.22 * depth, -0.8 * depth);
-  if (gloss) {
+  crescents(context, path, box, light, 0.8 * up, 0.22 * depth, 0.8 * depth);
+  crescents(context, path, box, shade, down, -0.22 * depth, -0.8 * depth);
+  if (gloss && depth > 5) {
     const gleam = new Path2D();
     gleam.addPath(path, new DOMMatrix([1, 0, 0, 1, 0.12 * depth, 0.3 * depth]));
     context.clip(gleam);
-    crescents(context, gleam, '#ffffff', 0.8 * gloss, 0.14 * depth, 0.5 * depth);
+    crescents(context, gleam, box, '#ffffff', 0.8 * gloss, 0.14 * depth, 0.5 * depth);
   }
   context.restore();
 }
 
-// What of a clipped path is within so much of its edge, on the side from which light comes.
-function crescents(context, path, colour, strength, x, y) {
+// What of a clipped path is within so much of its edge, on the side from which light comes; box: around the path.
+function crescents(context, path, box, colour, strength, x, y) {
+  const count = Math.min(Math.max(Math.round(Math.hypot(x, y) / CRESCENT), 2), MOST_CRESCENTS);
   context.fillStyle = colour;
-  context.globalAlpha = (1.5 * strength) / SOFTLY.length;
-  for (const share of SOFTLY) {
-    const moved = new Path2D();
-    moved.rect(-1e5, -1e5, 2e5, 2e5);
+  context.globalAlpha = Math.min((1.5 * strength) / count, 1);
+  for (let k = 1; k <= count; k++) {
+    const share = REACH * (k / count) ** 1.3, moved = new Path2D();
+    moved.rect(...box);
     moved.addPath(path, new DOMMatrix([1, 0, 0, 1, share * x, share * y]));
     context.fill(moved, 'evenodd');
   }
 }
 
 // Fill a path with ground: from `near` its edge to `deep` inside.
-export function fillGround(context, path, near, deep, depth, light, dark, alpha = 1, grain = null) {
+export function fillGround(context, path, box, near, deep, depth, light, dark, alpha = 1, grain = null) {
   context.save();
   context.globalAlpha = alpha;
   context.fillStyle = deep;
@@ -102,8 +104,8 @@ export function fillGround(context, path, near, deep, depth, light, dark, alpha 
     context.lineWidth = 0.22 * k * depth;
     context.stroke(path);
   }
-  crescents(context, path, '#ffffff', 0.8 * light, 0.1 * depth, 0.3 * depth);
-  crescents(context, path, '#000000', 0.8 * dark, -0.1 * depth, -0.3 * depth);
+  crescents(context, path, box, '#ffffff', 0.8 * light, 0.1 * depth, 0.3 * depth);
+  crescents(context, path, box, '#000000', 0.8 * dark, -0.1 * depth, -0.3 * depth);
   context.globalAlpha = 1;
   if (grain) {
     context.fillStyle = context.createPattern(grains(grain), 'repeat');

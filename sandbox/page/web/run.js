@@ -61,7 +61,8 @@ export class Run {
   // The commands of this tick that a recording has.
   #follow() {
     while (this.next < this.commands.length && this.commands[this.next].tick === this.time) {
-      if (!this.world.command(this.commands[this.next].record)) throw new Refusal('This page cannot do what was done here.');
+      const { record } = this.commands[this.next];
+      if (!this.world.command(record)) throw new Refusal('This page cannot do what was done here.');
       this.next += 1;
     }
   }

@@ -46,6 +46,7 @@ export class World {
   #arenas = {};
   // The words of what the block was given: what kernels derived lies in place of the others.
   #given;
+  #table = new Map();
   #views = new Map();
   #hashed = new Map();
   #saved = new Map();
@@ -66,8 +67,13 @@ export class World {
     for (const [to, from, size] of about.copies) memory.copyWithin(this.#base + to, this.#base + from,
       this.#base + from + size);
     const words = new Uint32Array(kernels.memory.buffer);
-    for (const [word] of Object.values(about.table)) words[this.#place(word) + 2 * ADDRESS] += this.#base;
-    this.#given = new Uint8Array(memory.buffer, this.#base, about.words * WORD).slice();
+    let word = 0;
+    for (const [path, [kind, dimensions]] of Object.entries(about.table)) {
+      this.#table.set(path, { word, kind, dimensions });
+      words[this.#place(word) + 2 * ADDRESS] += this.#base;
+      word += SHAPE + 2 * dimensions;
+    }
+    this.#given = new Uint8Array(kernels.memory.buffer, this.#base, about.words * WORD).slice();
     this.#derive(DERIVATIONS);
   }
 
@@ -89,9 +95,9 @@ export class World {
   view(path) {
     const found = this.#views.get(path);
     if (found && found.buffer === this.#kernels.memory.buffer) return found;
-    const place = this.#about.table[path];
+    const place = this.#table.get(path);
     if (!place) throw new Error(`there is no array ${path}`);
-    const [word, kind, dimensions] = place, words = new Uint32Array(this.#kernels.memory.buffer),
+    const { word, kind, dimensions } = place, words = new Uint32Array(this.#kernels.memory.buffer),
       at = this.#place(word);
     let size = 1;
     for (let k = 0; k < dimensions; k++) size *= words[at + 2 * (SHAPE + k)];
@@ -136,17 +142,13 @@ export class World {
     this.time += 1;
     this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number)
       : [];
-    if (this.broken.length) this.#apply({ type: 'break_springs', springs: this.broken });
+    if (this.broken.length) this.command({ type: 'break_springs', springs: this.broken });
   }
 
   // Carry out a command: the record of a recording with slots in place of names. Whether it could be.
   command(record) {
-    return this.#apply(record);
-  }
-
-  #apply(record) {
-    if (!this.can(record.type)) return false;
     if (record.type in SETTINGS) return this.#set(record);
+    if (!(record.type in COMMANDS)) return false;
     const [derives, pack] = COMMANDS[record.type], { tick_rate } = this.settings(), { buffer } = this.#kernels.memory;
     const [slots, numbers] = pack(record, this.hands, tick_rate), at = this.#arguments + ARGUMENTS * WORD;
     new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
@@ -166,18 +168,12 @@ export class World {
     return true;
   }
 
-  // Whether a command of this type can be carried out.
-  can(type) {
-    return type in COMMANDS || type in SETTINGS;
-  }
-
-  // Derive what follows from topology, which is everything, or from hands alone.
+  // Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
   #derive(names, contacts = this.#contactRows()) {
     if (names === DERIVATIONS) new Uint8Array(this.#kernels.memory.buffer).set(this.#given, this.#base);
     this.#views.clear();
     this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
     for (const name of names) this.#inArena(name);
-    // New room has forgotten the contacts of the last step.
     if (names !== HANDS) CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
   }
 
