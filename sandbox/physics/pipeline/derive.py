@@ -203,9 +203,10 @@ def _lay_out_solver(world: WorldBlock, arena: Arena) -> None:
         lay_out_no_blocks(particles, arena, world.workspace.delassus)
     if solver == ITERATIVE:
         put(world, "iteration", new_iteration(state, forces.unlimited, arena))
-    # These take springs of Hooke's law apart, the single pass takes all springs so.
-    if solver == SINGLE_PASS or world.plan[HAS_HOOKE] != 0:
-        lay_out_explicit_pass(state, forces.limit, solver != SINGLE_PASS, arena, world.explicit)
+    # These take springs of Hooke's law apart, all others take all springs so.
+    takes_apart = solver in (DIRECT, ITERATIVE)
+    if not takes_apart or world.plan[HAS_HOOKE] != 0:
+        lay_out_explicit_pass(state, forces.limit, takes_apart, arena, world.explicit)
 
 
 @inner_kernel
