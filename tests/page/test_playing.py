@@ -99,7 +99,7 @@ _DONE = {
 @pytest.mark.parametrize("name", _DONE)
 def test_what_hands_do_in_a_page_is_verified_bit_for_bit(browser: Browser, tmp_path: Path, name: str) -> None:
     tab = _opened(browser, tmp_path, level_page(name))
-    tab.evaluate(_PAUSE)
+    tab.evaluate(START_OVER)
     broken = tab.evaluate(
         f"""const done = {json.dumps(_DONE[name])}; let broken = 0;
         for (let k = 0; k < 130; k++) {{
