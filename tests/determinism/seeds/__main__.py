@@ -2,11 +2,17 @@
 
 Run by hand: python -m tests.determinism.seeds [--seeds 1000] [--first N] [--ticks T] [--ways a,b|all] [--jobs 1]
 
-Each seed gives a level and commands, which are recorded with kernels of the library: the reference. Then the recording
-is run again: library (in another session), undone (gestures undone and redone, time taken back, other futures), saved
-(verified whole and from the middle, the level written and read), threads (one and two), web (WebAssembly in node),
-interpreted, and numba (only if asked for: it compiles all kernels first). --plant TICK:ARRAY:SLOT puts one ulp into each
-run but the reference, which must be named. Exit code 1: a bit differs.
+Each seed gives a level and commands, which are recorded: the reference. Then the recording is run again:
+
+library      in another session, with the kernels of the reference
+undone       with gestures undone and redone, time taken back, and other futures that are left again
+saved        verified whole and from the middle; with its level written and read
+threads      with one thread and with two
+web          with the calls of kernels made in WebAssembly too, by node
+interpreted  with interpreted kernels, for a few ticks
+numba        with kernels that numba compiles first, which takes minutes: only where it is asked for
+
+--plant TICK:ARRAY:SLOT puts one ulp into each of these, which must be named. Exit code 1: a bit differs.
 """
 
 import argparse
@@ -26,7 +32,7 @@ from sandbox.physics.settings import AUTO
 from sandbox.session.replay.recording import Replay
 from tests.determinism.elsewhere import WEB, Missing
 from tests.determinism.seeds.child import CHILD_WAYS, run_there
-from tests.determinism.seeds.difference import Difference, Plant, Watch
+from tests.determinism.seeds.difference import Plant, Watch
 from tests.determinism.seeds.player import recording
 from tests.determinism.seeds.ways import WAYS, Result, failure, run_way
 

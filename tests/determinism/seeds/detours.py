@@ -59,7 +59,7 @@ class Detours:
             self.watch.see(session.world)
 
     def _is_over(self) -> bool:
-        """Whether there is a gesture to undo, of which nothing goes on: an undo would end it, and a redo not begin it."""
+        """Whether there is a gesture to undo, of which nothing goes on: an undo would end that for good."""
         history, tick = self.session.history, self.session.tick
         gesture = history.last_in_effect(tick)
         begun = [entry for entry in history.begun(tick) if entry.gesture == gesture]
