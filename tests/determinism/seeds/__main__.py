@@ -42,6 +42,8 @@ USUAL_WAYS = tuple(way for way in ALL_WAYS if way != "numba")
 EVERY = {"web": 20, "interpreted": 50}
 # Interpreted kernels are some hundred times slower: particles times steps, where things touch and where they do not.
 TOUCHING_WORK, WORK = 600, 3_000
+# Of the line that says how far it is [characters].
+WIDTH = 60
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,8 @@ class Tally:
         """Count a result; a difference gets two lines."""
         self.results.setdefault(result.way, []).append(result)
         if result.difference is not None:
-            print(f"\r{result.difference}\n    {result.difference.command(self.plant)}", flush=True)
+            clear_line()
+            print(f"{result.difference}\n    {result.difference.command(self.plant)}", flush=True)
 
     @property
     def differing(self) -> int:
@@ -90,7 +93,8 @@ class Tally:
 
     def say(self, seeds: int, doing: str) -> None:
         """Tell how far it is, on one line."""
-        print(f"\r{self.done:,} of {seeds:,} seeds, {self.differing:,} differ, {doing:<12}", end="", file=sys.stderr)
+        told = f"{self.done:,} of {seeds:,} seeds, {self.differing:,} differ, {doing}"
+        print(f"\r{told:<{WIDTH}}", end="", file=sys.stderr, flush=True)
 
     def lines(self) -> Iterator[str]:
         """The summary, a line for each way."""
@@ -101,6 +105,11 @@ class Tally:
             more = f", a second thread in {helped:,}" if way == "threads" else ""
             planted = f", planted in {sum(each.put for each in found):,}" if self.plant else ""
             yield f"{way}: {len(found):,} seeds, {ticks:,} ticks, {checks:,} checks, {differ:,} differ{more}{planted}"
+
+
+def clear_line() -> None:
+    """Take the line away that says how far it is."""
+    print(f"\r{'':<{WIDTH}}\r", end="", file=sys.stderr, flush=True)
 
 
 def check_seed(seed: int, task: Task) -> Seed:
@@ -137,7 +146,7 @@ def check(task: Task, jobs: int, tally: Tally) -> None:
             interpreted[found.seed] = found.interpreted
             for result in found.results:
                 tally.add(result)
-            tally.say(task.seeds, "")
+            tally.say(task.seeds, "in this process")
     for way in (way for way in CHILD_WAYS if way in task.ways):
         chosen = {seed: ticks for seed, ticks in interpreted.items() if ticks and way in task.ways_of(seed)}
         ticks_of = chosen if way == "interpreted" else dict.fromkeys(chosen, task.ticks)
@@ -147,7 +156,8 @@ def check(task: Task, jobs: int, tally: Tally) -> None:
                 tally.add(result)
                 tally.say(task.seeds, f"{way} {number + 1}")
         except Missing as fault:
-            print(f"\r{way}: left out, {fault}")
+            clear_line()
+            print(f"{way}: left out, {fault}", flush=True)
         except RuntimeError as error:
             tally.add(Result(way, 0, 0, failure(task.first, way, task.ticks, error)))
 
@@ -197,7 +207,7 @@ def main(arguments: list[str] | None = None) -> int:
         ways = _installed(given.ways)
         task = Task(given.first, given.seeds, given.ticks, ways, tally.plant, Path(folder))
         check(task, given.jobs, tally)
-    print("\r", end="", file=sys.stderr)
+    clear_line()
     print("\n".join(tally.lines()))
     print(
         f"{given.seeds:,} seeds from {given.first} on, {given.ticks} ticks each, reference: {jit.way()}; "

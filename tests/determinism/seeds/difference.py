@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.snapshot import canonical_bytes, state_hash
+from sandbox.physics.snapshot import Snapshot, canonical_bytes, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.world import World
 from sandbox.session.replay.divergence import Divergence, first_difference
@@ -110,8 +110,8 @@ class Watch:
             raise Differs(first_bit(self.replay, world.tick, arrays_of(world)))
 
 
-def arrays_of(world: World) -> Arrays:
-    """The state arrays of a world by their names in files."""
+def arrays_of(world: World | Snapshot) -> Arrays:
+    """The arrays of a state by their names in files."""
     return {stored: getattr(world, column.name) for stored, column in BY_STORED.items()}
 
 
