@@ -125,7 +125,8 @@ class Player:
         self._do({"type": "cut_springs", "springs": [world.spring_names[slot] for slot in chosen]})
 
     def _coefficients(self) -> None:
-        world, record = self.session.world, {"type": "set_coefficients"}
+        world = self.session.world
+        record: Record = {"type": "set_coefficients"}
         damping = number(self.chance, 0.0, EXPLICIT if world.settings.solver == "single_pass" else 1.0)
         record |= self.chance.choice([{"stiffness": damping * number(self.chance, 0.0, 1.0)}, {"damping": damping}])
         self._do(record | self.chance.choice([{}, {"material": self._chosen(world.material_names)}]))
