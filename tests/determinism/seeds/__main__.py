@@ -136,17 +136,25 @@ def _interpreted_ticks(replay: Replay) -> int:
     return min(replay.ticks, max(1, work // (particles * int(steps))))
 
 
+def _each(task: Task, jobs: int) -> Iterator[Seed]:
+    """What comes of every seed, in some processes."""
+    seeds, run = range(task.first, task.first + task.seeds), functools.partial(check_seed, task=task)
+    if jobs == 1:
+        yield from map(run, seeds)
+        return
+    with ProcessPoolExecutor(jobs) as pool:
+        yield from pool.map(run, seeds)
+
+
 def check(task: Task, jobs: int, tally: Tally) -> None:
     """Run every seed every way."""
-    seeds = range(task.first, task.first + task.seeds)
-    run, interpreted = functools.partial(check_seed, task=task), {}
-    with ProcessPoolExecutor(jobs) if jobs > 1 else tempfile.TemporaryDirectory() as pool:
-        for found in pool.map(run, seeds) if isinstance(pool, ProcessPoolExecutor) else map(run, seeds):
-            tally.done += 1
-            interpreted[found.seed] = found.interpreted
-            for result in found.results:
-                tally.add(result)
-            tally.say(task.seeds, "in this process")
+    interpreted = {}
+    for found in _each(task, jobs):
+        tally.done += 1
+        interpreted[found.seed] = found.interpreted
+        for result in found.results:
+            tally.add(result)
+        tally.say(task.seeds, "in this process" if jobs == 1 else f"in {jobs} processes")
     for way in (way for way in CHILD_WAYS if way in task.ways):
         chosen = {seed: ticks for seed, ticks in interpreted.items() if ticks and way in task.ways_of(seed)}
         ticks_of = chosen if way == "interpreted" else dict.fromkeys(chosen, task.ticks)
