@@ -14,7 +14,9 @@ from sandbox.level.reading.files import read_level, write_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers.linear import dissection, parallel
 from sandbox.session.replay.divergence import Divergence
-from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.resume import resume
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from tests.determinism.elsewhere import WEB
@@ -50,7 +52,10 @@ def library(watch: Watch, seed: int, folder: Path) -> None:
 
 
 def saved(watch: Watch, seed: int, folder: Path) -> None:
-    """The recording, verified whole and from the middle; the level, written and read again. Raises Differs."""
+    """The recording, verified whole, from the middle, and continued where it was cut off; the level, written and read.
+
+    Raises Differs, and ReplayError where a recording that was cut off differs.
+    """
     replay = watch.replay
     middle = min(replay.states, key=lambda tick: abs(2 * tick - replay.ticks))
     for start in (0, middle):
@@ -63,11 +68,26 @@ def saved(watch: Watch, seed: int, folder: Path) -> None:
         watch.checks += replay.ticks - start
         if divergence is not None:
             raise Differs(divergence)
+    _continue(replay, folder / f"{seed}.cut.replay")
     path = folder / f"{seed}.json"
     write_level(replay.level, path)
     level = read_level(path)
     path.unlink()
     _follow(watch, Session(level, replay.script))
+
+
+def _continue(replay: Replay, path: Path) -> None:
+    """Record half of a run, cut the recording off, continue it to the end, and verify it."""
+    session = Session(replay.level, replay.script)
+    session.record_to(path)
+    while 2 * session.tick < replay.ticks:
+        session.advance()
+    session.abandon_recording()
+    resume(read_replay(path, partial=True), replay.ticks)
+    divergence = verify(read_replay(path))
+    path.unlink()
+    if divergence is not None:
+        raise Differs(divergence)
 
 
 def threads(watch: Watch, seed: int, folder: Path) -> bool:
