@@ -1,11 +1,12 @@
 """The way `undone`: a session that now and then goes back, and comes to the same bits again."""
 
+import itertools
 import random
 from collections import deque
 from pathlib import Path
 
 from sandbox.physics.snapshot import state_hash
-from sandbox.session.commands import SetGravity
+from sandbox.session.commands import Command, Redo, SetGravity, Undo
 from sandbox.session.commands.records import from_record
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -43,6 +44,7 @@ class Detours:
         self.session = Session(watch.replay.level)
         self.lines = deque(watch.replay.script)
         self.chance = random.Random(f"detours {seed}")
+        self.gestures = itertools.count(FOREIGN)
 
     def advance(self) -> None:
         """A tick with its commands, and a detour before its step, perhaps, or in its place. Raises Differs."""
@@ -65,14 +67,12 @@ class Detours:
         return gesture is not None and all(entry.command.ending(self.session.world) is None for entry in begun)
 
     def _undo_and_redo(self) -> None:
-        session, before, undone = self.session, self._kept(), 0
+        before, undone = self._kept(), 0
         while undone < self.chance.randint(1, GESTURES) and self._is_over():
-            session.undo()
-            session.apply_pending()
+            self._do(Undo())
             undone += 1
         for _ in range(undone):
-            session.redo()
-            session.apply_pending()
+            self._do(Redo())
         self._compare(before)
 
     def _redo_later(self) -> None:
@@ -80,11 +80,10 @@ class Detours:
         end = min(session.tick + LONG, self.lines[0].tick if self.lines else watch.replay.ticks, watch.replay.ticks)
         if end == session.tick or not self._is_over() or watch.is_due(session.tick, end):
             return
-        session.undo()
+        self._do(Undo())
         while session.tick < end:
             session.advance()
-        session.redo()
-        session.apply_pending()
+        self._do(Redo())
         watch.see(session.world)
 
     def _go_back(self) -> None:
@@ -104,12 +103,16 @@ class Detours:
             return
         before = self._kept()
         session.seek(self.chance.randint(max(tick - FAR, 0), tick - 1))
-        session.submit(SetGravity((0.5, 7.0)), FOREIGN + tick)
+        self._do(SetGravity((0.5, 7.0)))
         for _ in range(self.chance.randint(1, LONG)):
             session.advance()
         session.return_to(session.branches[-1])
         session.seek(session.last_tick)
         self._compare(before)
+
+    def _do(self, command: Command) -> None:
+        self.session.submit(command, next(self.gestures))
+        self.session.apply_pending()
 
     def _kept(self) -> tuple[str, Arrays]:
         return state_hash(self.session.world), kept_arrays(self.session.world)

@@ -111,7 +111,7 @@ def threads(watch: Watch, seed: int, folder: Path) -> bool:
 
 @contextmanager
 def _halves(processors: int, started: list[int]) -> Iterator[None]:
-    """Factor also small bodies in two halves, on a machine of this many processors; notes second threads in `started`."""
+    """Factor also small bodies in two halves, with this many processors; notes second threads in `started`."""
 
     def start(*arguments: Any, **more: Any) -> threading.Thread:
         started.append(processors)
