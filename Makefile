@@ -3,6 +3,8 @@
 # make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-record: record them again, after a
 # change of a tick's arithmetic or of a shipped level; never to make a failing test pass. make goldens-everywhere: run
 # them in WebAssembly and on an emulated arm64 too, where node and qemu-user with libc6-arm64-cross are installed.
+# make seeds: random levels and commands, run several ways, bit for bit; half an hour. SEEDS=50: fewer than 1,000;
+# ARGUMENTS="--ways all --jobs 2": with kernels that numba compiles too, in two processes.
 # make bounds: run every test with kernels that check each index; usual kernels do not.
 # make libraries: machine code of the kernels for all platforms, after a kernel was changed; minutes. CHECK=1 compares
 # it with what is there, HERE=1 only this platform's.
@@ -28,7 +30,7 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test quick lint bounds goldens goldens-everywhere goldens-record libraries pictures bench abuse soak clean
+.PHONY: play install test quick lint bounds goldens goldens-everywhere goldens-record seeds libraries pictures bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -62,6 +64,9 @@ goldens-everywhere: $(VENV)/installed-dev
 
 goldens-record: $(VENV)/installed-dev
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)
+
+seeds: $(VENV)/installed-dev
+	$(BIN)/python -m tests.determinism.seeds $(if $(SEEDS),--seeds $(SEEDS)) $(ARGUMENTS)
 
 libraries: $(VENV)/installed-dev
 	$(BIN)/python -m sandbox.app.kernels.libraries $(if $(CHECK),--check) $(if $(HERE),--here)

@@ -100,14 +100,24 @@ class Image:
 
     def address(self, array: np.ndarray) -> int:
         """Where an array lies in the image; what it holds now is written there."""
-        owner = array
-        while isinstance(owner.base, np.ndarray):
-            owner = owner.base
+        owner = _owner(array)
         start = owner.ctypes.data
         where = self._place(start, owner.nbytes)
         self._owners[start] = owner
         self._follow(start, PATCH)
         return where + array.ctypes.data - start
+
+    def where(self, array: np.ndarray) -> int | None:
+        """Where an array lies in the image, None where no call was given it."""
+        owner = _owner(array)
+        place = self._places.get(owner.ctypes.data)
+        return None if place is None else place + array.ctypes.data - owner.ctypes.data
+
+    def spoil(self, array: np.ndarray, there: np.ndarray) -> None:
+        """Give the machine other values (equal in shape) than an array of the image has here, and let it compare."""
+        where = self.address(array)
+        self._add(PATCH, where, there.tobytes())
+        self._add(CHECK, where, array.tobytes())
 
     def _follow(self, start: int, kind: int) -> None:
         """Patch, or check, what has changed of an array since it was last looked at."""
@@ -181,6 +191,13 @@ class Image:
             command = [*self.machine.command(), str(file), *limits, *self.symbols]
             ended = subprocess.run(command, capture_output=True, text=True, check=False)
         return ended.stdout.strip() or ended.stderr[-2000:]
+
+
+def _owner(array: np.ndarray) -> np.ndarray:
+    """The array that has the memory of another one."""
+    while isinstance(array.base, np.ndarray):
+        array = array.base
+    return array
 
 
 @contextmanager

@@ -9,13 +9,23 @@ const { exports } = await WebAssembly.instantiate(new WebAssembly.Module(fs.read
 if (exports.__heap_base.value > BLOCK) throw new Error('the block of arguments lies in the module');
 exports.memory.grow(Math.ceil(Number(end) / PAGE) + 1 - exports.memory.buffer.byteLength / PAGE);
 const memory = Buffer.from(exports.memory.buffer), image = fs.readFileSync(imageFile);
-let checks = 0, differing = 0;
+let checks = 0, differing = 0, calls = 0;
 
-function check(what, isEqual) {
+function check(what, isEqual, place = () => '') {
   checks += 1;
   if (isEqual) return;
   differing += 1;
-  if (differing <= 5) console.log(`${what} differs`);
+  if (differing <= 5) console.log(`${what} differs${place()}`);
+}
+
+// The call, where the first byte lies that differs, and the word of eight bytes about it: as wanted, and as it is here.
+function place(where, content) {
+  const at = content.findIndex((byte, k) => byte !== memory[where + k]);
+  if (at < 0) return '';
+  const word = (where + at) & ~7, wanted = Buffer.from(memory.subarray(word, word + 8));
+  content.copy(wanted, Math.max(where - word, 0), Math.max(word - where, 0), Math.max(word - where, 0) + 8);
+  const [there, here] = [wanted, memory.subarray(word, word + 8)].map((bytes) => bytes.toString('hex'));
+  return `, call ${calls} at ${where + at}: ${there} ${here}`;
 }
 
 let last = '';
@@ -27,13 +37,15 @@ for (let at = 0; at < image.length;) {
     content.copy(memory, where);
   } else if (kind === CALL) {
     last = symbols[where];
+    calls += 1;
     const gives = content.readUInt32LE(0);
     content.copy(memory, BLOCK, 12);
     check(`the status of ${last}`, exports[last](BLOCK) === 0);
     const length = gives === 0 ? 0 : gives === 3 ? 1 : 8;
     check(`the result of ${last}`, content.compare(memory, BLOCK, BLOCK + length, 4, 4 + length) === 0);
   } else {
-    check(`memory after ${last}`, content.compare(memory, where, where + size) === 0);
+    check(`memory after ${last}`, content.compare(memory, where, where + size) === 0,
+      () => place(where, content));
   }
 }
 console.log(`${checks} checks, ${differing} differ`);
