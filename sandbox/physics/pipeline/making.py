@@ -100,7 +100,8 @@ class Block:
         self._lay_out_hands()
         self.given.collisions.counts[:] = 0
         self._make_room(kept)
-        self._share_contacts(world)
+        if self._has_other_contacts(world):
+            self._share_contacts(world)
         if self.given.plan[HAS_FORKS]:
             system = self.arrays.system
             self._helper = start_helper(self, system.fronts, system.rows.delta_v)
