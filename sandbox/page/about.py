@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
+from sandbox.physics import command
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.marks import GRAB_COUNT
@@ -24,11 +25,12 @@ PROGRESS = ("TICK", "MAY_FLY", "COUNT", "DONE", "BROKEN", "CHECKED")
 # Arrays of a block beside its state that go on from tick to tick.
 KEPT = ("numbers", "choices")
 CONTACT = "contact_"
-# Commands by their number for the kernel.
-COMMANDS = (
-    "grab", "move_grab", "release", "pin", "unpin", "freeze", "cut_springs", "break_springs", "set_coefficients",
-    "set_drive", "push",
-)  # fmt: skip
+# Commands by their names in files, and what the kernel calls them.
+COMMANDS = {
+    "grab": command.GRAB, "move_grab": command.MOVE_GRAB, "release": command.RELEASE, "pin": command.PIN,
+    "unpin": command.UNPIN, "freeze": command.FREEZE, "cut_springs": command.CUT, "break_springs": command.BREAK,
+    "set_coefficients": command.SET_COEFFICIENTS, "set_drive": command.DRIVE, "push": command.PUSH,
+}  # fmt: skip
 # What a page does beside these; undoing is left out of what it plays.
 SETTINGS = ("set_gravity", "set_air")
 HISTORY = ("undo", "redo")
@@ -48,7 +50,7 @@ def about(world: World, words: int) -> dict[str, Any]:
         "words": words,
         "codes": {name: getattr(tick, name) for name in CODES},
         "progress": {name: getattr(block, name) for name in PROGRESS} | {"KEPT": collide.KEPT},
-        "commands": {name: number for number, name in enumerate(COMMANDS)},
+        "commands": COMMANDS,
         "solvers": SOLVER_NAMES,
         "hands": {"particle": world.grab_particle, "spring": world.grab_spring, "count": GRAB_COUNT},
         "area": AREA,
@@ -64,12 +66,8 @@ def about(world: World, words: int) -> dict[str, Any]:
     }
 
 
-def _is_contact(column: Any) -> bool:
-    return bool(column.family is Family.CONTACT)
-
-
 def _column(column: Any) -> dict[str, Any]:
-    is_contact = _is_contact(column)
+    is_contact = column.family is Family.CONTACT
     path = f"collisions.kept.{column.name.removeprefix(CONTACT)}" if is_contact else f"state.{column.name}"
     return {
         "stored": column.stored,
