@@ -1,23 +1,20 @@
 """What people do to a page by mouse and fingers is verified bit for bit on the desktop."""
 
-import base64
 from pathlib import Path
 
 from sandbox import Session, load_level
 from sandbox.app.share.playing import page_of
 from sandbox.commands import Grab, Release
 from sandbox.replay import Replay, read_replay, verify
-from tests.page.browser import Browser, Tab, page_address
+from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.test_playing import SAVE, START_OVER, VERDICT
+from tests.page.opened import START_OVER, VERDICT, opened, saved
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 
 
 def _opened(browser: Browser, folder: Path, name: str, **how: object) -> Tab:
-    file = folder / "page.html"
-    file.write_text(level_page(name), encoding="utf-8")
-    tab = browser.tab(**how).open(page_address(file))  # type: ignore[arg-type]
+    tab = opened(browser, folder, level_page(name), **how)
     tab.evaluate(START_OVER)
     return tab
 
@@ -34,9 +31,7 @@ def _place(tab: Tab, particle: str) -> tuple[float, float]:
 
 
 def _saved(tab: Tab, folder: Path) -> Replay:
-    file = folder / "saved.replay.gz"
-    file.write_bytes(base64.b64decode(tab.evaluate(SAVE)))
-    return read_replay(file)
+    return read_replay(saved(tab, folder))
 
 
 def _types(replay: Replay) -> list[str]:
@@ -124,7 +119,5 @@ def test_a_bridge_that_is_torn_breaks_as_it_does_on_the_desktop(browser: Browser
         session.advance()
     session.stop_recording()
     replay = read_replay(file)
-    page = tmp_path / "page.html"
-    page.write_text(page_of(replay.level, replay.script, replay.ticks), encoding="utf-8")
-    tab = browser.tab().open(page_address(page))
+    tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
     assert tab.evaluate(VERDICT).startswith("Verified")

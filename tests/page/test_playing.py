@@ -1,6 +1,5 @@
 """A page in a browser comes to the bits of the desktop, and what it saves is verified there."""
 
-import base64
 import json
 from pathlib import Path
 
@@ -11,40 +10,18 @@ from sandbox.app.share.playing import page_of
 from sandbox.commands import SetCoefficients, SetDrive
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
-from tests.page.browser import Browser, Tab, page_address
+from tests.page.browser import Browser
 from tests.page.levels import LEVELS, level_page
+from tests.page.opened import START_OVER, VERDICT, opened, saved
 
 TICKS = 90
-START_OVER = "page.isPaused || page.toggle('play'); page.jump(() => { page.run.seek(0); page.run.takeOver(); });"
-# What a page says of a recording at last.
-VERDICT = """new Promise((done) => {
-  const state = document.getElementById('state');
-  const look = () => (state.className ? done(state.textContent) : requestAnimationFrame(look));
-  look();
-})"""
-SAVE = """page.recording().then(async (file) => {
-  const bytes = new Uint8Array(await file.arrayBuffer());
-  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
-})"""
-
-
-def _opened(browser: Browser, folder: Path, text: str, **how: object) -> Tab:
-    file = folder / "page.html"
-    file.write_text(text, encoding="utf-8")
-    return browser.tab(**how).open(page_address(file))  # type: ignore[arg-type]
-
-
-def _saved(tab: Tab, folder: Path) -> Path:
-    file = folder / "saved.replay.gz"
-    file.write_bytes(base64.b64decode(tab.evaluate(SAVE)))
-    return file
 
 
 @pytest.mark.parametrize("name", LEVELS)
 def test_a_page_opens_without_a_fault_and_steps_as_the_desktop_does(
     browser: Browser, tmp_path: Path, name: str
 ) -> None:
-    tab = _opened(browser, tmp_path, level_page(name))
+    tab = opened(browser, tmp_path, level_page(name))
     tab.evaluate(START_OVER)
     found = tab.evaluate(f"for (let k = 0; k < {TICKS}; k++) page.tick(); page.world.hash().whole")
     session = Session(load_level(name))
@@ -55,7 +32,7 @@ def test_a_page_opens_without_a_fault_and_steps_as_the_desktop_does(
 
 
 def test_what_a_page_saves_is_verified_bit_for_bit(browser: Browser, tmp_path: Path) -> None:
-    tab = _opened(browser, tmp_path, level_page("suspension_car"))
+    tab = opened(browser, tmp_path, level_page("suspension_car"))
     tab.evaluate(START_OVER)
     tab.evaluate(
         """for (let k = 0; k < 700; k++) {
@@ -65,7 +42,7 @@ def test_what_a_page_saves_is_verified_bit_for_bit(browser: Browser, tmp_path: P
           page.tick();
         }"""
     )
-    recording = read_replay(_saved(tab, tmp_path))
+    recording = read_replay(saved(tab, tmp_path))
     assert verify(recording) is None
     assert recording.ticks == 700
     assert recording.script[0].record["type"] == "set_drive"
@@ -98,7 +75,7 @@ _DONE = {
 
 @pytest.mark.parametrize("name", _DONE)
 def test_what_hands_do_in_a_page_is_verified_bit_for_bit(browser: Browser, tmp_path: Path, name: str) -> None:
-    tab = _opened(browser, tmp_path, level_page(name))
+    tab = opened(browser, tmp_path, level_page(name))
     tab.evaluate(START_OVER)
     broken = tab.evaluate(
         f"""const done = {json.dumps(_DONE[name])}; let broken = 0;
@@ -110,20 +87,20 @@ def test_what_hands_do_in_a_page_is_verified_bit_for_bit(browser: Browser, tmp_p
         broken"""
     )
     assert (broken > 0) == (name == "breaking_bridge")
-    recording = read_replay(_saved(tab, tmp_path))
+    recording = read_replay(saved(tab, tmp_path))
     assert len(recording.script) == len(_DONE[name]) and recording.ticks == 130
     assert verify(recording) is None
     assert tab.faults == []
 
 
 def test_an_undo_brings_back_the_state_before_the_gesture(browser: Browser, tmp_path: Path) -> None:
-    tab = _opened(browser, tmp_path, level_page("rope"))
+    tab = opened(browser, tmp_path, level_page("rope"))
     tab.evaluate(START_OVER)
     before = tab.evaluate("for (let k = 0; k < 70; k++) page.tick(); page.world.hash().whole")
     tab.evaluate("page.run.submit({ type: 'set_coefficients', stiffness: 0.2, damping: 0.3, material: null }, 1)")
     tab.evaluate("for (let k = 0; k < 100; k++) page.tick(); document.getElementById('undo').click()")
     assert tab.evaluate("[page.world.time, page.world.hash().whole]") == [70, before]
-    assert verify(read_replay(_saved(tab, tmp_path))) is None
+    assert verify(read_replay(saved(tab, tmp_path))) is None
 
 
 def _recorded(folder: Path) -> Path:
@@ -141,7 +118,7 @@ def _recorded(folder: Path) -> Path:
 
 def test_a_recording_is_verified_scrubbed_and_taken_over(browser: Browser, tmp_path: Path) -> None:
     replay = read_replay(_recorded(tmp_path))
-    tab = _opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
+    tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
     assert tab.evaluate(VERDICT).startswith("Verified")
     tab.evaluate("page.isPaused || page.toggle('play')")
     for tick in (150, 30, 90):
@@ -150,12 +127,12 @@ def test_a_recording_is_verified_scrubbed_and_taken_over(browser: Browser, tmp_p
     tab.evaluate("page.run.submit({ type: 'set_drive', part: 0, value: -1 }, page.run.newGesture())")
     assert tab.evaluate("[page.run.last, page.run.isFollowing]") == [90, False]
     tab.evaluate("for (let k = 0; k < 30; k++) page.tick()")
-    taken = read_replay(_saved(tab, tmp_path))
+    taken = read_replay(saved(tab, tmp_path))
     assert (taken.ticks, verify(taken)) == (120, None)
 
 
 def test_a_page_that_was_cut_off_says_so_in_a_line(browser: Browser, tmp_path: Path) -> None:
     text = level_page("rope")
     for share in (0.3, 0.9):
-        tab = _opened(browser, tmp_path, text[: int(share * len(text))])
+        tab = opened(browser, tmp_path, text[: int(share * len(text))])
         assert tab.evaluate("document.getElementById('error').textContent").startswith("This page was cut off")

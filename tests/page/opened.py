@@ -1,0 +1,32 @@
+"""Pages that a browser has opened, and the files that they save."""
+
+import base64
+from pathlib import Path
+
+from tests.page.browser import Browser, Tab, page_address
+
+START_OVER = "page.isPaused || page.toggle('play'); page.jump(() => { page.run.seek(0); page.run.takeOver(); });"
+# What a page says of a recording at last.
+VERDICT = """new Promise((done) => {
+  const state = document.getElementById('state');
+  const look = () => (state.className ? done(state.textContent) : requestAnimationFrame(look));
+  look();
+})"""
+SAVE = """page.recording().then(async (file) => {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
+})"""
+
+
+def opened(browser: Browser, folder: Path, text: str, **how: object) -> Tab:
+    """A page in a tab of its own."""
+    file = folder / "page.html"
+    file.write_text(text, encoding="utf-8")
+    return browser.tab(**how).open(page_address(file))  # type: ignore[arg-type]
+
+
+def saved(tab: Tab, folder: Path) -> Path:
+    """The file of what was done in a page."""
+    file = folder / "saved.replay.gz"
+    file.write_bytes(base64.b64decode(tab.evaluate(SAVE)))
+    return file
