@@ -6,20 +6,16 @@ from typing import Any
 from sandbox.physics import command
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
+from sandbox.physics.jit.making.platforms import WEB
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline import block, collide, tick
+from sandbox.physics.sanitise import ABSURD
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Family
 from sandbox.physics.world import World
 
 # Kernels that a page calls.
-KERNELS = {
-    "tick": "sandbox.physics.pipeline.tick.tick",
-    "derive_topology": "sandbox.physics.pipeline.derive.derive_topology",
-    "derive_hands": "sandbox.physics.pipeline.derive.derive_hands",
-    "make_room": "sandbox.physics.pipeline.derive.make_room",
-    "command": "sandbox.physics.command.command",
-}
+KERNELS = {path.rpartition(".")[2]: path for path in WEB.entries}
 CODES = ("FINISHED", "UNSOUND", "NO_ROOM", "LOST", "BROKE")
 PROGRESS = ("TICK", "MAY_FLY", "COUNT", "DONE", "BROKEN", "CHECKED")
 # Arrays of a block beside its state that go on from tick to tick.
@@ -54,6 +50,7 @@ def about(world: World, words: int) -> dict[str, Any]:
         "solvers": SOLVER_NAMES,
         "hands": {"particle": world.grab_particle, "spring": world.grab_spring, "count": GRAB_COUNT},
         "area": AREA,
+        "absurd": ABSURD,
         "columns": [_column(column) for column in COLUMNS],
         "topology": [f"state.{column.name}" for column in TOPOLOGY],
         "kept": kept + list(KEPT),

@@ -1,4 +1,4 @@
-"""The page that plays: one HTML file with a level, its world and the kernels, which needs no network."""
+"""The page that plays: an HTML file with a level, its world and the kernels in it, or with their addresses."""
 
 import gzip
 import html
@@ -13,9 +13,13 @@ from typing import Any
 from sandbox.page.image import Image
 from sandbox.physics.jit.library import FOLDER
 
-HERE = Path(__file__).with_name("web")
+WEB = Path(__file__).with_name("web")
+KERNELS = FOLDER / "kernels.wasm"
 # In an order in which each is behind what it imports from.
-MODULES = ("hash", "world", "run", "recording", "paint", "things", "draw", "hand", "panel", "sound", "main")
+MODULES = (
+    "hash", "world", "run", "recording", "paint", "things", "draw", "hand", "drives", "panel", "sound", "checks", "toy",
+    "main",
+)  # fmt: skip
 GZIP_LEVEL = 9
 # The digits of the numbers that content is written in: none has a meaning in HTML or JavaScript.
 DIGITS = string.digits + string.ascii_letters + "!#$%()*+,-./:;=?@[]^_{|"
@@ -24,26 +28,47 @@ _POWERS = (85**4, 85**3, 85**2, 85, 1)
 _IMPORT = re.compile(r"^import (\{.*?\}) from '\./(\w+)\.js';$", re.MULTILINE | re.DOTALL)
 _COMMENT, _INDENT = re.compile(r"^\s*//.*\n", re.MULTILINE), re.compile(r"^\s+", re.MULTILINE)
 _EXPORT = re.compile(r"^export ((?:async )?(?:function\*? |class |const ))(\w+)", re.MULTILINE)
+_PLACE = re.compile("@([A-Z]+)@")
 
 
-def page_text(title: str, level: Mapping[str, Any], image: Image) -> str:
-    """The page of a level; level: what its scripts read of it, image: its world."""
+def toy_content(level: Mapping[str, Any], image: Image) -> bytes:
+    """What a page opens: the length of JSON, what scripts read of a level as JSON, and the image of its world."""
     data = json.dumps(level, separators=(",", ":"), allow_nan=False).encode()
-    parts = {
-        "TITLE": html.escape(title),
-        "DATA": packed(data),
-        "IMAGE": packed(image.content),
-        "KERNELS": packed((FOLDER / "kernels.wasm").read_bytes()),
-        "SCRIPT": packed(script().encode()),
+    return struct.pack("<I", len(data)) + data + image.content
+
+
+def toy_file(content: bytes) -> bytes:
+    """The file of a toy's content, compressed."""
+    return gzip.compress(content, GZIP_LEVEL, mtime=0)
+
+
+def page_text(title: str, hints: str, content: bytes) -> str:
+    """The page of a toy that needs no other file. hints: what there is to do."""
+    held = {
+        "TOY": packed(content),
+        "KERNELS": packed(KERNELS.read_bytes()),
+        "SCRIPT": packed(f"{script()}from_main.start(from_main.unpack());\n".encode()),
         "DIGITS": DIGITS,
     }
-    template = (HERE / "page.html").read_text(encoding="utf-8")
-    return re.sub("@([A-Z]+)@", lambda found: parts[found[1]], template)
+    return filled("page", TITLE=html.escape(title), HINTS=html.escape(hints), HOME="", PARTS=filled("packed", **held))
+
+
+def linked_page_text(title: str, hints: str, toy: str, modules: str, home: str) -> str:
+    """The page of a toy whose files lie beside it. toy, modules, home: addresses of its file, of scripts, of a list."""
+    back = f'<a href="{html.escape(home)}">All levels</a>'
+    parts = filled("linked", TOY=toy, MODULES=modules)
+    return filled("page", TITLE=html.escape(title), HINTS=html.escape(hints), HOME=back, PARTS=parts)
+
+
+def filled(template: str, **parts: str) -> str:
+    """A template of the folder `web` with these parts in place of their names."""
+    text = (WEB / f"{template}.html").read_text(encoding="utf-8")
+    return _PLACE.sub(lambda found: parts[found[1]], text)
 
 
 def script() -> str:
     """All modules as one script, without comments and indents: each is a function, which gives what it exports."""
-    whole = "\n".join(_as_function(name, (HERE / f"{name}.js").read_text(encoding="utf-8")) for name in MODULES)
+    whole = "\n".join(_as_function(name, (WEB / f"{name}.js").read_text(encoding="utf-8")) for name in MODULES)
     return _INDENT.sub("", _COMMENT.sub("", whole))
 
 

@@ -1,12 +1,10 @@
 """Connected components of what links join; union-find with path halving (Tarjan 1975)."""
 
-from typing import Any
-
 import numpy as np
 
 from sandbox.physics.arrays import Flags, Slots
-from sandbox.physics.jit import contents, inner_kernel, kernel
-from sandbox.physics.state import State, StateArrays, lent_state
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.state import State, StateArrays
 
 
 @inner_kernel
@@ -27,7 +25,10 @@ def label_bodies(link_a: Slots, link_b: Slots, label: Slots) -> None:
 
 @inner_kernel
 def find_joined(state: State, springs: Flags, particles: Flags, label: Slots) -> None:
-    """Label every particle (n,) with the lowest one that it is joined to: see label_joined."""
+    """Label every particle (n,) with the lowest one that it is joined to.
+
+    springs (m,), particles (n,): which of them join; constraints do where they are active.
+    """
     for p in range(label.shape[0]):
         label[p] = p
     for s in range(springs.shape[0]):
@@ -47,21 +48,6 @@ def find_joined(state: State, springs: Flags, particles: Flags, label: Slots) ->
                 before = p
     for p in range(label.shape[0]):
         label[p] = root_of(label, p)
-
-
-@kernel
-def _find_joined(lent: Any, springs: Flags, particles: Flags, label: Slots) -> None:
-    find_joined(contents(lent), springs, particles, label)
-
-
-def label_joined(world: StateArrays, springs: Flags, particles: Flags) -> Slots:
-    """Label every particle (n,) with the lowest one that it is joined to.
-
-    springs (m,), particles (n,): which of them join; constraints do where they are active.
-    """
-    label = np.zeros(len(particles), np.int64)
-    _find_joined(lent_state(world), springs, particles, label)
-    return label
 
 
 def body_of(world: StateArrays, particle: int) -> Slots:

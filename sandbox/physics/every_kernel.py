@@ -6,7 +6,7 @@ from sandbox.physics.actuators import Actuators, Motors, Muscles
 from sandbox.physics.analysis import lowest_mode
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.outline import outline_of
-from sandbox.physics.components import body_of, label_joined
+from sandbox.physics.components import body_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.pipeline.making import block_of
@@ -28,7 +28,6 @@ def call_every_kernel() -> None:
     drive_muscles(world, 0)
     step(world)
     find_broken(block_of(world).pointer)
-    label_joined(world, world.spring_active, world.particle_active)
     # It is too small to need a second thread.
     system = block_of(world).arrays.system
     parallel.precompile_help(system.fronts, system.rows.delta_v)

@@ -23,6 +23,7 @@ import numpy as np
 
 from sandbox.physics import jit
 from sandbox.physics.jit.library import FOLDER, read_manifest
+from sandbox.physics.jit.making import platforms
 from tests.support.calls import in_place_of
 
 HERE = Path(__file__).parent
@@ -41,12 +42,14 @@ class Missing(Exception):
 class Machine:
     """A machine: its name, where images begin there [bytes], and the command that goes through one.
 
-    Below the image lie the stack of a module, its constants, and the block of arguments.
+    Below the image lie the stack of a module, its constants, and the block of arguments. entries: names of the only
+    kernels that it has; empty: all.
     """
 
     name: str
     base: int
     command: Callable[[], list[str]]
+    entries: tuple[str, ...] = ()
 
 
 def _web() -> list[str]:
@@ -73,7 +76,8 @@ def _arm64() -> list[str]:
     return [qemu, "-L", str(ROOT_OF_ARM64), str(made), str(FOLDER / "linux-arm64.so")]
 
 
-WEB, ARM64 = Machine("WebAssembly", 4 << 20, _web), Machine("arm64", 0x5000_0000, _arm64)
+WEB = Machine("WebAssembly", 4 << 20, _web, platforms.WEB.entries)
+ARM64 = Machine("arm64", 0x5000_0000, _arm64)
 
 
 class Image:
@@ -81,7 +85,8 @@ class Image:
 
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
-        self.entries = read_manifest()["entries"]
+        entries = read_manifest()["entries"]
+        self.entries = {name: entries[name] for name in machine.entries or entries}
         self.symbols = [entry["symbol"] for entry in self.entries.values()]
         self.end, self.calls, self._parts = machine.base, 0, [b""]
         self._places: dict[int, int] = {}

@@ -5,14 +5,14 @@ from pathlib import Path
 
 from tests.page.browser import Browser, Tab, page_address
 
-START_OVER = "page.isPaused || page.toggle('play'); page.jump(() => { page.run.seek(0); page.run.takeOver(); });"
+START_OVER = "page.toy.restart(); page.toy.pause();"
 # What a page says of a recording at last.
 VERDICT = """new Promise((done) => {
   const state = document.getElementById('state');
   const look = () => (state.className ? done(state.textContent) : requestAnimationFrame(look));
   look();
 })"""
-SAVE = """page.recording().then(async (file) => {
+SAVE = """page.toy.recording().then(async (file) => {
   const bytes = new Uint8Array(await file.arrayBuffer());
   return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
 })"""

@@ -24,5 +24,7 @@ def unpacked(page: str, name: str) -> bytes:
 
 def data_of(page: str) -> dict[str, Any]:
     """What a page knows of its level."""
-    data: dict[str, Any] = json.loads(unpacked(page, "data"))
+    content = unpacked(page, "toy")
+    (length,) = struct.unpack_from("<I", content)
+    data: dict[str, Any] = json.loads(content[4 : 4 + length])
     return data

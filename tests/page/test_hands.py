@@ -20,13 +20,13 @@ def _opened(browser: Browser, folder: Path, name: str, **how: object) -> Tab:
 
 
 def _steps(tab: Tab, count: int) -> None:
-    tab.evaluate(f"for (let k = 0; k < {count}; k++) page.tick()")
+    tab.evaluate(f"for (let k = 0; k < {count}; k++) page.toy.tick()")
 
 
 def _place(tab: Tab, particle: str) -> tuple[float, float]:
-    slot = f"page.level.about.names.particle.indexOf('{particle}')"
-    position = "page.world.view('state.position')"
-    x, y = tab.evaluate(f"page.camera.toPixels({position}[2 * {slot}], {position}[2 * {slot} + 1])")
+    slot = f"page.toy.level.about.names.particle.indexOf('{particle}')"
+    position = "page.toy.world.view('state.position')"
+    x, y = tab.evaluate(f"page.toy.camera.toPixels({position}[2 * {slot}], {position}[2 * {slot} + 1])")
     return x, y
 
 
@@ -46,7 +46,7 @@ def test_a_drag_by_mouse_is_verified(browser: Browser, tmp_path: Path) -> None:
     for k in range(8):
         tab.mouse("mouseMoved", x - 12 * k, y + 6 * k)
         _steps(tab, 4)
-    assert tab.evaluate("page.world.isHeld(0)")
+    assert tab.evaluate("page.toy.world.isHeld(0)")
     tab.mouse("mouseReleased", x - 84, y + 42)
     _steps(tab, 60)
     replay = _saved(tab, tmp_path)
@@ -62,8 +62,8 @@ def test_a_drag_by_mouse_is_verified(browser: Browser, tmp_path: Path) -> None:
 def test_several_fingers_hold_several_bodies(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "jelly_wheel", **PHONE)
     _steps(tab, 20)
-    held = "Array.from({ length: 10 }, (_, hand) => page.world.isHeld(hand)).filter(Boolean).length"
-    x, y, u, v = tab.evaluate("[0, 1, 40, 41].map((k) => page.picture.at[k])")
+    held = "Array.from({ length: 10 }, (_, hand) => page.toy.world.isHeld(hand)).filter(Boolean).length"
+    x, y, u, v = tab.evaluate("[0, 1, 40, 41].map((k) => page.toy.picture.at[k])")
     tab.touch("touchStart", (x, y))
     tab.touch("touchStart", (x, y), (u, v))
     assert tab.evaluate(held) == 2
@@ -78,7 +78,7 @@ def test_several_fingers_hold_several_bodies(browser: Browser, tmp_path: Path) -
 def test_a_stroke_cuts_what_it_crosses_and_undo_makes_it_whole(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "curtain")
     _steps(tab, 60)
-    before = tab.evaluate("page.world.hash().whole")
+    before = tab.evaluate("page.toy.world.hash().whole")
     tab.evaluate("document.getElementById('cut').click()")
     x, y = 640.0, 250.0
     tab.mouse("mousePressed", x - 160, y)
@@ -90,7 +90,7 @@ def test_a_stroke_cuts_what_it_crosses_and_undo_makes_it_whole(browser: Browser,
     assert verify(replay) is None
     assert set(_types(replay)) == {"cut_springs"}
     tab.evaluate("document.getElementById('undo').click()")
-    assert tab.evaluate("page.world.hash().whole") == before
+    assert tab.evaluate("page.toy.world.hash().whole") == before
 
 
 def test_a_particle_is_pinned_and_unpinned(browser: Browser, tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from sandbox.page.page import HERE
+from sandbox.page.page import WEB
 
 _SIZES = (0, 1, 127, 128, 129, 256, 1000)
 _FLOATS = (0.0, -0.0, 1.0, -9.81, 0.1, 1e300, 1e-310)
@@ -23,7 +23,7 @@ def test_hashes_and_the_digits_of_floats_are_those_of_python() -> None:
     node = shutil.which("node")
     if node is None:
         pytest.skip("node is not installed")
-    program = _PROGRAM % (HERE / "hash.js").as_uri()
+    program = _PROGRAM % (WEB / "hash.js").as_uri()
     arguments = [node, "--input-type=module", "--eval", program, json.dumps([_SIZES, _FLOATS])]
     said = json.loads(subprocess.run(arguments, capture_output=True, text=True, check=True).stdout)
     hashes = [hashlib.blake2b(bytes(7 * k % 256 for k in range(size)), digest_size=16).hexdigest() for size in _SIZES]

@@ -23,7 +23,7 @@ def test_a_page_opens_without_a_fault_and_steps_as_the_desktop_does(
 ) -> None:
     tab = opened(browser, tmp_path, level_page(name))
     tab.evaluate(START_OVER)
-    found = tab.evaluate(f"for (let k = 0; k < {TICKS}; k++) page.tick(); page.world.hash().whole")
+    found = tab.evaluate(f"for (let k = 0; k < {TICKS}; k++) page.toy.tick(); page.toy.world.hash().whole")
     session = Session(load_level(name))
     for _ in range(TICKS):
         session.advance()
@@ -36,10 +36,10 @@ def test_what_a_page_saves_is_verified_bit_for_bit(browser: Browser, tmp_path: P
     tab.evaluate(START_OVER)
     tab.evaluate(
         """for (let k = 0; k < 700; k++) {
-          if (k === 20) page.keys.press(Object.keys(page.keys.keys)[0]);
-          if (k === 120) page.keys.releaseAll();
-          if (k === 60) page.run.submit({ type: 'set_coefficients', stiffness: 0.3, damping: 0.6, material: null }, 9);
-          page.tick();
+          if (k === 20) page.toy.drives.press(Object.keys(page.toy.drives.keys)[0]);
+          if (k === 120) page.toy.drives.releaseAll();
+          if (k === 60) page.toy.run.submit({ type: 'set_coefficients', stiffness: 0.3, damping: 0.6, material: null }, 9);
+          page.toy.tick();
         }"""
     )
     recording = read_replay(saved(tab, tmp_path))
@@ -80,9 +80,9 @@ def test_what_hands_do_in_a_page_is_verified_bit_for_bit(browser: Browser, tmp_p
     broken = tab.evaluate(
         f"""const done = {json.dumps(_DONE[name])}; let broken = 0;
         for (let k = 0; k < 130; k++) {{
-          done.filter(([tick]) => tick === k).forEach(([, record], i) => page.run.submit(record, 100 + k + i));
-          page.tick();
-          broken += page.world.broken.length;
+          done.filter(([tick]) => tick === k).forEach(([, record], i) => page.toy.run.submit(record, 100 + k + i));
+          page.toy.tick();
+          broken += page.toy.world.broken.length;
         }}
         broken"""
     )
@@ -96,10 +96,10 @@ def test_what_hands_do_in_a_page_is_verified_bit_for_bit(browser: Browser, tmp_p
 def test_an_undo_brings_back_the_state_before_the_gesture(browser: Browser, tmp_path: Path) -> None:
     tab = opened(browser, tmp_path, level_page("rope"))
     tab.evaluate(START_OVER)
-    before = tab.evaluate("for (let k = 0; k < 70; k++) page.tick(); page.world.hash().whole")
-    tab.evaluate("page.run.submit({ type: 'set_coefficients', stiffness: 0.2, damping: 0.3, material: null }, 1)")
-    tab.evaluate("for (let k = 0; k < 100; k++) page.tick(); document.getElementById('undo').click()")
-    assert tab.evaluate("[page.world.time, page.world.hash().whole]") == [70, before]
+    before = tab.evaluate("for (let k = 0; k < 70; k++) page.toy.tick(); page.toy.world.hash().whole")
+    tab.evaluate("page.toy.run.submit({ type: 'set_coefficients', stiffness: 0.2, damping: 0.3, material: null }, 1)")
+    tab.evaluate("for (let k = 0; k < 100; k++) page.toy.tick(); document.getElementById('undo').click()")
+    assert tab.evaluate("[page.toy.world.time, page.toy.world.hash().whole]") == [70, before]
     assert verify(read_replay(saved(tab, tmp_path))) is None
 
 
@@ -120,13 +120,13 @@ def test_a_recording_is_verified_scrubbed_and_taken_over(browser: Browser, tmp_p
     replay = read_replay(_recorded(tmp_path))
     tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
     assert tab.evaluate(VERDICT).startswith("Verified")
-    tab.evaluate("page.isPaused || page.toggle('play')")
+    tab.evaluate("page.toy.pause()")
     for tick in (150, 30, 90):
-        hashed = tab.evaluate(f"page.jump(() => page.run.seek({tick})); page.world.hash().whole")
+        hashed = tab.evaluate(f"page.toy.seek({tick}); page.toy.world.hash().whole")
         assert replay.hashes[tick].fits(hashed)
-    tab.evaluate("page.run.submit({ type: 'set_drive', part: 0, value: -1 }, page.run.newGesture())")
-    assert tab.evaluate("[page.run.last, page.run.isFollowing]") == [90, False]
-    tab.evaluate("for (let k = 0; k < 30; k++) page.tick()")
+    tab.evaluate("page.toy.run.submit({ type: 'set_drive', part: 0, value: -1 }, page.toy.run.newGesture())")
+    assert tab.evaluate("[page.toy.run.last, page.toy.run.isFollowing]") == [90, False]
+    tab.evaluate("for (let k = 0; k < 30; k++) page.toy.tick()")
     taken = read_replay(saved(tab, tmp_path))
     assert (taken.ticks, verify(taken)) == (120, None)
 

@@ -76,16 +76,16 @@ def test_nothing_lies_outside_a_phone_and_all_is_large_enough_for_a_finger(brows
 
 def test_two_fingers_zoom_and_one_moves_the_view(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "rope", **PHONE)
-    zoom = tab.evaluate("page.camera.zoom")
+    zoom = tab.evaluate("page.toy.camera.zoom")
     tab.touch("touchStart", (150, 500), (250, 500))
     tab.touch("touchMove", (100, 500), (300, 500))
     tab.touch("touchEnd")
-    assert tab.evaluate("page.camera.zoom") == pytest.approx(2.0 * zoom, rel=0.01)
-    x = tab.evaluate("page.camera.x")
+    assert tab.evaluate("page.toy.camera.zoom") == pytest.approx(2.0 * zoom, rel=0.01)
+    x = tab.evaluate("page.toy.camera.x")
     tab.touch("touchStart", (150, 500))
     tab.touch("touchMove", (100, 500))
     tab.touch("touchEnd")
-    assert tab.evaluate(f"(page.camera.x - {x!r}) * page.camera.zoom") == pytest.approx(50, rel=0.01)
+    assert tab.evaluate(f"(page.toy.camera.x - {x!r}) * page.toy.camera.zoom") == pytest.approx(50, rel=0.01)
 
 
 def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:
@@ -100,7 +100,7 @@ def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:
     tab.touch("touchEnd")
     stiff = tab.evaluate("page.panel.pair")
     assert stiff[0] > soft[0]
-    tab.evaluate("page.isPaused || page.toggle('play')")
+    tab.evaluate("page.toy.pause()")
     _tap(tab, "#undo")
     assert tab.evaluate("page.panel.pair") == soft
 
@@ -108,28 +108,28 @@ def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:
 def test_a_button_drives_a_motor_while_it_is_touched(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
     tab.touch("touchStart", _middle(tab, ".key"))
-    assert tab.evaluate("page.world.view('state.actuator_value').some((value) => value !== 0)")
+    assert tab.evaluate("page.toy.world.view('state.actuator_value').some((value) => value !== 0)")
     tab.touch("touchEnd")
-    assert not tab.evaluate("page.world.view('state.actuator_value').some((value) => value !== 0)")
+    assert not tab.evaluate("page.toy.world.view('state.actuator_value').some((value) => value !== 0)")
 
 
 def test_keys_pause_step_and_drive(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "suspension_car")
     tab.key(" ")
-    assert tab.evaluate("page.isPaused")
-    time = tab.evaluate("page.world.time")
+    assert tab.evaluate("page.toy.isPaused")
+    time = tab.evaluate("page.toy.world.time")
     tab.key(".")
-    assert tab.evaluate("page.world.time") == time + 1
+    assert tab.evaluate("page.toy.world.time") == time + 1
     tab.key("d")
-    types = tab.evaluate("page.run.commands.map(({ record }) => [record.type, Math.abs(record.value)])")
+    types = tab.evaluate("page.toy.run.commands.map(({ record }) => [record.type, Math.abs(record.value)])")
     assert types[-1] == ["set_drive", 0]
     assert tab.faults == []
 
 
 def test_sound_is_off_until_it_is_touched_and_then_plays_without_a_fault(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
-    assert not tab.evaluate("page.sound.isOn")
+    assert not tab.evaluate("page.toy.sound.isOn")
     _tap(tab, "#sound")
-    tab.evaluate("page.keys.press('d'); for (let k = 0; k < 200; k++) page.tick(); page.keys.releaseAll()")
-    assert tab.evaluate("page.sound.isOn")
+    tab.evaluate("page.toy.drives.press('d'); for (let k = 0; k < 200; k++) page.toy.tick(); page.toy.drives.releaseAll()")
+    assert tab.evaluate("page.toy.sound.isOn")
     assert tab.faults == []

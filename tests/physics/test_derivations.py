@@ -11,7 +11,7 @@ from sandbox.physics.collision import close_edges as close
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_RIGHT
 from sandbox.physics.collision.outline import new_colliders, outline_of
 from sandbox.physics.collision.pinned_edges import pinned_edges
-from sandbox.physics.components import label_joined
+from sandbox.physics.components import find_joined
 from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.state import state_of
@@ -247,7 +247,9 @@ def test_particles_are_labelled_with_the_lowest_one_that_they_are_joined_to(seed
     for _ in range(world.particle_count):
         for a, b in joined:
             label[a] = label[b] = min(label[a], label[b])
-    assert label_joined(world, springs, particles).tolist() == label
+    found = np.zeros(len(particles), np.int64)
+    find_joined(world, springs, particles, found)
+    assert found.tolist() == label
 
 
 def sides_of_motor(world, hub, rim):

@@ -49,7 +49,8 @@ def _library(bitcode: bytes, codes: Sequence[Any], platform: Any) -> bytes:
     from sandbox.physics.jit.making.emitting import object_code
     from sandbox.physics.jit.making.linking_by_zig import linked
 
-    return linked(object_code(bitcode, codes, platform), [code.symbol for code in codes], platform)
+    called = [code.symbol for code in codes if not platform.entries or code.name in platform.entries]
+    return linked(object_code(bitcode, codes, platform), called, platform)
 
 
 def _entry(code: Any) -> dict[str, Any]:

@@ -119,11 +119,12 @@ class Export:
             yield 1.0
 
     def _write_playing(self, film: Film, script: Sequence[ScriptLine], path: Path) -> Slices:
-        from sandbox.app.share.playing import page_in_slices
+        from sandbox.app.share.playing import playable_in_slices
+        from sandbox.page.page import page_text
 
         begin, end = (film.first + round(at * film.rate) for at in (self.excerpt.start, self.excerpt.end))
-        text = yield from page_in_slices(film.level, script, max(end, begin + 1), begin)
-        write_file(path, text.encode())
+        made = yield from playable_in_slices(film.level, script, max(end, begin + 1), begin)
+        write_file(path, page_text(*made).encode())
 
     def _write_reel(self, path: Path) -> Slices:
         from sandbox.session.player.page import PlayerPage

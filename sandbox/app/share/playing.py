@@ -1,4 +1,4 @@
-"""Playing: a page that plays a level, or a recording that can be taken over, as one HTML file."""
+"""Playing: what a page needs to play a level, or a recording that can be taken over."""
 
 import math
 from collections.abc import Generator, Sequence
@@ -9,10 +9,11 @@ from sandbox import __version__
 from sandbox.app.draw.scene import scene_of
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
+from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.page.about import can_play
-from sandbox.page.page import page_text
+from sandbox.page.page import page_text, toy_content
 from sandbox.page.start import start_of
 from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange
 from sandbox.physics.equation import of_springs
@@ -28,6 +29,8 @@ from sandbox.session.session import Session
 # Cs and Cd for the words of firmness where no body's form says what they mean.
 USUAL = {"jelly": (0.01, 0.1), "soft": (0.05, 0.2), "firm": (0.3, 0.5), "hard": (0.8, 0.9), "rigid": (1.0, 1.0)}
 ALL = "All"
+# Metrics that need the energies of areas and bends, which a page does not have.
+NOT_MEASURED = ("energy", "potential_energy")
 # Digits, and decimals at most, of Cs and Cd.
 DIGITS, DECIMALS = 4, 12
 
@@ -39,20 +42,34 @@ class Recorded(NamedTuple):
     hashes: list[str]
 
 
+class Playable(NamedTuple):
+    """What a page plays: its title, what there is to do, and all that scripts open."""
+
+    title: str
+    hints: str
+    content: bytes
+
+
 def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> str:
-    """The page of a level; ticks: of a recording, whose commands the script has. Raises CommandError."""
-    slices = page_in_slices(level, script, ticks)
+    """The page of a level, in one file; ticks: of a recording, whose commands the script has. Raises CommandError."""
+    return page_text(*playable(level, script, ticks))
+
+
+def playable(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> Playable:
+    """As `page_of`, for a page of any kind. Raises CommandError."""
+    slices = playable_in_slices(level, script, ticks)
     while True:
         try:
             next(slices)
         except StopIteration as end:
-            return str(end.value)
+            made: Playable = end.value
+            return made
 
 
-def page_in_slices(
+def playable_in_slices(
     level: Level, script: Sequence[ScriptLine], ticks: int | None, begin: int = 0
-) -> Generator[float, None, str]:
-    """As `page_of`, a slice of the work at a time: each gives the part that is done, 0..1. begin: the tick shown first.
+) -> Generator[float, None, Playable]:
+    """As `playable`, a slice of the work at a time: each gives the part that is done, 0..1. begin: the tick shown first.
 
     Raises CommandError, also for a command that a page cannot carry out.
     """
@@ -68,12 +85,41 @@ def page_in_slices(
         "scene": scene_of(level, take(world)),
         "sounds": _sounds(world),
         "materials": _materials(world),
+        "checks": _checks(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
         "recording": None if recorded is None else _shown(world, recorded),
         "begin": begin,
     }
-    return page_text(level.name, data, start.image)
+    return Playable(level.name, level.description, toy_content(data, start.image))
+
+
+def _checks(level: Level, world: World) -> list[dict[str, Any]]:
+    """Checks of a level that a page can follow while somebody plays: those that hold no key, without energies."""
+    return [
+        _check(check, world) for check in level.checks if not check.hold and check.metric not in NOT_MEASURED
+    ]  # fmt: skip
+
+
+def _check(check: CheckDef, world: World) -> dict[str, Any]:
+    """A check with slots in place of names; what it does not have is left out."""
+    named = [world.particle_slot(name) for name in (check.particle, check.other) if name is not None]
+    of_body = [slot for slot, name in enumerate(world.particle_names) if name.startswith(f"{check.body}.")]
+    springs = [slot for slot, name in enumerate(world.spring_names) if name.startswith(f"{check.body}:")]
+    (low, high), (first, last) = bounds_of(check), window_of(check)
+    made = {
+        "name": check.name,
+        "metric": check.metric,
+        "particles": named or (None if check.body is None else of_body),
+        "springs": None if check.body is None else springs,
+        "box": check.box,
+        "from": first,
+        "to": last,
+        "is_eventual": check.eventually is not None or None,
+        "at_least": low if math.isfinite(low) else None,
+        "at_most": high if math.isfinite(high) else None,
+    }
+    return {key: value for key, value in made.items() if value is not None}
 
 
 def _header(level: Level) -> str:

@@ -1,6 +1,6 @@
 // Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut; what holds nothing moves the view.
 
-const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98, SOFT_REACH = 2, NUDGE = 0.03;
+const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98, SOFT_REACH = 2, NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
 const UNITS = [[1e6, 'MN'], [1e3, 'kN'], [1, 'N'], [1e-3, 'mN']];
 
 // What of a world lies near a point [m].
@@ -116,19 +116,30 @@ export class Hands {
   marked = null;
   #pointers = new Map();
   #held = new Map();
+  #closing = new AbortController();
 
   // changed: called when the view has been moved by hand; say: tells a person something in a line.
   constructor(canvas, run, camera, { changed, say }) {
     Object.assign(this, { canvas, run, camera, changed, say });
-    canvas.addEventListener('pointerdown', (event) => this.#press(event));
-    canvas.addEventListener('pointermove', (event) => this.#move(event));
-    for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => this.#lift(event));
-    canvas.addEventListener('contextmenu', (event) => event.preventDefault());
-    canvas.addEventListener('wheel', (event) => {
-      event.preventDefault();
-      camera.zoomAbout(event.offsetX, event.offsetY, 1.0015 ** -event.deltaY);
-      changed();
-    }, { passive: false });
+    const { signal } = this.#closing, on = (name, act) => canvas.addEventListener(name, act, { signal, passive: false });
+    on('pointerdown', (event) => this.#press(event));
+    on('pointermove', (event) => this.#move(event));
+    for (const name of ['pointerup', 'pointercancel']) on(name, (event) => this.#lift(event));
+    on('contextmenu', (event) => event.preventDefault());
+    on('wheel', (event) => this.#turn(event));
+  }
+
+  close() {
+    this.#closing.abort();
+  }
+
+  // A wheel zooms, unless it would scroll the page and the picture was not clicked before.
+  #turn(event) {
+    const { scrollHeight, clientHeight } = document.documentElement;
+    if (scrollHeight > clientHeight && document.activeElement !== this.canvas && !event.ctrlKey) return;
+    event.preventDefault();
+    this.camera.zoomAbout(event.offsetX, event.offsetY, WHEEL_ZOOM ** -event.deltaY);
+    this.changed();
   }
 
   #press(event) {

@@ -1,4 +1,4 @@
-// Panel: Cs and Cd of each material by a pad, sliders and words; keys of motors as buttons.
+// Panel: Cs and Cd of each material by a pad, sliders and words.
 
 // The axes of the pad: softest value, and how wide the last tenth is.
 const LOWEST = 0.003, REST = 0.02, STEP = 0.02, MARGIN = 14;
@@ -12,7 +12,7 @@ function valueAt(place) {
   return value < 0.9 ? Number(value.toPrecision(3)) : 1 - Number((1 - value).toPrecision(2));
 }
 
-const element = (name, attributes = {}, ...children) => {
+export const element = (name, attributes = {}, ...children) => {
   const made = Object.assign(document.createElement(name), attributes);
   made.append(...children);
   return made;
@@ -150,58 +150,5 @@ export class Panel {
     context.arc(across(placeOf(pair[0])), up(placeOf(pair[1])), 9, 0, 7);
     context.stroke();
     context.fill();
-  }
-}
-
-// Buttons and keys that drive motors and hydraulics while they are held. keys: parts and values by the name of a key.
-export class DriveKeys {
-  #held = new Map();
-
-  constructor(root, run, keys) {
-    Object.assign(this, { run, keys, buttons: new Map() });
-    for (const name of Object.keys(keys)) {
-      const shown = { left: '←', right: '→', up: '↑', down: '↓' }[name] ?? name.toUpperCase();
-      const button = element('button', { type: 'button', textContent: shown, className: 'key' });
-      button.setAttribute('aria-label', `Drive with key ${name}`);
-      button.addEventListener('pointerdown', (event) => {
-        button.setPointerCapture(event.pointerId);
-        this.press(name);
-      });
-      for (const end of ['pointerup', 'pointercancel', 'blur']) button.addEventListener(end, () => this.release(name));
-      button.addEventListener('keydown', (event) => [' ', 'Enter'].includes(event.key) && this.press(name));
-      button.addEventListener('keyup', () => this.release(name));
-      this.buttons.set(name, button);
-      root.append(button);
-    }
-  }
-
-  // The key of a keyboard event, where it drives something.
-  nameOf(event) {
-    const name = event.key.replace('Arrow', '').toLowerCase();
-    return name in this.keys && !event.ctrlKey && !event.metaKey && !event.altKey && !event.shiftKey ? name : null;
-  }
-
-  press(name) {
-    if (this.#held.has(name)) return;
-    this.#held.set(name, this.run.newGesture());
-    for (const [part, value] of this.keys[name]) this.run.submit({ type: 'set_drive', part, value },
-      this.#held.get(name));
-    this.buttons.get(name).setAttribute('aria-pressed', true);
-  }
-
-  // Stop what the key drove, or let the key go on that still drives it another way.
-  release(name) {
-    const gesture = this.#held.get(name);
-    if (!this.#held.delete(name)) return;
-    for (const [part] of this.keys[name]) {
-      const still = [...this.#held.keys()].flatMap((other) => this.keys[other]).filter(([other]) =>
-        other === part).at(-1);
-      this.run.submit({ type: 'set_drive', part, value: still ? still[1] : 0 }, gesture);
-    }
-    this.buttons.get(name).setAttribute('aria-pressed', false);
-  }
-
-  releaseAll() {
-    [...this.#held.keys()].forEach((name) => this.release(name));
   }
 }

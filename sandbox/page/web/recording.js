@@ -95,9 +95,14 @@ const NAMED = { particle: 'particle', springs: 'spring', material: 'material', p
 
 function named(record, names) {
   const entries = Object.entries(record).filter(([, value]) => value !== null && value !== undefined);
-  return Object.fromEntries(entries.map(([field, value]) => {
-    if (!(field in NAMED)) return [field, value];
-    const of = names[NAMED[field]];
-    return [field, Array.isArray(value) ? value.map((slot) => of[slot]) : of[value]];
+  return exchanged(Object.fromEntries(entries), (kind, slot) => names[kind][slot]);
+}
+
+// A record with names in place of slots, or slots in place of names. give: one for the other, of a kind.
+export function exchanged(record, give) {
+  return Object.fromEntries(Object.entries(record).map(([field, value]) => {
+    const kind = NAMED[field];
+    if (!kind || value === null) return [field, value];
+    return [field, Array.isArray(value) ? value.map((each) => give(kind, each)) : give(kind, value)];
   }));
 }

@@ -46,6 +46,10 @@ export class Sound {
     else this.#context.suspend();
   }
 
+  close() {
+    this.#context?.close();
+  }
+
   // Compare with nothing: time has jumped.
   forget() {
     this.before = null;

@@ -9,6 +9,8 @@ const KINDS = {
 const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_ARENA = 4096, MORE = 2;
 const HANDS = ['derive_hands'], ROOM = ['make_room'];
 const CONTACTS = ['particle', 'feature', 'impulse', 'impact'].map((name) => `collisions.kept.${name}`);
+// What a tick moves.
+const MOTION = ['position', 'velocity', 'angle', 'spin'];
 // Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
 const ARGUMENTS = 64, RECORD = 16;
 // Of commands as records have them: whole numbers and floats as the kernel takes them, and what has to be derived
@@ -134,15 +136,37 @@ export class World {
     progress[MAY_FLY] = 1n;
     progress[COUNT] = progress[CHECKED] = 0n;
     let code = this.#call('tick', this.#block);
-    while (code === NO_ROOM) {
-      this.#derive(ROOM);
+    while (code === NO_ROOM || code === UNSOUND) {
+      if (code === NO_ROOM) this.#derive(ROOM);
+      else {
+        this.#contain();
+        this.view('progress')[CHECKED] = 1n;
+      }
       code = this.#call('tick', this.#block);
     }
-    if (code === UNSOUND || code === LOST) throw new Refusal('This level came to values that no physics gives.');
     this.time += 1;
+    if (code === LOST) {
+      this.#contain();
+      for (const name of MOTION) this.view(`good.${name}`).set(this.view(`state.${name}`));
+      code = this.#call('find_broken', this.#block) ? BROKE : code;
+    }
     this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number)
       : [];
     if (this.broken.length) this.command({ type: 'break_springs', springs: this.broken });
+  }
+
+  // Quarantine, as sanitise.py has it: impulses that no physics gives are begun again, and a particle whose motion is
+  // such gets its last good one back and is frozen.
+  #contain() {
+    const isOutside = (value) => !(Math.abs(value) <= this.#about.absurd);
+    for (const path of CONTACTS.slice(2)) this.view(path).forEach((value, k, all) => {
+      if (isOutside(value)) all[k] = 0;
+    });
+    const lost = this.particles.filter((p) => MOTION.some((name) => {
+      const values = this.view(`state.${name}`), width = values.length / this.view('state.mass').length;
+      return values.subarray(width * p, width * (p + 1)).some(isOutside);
+    }));
+    for (const particle of lost) this.command({ type: 'freeze', particle });
   }
 
   // Carry out a command: the record of a recording with slots in place of names. Whether it could be.
@@ -208,6 +232,17 @@ export class World {
 
   get areaKind() {
     return this.#about.area;
+  }
+
+  // All particles and springs but those of hands.
+  get particles() {
+    const { particle, count } = this.hands;
+    return Array.from(this.view('state.mass').keys()).filter((p) => p < particle || p >= particle + count);
+  }
+
+  get springs() {
+    const { spring, count } = this.hands;
+    return Array.from(this.view('state.rest_length').keys()).filter((s) => s < spring || s >= spring + count);
   }
 
   isHeld(hand) {

@@ -8,7 +8,7 @@ class Platform:
     """One of them.
 
     name: of its library, before the suffix. triple, processor, features: for LLVM. target: for zig. options: for the
-    linker.
+    linker. entries: names of the only kernels that are called there; empty: all.
     """
 
     name: str
@@ -18,6 +18,7 @@ class Platform:
     target: str
     features: str = ""
     options: tuple[str, ...] = ()
+    entries: tuple[str, ...] = ()
 
     @property
     def file(self) -> str:
@@ -38,4 +39,15 @@ LIBRARIES = (
     Platform("windows-x86_64", "dll", "x86_64-pc-windows-gnu", "x86-64", "x86_64-windows-gnu"),
     Platform("windows-arm64", "dll", "aarch64-pc-windows-gnu", "generic", "aarch64-windows-gnu"),
 )
-WEB = Platform("kernels", "wasm", "wasm32-unknown-unknown", "mvp", "wasm32-freestanding", _WASM)
+# What a page calls: it draws by itself.
+_CALLED_BY_PAGES = (
+    "sandbox.physics.pipeline.tick.tick",
+    "sandbox.physics.pipeline.tick.find_broken",
+    "sandbox.physics.pipeline.derive.derive_topology",
+    "sandbox.physics.pipeline.derive.derive_hands",
+    "sandbox.physics.pipeline.derive.make_room",
+    "sandbox.physics.command.command",
+)
+WEB = Platform(
+    "kernels", "wasm", "wasm32-unknown-unknown", "mvp", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES
+)

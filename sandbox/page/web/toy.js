@@ -1,0 +1,322 @@
+// Toy: a level that plays on a canvas; and the handle by which a page of one's own plays, reads and listens.
+import { Checks } from './checks.js';
+import { Camera, Picture } from './draw.js';
+import { Drives } from './drives.js';
+import { Hands } from './hand.js';
+import { exchanged, written } from './recording.js';
+import { Run } from './run.js';
+import { Sound } from './sound.js';
+import { Refusal, World } from './world.js';
+
+// Ticks that one frame makes up for at most, and the longest time between two frames that counts [s].
+const MOST_TICKS = 4, LONGEST = 0.25, KEY_ZOOM = 1.15;
+const TYPED_INTO = 'input, select, textarea, [contenteditable], .pad';
+const light = matchMedia('(prefers-color-scheme: light)');
+
+// It tells what happens as events: tick, break { springs }, check { name, holds, value }, say { text, kind }, pause,
+// jump, theme and draw.
+export class Toy extends EventTarget {
+  #owed = 0;
+  #then = performance.now();
+  #isDirty = true;
+  #isMoved = false;
+  #isSeen = true;
+  #frame = 0;
+  #checks;
+  #previous;
+  #chosenTheme = null;
+  #covered = 0;
+  #closing = new AbortController();
+  isPaused = false;
+  // How fast time passes: 1 as in the world.
+  speed = 1;
+
+  // level: what Python says of it; fresh: gives its world before the first tick; keyboard: what keys are listened to.
+  constructor(canvas, level, fresh, keyboard = canvas) {
+    super();
+    Object.assign(this, { canvas, level, fresh, world: fresh(), camera: new Camera() });
+    const { commands = [], hashes = [''] } = level.recording ?? {};
+    this.run = new Run(this.world, commands, hashes.length - 1);
+    if (level.begin) this.run.seek(level.begin);
+    this.picture = new Picture(canvas, level.scene, this.world);
+    this.hands = new Hands(canvas, this.run, this.camera, {
+      changed: () => { this.#isMoved = this.#isDirty = true; }, say: (text) => this.say(text),
+    });
+    this.drives = new Drives(this.run, level.keys);
+    this.sound = new Sound(this.world, level.sounds);
+    this.#checks = new Checks(level, this.world);
+    this.#previous = this.world.view('state.position').slice();
+    this.#listen(keyboard);
+    this.#frame = requestAnimationFrame((now) => this.#play(now));
+  }
+
+  #listen(keyboard) {
+    const { canvas } = this, { signal } = this.#closing, on = (target, name, act) =>
+      target.addEventListener(name, act, { signal });
+    if (!canvas.hasAttribute('tabindex')) canvas.tabIndex = 0;
+    canvas.style.touchAction = 'none';
+    const size = new ResizeObserver(() => this.#resize()), sight = new IntersectionObserver(([{ isIntersecting }]) => {
+      this.#isSeen = isIntersecting;
+    });
+    size.observe(canvas);
+    sight.observe(canvas);
+    signal.addEventListener('abort', () => [size, sight].forEach((each) => each.disconnect()));
+    on(keyboard, 'keydown', (event) => this.#key(event));
+    on(keyboard, 'keyup', (event) => this.drives.release(event.key.replace('Arrow', '').toLowerCase()));
+    on(globalThis, 'blur', () => this.drives.releaseAll());
+    on(canvas, 'pointerdown', () => this.refresh());
+    on(light, 'change', () => this.#follow());
+    this.#follow();
+    this.#resize();
+  }
+
+  #key(event) {
+    if (event.target.matches?.(TYPED_INTO)) return;
+    if (event.target.matches?.('button, a') && [' ', 'Enter'].includes(event.key)) return;
+    const driven = this.drives.nameOf(event);
+    if (driven) this.drives.press(driven);
+    else if (event.ctrlKey || event.metaKey || event.altKey) return;
+    else if (event.key === ' ') this.toggle();
+    else if (event.key === '.') this.step();
+    else if (event.key === '+' || event.key === '-') {
+      this.#isMoved = true;
+      this.camera.zoomAbout(this.camera.width / 2, this.camera.height / 2, event.key === '+' ? KEY_ZOOM : 1 / KEY_ZOOM);
+    } else if (!this.hands.key(event)) return;
+    this.refresh();
+    event.preventDefault();
+  }
+
+  // Draw at the next frame, also while time stands.
+  refresh() {
+    this.#isDirty = true;
+  }
+
+  #tell(name, detail) {
+    this.dispatchEvent(new CustomEvent(name, { detail }));
+  }
+
+  // Tell a person something in a line; kind: '', 'good' or 'bad'.
+  say(text, kind = '') {
+    this.#tell('say', { text, kind });
+  }
+
+  get #themeName() {
+    return this.#chosenTheme ?? this.level.scene.theme ?? (light.matches ? 'light' : 'dark');
+  }
+
+  get theme() {
+    return this.level.scene.themes[this.#themeName];
+  }
+
+  // 'dark', 'light', or null: that of the level, or else of the viewer.
+  set theme(name) {
+    this.#chosenTheme = name;
+    this.#follow();
+  }
+
+  #follow() {
+    this.#tell('theme', { name: this.#themeName });
+    this.refresh();
+  }
+
+  // How many pixels of the lower edge something covers.
+  set covered(pixels) {
+    this.#covered = pixels;
+    this.#resize();
+  }
+
+  #resize() {
+    this.camera.width = Math.max(this.canvas.clientWidth, 1);
+    this.camera.height = Math.max(this.canvas.clientHeight, 1);
+    if (!this.#isMoved) this.camera.fit(this.level.scene.view, this.#covered);
+    this.refresh();
+  }
+
+  #play(now) {
+    const passed = Math.min((now - this.#then) / 1000, LONGEST);
+    this.#then = now;
+    if (this.#isSeen) this.#guarded(() => {
+      if (!this.isPaused) this.#owed = Math.min(this.#owed + passed * this.rate * this.speed, MOST_TICKS);
+      for (; this.#owed >= 1 && !this.isPaused; this.#owed -= 1) this.tick();
+      if (!this.isPaused || this.#isDirty) this.#draw(now / 1000);
+    });
+    this.#frame = requestAnimationFrame((next) => this.#play(next));
+  }
+
+  #draw(seconds) {
+    this.#isDirty = false;
+    this.picture.draw(this.camera, this.theme, this.#previous, this.isPaused ? 1 : this.#owed, seconds);
+    this.hands.draw(this.canvas.getContext('2d'), this.picture.at, this.theme);
+    this.#tell('draw');
+  }
+
+  // Do something; where it fails, time stands and a line says why.
+  #guarded(act) {
+    try {
+      act();
+    } catch (error) {
+      this.pause();
+      this.say(error instanceof Refusal ? error.message : 'Something went wrong here; start again.', 'bad');
+      if (!(error instanceof Refusal)) console.error(error);
+    }
+  }
+
+  // One tick; at the end of a recording time stands still.
+  tick() {
+    this.hands.update();
+    const wasFollowing = this.run.isFollowing, { world } = this;
+    this.#previous = world.view('state.position').slice();
+    this.run.step();
+    this.sound.hear((particle) => {
+      const [x] = this.camera.toPixels(world.view('state.position')[2 * particle], 0);
+      return Math.min(Math.max((2 * x) / this.camera.width - 1, -1), 1);
+    });
+    this.#tell('tick');
+    if (world.broken.length) this.#tell('break', { springs: world.broken.map((s) => this.level.about.names.spring[s]) });
+    for (const result of this.#checks.look()) this.#tell('check', result);
+    if (wasFollowing && !this.run.isFollowing) this.pause();
+    this.refresh();
+  }
+
+  // Ticks in a second, and how much time has passed [s].
+  get rate() {
+    return this.world.settings().tick_rate;
+  }
+
+  get seconds() {
+    return this.run.time / this.rate;
+  }
+
+  play() {
+    if (this.isPaused) this.toggle();
+  }
+
+  pause() {
+    if (!this.isPaused) this.toggle();
+  }
+
+  toggle() {
+    this.isPaused = !this.isPaused;
+    this.#tell('pause', { isPaused: this.isPaused });
+    this.refresh();
+  }
+
+  step() {
+    this.pause();
+    this.#guarded(() => this.tick());
+  }
+
+  // Go to a tick that was reached.
+  seek(tick) {
+    this.#jump(() => this.run.seek(tick));
+  }
+
+  restart() {
+    this.#jump(() => {
+      this.hands.releaseAll();
+      this.drives.releaseAll();
+      this.run.seek(0);
+      if (this.level.recording) return;
+      this.run.seek(0, 0);
+      this.run.takeOver();
+    });
+    this.play();
+  }
+
+  // Back to before the last thing that was done. Whether there was one.
+  undo() {
+    let isDone = false;
+    this.#jump(() => {
+      isDone = this.run.undo();
+      this.hands.releaseAll();
+    });
+    if (!isDone) this.say('There is nothing to undo.');
+    return isDone;
+  }
+
+  // Go elsewhere in time: nothing is compared with what was before.
+  #jump(go) {
+    this.#guarded(go);
+    this.#previous = this.world.view('state.position').slice();
+    this.sound.forget();
+    this.#checks.begin();
+    this.#owed = 0;
+    this.#tell('jump');
+    this.refresh();
+  }
+
+  #slot(kind, name) {
+    const slot = this.level.about.names[kind].indexOf(name);
+    if (slot < 0) throw new Refusal(`There is no ${kind} ${name}.`);
+    return slot;
+  }
+
+  // Names of particles, as in the level's file: 'rope.39' is the last of a body named rope.
+  get particles() {
+    return this.level.about.names.particle;
+  }
+
+  // Where a particle is [m], its velocity [m/s], and whether it is pinned.
+  particle(name) {
+    const slot = this.#slot('particle', name), of = (array) => this.world.view(`state.${array}`);
+    const [x, y] = of('position').subarray(2 * slot), [vx, vy] = of('velocity').subarray(2 * slot);
+    return { x, y, vx, vy, isPinned: of('inverse_mass')[slot] === 0 };
+  }
+
+  // Carry out a command as recordings have it, with names: { type: 'set_drive', part: 'wheel', value: 1 }.
+  command(record) {
+    const withSlots = exchanged(record, (kind, name) => this.#slot(kind, name));
+    if (!this.run.submit(withSlots, this.run.newGesture())) throw new Refusal(`A page cannot do ${record.type}.`);
+    this.refresh();
+  }
+
+  // The file of what was done, a Blob that `sandbox replay` verifies.
+  async recording() {
+    const { run, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
+    const progress = (done, all) => done % 60 === 0
+      && this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`);
+    return written(this.fresh(), level.about, level.header, commands, run.time, progress);
+  }
+
+  // Stop for good.
+  close() {
+    cancelAnimationFrame(this.#frame);
+    this.#closing.abort();
+    this.hands.close();
+    this.sound.close();
+  }
+}
+
+// Level and worlds of a toy's file, which begins with the length of what is JSON, and of the kernels' module.
+export async function read(content, kernels) {
+  const bytes = new Uint8Array(content), begin = 4;
+  const end = begin + new DataView(content).getUint32(0, true), image = bytes.subarray(end);
+  const level = JSON.parse(new TextDecoder().decode(bytes.subarray(begin, end)));
+  const module = await kernels;
+  return [level, () => new World(new WebAssembly.Instance(module, {}).exports, image, level.about)];
+}
+
+const modules = new Map();
+
+async function fetched(address) {
+  const answer = await fetch(address).catch(() => null);
+  if (!answer?.ok) throw new Refusal(`There is no file ${address} here.`);
+  return answer;
+}
+
+// The level and the worlds of files at addresses; kernels are fetched once for all toys of a page.
+export async function load(address, kernels = new URL('kernels.wasm', import.meta.url)) {
+  if (!globalThis.WebAssembly || !globalThis.DecompressionStream) throw new Refusal('This browser is too old for it.');
+  const key = String(kernels);
+  if (!modules.has(key)) modules.set(key, fetched(kernels).then((answer) => answer.arrayBuffer()).then(
+    WebAssembly.compile));
+  const file = await fetched(address);
+  const content = await new Response(file.body.pipeThrough(new DecompressionStream('gzip'))).arrayBuffer().catch(
+    () => { throw new Refusal(`${address} was cut off or damaged.`); });
+  return read(content, modules.get(key));
+}
+
+// Play a toy's file on a canvas. kernels: the address of kernels.wasm, where it is not beside this module.
+export async function open(canvas, address, { kernels } = {}) {
+  return new Toy(canvas, ...await load(address, kernels));
+}
