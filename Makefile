@@ -11,6 +11,7 @@
 # make abuse: stir, throw and drive bodies, and print figures; hours.
 # make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen.
 # make pictures: draw the pictures of the gallery and of docs/ again, after a level or the look was changed.
+# make site: the levels, each at an address of its own, and the documents, as files for any web server, in the folder site.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
@@ -30,7 +31,7 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test quick lint bounds goldens goldens-everywhere goldens-record seeds libraries pictures bench abuse soak clean
+.PHONY: play install test quick lint bounds goldens goldens-everywhere goldens-record seeds libraries pictures site bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -76,6 +77,9 @@ pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.app_icon
 	$(BIN)/python -m tests.pictures
 
+site: $(VENV)/installed-dev
+	$(BIN)/sandbox site --document README.md -o site
+
 bench: $(VENV)/installed-dev
 	failed=0; for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || failed=1; \
 	done; exit $$failed
@@ -102,4 +106,4 @@ $(VENV)/installed-dev: $(BIN)/python pyproject.toml
 	touch $(VENV)/installed $@
 
 clean:
-	rm -rf $(VENV) dist build .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) dist build site .pytest_cache .mypy_cache .ruff_cache

@@ -21,6 +21,7 @@ from sandbox.cli import (
     resume,
     run,
     schema,
+    site,
     sweep,
     take_home,
     toy,
@@ -30,7 +31,8 @@ from sandbox.terminal import give_up_output, missing_folder, prepare_streams, re
 
 # In the order in which --help lists them.
 COMMANDS = (
-    play, toy, run, replay, resume, check, diff, bisect, sweep, render, page, take_home, export, format, edit, schema,
+    play, toy, run, replay, resume, check, diff, bisect, sweep, render, page, site, take_home, export, format, edit,
+    schema,
 )  # fmt: skip
 # Python searches for garbage after this many new objects, in place of 700: what is imported stays, and looking through
 # it again and again was a sixth of a start. Objects that hold each other, as those do, are few in a run.

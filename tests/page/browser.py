@@ -49,15 +49,20 @@ class Tab:
             raise RuntimeError(json.dumps(answer["exceptionDetails"])[:600])
         return answer["result"].get("value")
 
+    def show(self, address: str) -> Self:
+        """Go to an address, and wait until all of the page is there."""
+        self.send("Page.navigate", url=address)
+        self._browser.until(lambda: any(each == "Page.loadEventFired" for each in self._browser.events))
+        self._browser.events.clear()
+        return self
+
     def open(self, address: str) -> Self:
         """Go to an address, and wait until the page plays or says what is wrong."""
-        self.send("Page.navigate", url=address)
+        self.show(address)
         ready = "globalThis.page || !(document.getElementById('error')?.hidden ?? true)"
         wait = (
             f"new Promise((done) => {{ const look = () => ({ready}) ? done() : requestAnimationFrame(look); look(); }})"
         )
-        self._browser.until(lambda: any(each == "Page.loadEventFired" for each in self._browser.events))
-        self._browser.events.clear()
         self.evaluate(wait)
         return self
 

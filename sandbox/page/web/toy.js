@@ -253,7 +253,7 @@ export class Toy extends EventTarget {
 
   // Names of particles, as in the level's file: 'rope.39' is the last of a body named rope.
   get particles() {
-    return this.level.about.names.particle;
+    return this.world.particles.map((slot) => this.level.about.names.particle[slot]);
   }
 
   // Where a particle is [m], its velocity [m/s], and whether it is pinned.

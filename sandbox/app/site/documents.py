@@ -1,0 +1,119 @@
+"""Documents: Markdown files as pages of a site, with all files that they link to."""
+
+import html
+import os
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+
+from sandbox.app.site.site import STYLE, link_list
+from sandbox.level.format.writing import write_file
+from sandbox.page.page import filled
+
+MARKDOWN, PAGE = ".md", ".html"
+# What is no letter of an address, as GitHub has it.
+_NO_LETTER = re.compile(r"[^\w -]")
+
+
+class DocumentError(Exception):
+    """Links that lead nowhere; faults: a line each."""
+
+    def __init__(self, faults: list[str]) -> None:
+        super().__init__(*faults)
+        self.faults = faults
+
+
+def documents_of(start: Path) -> dict[Path, list[Token]]:
+    """A Markdown file and all that it leads to, directly or not, parsed. Raises OSError, DocumentError."""
+    found: dict[Path, list[Token]] = {}
+    waiting, faults = [start.resolve()], []
+    while waiting:
+        path = waiting.pop(0)
+        if path in found:
+            continue
+        found[path] = MarkdownIt("commonmark").enable("table").parse(path.read_text(encoding="utf-8"))
+        for token, name in _links(found[path]):
+            linked = _file_at(path, str(token.attrs[name]))
+            if linked is not None and not linked.is_file():
+                faults.append(f"{path}: there is no {token.attrs[name]}")
+            elif linked is not None and linked.suffix == MARKDOWN:
+                waiting.append(linked)
+    if faults:
+        raise DocumentError(faults)
+    return found
+
+
+def titles_of(documents: Mapping[Path, list[Token]]) -> dict[str, str]:
+    """Addresses of the pages of documents, from the folder of the first one, by their headings."""
+    root = next(iter(documents)).parent
+    return {_title(tokens): _address(path, root) for path, tokens in documents.items()}
+
+
+def write_documents(documents: Mapping[Path, list[Token]], folder: Path) -> Iterator[Path]:
+    """Write pages, and give each path once it is there; files that they show lie beside them. Raises OSError."""
+    root = next(iter(documents)).parent
+    titles = titles_of(documents)
+    for path, tokens in documents.items():
+        page = folder / _address(path, root)
+        page.parent.mkdir(parents=True, exist_ok=True)
+        back = Path(os.path.relpath(folder, page.parent)).as_posix()
+        for file in _turn(tokens, path):
+            there = folder / file.relative_to(root)
+            there.parent.mkdir(parents=True, exist_ok=True)
+            write_file(there, file.read_bytes())
+        links = {"Levels": f"{back}/index.html"} | {title: f"{back}/{at}" for title, at in titles.items()}
+        text = filled(
+            "document", TITLE=html.escape(_title(tokens)), LINKS=link_list(links), STYLE=f"{back}/{STYLE}",
+            TEXT=MarkdownIt("commonmark").renderer.render(tokens, _OPTIONS, {}),
+        )  # fmt: skip
+        write_file(page, text.encode())
+        yield page
+
+
+_OPTIONS: Any = MarkdownIt("commonmark").options
+
+
+def _address(path: Path, root: Path) -> str:
+    return PurePosixPath(path.relative_to(root)).with_suffix(PAGE).as_posix()
+
+
+def _title(tokens: list[Token]) -> str:
+    return next(each.content for each, before in zip(tokens[1:], tokens, strict=False) if before.type == "heading_open")
+
+
+def _links(tokens: list[Token]) -> Iterator[tuple[Token, str]]:
+    """Links and pictures, each with the attribute that has its address."""
+    for token in (child for each in tokens for child in each.children or ()):
+        if token.type in ("link_open", "image"):
+            yield token, "href" if token.type == "link_open" else "src"
+
+
+def _file_at(page: Path, address: str) -> Path | None:
+    """The file that an address in a document stands for; None where it leads elsewhere, or into the document."""
+    name = address.partition("#")[0]
+    if not name or "://" in name:
+        return None
+    linked = page.parent / name
+    return (linked if linked.is_file() or linked.suffix else linked.with_suffix(MARKDOWN)).resolve()
+
+
+def _turn(tokens: list[Token], path: Path) -> list[Path]:
+    """Give headings their names and links the addresses of pages; the files that are shown as they are."""
+    shown = []
+    for opening, inline in zip(tokens, tokens[1:], strict=False):
+        if opening.type == "heading_open":
+            opening.attrSet("id", _NO_LETTER.sub("", inline.content.strip().lower()).replace(" ", "-"))
+    for token, name in _links(tokens):
+        address = str(token.attrs[name])
+        linked = _file_at(path, address)
+        if linked is not None and linked.suffix == MARKDOWN:
+            place = address.partition("#")[2]
+            at = Path(os.path.relpath(linked.with_suffix(PAGE), path.parent)).as_posix()
+            token.attrSet(name, f"{at}#{place}" if place else at)
+        elif linked is not None:
+            shown.append(linked)
+    return shown

@@ -1,0 +1,146 @@
+"""The site: every link leads somewhere, every level plays at its address, and all can be read and reached by keys."""
+
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urldefrag, urljoin
+
+import pytest
+
+from sandbox.cli import main
+from sandbox.level.reading.files import shipped_levels
+from tests.page.browser import Browser
+from tests.page.contrast import CONTRAST, LEAST_CONTRAST
+from tests.page.site_server import served
+
+ROOT = Path(__file__).resolve().parents[2]
+LEVELS = [path.stem for path in shipped_levels()]
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The whole site, as `make site` writes it."""
+    folder = tmp_path_factory.mktemp("site")
+    assert main(["site", "--document", str(ROOT / "README.md"), "-o", str(folder)]) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def address(site: Path) -> Iterator[str]:
+    with served(site) as at:
+        yield at
+
+
+class _Page(HTMLParser):
+    """What a page links to and shows, the names in it, and what of it a person needs."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.linked: list[str] = []
+        self.names: set[str] = set()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.tags.append((tag, given))
+        self.linked += [value for key in ("href", "src", "srcset") if (value := given.get(key))]
+        if given.get("id"):
+            self.names.add(str(given["id"]))
+
+
+def test_a_crawler_finds_something_behind_every_link(site: Path) -> None:
+    waiting, seen, astray = ["index.html"], {}, []
+    while waiting:
+        name = waiting.pop()
+        seen[name] = _Page(site / name)
+        for link in seen[name].linked:
+            target, _ = urldefrag(link)
+            path = unquote(urljoin(name, target)) if target else name
+            if "://" in link or link.startswith("data:"):
+                continue
+            if not (site / path).is_file():
+                astray.append(f"{name}: {link}")
+            elif path.endswith(".html") and path not in seen and path not in waiting:
+                waiting.append(path)
+    for name, page in seen.items():
+        for link in page.linked:
+            target, place = urldefrag(link)
+            path = unquote(urljoin(name, target)) if target else name
+            if place and "://" not in link and place not in seen[path].names:
+                astray.append(f"{name}: {link}")
+    assert astray == []
+    assert {f"levels/{stem}.html" for stem in LEVELS} | {"README.html", "docs/physics.html"} <= set(seen)
+    # Nothing lies there that no link leads to, but what scripts fetch.
+    pages = {path.relative_to(site).as_posix() for path in site.rglob("*.html")}
+    assert pages == set(seen)
+
+
+def test_every_page_has_a_title_a_language_one_heading_and_words_for_its_pictures(site: Path) -> None:
+    wrong, titles = [], set()
+    for path in site.rglob("*.html"):
+        page, text = _Page(path), path.read_text(encoding="utf-8")
+        tags = [tag for tag, _ in page.tags]
+        title = text.partition("<title>")[2].partition("</title>")[0]
+        titles.add(title)
+        is_good = ("html", {"lang": "en"}) in page.tags and title and tags.count("h1") == 1 and "main" not in tags[:5]
+        if not is_good or any(tag == "img" and "alt" not in given for tag, given in page.tags):
+            wrong.append(path.name)
+    assert wrong == []
+    assert len(titles) > len(LEVELS)
+
+
+@pytest.mark.parametrize("stem", LEVELS)
+def test_a_level_plays_at_its_own_address(browser: Browser, address: str, stem: str) -> None:
+    tab = browser.tab().open(f"{address}levels/{stem}.html")
+    assert tab.evaluate("document.getElementById('error').textContent") == ""
+    tab.evaluate("page.toy.pause(); for (let k = 0; k < 5; k++) page.toy.tick()")
+    assert tab.evaluate("page.toy.world.time") >= 5
+    assert tab.faults == []
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+@pytest.mark.parametrize("name", ["index.html", "docs/physics.html"])
+def test_text_can_be_read_and_nothing_is_wider_than_a_phone(
+    browser: Browser, address: str, name: str, scheme: str
+) -> None:
+    tab = browser.tab(width=390, height=844, scheme=scheme, is_phone=True).show(f"{address}{name}")
+    for pair in (["text", "back"], ["text", "surface"], ["muted", "surface"], ["muted", "back"], ["accent", "back"]):
+        assert tab.evaluate(f"({CONTRAST})({pair})") >= LEAST_CONTRAST, pair
+    assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_the_keyboard_reaches_every_level_and_opens_it(browser: Browser, address: str) -> None:
+    tab = browser.tab().show(f"{address}index.html")
+    reached = []
+    for _ in LEVELS:
+        tab.key("Tab")
+        reached.append(tab.evaluate("document.activeElement.getAttribute('href')"))
+        assert tab.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
+    assert sorted(reached) == sorted(f"levels/{stem}.html" for stem in LEVELS)
+
+
+def test_levels_of_ones_own_are_a_site_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    own = tmp_path / "own.json"
+    own.write_bytes((ROOT / "levels" / "rope.json").read_bytes().replace(b'"Rope"', b'"My <rope>"'))
+    assert main(["site", str(own), "pinball", "-o", str(tmp_path / "site"), "--title", "Mine"]) == 0
+    text = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
+    assert "My &lt;rope&gt;" in text and 'href="levels/pinball.html"' in text and "<h1>Mine</h1>" in text
+    assert (tmp_path / "site" / "pictures" / "own-dark.jpg").is_file()
+    assert "2 levels" in capsys.readouterr().out
+
+
+def test_what_cannot_be_a_site_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    own, document = tmp_path / "rope.json", tmp_path / "broken.md"
+    own.write_bytes((ROOT / "levels" / "rope.json").read_bytes())
+    document.write_text("# Broken\n\n[gone](gone.md)\n", encoding="utf-8")
+    refused = (
+        (["rope", str(own)], "two levels have files of one name"),
+        (["rope", "--document", str(document)], "there is no gone.md"),
+        (["nothing_like_it"], "there is no such file"),
+    )
+    for given, said in refused:
+        assert main(["site", *given, "-o", str(tmp_path / "site")]) == 2
+        told = capsys.readouterr().err
+        assert said in told and len(told.strip().splitlines()) == 1
+    assert not (tmp_path / "site" / "index.html").exists()
