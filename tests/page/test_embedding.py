@@ -19,7 +19,10 @@ from tests.page.browser import Browser, Tab
 from tests.page.site_server import served
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "how-to-embed.md"
-READY = "new Promise((done) => { const look = () => (globalThis.toy?.run ? done() : requestAnimationFrame(look)); look(); })"
+READY = """new Promise((done) => {
+  const look = () => (globalThis.toy?.run ? done() : requestAnimationFrame(look));
+  look();
+})"""
 HEARD = """(async () => {
   const heard = [];
   for (const name of ['break', 'check']) toy.addEventListener(name, ({ detail }) => heard.push([name, detail]));
@@ -111,7 +114,8 @@ def test_checks_and_breaks_are_told_as_the_desktop_finds_them(browser: Browser, 
     session, broken = Session(_checked()), []
     for _ in range(160):
         session.advance()
-        broken += [[session.world.spring_names[slot] for slot in session.world.broken]] * bool(len(session.world.broken))
+        if len(session.world.broken):
+            broken.append([session.world.spring_names[slot] for slot in session.world.broken])
     assert [detail["springs"] for name, detail in heard if name == "break"] == broken
 
 

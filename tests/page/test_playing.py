@@ -38,7 +38,7 @@ def test_what_a_page_saves_is_verified_bit_for_bit(browser: Browser, tmp_path: P
         """for (let k = 0; k < 700; k++) {
           if (k === 20) page.toy.drives.press(Object.keys(page.toy.drives.keys)[0]);
           if (k === 120) page.toy.drives.releaseAll();
-          if (k === 60) page.toy.run.submit({ type: 'set_coefficients', stiffness: 0.3, damping: 0.6, material: null }, 9);
+          if (k === 60) page.toy.command({ type: 'set_coefficients', stiffness: 0.3, damping: 0.6 });
           page.toy.tick();
         }"""
     )

@@ -117,6 +117,7 @@ def test_sound_is_off_until_it_is_touched_and_then_plays_without_a_fault(browser
     tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
     assert not tab.evaluate("page.toy.sound.isOn")
     _tap(tab, "#sound")
-    tab.evaluate("page.toy.drives.press('d'); for (let k = 0; k < 200; k++) page.toy.tick(); page.toy.drives.releaseAll()")
+    tab.evaluate("page.toy.drives.press('d'); for (let k = 0; k < 200; k++) page.toy.tick()")
+    tab.evaluate("page.toy.drives.releaseAll()")
     assert tab.evaluate("page.toy.sound.isOn")
     assert tab.faults == []

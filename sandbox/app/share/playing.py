@@ -69,9 +69,9 @@ def playable(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None 
 def playable_in_slices(
     level: Level, script: Sequence[ScriptLine], ticks: int | None, begin: int = 0
 ) -> Generator[float, None, Playable]:
-    """As `playable`, a slice of the work at a time: each gives the part that is done, 0..1. begin: the tick shown first.
+    """As `playable`, a slice of the work at a time: each gives the part that is done, 0..1.
 
-    Raises CommandError, also for a command that a page cannot carry out.
+    begin: the tick that is shown first. Raises CommandError, also for a command that a page cannot carry out.
     """
     unknown = {str(line.record.get("type")) for line in script if not can_play([str(line.record.get("type"))])}
     if unknown:

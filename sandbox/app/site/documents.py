@@ -4,6 +4,7 @@ import html
 import os
 import re
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -82,7 +83,7 @@ def _address(path: Path, root: Path) -> str:
 
 
 def _title(tokens: list[Token]) -> str:
-    return next(each.content for each, before in zip(tokens[1:], tokens, strict=False) if before.type == "heading_open")
+    return next(inline.content for opening, inline in pairwise(tokens) if opening.type == "heading_open")
 
 
 def _links(tokens: list[Token]) -> Iterator[tuple[Token, str]]:
@@ -104,7 +105,7 @@ def _file_at(page: Path, address: str) -> Path | None:
 def _turn(tokens: list[Token], path: Path) -> list[Path]:
     """Give headings their names and links the addresses of pages; the files that are shown as they are."""
     shown = []
-    for opening, inline in zip(tokens, tokens[1:], strict=False):
+    for opening, inline in pairwise(tokens):
         if opening.type == "heading_open":
             opening.attrSet("id", _NO_LETTER.sub("", inline.content.strip().lower()).replace(" ", "-"))
     for token, name in _links(tokens):
