@@ -1,37 +1,49 @@
-// Paint: colours, lit skins, bars and balls on a canvas. All sizes are pixels of the page.
+// Paint: colours, lit skins, strips with a texture and balls on a canvas. All sizes are pixels of the page.
 
+export const clamp = (value, low = 0, high = 1) => Math.min(Math.max(value, low), high);
 const parse = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+const mean = (first, second, share) => first.map((value, k) => value + (second[k] - value) * share);
+
 // The colour that has `share` (0..1) of the second in it; colours are '#rrggbb'.
 export function mixed(first, second, share) {
-  const other = parse(second), mix = parse(first).map((value, k) => Math.round(value + (other[k] - value) * share));
-  return `#${mix.map((value) => value.toString(16).padStart(2, '0')).join('')}`;
+  const channels = mean(parse(first), parse(second), share);
+  return `#${channels.map((value) => Math.round(value).toString(16).padStart(2, '0')).join('')}`;
 }
 
 export const outlineOf = (colour) => mixed(colour, '#28003c', 0.46);
 export const darkEdge = (colour) => mixed(colour, '#180a00', 0.66);
 
-// Of each skin: how light and how dark it gets, with what, how it gleams, and how little shows through.
-const SKINS = {
-  jelly: ['#ffffff', 0.62, '#5a0a6e', 0.4, 0.75, 0.9], balloon: ['#ffffff', 0.5, '#3c0046', 0.42, 0, 0.9],
-  tyre: ['#ffffff', 0.3, '#000000', 0.6, 0.15, 1], window: ['#ffffff', 0.7, '#3c6e96', 0.4, 0.5, 0.92],
-  wood: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1], stone: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1],
-  brick: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1], rubber: ['#ffffff', 0.32, '#140028', 0.38, 0.15, 1],
-};
-// Light and shade of a skin are thin crescents laid over each other: one for so many pixels of its depth, so many at
-// most, and how far inwards they reach, in depths.
-const CRESCENT = 2.5, MOST_CRESCENTS = 9, REACH = 1.2;
+const kept = new Map();
+
+// What was made under a name, or is made now.
+function once(name, make) {
+  if (!kept.has(name)) kept.set(name, make());
+  return kept.get(name);
+}
+
+export function canvasOf(width, height, settings) {
+  const canvas = document.createElement('canvas');
+  Object.assign(canvas, { width, height });
+  return canvas.getContext('2d', settings);
+}
+
+// A pattern of which a function of the place gives each pixel, as channels red, green, blue, and alpha if it has any.
+function patternOf(width, height, pixel) {
+  const context = canvasOf(width, height), image = context.createImageData(width, height);
+  image.data.fill(255);
+  for (let k = 0; k < width * height; k++) image.data.set(pixel(k % width, Math.floor(k / width)), 4 * k);
+  context.putImageData(image, 0, 0);
+  return context.createPattern(context.canvas, 'repeat');
+}
 
 // Closed loops of points [x, y, ...] as one path, with their corners cut by `keep` of their sides.
-export function pathOf(loops, keep = 0, rounds = 0) {
-  const path = new Path2D(), cut = rounds ? Math.min(2 * keep, 0.5) : 0;
+export function pathOf(loops, keep = 0) {
+  const path = new Path2D(), cut = Math.min(2 * keep, 0.5);
   for (const points of loops) {
-    const count = points.length / 2;
-    for (let k = 0; k < count; k++) {
-      const x = points[2 * k], y = points[2 * k + 1], before = 2 * ((k + count - 1) % count),
-        after = 2 * ((k + 1) % count);
-      const startX = x + (points[before] - x) * cut, startY = y + (points[before + 1] - y) * cut;
-      if (k === 0) path.moveTo(startX, startY);
-      else path.lineTo(startX, startY);
+    const count = points.length;
+    for (let k = 0; k < count; k += 2) {
+      const x = points[k], y = points[k + 1], before = (k + count - 2) % count, after = (k + 2) % count;
+      path[k ? 'lineTo' : 'moveTo'](x + (points[before] - x) * cut, y + (points[before + 1] - y) * cut);
       if (cut) path.quadraticCurveTo(x, y, x + (points[after] - x) * cut, y + (points[after + 1] - y) * cut);
     }
     path.closePath();
@@ -39,124 +51,316 @@ export function pathOf(loops, keep = 0, rounds = 0) {
   return path;
 }
 
-// Points of a loop moved outwards by so much.
-export function grown(points, by) {
-  const count = points.length / 2, result = new Float64Array(points.length);
-  let area = 0;
-  for (let k = 0; k < count; k++) {
-    const next = (k + 1) % count;
-    area += points[2 * k] * points[2 * next + 1] - points[2 * next] * points[2 * k + 1];
-  }
+// Loops of points moved outwards by so much: the first lies around the others, and holes run the other way.
+export function grown(loops, by) {
+  const next = (points, k) => (k + 2) % points.length;
+  const area = loops[0].reduce((sum, x, k, all) =>
+    (k % 2 ? sum : sum + x * all[next(all, k) + 1] - all[next(all, k)] * all[k + 1]), 0);
   const side = area > 0 ? by : -by;
-  for (let k = 0; k < count; k++) {
-    const before = 2 * ((k + count - 1) % count), after = 2 * ((k + 1) % count);
-    const dx = points[after] - points[before], dy = points[after + 1] - points[before + 1],
-      length = Math.hypot(dx, dy) || 1;
-    result[2 * k] = points[2 * k] + (dy / length) * side;
-    result[2 * k + 1] = points[2 * k + 1] - (dx / length) * side;
-  }
-  return result;
+  return loops.map((points) => {
+    const result = new Float64Array(points.length);
+    for (let k = 0; k < points.length; k += 2) {
+      const before = (k + points.length - 2) % points.length, after = next(points, k);
+      const dx = points[after] - points[before], dy = points[after + 1] - points[before + 1];
+      const length = Math.hypot(dx, dy) || 1;
+      result[k] = points[k] + (dy / length) * side;
+      result[k + 1] = points[k + 1] - (dx / length) * side;
+    }
+    return result;
+  });
 }
 
-// Fill a path with a skin that bulges: `depth` is how far its edge is rounded. over: what is drawn on it, unlit.
-export function fillSkin(context, path, box, skin, colour, depth, over) {
-  const [light, up, shade, down, gloss, alpha] = SKINS[skin] ?? SKINS.rubber;
-  context.save();
-  context.globalAlpha = alpha;
-  context.fillStyle = colour;
-  context.fill(path, 'evenodd');
-  context.clip(path, 'evenodd');
-  over?.();
-  crescents(context, path, box, light, 0.8 * up, 0.22 * depth, 0.8 * depth);
-  crescents(context, path, box, shade, down, -0.22 * depth, -0.8 * depth);
-  if (gloss && depth > 5) {
-    const gleam = new Path2D();
-    gleam.addPath(path, new DOMMatrix([1, 0, 0, 1, 0.12 * depth, 0.3 * depth]));
-    context.clip(gleam);
-    crescents(context, gleam, box, '#ffffff', 0.8 * gloss, 0.14 * depth, 0.5 * depth);
-  }
-  context.restore();
+// Left, top, right and bottom of points [x, y, ...].
+export function boxOf(points) {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  points.forEach((value, k) => {
+    box[k % 2] = Math.min(box[k % 2], value);
+    box[2 + (k % 2)] = Math.max(box[2 + (k % 2)], value);
+  });
+  return box;
 }
 
-// What of a clipped path is within so much of its edge, on the side from which light comes; box: around the path.
-function crescents(context, path, box, colour, strength, x, y) {
-  const count = Math.min(Math.max(Math.round(Math.hypot(x, y) / CRESCENT), 2), MOST_CRESCENTS);
-  context.fillStyle = colour;
-  context.globalAlpha = Math.min((1.5 * strength) / count, 1);
-  for (let k = 1; k <= count; k++) {
-    const share = REACH * (k / count) ** 1.3, moved = new Path2D();
-    moved.rect(...box);
-    moved.addPath(path, new DOMMatrix([1, 0, 0, 1, share * x, share * y]));
-    context.fill(moved, 'evenodd');
-  }
-}
-
-// Fill a path with ground: from `near` its edge to `deep` inside.
-export function fillGround(context, path, box, near, deep, depth, light, dark, alpha = 1, grain = null) {
-  context.save();
-  context.globalAlpha = alpha;
-  context.fillStyle = deep;
-  context.fill(path);
-  context.clip(path);
-  context.strokeStyle = near;
-  for (let k = 10; k > 0; k--) {
-    context.globalAlpha = 0.16 * alpha;
-    context.lineWidth = 0.22 * k * depth;
-    context.stroke(path);
-  }
-  crescents(context, path, box, '#ffffff', 0.8 * light, 0.1 * depth, 0.3 * depth);
-  crescents(context, path, box, '#000000', 0.8 * dark, -0.1 * depth, -0.3 * depth);
-  context.globalAlpha = 1;
-  if (grain) {
-    context.fillStyle = context.createPattern(grains(grain), 'repeat');
-    context.fill(path);
-  }
-  context.restore();
-}
-
-// Of each kind of line: its outline, its colour, a pattern: [colour, part of the width, dash, gap in half widths].
-const LINES = {
-  rope: ['#5b3d20', '#c89b62', ['#80542c', 0.9, 0.9, 2.3]], cable: ['#3a4252', '#a3adbf', ['#5c667a', 0.9, 0.6, 1.5]],
-  deck: ['#4a2e16', '#c48e58', ['#4a2e16', 1, 0.25, 1.75]],
-  thread: [null, '#aeb5c2', null], silk: [null, '#ccd4e0', null], steel: ['#161b26', '#96a3ba', null],
-  brass: ['#3a2a10', '#e2b04e', null], wood: ['#3a2614', '#c99258', null], rubber: ['#3a1418', '#eb605c', null],
-  bone: ['#4a3a28', '#f0e4cc', null], muscle: ['#4a1622', '#de5462', null], piston: ['#161b26', '#96a3ba', null],
+// Of each skin: the colour and the strength of light and of shade, its gleam, and how much shows through inside.
+const SKINS = {
+  jelly: ['#ffffff', 0.46, '#5a0a6e', 0.34, 0.75, 0.13], balloon: ['#ffffff', 0.38, '#3c0046', 0.36, 0, 0.14],
+  tyre: ['#ffffff', 0.22, '#000000', 0.51, 0.15, 0], window: ['#ffffff', 0.52, '#3c6e96', 0.34, 0.5, 0.1],
+  rubber: ['#ffffff', 0.24, '#140028', 0.32, 0.15, 0], wood: ['#ffffff', 0.19, '#1e0a00', 0.38, 0, 0],
 };
+const INSIDE = 32, LIT = 128, STRONGEST = 1.5;
 
-// Draw a path as a round bar of a kind; colour: of what is painted, and of bars of no kind.
-export function drawBar(context, path, half, kind, colour) {
-  if (kind === 'chain') {
-    drawChain(context, path, half);
-    return;
-  }
-  const [line, own, pattern] = LINES[kind] ?? [outlineOf(colour), colour, null];
-  context.lineCap = context.lineJoin = 'round';
-  if (line && half > 0.7) stroke(context, path, line, half + 0.9, 0.85);
-  stroke(context, path, own, half);
-  if (half < 1.2) return;
-  if (pattern) {
-    const [tone, width, dash, gap] = pattern;
-    context.setLineDash([dash * half, gap * half]);
-    context.lineCap = 'butt';
-    stroke(context, path, tone, width * half);
-    context.setLineDash([]);
-    context.lineCap = 'round';
-  }
-  context.save();
-  context.translate(-0.12 * half, -0.36 * half);
-  stroke(context, path, '#ffffff', 0.26 * half, 0.36);
-  context.restore();
+// How a skin of a colour looks, as table() takes it.
+export function skinOf(skin, colour) {
+  const [light, up, shade, down, gloss, clear] = SKINS[skin] ?? SKINS[skin === 'stone' || skin === 'brick' ? 'wood'
+    : 'rubber'];
+  return { near: colour, deep: colour, light, up, shade, down, gloss, clear, alpha: 1 };
 }
 
-// Links on edge, thin, and between them links seen flat.
-function drawChain(context, path, half) {
-  stroke(context, path, '#1c222e', 0.45 * half, 0.7);
-  stroke(context, path, '#b0bccd', 0.3 * half);
-  context.setLineDash([1.8 * half, 3.8 * half]);
-  stroke(context, path, '#1c222e', 0.95 * half, 0.7);
-  stroke(context, path, '#b0bccd', 0.8 * half);
-  stroke(context, path, '#1c222e', 0.34 * half);
-  context.setLineDash([]);
+// Colours of a skin by how far inside a place is, and how lit.
+function table(look) {
+  return once(JSON.stringify(look), () => {
+    const [near, deep, light, shade] = ['near', 'deep', 'light', 'shade'].map((name) => parse(look[name]));
+    const colours = new Uint8ClampedArray(4 * INSIDE * LIT);
+    for (let k = 0; k < INSIDE * LIT; k++) {
+      const inside = Math.floor(k / LIT) / (INSIDE - 1), lit = STRONGEST * ((2 * (k % LIT)) / (LIT - 1) - 1);
+      const gleam = clamp((lit - 0.3) * 5) * clamp((inside - 0.16) * 6) * clamp((0.8 - inside) * 4) * look.gloss;
+      let colour = mean(near, deep, clamp(1.15 * inside - 0.08));
+      colour = mean(colour, lit > 0 ? light : shade, lit > 0 ? look.up * Math.min(lit, 1.1)
+        : look.down * Math.min(-lit, 1));
+      colours.set(mean(colour, [255, 255, 255], gleam), 4 * k);
+      colours[4 * k + 3] = 255 * look.alpha * (1 - look.clear * inside * (1 - 0.5 * Math.min(Math.abs(lit), 1)));
+    }
+    return new Uint32Array(colours.buffer);
+  });
+}
+
+// Blur cells by the mean of `reach` of them to each side, so many times; beyond them lies nothing.
+function blur(cells, width, height, reach, times) {
+  const line = new Float32Array(Math.max(width, height) + 2 * reach + 1), full = 2 * reach + 1;
+  const along = (first, step, count) => {
+    line.fill(0);
+    for (let k = 0; k < count; k++) line[k + reach + 1] = cells[first + k * step];
+    let sum = 0;
+    for (let k = 1; k < full; k++) sum += line[k];
+    for (let k = 0; k < count; k++) {
+      sum += line[k + full] - line[k];
+      cells[first + k * step] = sum / full;
+    }
+  };
+  for (let time = 0; time < times; time++) {
+    for (let y = 0; y < height; y++) along(y * width, 1, width);
+    for (let x = 0; x < width; x++) along(x, width, height);
+  }
+}
+
+// Make of what is drawn on a small picture its soft shadow; the part with anything in it: left, top, width and height.
+export function soften(context, colour) {
+  const { width, height } = context.canvas, image = context.getImageData(0, 0, width, height);
+  const pixels = new Uint32Array(image.data.buffer), found = [];
+  for (let k = 0; k < pixels.length; k++) if (pixels[k]) found.push(k % width, Math.floor(k / width));
+  if (!found.length) return [];
+  const box = boxOf(found), left = Math.max(box[0] - 3, 0), top = Math.max(box[1] - 3, 0);
+  const across = Math.min(box[2] + 4, width) - left, down = Math.min(box[3] + 4, height) - top;
+  const cells = new Float32Array(across * down), [red, green, blue] = parse(colour);
+  const each = (act) => {
+    for (let k = 0; k < cells.length; k++) act(k, (top + Math.floor(k / across)) * width + left + (k % across));
+  };
+  each((cell, pixel) => { cells[cell] = pixels[pixel] >>> 24; });
+  blur(cells, across, down, 1, 3);
+  each((cell, pixel) => { pixels[pixel] = (cells[cell] << 24) | (blue << 16) | (green << 8) | red; });
+  context.putImageData(image, 0, 0);
+  return [left, top, across, down];
+}
+
+// Cells of a skin are this part of its depth wide; they are blurred by so many to each side, so often; cells around it.
+const CELL = 0.25, REACH = 3, TIMES = 3, AROUND = REACH * (TIMES - 1) + 1, ATLAS = 512;
+// Light from above, a little from the left.
+const DOWNWARDS = 0.9, ACROSS = 0.42, STEEPNESS = 1.45 / CELL / 2;
+const FLUSH = 0.74, SQUEEZED = parse('#4a3fd8'), STRETCHED = parse('#fff0b0');
+
+// Skins of shapes that bulge: a shape is filled with cells, blurred they are how high its skin stands, and the slope of
+// that is how it is lit. All are made in one small picture, of which fill() takes its part.
+export class Skins {
+  #context = canvasOf(1, 1, { willReadFrequently: true });
+  #pattern = null;
+
+  // shapes: each with its path, box, depth, look, and maybe splats of strain; of which a view shows a part.
+  make(shapes, width, height) {
+    const context = this.#context, { canvas } = context;
+    let x = 0, y = 0, high = 0, wide = ATLAS;
+    for (const shape of shapes) {
+      const cell = Math.max(CELL * shape.depth, 1), room = AROUND * cell, [left, top, right, bottom] = shape.box;
+      const from = [Math.max(left, -room) - room, Math.max(top, -room) - room];
+      const size = [Math.min(right, width + room) + room - from[0], Math.min(bottom, height + room) + room - from[1]];
+      const [columns, rows] = size.map((length) => Math.ceil(length / cell));
+      shape.part = columns > 2 * AROUND && rows > 2 * AROUND ? { cell, from, columns, rows } : null;
+      if (!shape.part) continue;
+      if (x && x + columns > ATLAS) [x, y, high] = [0, y + high, 0];
+      Object.assign(shape.part, { x, y });
+      [x, high, wide] = [x + columns, Math.max(high, rows), Math.max(wide, columns)];
+    }
+    const seen = shapes.filter((shape) => shape.part);
+    if (!seen.length) return;
+    Object.assign(canvas, { width: wide, height: y + high });
+    for (const { part, path } of seen) {
+      context.save();
+      context.beginPath();
+      context.rect(part.x, part.y, part.columns, part.rows);
+      context.clip();
+      context.setTransform(...this.#place(part, true));
+      context.fill(path, 'evenodd');
+      context.restore();
+    }
+    const image = context.getImageData(0, 0, wide, y + high), pixels = new Uint32Array(image.data.buffer);
+    for (const shape of seen) this.#light(shape, pixels, wide);
+    context.putImageData(image, 0, 0);
+    this.#pattern = context.createPattern(canvas, 'repeat');
+  }
+
+  // From cells of the picture to the page, or back.
+  #place({ x, y, cell, from }, isBack) {
+    return isBack ? [1 / cell, 0, 0, 1 / cell, x - from[0] / cell, y - from[1] / cell]
+      : [cell, 0, 0, cell, from[0] - x * cell, from[1] - y * cell];
+  }
+
+  #light(shape, pixels, wide) {
+    const { part: { x, y, columns, rows }, look } = shape, height = new Float32Array(columns * rows);
+    const colours = table(look), first = y * wide + x, strain = shape.splats && this.#strain(shape);
+    for (let row = 0; row < rows; row++) {
+      for (let column = 0; column < columns; column++) {
+        height[row * columns + column] = (pixels[first + row * wide + column] >>> 24) / 255;
+      }
+    }
+    blur(height, columns, rows, REACH, TIMES);
+    for (let row = 1; row < rows - 1; row++) {
+      for (let column = 1; column < columns - 1; column++) {
+        const k = row * columns + column, lit = STEEPNESS * (ACROSS * (height[k + 1] - height[k - 1])
+          + DOWNWARDS * (height[k + columns] - height[k - columns]));
+        const inside = clamp(Math.round(1.9 * (height[k] - 0.45) * (INSIDE - 1)), 0, INSIDE - 1);
+        let colour = colours[inside * LIT + clamp(Math.round((lit / STRONGEST + 1) * 0.5 * (LIT - 1)), 0, LIT - 1)];
+        if (strain) {
+          const share = FLUSH * Math.abs(strain[k]), [red, green, blue] = strain[k] > 0 ? STRETCHED : SQUEEZED;
+          const over = (value, at) => (((colour >>> at) & 255) * (1 - share) + value * share) << at;
+          colour = ((colour & 0xff000000) | over(blue, 16) | (over(green, 8) & 0xff00) | (over(red, 0) & 255)) >>> 0;
+        }
+        pixels[first + row * wide + column] = colour;
+      }
+    }
+  }
+
+  // How squeezed (-1) or stretched (1) each cell is, by splats [x, y, amount].
+  #strain({ splats, reach, part: { cell, from, columns, rows } }) {
+    const sum = new Float32Array(columns * rows), weight = new Float32Array(columns * rows).fill(0.25);
+    const wide = Math.max(reach / cell, 1);
+    for (const [x, y, amount] of splats) {
+      const middle = (x - from[0]) / cell, level = (y - from[1]) / cell;
+      for (let row = Math.max(Math.ceil(level - 2 * wide), 0); row < Math.min(level + 2 * wide, rows); row++) {
+        const begin = Math.max(Math.ceil(middle - 2 * wide), 0), end = Math.min(middle + 2 * wide, columns);
+        for (let column = begin; column < end; column++) {
+          const near = Math.max(1 - ((column - middle) ** 2 + (row - level) ** 2) / (4 * wide * wide), 0) ** 2;
+          sum[row * columns + column] += near * amount;
+          weight[row * columns + column] += near;
+        }
+      }
+    }
+    return sum.map((value, k) => clamp(value / weight[k], -1, 1));
+  }
+
+  // Fill a shape with its skin.
+  fill(context, { part, path }) {
+    if (!part) return;
+    this.#pattern.setTransform(new DOMMatrix(this.#place(part, false)));
+    context.fillStyle = this.#pattern;
+    context.fill(path, 'evenodd');
+  }
+}
+
+// A round bar across, from -1 at its lit side to 1: light above, dark below, a line at both sides.
+function round(colour, across, gleam, top = 0.5, bottom = 0.55) {
+  const shine = gleam * Math.exp(-(((across + 0.42) / 0.16) ** 2));
+  const rim = 1 - 0.5 * clamp((Math.abs(across) - 0.72) / 0.28);
+  const lit = mean(mean(parse(colour), [255, 255, 255], 0.6 * top * clamp(-across - 0.1)), [0, 0, 0],
+    0.6 * bottom * clamp(across + 0.1));
+  return mean(lit, [255, 255, 255], shine).map((value) => value * rim);
+}
+
+function twisted(light, dark, along, across, slope, count) {
+  const wave = 0.5 + 0.5 * Math.cos(2 * Math.PI * (along * count + across * slope));
+  const shade = 1 - 0.62 * clamp(across + 0.25) ** 1.2 - 0.35 * clamp((Math.abs(across) - 0.7) / 0.3)
+    + 0.22 * Math.exp(-(((across + 0.4) / 0.25) ** 2));
+  return mean(parse(dark), parse(light), clamp((wave - 0.22) * 2.2)).map((value) => value * shade);
+}
+
+const shaded = (colour, share) => colour.map((value) => value * share);
+const wave = (turns) => Math.sin(2 * Math.PI * turns);
+// Of each kind of line: the line around it, its own colour, and its texture along (0..1) and across (-1..1); a texture
+// with a fourth channel shows what is behind.
+const LINES = {
+  rope: ['#5b3d20', '#c89b62', (u, v) => twisted('#deb276', '#80542c', u, v, 0.16, 2)],
+  cable: ['#3a4252', '#a3adbf', (u, v) => twisted('#bec8d8', '#5c667a', u, v, 0.12, 3)],
+  deck: ['#4a2e16', '#c48e58', (u, v) => shaded(round('#c48e58', v, 0, 0.4, 0.6),
+    (1 - 0.55 * clamp((0.06 - Math.min(u, 1 - u)) * 40)) * (1 + 0.05 * Math.sin(9 * v)))],
+  // A link seen flat, a ring, then one on edge, a bar through its ends.
+  chain: [null, null, (u, v) => {
+    const flat = (0.27 - Math.abs(Math.hypot((0.95 * (u - 0.3)) / 0.36, v) - 0.74)) * 8;
+    const edge = clamp((0.34 - Math.abs(v)) * 8)
+      * clamp((0.27 - Math.min(Math.abs(u - 0.8), Math.abs(u + 0.2))) * 16);
+    return [...round('#b0bccd', v, 0.4), 255 * clamp(Math.max(flat, edge))];
+  }],
+  wood: ['#3a2614', '#c99258', (u, v) => round('#c99258', v, 0, 0.35, 0.45).map((value) =>
+    value + 9 * Math.sin(40 * v * v + 23 * v) + 5 * wave(u + 0.7 * v))],
+  muscle: ['#4a1622', '#de5462', (u, v) => shaded(round('#de5462', v, 0.3), 0.8 + 0.2 * wave(2 * u))],
+  thread: [null, '#aeb5c2'], silk: [null, '#ccd4e0'], steel: ['#161b26', '#96a3ba'], brass: ['#3a2a10', '#e2b04e'],
+  rubber: ['#3a1418', '#eb605c'], bone: ['#4a3a28', '#f0e4cc'], turf: [null, null],
+};
+const ALONG = 64, HALF_TILE = 8;
+// Lines narrower than this have no texture, nor has any where there are so many.
+const THIN = 1.1, MOST_STRIPS = 1500;
+
+function tile(name, texture) {
+  return once(`tile ${name}`, () => patternOf(ALONG, 2 * HALF_TILE, (x, y) =>
+    texture((x + 0.5) / ALONG, (y + 0.5) / HALF_TILE - 1)));
+}
+
+// Fill a strip from a to b with a style, in the coordinates of a tile: between two places along it, and lit from above.
+// within: a path in those coordinates, of what there is of it.
+function strip(context, style, [ax, ay, bx, by, from = 0, to = 1], half, within) {
+  const dx = bx - ax, dy = by - ay, length = Math.hypot(dx, dy), wide = half / HALF_TILE / length;
+  if (!(length > 0) || !(to > from)) return;
+  const side = dx < 0 || (dx === 0 && dy > 0) ? -wide : wide, long = 1 / (to - from), before = context.getTransform();
+  context.transform((dx * long) / ALONG, (dy * long) / ALONG, -dy * side, dx * side,
+    ax - dx * long * from + dy * side * HALF_TILE, ay - dy * long * from - dx * side * HALF_TILE);
+  context.fillStyle = style;
+  if (within) context.fill(within);
+  else context.fillRect(ALONG * from, 0, ALONG * (to - from), 2 * HALF_TILE);
+  context.setTransform(before);
+}
+
+// Draw pieces [ax, ay, bx, by, from, to, spring] as a bar of a kind, along a path through them; colour: of what is of
+// no kind; tintOf(spring): a colour over it and how much of that, or nothing.
+export function drawBar(context, pieces, path, half, kind, colour, tintOf) {
+  const [line, own, texture = (u, v) => round(own, v, 0.3)] = LINES[kind] ?? [outlineOf(colour), colour];
+  context.lineCap = context.lineJoin = 'round';
+  if (line && half > 0.7) stroke(context, path, line, half + 0.9, 0.8);
+  if (own) stroke(context, path, own, half);
+  const style = half >= THIN && pieces.length < MOST_STRIPS && tile(LINES[kind] ? kind : colour, texture);
+  for (const piece of pieces) {
+    if (style) strip(context, style, piece, half);
+    const tint = tintOf?.(piece[6]);
+    if (!tint) continue;
+    [, context.globalAlpha] = tint;
+    strip(context, tint[0], piece, kind === 'chain' ? 0.3 * half : half);
+    context.globalAlpha = 1;
+  }
+}
+
+// A muscle between two places, as thick as its belly.
+export function drawMuscle(context, ends, belly, scale) {
+  const lens = new Path2D(), [line, , texture] = LINES.muscle, end = 1.6 / belly * HALF_TILE, high = 2.3 * HALF_TILE;
+  const long = 2 * ALONG;
+  lens.moveTo(0, HALF_TILE - end);
+  lens.bezierCurveTo(0.3 * long, HALF_TILE - 1.3 * HALF_TILE, 0.7 * long, -0.3 * HALF_TILE, long, HALF_TILE - end);
+  lens.lineTo(long, HALF_TILE + end);
+  lens.bezierCurveTo(0.7 * long, high, 0.3 * long, high, 0, HALF_TILE + end);
+  lens.closePath();
+  strip(context, line, [...ends, 0, 2], belly + 1.2 * scale, lens);
+  strip(context, tile('muscle', texture), [...ends, 0, 2], belly, lens);
+}
+
+// Turf along pieces [ax, ay, bx, by, from, to].
+export function drawTurf(context, pieces, [light, dark], scale) {
+  const style = tile(`turf ${light}`, (u, v) => {
+    const top = -0.45 + 0.38 * Math.abs(wave(2.5 * u)) + 0.16 * Math.sin(6 * Math.PI * u + 0.7);
+    const low = 0.52 + 0.2 * Math.sin(4 * Math.PI * u + 0.5) + 0.1 * wave(5 * u);
+    const colour = mean(parse(dark), parse(light), clamp(0.5 - 0.5 * v));
+    return [...colour, 255 * clamp((v - top) * 4) * clamp((low - v) * 6)];
+  }), sod = new Path2D();
+  for (const [ax, ay, bx, by] of pieces) {
+    sod.moveTo(ax, ay + scale);
+    sod.lineTo(bx, by + scale);
+  }
+  context.lineCap = 'butt';
+  stroke(context, sod, mixed(light, dark, 0.55), 3.2 * scale);
+  for (const piece of pieces) strip(context, style, piece, 12 * scale);
 }
 
 export function stroke(context, path, colour, half, alpha = 1) {
@@ -176,114 +380,80 @@ export function disc(context, x, y, radius, colour, alpha = 1) {
   context.globalAlpha = 1;
 }
 
-// Noise that tiles, of patches about `reach` texels wide.
-function noise(size, reach) {
-  let values = Float32Array.from({ length: size * size },
-    ((seed) => () => (seed = (seed * 16807) % 2147483647) / 1073741824 - 1)(7));
-  for (const step of [1, size, 1, size]) {
-    const at = (k, by) =>
-      (step === 1 ? (k & ~(size - 1)) | ((k + by) & (size - 1)) : (k + by * size) & (size * size - 1));
-    const smooth = values.slice();
-    for (let k = 0; k < values.length; k++) {
-      let sum = 0;
-      for (let by = -reach; by <= reach; by++) sum += values[at(k, by)];
-      smooth[k] = sum / (2 * reach + 1);
+// Waves that tile and look like noise, of about so many to a picture; u and v: angles across and down.
+const noise = (u, v, count) => [1, 2, 3, 4, 5, 6, 7].reduce((sum, k) => sum + Math.sin(
+  Math.round(count * Math.cos(2.4 * k + count)) * u + Math.round(count * Math.sin(2.4 * k + count)) * v + k * k), 0) / 1.9;
+const GRAIN = 256, PEBBLES = 16;
+const chance = (k) => ((Math.sin(12.99 * k) * 43758.55) % 1 + 1) % 1;
+const GRAINS = {
+  wood: (u, v) => 5 * Math.sin(18 * v + 1.5 * Math.sin(u)) + 3 * Math.sin(46 * v + Math.sin(2 * u)),
+  earth: (u, v, x, y) => {
+    const bent = 0.6 * Math.sin(u) + 0.4 * noise(u, v, 4);
+    let value = 1.3 * noise(u, v, 10) + 4 * Math.tanh(2 * Math.sin(4 * v + 1.6 * bent));
+    for (let k = 0; k < PEBBLES; k++) {
+      const away = Math.hypot(x - GRAIN * chance(k + 1), y - GRAIN * chance(k + 40));
+      value += (k % 2 ? 18 : -15) * clamp(1.4 + 2 * chance(k + 80) - away);
     }
-    values = smooth;
-  }
-  const spread = Math.sqrt(values.reduce((sum, value) => sum + value * value, 0) / values.length);
-  return values.map((value) => value / spread);
+    return value;
+  },
+};
+
+// Lay the grain of earth or wood over a path; its place on the page moves with x and y.
+export function layGrain(context, path, kind, x, y) {
+  const grain = once(`grain ${kind}`, () => [1, -1].map((sign) => patternOf(GRAIN, GRAIN, (column, row) => {
+    const unit = (2 * Math.PI) / GRAIN, fine = 3 * chance(column + GRAIN * row) - 1.5;
+    return Array(3).fill(Math.round(sign * (fine + GRAINS[kind](unit * column, unit * row, column, row))));
+  })));
+  // What is lighter is added, and what is darker taken away.
+  ['lighter', 'difference'].forEach((how, k) => {
+    context.globalCompositeOperation = how;
+    grain[k].setTransform(new DOMMatrix([1, 0, 0, 1, x, y]));
+    context.fillStyle = grain[k];
+    context.fill(path);
+  });
+  context.globalCompositeOperation = 'source-over';
 }
 
-// The grain of earth or wood: what is lighter and darker of it, as a picture to lay over.
-function grains(kind) {
-  return sprite(`grain ${kind}`, 256, (own) => {
-    const size = 256, picture = own.createImageData(size, size), fine = noise(size, 2), coarse = noise(size, 9),
-      wide = noise(size, 16);
-    for (let k = 0; k < size * size; k++) {
-      const x = ((k & 255) * Math.PI) / 128, y = ((k >> 8) * Math.PI) / 128, bent = 0.6 * Math.sin(x) + 0.3 * wide[k];
-      const earth = 1.2 * fine[k] + 1.8 * coarse[k] + 4 * Math.tanh(2 * Math.sin(4 * y + 1.6 * bent))
-        + (fine[k] > 3.6 ? 18 : fine[k] < -3.6 ? -15 : 0);
-      const wood = 5 * Math.sin(18 * y + 1.5 * Math.sin(x)) + 3 * Math.sin(46 * y + Math.sin(2 * x)) + fine[k];
-      const value = kind === 'wood' ? wood : earth;
-      picture.data.fill(value > 0 ? 255 : 0, 4 * k, 4 * k + 3);
-      picture.data[4 * k + 3] = Math.min(Math.abs(value) * (value > 0 ? 1.7 : 2.4), 90);
-    }
-    own.putImageData(picture, 0, 0);
+// A picture that is drawn once, between -1 and 1 each way.
+function sprite(name, size, draw) {
+  return once(`${name} ${size}`, () => {
+    const context = canvasOf(size, size);
+    context.setTransform(size / 2, 0, 0, size / 2, size / 2, size / 2);
+    draw(context);
+    return context.canvas;
   });
 }
 
-// A piece of turf that tiles, as long as 64 texels and 24 high; its middle lies on the ground.
-export function turfOf(context, [light, dark]) {
-  return context.createPattern(sprite(`turf ${light}`, 64, (own) => {
-    own.setTransform(1, 0, 0, 1, 0, 0);
-    const fade = own.createLinearGradient(0, 0, 0, 24);
-    fade.addColorStop(0, light);
-    fade.addColorStop(1, dark);
-    own.fillStyle = fade;
-    for (let x = 0; x < 64; x++) {
-      const u = ((x + 0.5) / 64) * Math.PI;
-      const top = -0.45 + 0.38 * Math.abs(Math.sin(5 * u)) + 0.16 * Math.sin(6 * u + 0.7),
-        low = 0.52 + 0.2 * Math.sin(4 * u + 0.5) + 0.1 * Math.sin(10 * u);
-      own.fillRect(x, 12 + 12 * top, 1, 12 * (low - top));
-    }
-  }), 'repeat');
-}
-
-const sprites = new Map();
-
-function sprite(name, size, draw) {
-  if (!sprites.has(name)) {
-    const canvas = document.createElement('canvas');
-    canvas.width = canvas.height = size;
-    const context = canvas.getContext('2d');
-    context.scale(size / 2, size / 2);
-    context.translate(1, 1);
-    draw(context);
-    sprites.set(name, canvas);
-  }
-  return sprites.get(name);
+function radial(context, [x, y], [middleX, middleY, radius], stops) {
+  const fade = context.createRadialGradient(x, y, 0, middleX, middleY, radius);
+  stops.forEach(([at, colour]) => fade.addColorStop(at, colour));
+  context.fillStyle = fade;
+  context.fillRect(-1, -1, 2, 2);
 }
 
 // A disc of a colour that fades out towards its rim.
 export function glow(context, x, y, radius, colour, alpha) {
-  const picture = sprite(`glow ${colour}`, 64, (own) => {
-    const fade = own.createRadialGradient(0, 0, 0, 0, 0, 1);
-    for (let k = 0; k <= 8; k++) {
-      const fall = 1 - k / 8, share = fall * fall * (3 - 2 * fall);
-      fade.addColorStop(k / 8, colour + Math.round(255 * share).toString(16).padStart(2, '0'));
-    }
-    own.fillStyle = fade;
-    own.fillRect(-1, -1, 2, 2);
-  });
+  const shape = sprite(`glow ${colour}`, 64, (own) => radial(own, [0, 0], [0, 0, 1], Array.from({ length: 9 }, (_, k) => {
+    const fall = 1 - k / 8, share = Math.round(255 * fall * fall * (3 - 2 * fall));
+    return [k / 8, colour + share.toString(16).padStart(2, '0')];
+  })));
   context.globalAlpha = alpha;
-  context.drawImage(picture, x - radius, y - radius, 2 * radius, 2 * radius);
+  context.drawImage(shape, x - radius, y - radius, 2 * radius, 2 * radius);
   context.globalAlpha = 1;
 }
 
+const band = (own) => own.fillRect(-1, -0.26, 2, 0.52);
 const MARKS = {
-  stripe: (own) => own.fillRect(-1, -0.26, 2, 0.52),
-  sand: (own) => own.fillRect(-1, -0.26, 2, 0.52),
+  stripe: band, sand: band,
   marble: (own) => {
-    own.lineWidth = 0.4;
-    own.beginPath();
-    own.moveTo(-1, 0.12);
-    own.bezierCurveTo(-0.5, 0.8, 0.5, -0.8, 1, -0.12);
-    own.stroke();
+    const swirl = new Path2D('M-1 0.12C-0.5 0.8 0.5 -0.8 1 -0.12');
+    stroke(own, swirl, '#ffffff', 0.2);
   },
   steel: (own) => {
-    own.lineWidth = 0.1;
-    own.globalAlpha = 0.5;
-    own.beginPath();
-    own.arc(0, 0, 0.62, 0, 7);
-    own.stroke();
-    own.globalAlpha = 1;
-    own.beginPath();
-    own.arc(0.62, 0, 0.13, 0, 7);
-    own.fill();
+    stroke(own, new Path2D('M0.62 0A0.62 0.62 0 1 1 0.62 -0.01'), '#39435a', 0.05, 0.5);
+    disc(own, 0.62, 0, 0.13, '#39435a');
   },
 };
-const MARK_COLOURS = { steel: '#39435a', sand: '#b97f3a' };
 
 // A ball of a kind, lit from above, with its mark turned by an angle (anticlockwise).
 export function ball(context, x, y, radius, angle, kind, colour) {
@@ -291,28 +461,23 @@ export function ball(context, x, y, radius, angle, kind, colour) {
     disc(context, x, y, radius, colour);
     return;
   }
-  const turning = sprite(`ball ${kind} ${colour}`, 128, (own) => {
+  // At most twice as fine as it is shown.
+  const size = Math.min(2 ** Math.ceil(Math.log2(4 * radius)), 256);
+  const whole = (name, draw) => sprite(name, size, (own) => {
     own.beginPath();
     own.arc(0, 0, 0.98, 0, 7);
     own.clip();
-    own.fillStyle = colour;
-    own.fillRect(-1, -1, 2, 2);
-    own.fillStyle = own.strokeStyle = MARK_COLOURS[kind] ?? '#ffffff';
+    draw(own);
+  });
+  const turning = whole(`ball ${kind} ${colour}`, (own) => {
+    disc(own, 0, 0, 1, colour);
+    own.fillStyle = kind === 'sand' ? '#b97f3a' : '#ffffff';
     MARKS[kind]?.(own);
   });
-  const light = sprite('light', 128, (own) => {
-    own.beginPath();
-    own.arc(0, 0, 0.98, 0, 7);
-    own.clip();
-    const shade = own.createRadialGradient(-0.3, -0.45, 0, -0.1, -0.15, 1.12);
-    [[0, '#ffffff38'], [0.35, '#ffffff08'], [0.6, '#00000028'], [0.85, '#0000006a'],
-      [1, '#00000080']].forEach((stop) => shade.addColorStop(...stop));
-    own.fillStyle = shade;
-    own.fillRect(-1, -1, 2, 2);
-    const gleam = own.createRadialGradient(-0.38, -0.5, 0, -0.38, -0.5, 0.3);
-    [[0, '#ffffffd0'], [0.5, '#ffffff60'], [1, '#ffffff00']].forEach((stop) => gleam.addColorStop(...stop));
-    own.fillStyle = gleam;
-    own.fillRect(-1, -1, 2, 2);
+  const light = whole('light', (own) => {
+    radial(own, [-0.3, -0.45], [-0.1, -0.15, 1.12], [[0, '#ffffff38'], [0.35, '#ffffff08'], [0.6, '#00000028'], [0.85, '#0000006a'],
+      [1, '#00000080']]);
+    radial(own, [-0.38, -0.5], [-0.38, -0.5, 0.3], [[0, '#ffffffd0'], [0.5, '#ffffff60'], [1, '#ffffff00']]);
   });
   context.save();
   context.translate(x, y);
@@ -323,36 +488,21 @@ export function ball(context, x, y, radius, angle, kind, colour) {
   context.restore();
 }
 
-// A square of cloth, planks, stones or bricks as a pattern of 64 texels.
-export function sheetOf(context, skin, colour) {
-  const picture = sprite(`sheet ${skin} ${colour}`, 64, (own) => {
-    own.setTransform(1, 0, 0, 1, 0, 0);
-    own.fillStyle = colour;
-    own.fillRect(0, 0, 64, 64);
+// A square of cloth, planks, stones or bricks, of 64 texels that tile.
+export function sheetOf(skin, colour) {
+  return once(`sheet ${skin} ${colour}`, () => patternOf(64, 64, (x, y) => {
     if (skin === 'cloth') {
-      own.fillStyle = '#f3e6cd';
-      own.fillRect(0, 0, 20, 64);
-      for (let x = 0; x < 64; x++) {
-        const fold = 0.2 * Math.sin((x * Math.PI) / 32);
-        own.fillStyle = fold > 0 ? `rgb(255 255 255 / ${fold})` : `rgb(0 0 0 / ${-fold})`;
-        own.fillRect(x, 0, 1, 64);
-      }
-      own.fillStyle = 'rgb(0 0 0 / 0.06)';
-      for (let k = 0; k < 1024; k += 2) own.fillRect(2 * ((k & 31) + ((k >> 5) & 1)), 2 * (k >> 5), 2, 2);
-      return;
+      const fold = 0.2 * wave(x / 64), weave = ((x >> 1) + (y >> 1)) % 2 ? 0.93 : 1;
+      const lit = mean(parse(x < 20 ? '#f3e6cd' : colour), fold > 0 ? [255, 255, 255] : [0, 0, 0], Math.abs(fold));
+      return shaded(lit, weave);
     }
-    const isWood = skin === 'wood';
-    for (let row = 0; row < 4; row++) {
-      for (let k = 0; k < (isWood ? 1 : 2); k++) {
-        const x = isWood ? (row % 2) * 32 : (row % 2) * 16 + 32 * k;
-        own.fillStyle = isWood ? mixed(colour, '#000000', 0.36) : mixed(colour, '#b4b4b4', 0.5);
-        own.fillRect(0, 16 * row, 64, isWood ? 1 : 2);
-        own.fillRect(x, 16 * row, isWood ? 1 : 2, 16);
-        if (isWood) own.fillRect((x + 3) % 64, 16 * row + 7, 3, 3);
-      }
-      own.fillStyle = row % 2 ? '#ffffff14' : '#00000012';
-      own.fillRect(0, 16 * row + 1, 64, 15);
-    }
-  });
-  return context.createPattern(picture, 'repeat');
+    const row = y >> 4, isWood = skin === 'wood', shift = (x + (row % 2) * (isWood ? 32 : 16)) % 64;
+    if (!isWood && (y % 16 < 2 || shift % 32 < 2)) return mean(parse(colour), [183, 183, 183], 0.6);
+    const tone = [1.04, 0.95, 1.01, 0.97, 1.06][(isWood ? row : row * 3 + (shift >> 5)) % 5];
+    if (!isWood) return shaded(parse(colour), tone);
+    const grain = 1 + 0.035 * Math.sin(2.1 * y + 2.2 * Math.sin((x * Math.PI) / 32 + row));
+    const joint = ([0.62, 1.14][y % 16] ?? 1) * (shift ? 1 : 0.66);
+    const nail = Math.abs(shift - 4) < 1.5 && Math.abs((y % 16) - 8) < 1.5 ? 0.6 : 1;
+    return shaded(parse(colour), tone * grain * joint * nail);
+  }));
 }
