@@ -1,5 +1,6 @@
 """Scene: what is drawn of a level, as plain data for a page that draws it by itself."""
 
+import base64
 from dataclasses import asdict
 from typing import Any
 
@@ -9,22 +10,28 @@ from numpy.typing import NDArray
 from sandbox.app.draw.backdrop import WIDE
 from sandbox.app.draw.looks import SOFT_SKINS, Look, ground_look
 from sandbox.app.draw.picture import view_of
-from sandbox.app.draw.themes import THEMES, Theme
+from sandbox.app.draw.textures import TILE, Tiles, laid, woven
+from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme
 from sandbox.app.draw.things.borders import hull_of
+from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
 from sandbox.app.draw.things.faces import spot_of
-from sandbox.app.draw.things.level_slots import Actor, level_slots_of
-from sandbox.app.draw.things.soft import keep_of
+from sandbox.app.draw.things.level_slots import Actor, LevelSlots, level_slots_of
+from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
+from sandbox.app.draw.things.soft import Shape, shape_of
+from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
 from sandbox.physics.snapshot import Snapshot
 
 # Digits of lengths [m]: a tenth of a millimetre.
 DIGITS = 4
+# The colour of the cylinder of a piston.
+PISTON = 0xF6B83E
 
 
 def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
     """All that a page draws of a level, as JSON takes it; colours are "#rrggbb", places and lengths in metres."""
-    slots = level_slots_of(level)
+    slots, ground = level_slots_of(level), _ground(level, snapshot)
     return {
         "view": [round(float(value), DIGITS) for value in view_of(level, snapshot)],
         "theme": level.look.theme if level.look is not None else None,
@@ -36,7 +43,8 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
             {"slot": ball.slot, "kind": ball.kind, "colour": None if ball.colour is None else _hex(ball.colour)}
             for ball in slots.balls
         ],
-        "ground": _ground(level, snapshot),
+        "ground": ground,
+        "pictures": _pictures(slots, ground),
     }
 
 
@@ -59,35 +67,100 @@ def _look(look: Look) -> dict[str, Any]:
 
 
 def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
-    """A body: its look, slots of its particles, its first spring and how many it has."""
+    """A body: its look, slots of its particles, its first spring and how many it has, and what of it is filled."""
     look, there = actor.look, np.ones(len(actor.springs), dtype=np.bool_)
+    radius = float(np.median(snapshot.radius[actor.slots]))
     made: dict[str, Any] = {
         "type": actor.body.type,
         **_look(look),
-        "radius": round(float(np.median(snapshot.radius[actor.slots])), DIGITS),
         "cell": round(actor.cell, DIGITS),
         "angle": round(actor.angle, DIGITS),
         "slots": _runs(actor.slots),
         "spring": int(actor.springs[0]) if len(actor.springs) else 0,
         "springs": len(actor.springs),
+        "segments": actor.body.__dict__.get("segments"),
+        "shapes": [],
+        "needs": [],
     }
-    if "segments" in actor.body.__dict__:
-        made["segments"] = int(actor.body.__dict__["segments"])
-        made["numbers"] = actor.made.numbers.tolist() if actor.body.type == "wheel" else None
-    if look.panel is not None:
-        hull = hull_of(actor.made.form, actor.pairs)
-        made["panel"], made["hull"] = _hex(look.panel) if len(hull) else None, actor.slots[hull].tolist()
-        made["window"] = [int(actor.slots[k]) for k in look.window if k < len(actor.slots)]
+    if look.skin == "lattice":
+        return made
     if actor.body.type == "jelly":
         _, left, loops, _ = actor.filling(there)
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
         made["spacing"] = float(actor.body.__dict__.get("spacing", actor.cell))
-        made["keep"] = round(keep_of(actor, loops), DIGITS)
+        made["shapes"] = [_shape(shape_of(actor, loops, there, radius))]
         if look.face and look.skin in SOFT_SKINS and len(left):
             place, room = spot_of(actor, max(loops, key=len))
             made["face"] = [round(float(value), DIGITS) for value in (*place, room)]
+    elif actor.body.type == "ring":
+        made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], actor.springs.tolist()
+    elif actor.body.type == "wheel" and look.skin:
+        wheel, count = DrawnWheel(actor, there, radius), int(made["segments"])
+        numbers = actor.made.numbers
+        made["shapes"], made["wheel"] = [_shape(wheel.shape)], _wheel(wheel)
+        made["needs"] = actor.springs[(numbers >= count) & (numbers < 3 * count)].tolist()
+    elif look.panel is not None and len(hull := hull_of(actor.made.form, actor.pairs)):
+        window = [k for k in look.window if k < len(actor.slots)]
+        made["shapes"] = [_shape(Shape([actor.slots[hull]], "rubber", look.panel, 0, extra=PANEL_OUT, keep=0.2))]
+        if len(window) > 2:
+            pane = Shape([actor.slots[np.array(window)]], "window", WINDOW, 0, extra=WINDOW_IN, keep=0.2)
+            made["shapes"].append(_shape(pane))
     return made
+
+
+def _shape(shape: Shape) -> dict[str, Any]:
+    return {
+        "loops": [loop.tolist() for loop in shape.loops],
+        "skin": shape.skin,
+        "colour": _hex(shape.colour),
+        "layer": shape.layer,
+        "grown": round(shape.grown, DIGITS),
+        "extra": shape.extra,
+        "keep": round(shape.keep, DIGITS),
+        "shows_strain": shape.flushed is not None,
+    }
+
+
+def _wheel(wheel: DrawnWheel) -> dict[str, Any]:
+    spokes = wheel.inner[wheel.spokes]
+    loops = {"inner": wheel.inner.tolist(), "outer": wheel.outer.tolist(), "spokes": spokes.tolist()}
+    return {"hub": int(wheel.hub), "radius": round(wheel.radius, DIGITS), "is_tyre": wheel.is_tyre, **loops}
+
+
+def _pictures(slots: LevelSlots, ground: list[str]) -> dict[str, dict[str, Any]]:
+    """Textures of lines by their kind or colour, of turf by theme, of sheets by skin and colour."""
+    looks = [actor.look for actor in slots.actors] + [join.look for join in slots.joins]
+    bars, names = Tiles(THEMES["dark"]), {"steel", *(look.line for look in looks)}
+    colours = {look.colour for look in looks if look.line == "paint"} | ({PISTON} if "piston" in names else set())
+    names |= {"deck"} if any(actor.body.type == "bridge" for actor in slots.actors) else set()
+    made = {name: bars.array[TILE[name]] for name in sorted(names & TILE.keys() - {"paint"})}
+    for colour in sorted(colours):
+        number = bars.bar(colour)
+        made[_hex(colour)] = bars.array[number]
+    for name, theme in THEMES.items() if "soil" in ground else ():
+        made[f"turf {name}"] = Tiles(theme).array[TILE["turf"]]
+    for look in [actor.look for actor in slots.actors if actor.body.type == "jelly"]:
+        if look.skin == CLOTH:
+            made[f"{look.skin} {_hex(look.colour)}"] = _folded(woven(look.colour, CLOTH_STRIPE))
+        elif look.skin in CRATES:
+            made[f"{look.skin} {_hex(look.colour)}"] = laid(look.skin, look.colour) | 0xFF000000
+    return {name: _picture(pixels) for name, pixels in made.items()}
+
+
+def _folded(sheet: NDArray[np.int64]) -> NDArray[np.int64]:
+    # A page has no shades of its own at the corners of a cell.
+    turn = 2.0 * np.pi / (FOLD * CLOTH_TEXELS) * np.arange(sheet.shape[1])
+    shade = 1.0 + 0.5 * FOLD_DEPTH * (np.sin(turn) - 1.0)
+    channels = [((sheet >> shift & 255) * shade).astype(np.int64) << shift for shift in (0, 8, 16)]
+    return sum(channels, np.int64(0xFF000000))
+
+
+def _picture(pixels: NDArray[Any]) -> dict[str, Any]:
+    """Pixels (h, w) 0xAARRGGBB, or one column of them where all are alike, as bytes red, green, blue and alpha."""
+    columns = pixels[:, :1] if (pixels == pixels[:, :1]).all() else pixels
+    channels = np.stack([columns >> shift & 255 for shift in (16, 8, 0, 24)], axis=-1).astype(np.uint8)
+    return {"rows": len(columns), "bytes": base64.b64encode(channels.tobytes()).decode()}
 
 
 def _runs(slots: NDArray[np.int64]) -> list[list[int]]:

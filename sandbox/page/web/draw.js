@@ -1,6 +1,6 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, boxOf, canvasOf, clamp, darkEdge, disc, drawBar, drawMuscle, drawTurf, glow, grown, layGrain, mixed,
-  outlineOf, pathOf, sheetOf, skinOf, Skins, soften, stroke } from './paint.js';
+import { ball, boxOf, canvasOf, clamp, darkEdge, disc, drawBar, drawGleams, drawMuscle, drawTurf, fillTriangles, glow,
+  grown, keepPictures, layGrain, linesOf, mixed, outlineOf, pathOf, skinOf, Skins, soften, stroke } from './paint.js';
 import { LAID, thingsOf, unfolded } from './things.js';
 
 const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
@@ -61,6 +61,7 @@ export class Picture {
     this.#canvas = canvas;
     this.#context = canvas.getContext('2d');
     this.#scene = unfolded(scene, world);
+    keepPictures(scene.pictures);
     this.#world = world;
   }
 
@@ -141,8 +142,8 @@ export class Picture {
   }
 
   // The strain of each particle of a shape, the mean of that of its springs; nothing where little of it shows.
-  #splats({ skin, springs }) {
-    if (skin !== 'jelly' && skin !== 'rubber') return null;
+  #splats({ shows_strain: isShown, springs }) {
+    if (!isShown) return null;
     const sums = new Map();
     for (const [spring, ...ends] of springs) {
       for (const slot of ends) {
@@ -178,7 +179,7 @@ export class Picture {
         return [...ends, 0, line.raised ? PLANKS : length / (BAR_PERIOD * line.half), line.raised ? -1 : spring];
       });
     }
-    line.path = lines(line.pieces);
+    line.path = linesOf(line.pieces);
   }
 
   // A smooth way through particles, in pieces; rate: periods of the texture in a metre.
@@ -211,7 +212,7 @@ export class Picture {
       sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
         context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
       bars.forEach(({ path, half }) => stroke(context, path, shadow, half + 1));
-      working.forEach(({ ends }) => stroke(context, lines([this.#points(ends)]), shadow, 3 * this.scale));
+      working.forEach(({ ends }) => stroke(context, linesOf([this.#points(ends)]), shadow, 3 * this.scale));
       this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, shadow));
     });
   }
@@ -301,8 +302,8 @@ export class Picture {
       if (shape.grain) layGrain(context, shape.path, shape.grain, ...camera.toPixels(0, 0));
       stroke(context, shape.path, shape.line, 0.9 * scale, shape.kind === 'glass' ? 0.5 : 0.9);
     }
-    for (const { kind, pieces } of shapes) if (kind === 'soil') drawTurf(context, this.#turfOn(pieces), theme.turf, scale);
-    if (bars.length) drawBar(context, bars, lines(bars), 2.4 * scale, '', theme.metal[0]);
+    for (const { kind, pieces } of shapes) if (kind === 'soil') drawTurf(context, this.#turfOn(pieces), theme, scale);
+    if (bars.length) drawBar(context, bars, linesOf(bars), 2.4 * scale, 'steel', () => [theme.metal[0], 0.7]);
   }
 
   // Pieces of turf on what faces up.
@@ -319,7 +320,7 @@ export class Picture {
 
   #drawLine(line) {
     const { half, kind, bolts = [] } = line, context = this.#context;
-    drawBar(context, line.pieces, line.path, half, kind, line.colour, this.#tintOf);
+    drawBar(context, line.pieces, line.path, half, kind === 'paint' ? line.colour : kind, this.#tintOf);
     if (!bolts.length || (line.cell ?? 0) * this.camera.zoom < 9) return;
     const [rim, tone] = kind === 'paint' ? [outlineOf(line.colour), mixed(line.colour, '#ffffff', 0.24)]
       : BOLTS[kind] ?? [DARK, '#b9c4d8'];
@@ -334,24 +335,25 @@ export class Picture {
     const { scale } = this, context = this.#context, rest = this.rest[spring] * this.camera.zoom;
     const [x, y, endX, endY] = this.#points(ends), dx = endX - x, dy = endY - y, length = Math.hypot(dx, dy) || 1;
     const size = (value, low, high) => clamp(value, low * scale, high * scale) * width;
-    if (kind === 'muscle') {
-      drawMuscle(context, [x, y, endX, endY], size((0.16 * rest * rest) / length, 2.5, 11), scale);
-    } else if (kind === 'piston') {
-      const half = size(0.07 * rest, 2, 4.5), rod = [x, y, endX, endY, 0, 1];
-      const tube = [x, y, x + 0.55 * dx, y + 0.55 * dy, 0, 1];
-      drawBar(context, [rod], lines([rod]), 0.5 * half, 'steel');
-      drawBar(context, [tube], lines([tube]), half, '', '#f6b83e');
+    const bar = (share, half, own) => {
+      const piece = [x, y, x + share * dx, y + share * dy];
+      drawBar(context, [piece], linesOf([piece]), half, own);
+    };
+    if (kind === 'muscle') drawMuscle(context, [x, y, endX, endY], size((0.16 * rest * rest) / length, 2.5, 11));
+    else if (kind === 'piston') {
+      const half = size(0.07 * rest, 2, 4.5);
+      bar(1, 0.5 * half, 'steel');
+      bar(0.55, half, '#f6b83e');
     } else {
-      const wide = size(0.13 * rest, 2.5, 8), turns = [0, ...Array.from({ length: 13 }, (_, k) => 0.12 + (0.76 * k) / 12), 1];
-      const points = turns.map((share, k) => {
-        const side = k < 2 || k > 12 ? 0 : (k % 2 ? -wide : wide) / length;
-        return [x + dx * share - dy * side, y + dy * share + dx * side];
+      const wide = size(0.13 * rest, 2.5, 8) / length, points = Array.from({ length: 15 }, (_, k) => {
+        const share = clamp(0.12 + (0.76 * (k - 1)) / 12), side = k < 2 || k > 12 ? 0 : k % 2 ? -wide : wide;
+        return [x + dx * (k % 14 ? share : k / 14) - dy * side, y + dy * (k % 14 ? share : k / 14) + dx * side];
       });
-      const pieces = points.slice(1).map((point, k) => [...points[k], ...point]);
+      const wire = points.slice(1).map((point, k) => [...points[k], ...point]);
       context.lineCap = context.lineJoin = 'round';
-      stroke(context, lines(pieces), DARK, 2.5 * scale, 0.75);
-      ['#e8edf6', '#8e9ab2'].forEach((tone, half) =>
-        stroke(context, lines(pieces.filter((_, k) => k % 2 === half)), tone, 1.5 * scale));
+      stroke(context, linesOf(wire), DARK, 2.5 * scale, 0.75);
+      ['#e8edf6', '#8e9ab2'].forEach((tone, odd) =>
+        stroke(context, linesOf(wire.filter((_, k) => k % 2 === odd)), tone, 1.5 * scale));
     }
   }
 
@@ -361,59 +363,48 @@ export class Picture {
   }
 
   // Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
-  #drawSheet({ body, triangles, loops, isCloth }) {
-    const context = this.#context, origin = this.#state('origin'), cosine = Math.cos(body.angle);
-    const sine = Math.sin(body.angle), texels = (isCloth ? 16 : 14) / body.spacing;
-    const turned = (slot) => [origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
-      origin[2 * slot] * sine - origin[2 * slot + 1] * cosine];
-    const [left, top, , low] = boxOf(body.slots.flatMap(turned));
-    context.save();
-    context.fillStyle = sheetOf(body.skin, body.colour);
-    for (const slots of triangles) {
-      const [[u0, v0], [u1, v1], [u2, v2]] = slots.map(turned).map(([u, v]) => [(u - left) * texels, (v - low) * texels]);
-      const p = this.#points(slots), d = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
-      const [a, b] = [0, 1].map((k) => ((p[2 + k] - p[k]) * (v2 - v0) - (p[4 + k] - p[k]) * (v1 - v0)) / d);
-      const [c, e] = [0, 1].map((k) => ((p[4 + k] - p[k]) * (u1 - u0) - (p[2 + k] - p[k]) * (u2 - u0)) / d);
-      context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-      context.transform(a, b, c, e, p[0] - a * u0 - c * v0, p[1] - b * u0 - e * v0);
-      // A little larger, so that no seam shows.
-      const u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
-      context.beginPath();
-      for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + 0.1 * (cu - u), cv + 0.1 * (cv - v));
-      context.fill();
-    }
-    context.restore();
-    const hem = pathOf(loops.map((loop) => this.#points(loop)));
+  #drawSheet(sheet) {
+    const { body, isCloth } = sheet, context = this.#context;
+    sheet.texels ??= this.#texels(body, sheet.triangles, isCloth ? 16 : 14);
+    fillTriangles(context, `${body.skin} ${body.colour}`,
+      sheet.triangles.map((slots, k) => [this.#points(slots), sheet.texels[k]]));
+    const hem = pathOf(sheet.loops.map((loop) => this.#points(loop)));
     stroke(context, hem, isCloth ? outlineOf(body.colour) : darkEdge(body.colour), (isCloth ? 1.5 : 2.2) * this.scale);
   }
 
+  // Where the corners of triangles of a body lie in its picture, so many texels to a cell.
+  #texels({ angle, spacing, slots }, triangles, texels) {
+    const origin = this.#state('origin'), cosine = Math.cos(angle), sine = Math.sin(angle);
+    const turned = (slot) => [origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
+      origin[2 * slot] * sine - origin[2 * slot + 1] * cosine].map((value) => (value * texels) / spacing);
+    const [left, , , low] = boxOf(slots.flatMap(turned));
+    return triangles.map((corners) => corners.flatMap(turned).map((value, k) => value - (k % 2 ? low : left)));
+  }
+
+  // How large a wheel is.
   #sizeOf({ hub, outer }) {
-    const [x, y] = this.#points([hub]), points = this.#points(outer);
+    const [x, y, ...points] = this.#points([hub, ...outer]);
     return outer.reduce((sum, _, k) => sum + Math.hypot(points[2 * k] - x, points[2 * k + 1] - y), 0) / outer.length;
   }
 
+  // Lugs are dashes of a wide line under the tyre, two to a particle.
   #drawLugs(wheel) {
-    const size = this.#sizeOf(wheel), [x, y] = this.#points([wheel.hub]), feet = this.#points(wheel.outer), lugs = [];
-    if (wheel.body.skin === 'steel wheel' || size < 22) return;
-    for (let k = 0; k < feet.length; k += 2) {
-      const next = (k + 2) % feet.length, fx = feet[k], fy = feet[k + 1];
-      for (const [footX, footY] of [[fx, fy], [(fx + feet[next]) / 2, (fy + feet[next + 1]) / 2]]) {
-        const out = (1.075 * size + wheel.body.radius * this.camera.zoom) / (Math.hypot(footX - x, footY - y) || 1);
-        lugs.push([footX, footY, x + (footX - x) * out, y + (footY - y) * out]);
-      }
-    }
-    stroke(this.#context, lines(lugs), this.theme.tyre, Math.max(1.5, Math.min(0.055 * size, (1.2 * size) / feet.length)));
+    const context = this.#context, size = this.#sizeOf(wheel), period = (Math.PI * size) / wheel.outer.length;
+    if (!wheel.is_tyre || size < 22) return;
+    const lug = Math.max(3, Math.min(0.11 * size, 0.4 * period));
+    context.lineCap = 'butt';
+    context.setLineDash([lug, period - lug]);
+    stroke(context, pathOf([this.#points(wheel.outer)]), this.theme.tyre, 0.075 * size + wheel.radius * this.camera.zoom);
+    context.setLineDash([]);
   }
 
-  #drawWheel({ body, hub, inner, outer }) {
-    const context = this.#context, size = this.#sizeOf({ hub, outer }), [x, y] = this.#points([hub]);
-    const rim = this.#curve([...inner, inner[0]], [], 0), points = this.#points(inner), spokes = [];
-    if (body.skin !== 'steel wheel' && size > 14) drawBar(context, rim, lines(rim), Math.max(1.6, 0.045 * size), 'steel');
-    const step = body.segments >= 10 ? 4 : 2;
-    for (let k = 0; k < points.length; k += step) spokes.push([x, y, points[k], points[k + 1], 0, 1]);
-    drawBar(context, spokes, lines(spokes), clamp(0.034 * size, 1.2, 4 * this.scale), 'steel');
-    const [firstX, firstY] = this.#points([outer[0]]), radius = clamp(0.15 * size, 2.5, 22 * this.scale);
-    disc(context, x, y, radius + 0.8 * this.scale, DARK, 0.8);
+  #drawWheel(wheel) {
+    const context = this.#context, { scale } = this, { hub, inner, outer } = wheel, size = this.#sizeOf(wheel);
+    const bar = (pieces, half) => drawBar(context, pieces, linesOf(pieces), half, 'steel');
+    const [x, y, firstX, firstY] = this.#points([hub, outer[0]]), radius = clamp(0.15 * size, 2.5, 22 * scale);
+    if (wheel.is_tyre && size > 14) bar(this.#curve([...inner, inner[0]], [], 0), Math.max(1.6, 0.045 * size));
+    bar(wheel.spokes.map((slot) => [x, y, ...this.#points([slot])]), clamp(0.034 * size, 1.2, 4 * scale));
+    disc(context, x, y, radius + 0.8 * scale, DARK, 0.8);
     ball(context, x, y, radius, -Math.atan2(firstY - y, firstX - x), 'steel', '#aeb9cc');
   }
 
@@ -421,10 +412,7 @@ export class Picture {
   #drawGleams(body, degree) {
     const [left, top, right, low] = boxOf(this.#points(body.slots)), context = this.#context;
     const x = (left + right) / 2, y = (top + low) / 2, radius = (right - left + low - top) / 4;
-    for (const [across, down, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85],
-      [-0.2, -0.56, 0.09, 0.8], [0.34, 0.5, 0.4, 0.16]]) {
-      glow(context, x + radius * across, y + radius * down, radius * size, '#ffffff', alpha);
-    }
+    drawGleams(context, x, y, radius);
     const knots = [];
     for (const slot of body.slots.filter((each) => degree.get(each) > 2)) {
       const [tieX, tieY] = this.#points([slot]), away = Math.hypot(tieX - x, tieY - y) || 1;
@@ -434,7 +422,7 @@ export class Picture {
       }
     }
     context.lineCap = 'round';
-    stroke(context, lines(knots), outlineOf(body.colour), Math.max(1.2, 0.03 * radius));
+    stroke(context, linesOf(knots), outlineOf(body.colour), Math.max(1.2, 0.03 * radius));
   }
 
   // Eyes that look where it moves, cheeks, and a mouth that says how it feels.
@@ -515,17 +503,7 @@ export class Picture {
       const [x, y] = this.#points([slot]), slit = 2.5 * size;
       disc(context, x, y, 4.4 * size, '#141924', 0.9);
       disc(context, x, y, 3.5 * size, '#b4bcc9');
-      stroke(context, lines([[x - slit, y - slit, x + slit, y + slit]]), '#4a5363', 0.6 * size);
+      stroke(context, linesOf([[x - slit, y - slit, x + slit, y + slit]]), '#4a5363', 0.6 * size);
     });
   }
-}
-
-// A path of lines [ax, ay, bx, by].
-function lines(pieces) {
-  const path = new Path2D();
-  for (const [ax, ay, bx, by] of pieces) {
-    path.moveTo(ax, ay);
-    path.lineTo(bx, by);
-  }
-  return path;
 }

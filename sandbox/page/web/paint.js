@@ -27,11 +27,8 @@ export function canvasOf(width, height, settings) {
   return canvas.getContext('2d', settings);
 }
 
-// A pattern of which a function of the place gives each pixel, as channels red, green, blue, and alpha if it has any.
-function patternOf(width, height, pixel) {
-  const context = canvasOf(width, height), image = context.createImageData(width, height);
-  image.data.fill(255);
-  for (let k = 0; k < width * height; k++) image.data.set(pixel(k % width, Math.floor(k / width)), 4 * k);
+function patternOf(image) {
+  const context = canvasOf(image.width, image.height);
   context.putImageData(image, 0, 0);
   return context.createPattern(context.canvas, 'repeat');
 }
@@ -254,51 +251,22 @@ export class Skins {
   }
 }
 
-// A round bar across, from -1 at its lit side to 1: light above, dark below, a line at both sides.
-function round(colour, across, gleam, top = 0.5, bottom = 0.55) {
-  const shine = gleam * Math.exp(-(((across + 0.42) / 0.16) ** 2));
-  const rim = 1 - 0.5 * clamp((Math.abs(across) - 0.72) / 0.28);
-  const lit = mean(mean(parse(colour), [255, 255, 255], 0.6 * top * clamp(-across - 0.1)), [0, 0, 0],
-    0.6 * bottom * clamp(across + 0.1));
-  return mean(lit, [255, 255, 255], shine).map((value) => value * rim);
-}
-
-function twisted(light, dark, along, across, slope, count) {
-  const wave = 0.5 + 0.5 * Math.cos(2 * Math.PI * (along * count + across * slope));
-  const shade = 1 - 0.62 * clamp(across + 0.25) ** 1.2 - 0.35 * clamp((Math.abs(across) - 0.7) / 0.3)
-    + 0.22 * Math.exp(-(((across + 0.4) / 0.25) ** 2));
-  return mean(parse(dark), parse(light), clamp((wave - 0.22) * 2.2)).map((value) => value * shade);
-}
-
-const shaded = (colour, share) => colour.map((value) => value * share);
-const wave = (turns) => Math.sin(2 * Math.PI * turns);
-// Of each kind of line: the line around it, its own colour, and its texture along (0..1) and across (-1..1); a texture
-// with a fourth channel shows what is behind.
+// Of each kind of line: the line around it and its own colour.
 const LINES = {
-  rope: ['#5b3d20', '#c89b62', (u, v) => twisted('#deb276', '#80542c', u, v, 0.16, 2)],
-  cable: ['#3a4252', '#a3adbf', (u, v) => twisted('#bec8d8', '#5c667a', u, v, 0.12, 3)],
-  deck: ['#4a2e16', '#c48e58', (u, v) => shaded(round('#c48e58', v, 0, 0.4, 0.6),
-    (1 - 0.55 * clamp((0.06 - Math.min(u, 1 - u)) * 40)) * (1 + 0.05 * Math.sin(9 * v)))],
-  // A link seen flat, a ring, then one on edge, a bar through its ends.
-  chain: [null, null, (u, v) => {
-    const flat = (0.27 - Math.abs(Math.hypot((0.95 * (u - 0.3)) / 0.36, v) - 0.74)) * 8;
-    const edge = clamp((0.34 - Math.abs(v)) * 8)
-      * clamp((0.27 - Math.min(Math.abs(u - 0.8), Math.abs(u + 0.2))) * 16);
-    return [...round('#b0bccd', v, 0.4), 255 * clamp(Math.max(flat, edge))];
-  }],
-  wood: ['#3a2614', '#c99258', (u, v) => round('#c99258', v, 0, 0.35, 0.45).map((value) =>
-    value + 9 * Math.sin(40 * v * v + 23 * v) + 5 * wave(u + 0.7 * v))],
-  muscle: ['#4a1622', '#de5462', (u, v) => shaded(round('#de5462', v, 0.3), 0.8 + 0.2 * wave(2 * u))],
-  thread: [null, '#aeb5c2'], silk: [null, '#ccd4e0'], steel: ['#161b26', '#96a3ba'], brass: ['#3a2a10', '#e2b04e'],
-  rubber: ['#3a1418', '#eb605c'], bone: ['#4a3a28', '#f0e4cc'], turf: [null, null],
+  rope: ['#5b3d20', '#c89b62'], cable: ['#3a4252', '#a3adbf'], deck: ['#4a2e16', '#c48e58'], wood: ['#3a2614', '#c99258'],
+  chain: [], thread: [null, '#aeb5c2'], silk: [null, '#ccd4e0'], steel: ['#161b26', '#96a3ba'],
+  brass: ['#3a2a10', '#e2b04e'], rubber: ['#3a1418', '#eb605c'], bone: ['#4a3a28', '#f0e4cc'],
 };
-const ALONG = 64, HALF_TILE = 8;
+const ALONG = 32, HALF_TILE = 8;
 // Lines narrower than this have no texture, nor has any where there are so many.
 const THIN = 1.1, MOST_STRIPS = 1500;
 
-function tile(name, texture) {
-  return once(`tile ${name}`, () => patternOf(ALONG, 2 * HALF_TILE, (x, y) =>
-    texture((x + 0.5) / ALONG, (y + 0.5) / HALF_TILE - 1)));
+// Keep the pictures of a scene: textures of lines and sheets.
+export function keepPictures(pictures) {
+  for (const [name, { rows, bytes }] of Object.entries(pictures)) {
+    const values = Uint8ClampedArray.from(atob(bytes), (letter) => letter.charCodeAt(0));
+    once(name, () => patternOf(new ImageData(values, values.length / 4 / rows)));
+  }
 }
 
 // Fill a strip from a to b with a style, in the coordinates of a tile: between two places along it, and lit from above.
@@ -315,14 +283,14 @@ function strip(context, style, [ax, ay, bx, by, from = 0, to = 1], half, within)
   context.setTransform(before);
 }
 
-// Draw pieces [ax, ay, bx, by, from, to, spring] as a bar of a kind, along a path through them; colour: of what is of
-// no kind; tintOf(spring): a colour over it and how much of that, or nothing.
-export function drawBar(context, pieces, path, half, kind, colour, tintOf) {
-  const [line, own, texture = (u, v) => round(own, v, 0.3)] = LINES[kind] ?? [outlineOf(colour), colour];
+// Draw pieces [ax, ay, bx, by, from, to, spring] as a bar of a kind, or of a colour, along a path through them.
+// tintOf(spring): a colour over it and how much of that, or nothing.
+export function drawBar(context, pieces, path, half, kind, tintOf) {
+  const [line, own] = LINES[kind] ?? [outlineOf(kind), kind];
   context.lineCap = context.lineJoin = 'round';
   if (line && half > 0.7) stroke(context, path, line, half + 0.9, 0.8);
   if (own) stroke(context, path, own, half);
-  const style = half >= THIN && pieces.length < MOST_STRIPS && tile(LINES[kind] ? kind : colour, texture);
+  const style = half >= THIN && pieces.length < MOST_STRIPS && kept.get(kind);
   for (const piece of pieces) {
     if (style) strip(context, style, piece, half);
     const tint = tintOf?.(piece[6]);
@@ -334,33 +302,29 @@ export function drawBar(context, pieces, path, half, kind, colour, tintOf) {
 }
 
 // A muscle between two places, as thick as its belly.
-export function drawMuscle(context, ends, belly, scale) {
-  const lens = new Path2D(), [line, , texture] = LINES.muscle, end = 1.6 / belly * HALF_TILE, high = 2.3 * HALF_TILE;
-  const long = 2 * ALONG;
-  lens.moveTo(0, HALF_TILE - end);
-  lens.bezierCurveTo(0.3 * long, HALF_TILE - 1.3 * HALF_TILE, 0.7 * long, -0.3 * HALF_TILE, long, HALF_TILE - end);
-  lens.lineTo(long, HALF_TILE + end);
-  lens.bezierCurveTo(0.7 * long, high, 0.3 * long, high, 0, HALF_TILE + end);
-  lens.closePath();
-  strip(context, line, [...ends, 0, 2], belly + 1.2 * scale, lens);
-  strip(context, tile('muscle', texture), [...ends, 0, 2], belly, lens);
+export function drawMuscle(context, ends, belly) {
+  const lens = new Path2D('M0 6C19 -2.4 45 -2.4 64 6V10C45 18.4 19 18.4 0 10Z');
+  strip(context, '#4a1622', [...ends, 0, 2], belly + 1.2, lens);
+  strip(context, kept.get('muscle'), [...ends, 0, 2], belly, lens);
 }
 
 // Turf along pieces [ax, ay, bx, by, from, to].
-export function drawTurf(context, pieces, [light, dark], scale) {
-  const style = tile(`turf ${light}`, (u, v) => {
-    const top = -0.45 + 0.38 * Math.abs(wave(2.5 * u)) + 0.16 * Math.sin(6 * Math.PI * u + 0.7);
-    const low = 0.52 + 0.2 * Math.sin(4 * Math.PI * u + 0.5) + 0.1 * wave(5 * u);
-    const colour = mean(parse(dark), parse(light), clamp(0.5 - 0.5 * v));
-    return [...colour, 255 * clamp((v - top) * 4) * clamp((low - v) * 6)];
-  }), sod = new Path2D();
-  for (const [ax, ay, bx, by] of pieces) {
-    sod.moveTo(ax, ay + scale);
-    sod.lineTo(bx, by + scale);
-  }
+export function drawTurf(context, pieces, theme, scale) {
   context.lineCap = 'butt';
-  stroke(context, sod, mixed(light, dark, 0.55), 3.2 * scale);
-  for (const piece of pieces) strip(context, style, piece, 12 * scale);
+  context.translate(0, scale);
+  stroke(context, linesOf(pieces), mixed(...theme.turf, 0.55), 3.2 * scale);
+  context.translate(0, -scale);
+  for (const piece of pieces) strip(context, kept.get(`turf ${theme.name}`), piece, 12 * scale);
+}
+
+// A path of lines [ax, ay, bx, by].
+export function linesOf(pieces) {
+  const path = new Path2D();
+  for (const [ax, ay, bx, by] of pieces) {
+    path.moveTo(ax, ay);
+    path.lineTo(bx, by);
+  }
+  return path;
 }
 
 export function stroke(context, path, colour, half, alpha = 1) {
@@ -385,25 +349,25 @@ const noise = (u, v, count) => [1, 2, 3, 4, 5, 6, 7].reduce((sum, k) => sum + Ma
   Math.round(count * Math.cos(2.4 * k + count)) * u + Math.round(count * Math.sin(2.4 * k + count)) * v + k * k), 0) / 1.9;
 const GRAIN = 256, PEBBLES = 16;
 const chance = (k) => ((Math.sin(12.99 * k) * 43758.55) % 1 + 1) % 1;
+const PLACES = Array.from({ length: PEBBLES }, (_, k) => [1, 40, 80].map((from) => chance(k + from)));
 const GRAINS = {
   wood: (u, v) => 5 * Math.sin(18 * v + 1.5 * Math.sin(u)) + 3 * Math.sin(46 * v + Math.sin(2 * u)),
-  earth: (u, v, x, y) => {
-    const bent = 0.6 * Math.sin(u) + 0.4 * noise(u, v, 4);
-    let value = 1.3 * noise(u, v, 10) + 4 * Math.tanh(2 * Math.sin(4 * v + 1.6 * bent));
-    for (let k = 0; k < PEBBLES; k++) {
-      const away = Math.hypot(x - GRAIN * chance(k + 1), y - GRAIN * chance(k + 40));
-      value += (k % 2 ? 18 : -15) * clamp(1.4 + 2 * chance(k + 80) - away);
-    }
-    return value;
-  },
+  earth: (u, v, x, y) => PLACES.reduce((sum, [left, top, size], k) => sum + (k % 2 ? 18 : -15)
+    * clamp(1.4 + 2 * size - Math.hypot(x - GRAIN * left, y - GRAIN * top)),
+  1.3 * noise(u, v, 10) + 4 * Math.tanh(2 * Math.sin(4 * v + Math.sin(u) + 0.6 * noise(u, v, 4)))),
 };
 
 // Lay the grain of earth or wood over a path; its place on the page moves with x and y.
 export function layGrain(context, path, kind, x, y) {
-  const grain = once(`grain ${kind}`, () => [1, -1].map((sign) => patternOf(GRAIN, GRAIN, (column, row) => {
-    const unit = (2 * Math.PI) / GRAIN, fine = 3 * chance(column + GRAIN * row) - 1.5;
-    return Array(3).fill(Math.round(sign * (fine + GRAINS[kind](unit * column, unit * row, column, row))));
-  })));
+  const grain = once(`grain ${kind}`, () => [1, -1].map((sign) => {
+    const image = new ImageData(GRAIN, GRAIN), unit = (2 * Math.PI) / GRAIN;
+    for (let k = 0; k < GRAIN * GRAIN; k++) {
+      const column = k % GRAIN, row = Math.floor(k / GRAIN), fine = 3 * chance(k) - 1.5;
+      image.data.fill(Math.round(sign * (fine + GRAINS[kind](unit * column, unit * row, column, row))), 4 * k, 4 * k + 3);
+      image.data[4 * k + 3] = 255;
+    }
+    return patternOf(image);
+  }));
   // What is lighter is added, and what is darker taken away.
   ['lighter', 'difference'].forEach((how, k) => {
     context.globalCompositeOperation = how;
@@ -440,6 +404,14 @@ export function glow(context, x, y, radius, colour, alpha) {
   context.globalAlpha = alpha;
   context.drawImage(shape, x - radius, y - radius, 2 * radius, 2 * radius);
   context.globalAlpha = 1;
+}
+
+// Gleams of a balloon about a place.
+export function drawGleams(context, x, y, radius) {
+  for (const [across, down, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85],
+    [-0.2, -0.56, 0.09, 0.8], [0.34, 0.5, 0.4, 0.16]]) {
+    glow(context, x + radius * across, y + radius * down, radius * size, '#ffffff', alpha);
+  }
 }
 
 const band = (own) => own.fillRect(-1, -0.26, 2, 0.52);
@@ -488,21 +460,20 @@ export function ball(context, x, y, radius, angle, kind, colour) {
   context.restore();
 }
 
-// A square of cloth, planks, stones or bricks, of 64 texels that tile.
-export function sheetOf(skin, colour) {
-  return once(`sheet ${skin} ${colour}`, () => patternOf(64, 64, (x, y) => {
-    if (skin === 'cloth') {
-      const fold = 0.2 * wave(x / 64), weave = ((x >> 1) + (y >> 1)) % 2 ? 0.93 : 1;
-      const lit = mean(parse(x < 20 ? '#f3e6cd' : colour), fold > 0 ? [255, 255, 255] : [0, 0, 0], Math.abs(fold));
-      return shaded(lit, weave);
-    }
-    const row = y >> 4, isWood = skin === 'wood', shift = (x + (row % 2) * (isWood ? 32 : 16)) % 64;
-    if (!isWood && (y % 16 < 2 || shift % 32 < 2)) return mean(parse(colour), [183, 183, 183], 0.6);
-    const tone = [1.04, 0.95, 1.01, 0.97, 1.06][(isWood ? row : row * 3 + (shift >> 5)) % 5];
-    if (!isWood) return shaded(parse(colour), tone);
-    const grain = 1 + 0.035 * Math.sin(2.1 * y + 2.2 * Math.sin((x * Math.PI) / 32 + row));
-    const joint = ([0.62, 1.14][y % 16] ?? 1) * (shift ? 1 : 0.66);
-    const nail = Math.abs(shift - 4) < 1.5 && Math.abs((y % 16) - 8) < 1.5 ? 0.6 : 1;
-    return shaded(parse(colour), tone * grain * joint * nail);
-  }));
+// Fill triangles of a skin and colour: corners on the page, and places of its picture.
+export function fillTriangles(context, name, triangles) {
+  const before = context.getTransform();
+  context.fillStyle = kept.get(name);
+  for (const [[x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]] of triangles) {
+    const area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
+    const across = (p, q) => (p * (v2 - v0) - q * (v1 - v0)) / area, down = (p, q) => (q * (u1 - u0) - p * (u2 - u0)) / area;
+    const [a, b, c, d] = [across(x1 - x0, x2 - x0), across(y1 - y0, y2 - y0), down(x1 - x0, x2 - x0), down(y1 - y0, y2 - y0)];
+    context.transform(a, b, c, d, x0 - a * u0 - c * v0, y0 - b * u0 - d * v0);
+    // A little larger, so that no seam shows.
+    const u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
+    context.beginPath();
+    for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + 0.1 * (cu - u), cv + 0.1 * (cv - v));
+    context.fill();
+    context.setTransform(before);
+  }
 }

@@ -46,30 +46,13 @@ export function thingsOf(scene, active) {
 }
 
 function addBody(things, body, active) {
-  const springs = body.springs.filter(([spring]) => active[spring]), isWhole = springs.length === body.springs.length;
-  const shape = { ...own(body), springs };
-  if (body.skin === 'lattice') addLines(things, body, springs, MESH);
-  else if (body.triangles) addFilled(things, body, springs, active);
-  else if (body.type === 'ring' && isWhole) {
+  const springs = body.springs.filter(([spring]) => active[spring]);
+  if (body.triangles) addFilled(things, body, springs, active);
+  else if (body.shapes.length && body.needs.every((spring) => active[spring])) {
+    for (const shape of body.shapes) things.shapes.push({ ...shape, springs, cell: body.cell });
     if (body.skin === 'balloon') things.balloons.push(body);
-    things.shapes.push({ ...shape, loops: [body.slots], layer: 1 });
-  } else if (body.type === 'wheel' && body.skin && hasRings(body, active)) {
-    const { segments, slots: [hub, ...rings], skin } = body, outer = rings.slice(segments, 2 * segments);
-    const inner = rings.slice(0, segments), isTyre = skin !== 'steel wheel';
-    const tyre = ['rubber', 'jelly', 'plain'].includes(skin) ? body.colour : '#343842';
-    things.wheels.push({ body, hub, inner, outer });
-    things.shapes.push({ ...shape, springs: [], loops: [outer, inner.toReversed()], layer: 0,
-      skin: isTyre ? 'tyre' : 'rubber', colour: isTyre ? tyre : '#96a3ba' });
-  } else if (body.panel) {
-    const panel = { ...shape, springs: [], grown: 0, layer: 0, keep: 0.2 };
-    things.shapes.push({ ...panel, loops: [body.hull], skin: 'rubber', colour: body.panel, extra: 4 });
-    if (body.window.length > 2) things.shapes.push({ ...panel, loops: [body.window], skin: 'window', colour: '#bfe6ff',
-      extra: -3 });
+    if (body.wheel) things.wheels.push(body.wheel);
   } else addLines(things, body, springs, ['bridge', 'girder'].includes(body.type) ? TRUSS : MESH);
-}
-
-function own({ skin, colour, radius, cell }) {
-  return { skin, colour, grown: radius, cell, extra: 0, keep: 0.25 };
 }
 
 // Springs of one look as strands, working springs or bars.
@@ -108,19 +91,12 @@ function addFilled(things, body, springs, active) {
   }
   const inside = ([, a, b]) => filled.has(a) && filled.has(b), loops = bordersOf(left), isCloth = body.skin === 'cloth';
   if (left.length) {
-    const isLaid = LAID.includes(body.skin), shape = { ...own(body), loops, springs: springs.filter(inside) };
-    if (isLaid) things.shapes.push({ ...shape, layer: 0, keep: 0.12 });
-    else if (!isCloth) things.shapes.push({ ...shape, layer: 1, keep: body.keep });
+    const [shape] = body.shapes, isLaid = LAID.includes(body.skin);
+    if (!isCloth) things.shapes.push({ ...shape, loops, springs: springs.filter(inside), cell: body.cell });
     if (isCloth || isLaid) things.sheets.push({ body, triangles: left, loops, isCloth });
     if (body.face) things.faces.push(body);
   }
   addLines(things, body, springs.filter((spring) => !inside(spring)), MESH);
-}
-
-// Whether both rings of a wheel are closed.
-function hasRings(body, active) {
-  return body.numbers.every((number, k) => number < body.segments || number >= 3 * body.segments
-    || active[body.spring + k]);
 }
 
 // Loops of particles around triangles of one winding.
