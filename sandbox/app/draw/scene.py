@@ -110,6 +110,7 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
 
 
 def _shape(shape: Shape) -> dict[str, Any]:
+    """A shape; its loops run as they do on the desktop, a hole against the outline."""
     return {
         "loops": [loop.tolist() for loop in shape.loops],
         "skin": shape.skin,

@@ -1,13 +1,12 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, boxOf, canvasOf, clamp, darkEdge, disc, drawBar, drawGleams, drawMuscle, drawTurf, fillTriangles, glow,
-  grown, keepPictures, layGrain, linesOf, mixed, outlineOf, pathOf, skinOf, Skins, soften, stroke } from './paint.js';
+import { ball, boxOf, canvasOf, castShadow, clamp, darkEdge, disc, drawBar, drawGleams, drawMuscle, drawTurf, fillSkin,
+  fillTriangles, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, pathOf, skinOf, stroke,
+} from './paint.js';
 import { LAID, thingsOf, unfolded } from './things.js';
 
 const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
 const PERIOD = { chain: 5.6, deck: 2 }, USUAL_PERIOD = 6.5, BAR_PERIOD = 8, PLANKS = 3;
 const ROUNDING = { balloon: 0.3, tyre: 0.16, wood: 0.05, stone: 0.07, brick: 0.07, window: 0.2 };
-// Pixels of the page to one of its shadows.
-const SHADOW = 6;
 const FLUSH_FROM = 0.03, FLUSH_RANGE = 0.22, LEAST_FLUSH = 0.02, BENT = 2.5;
 const SANDS = ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'];
 const BOLTS = { bone: ['#4a3a28', '#fff4de'], brass: ['#3a2a10', '#f2ce7c'], wood: ['#3a2614', '#d8a970'] };
@@ -53,9 +52,6 @@ export class Picture {
   #active = new Uint8Array();
   #backdrop = canvasOf(1, 1);
   #backdropKey = '';
-  #shadow = canvasOf(1, 1, { willReadFrequently: true });
-  #skins = new Skins();
-  #groundSkins = new Skins();
 
   constructor(canvas, scene, world) {
     this.#canvas = canvas;
@@ -83,9 +79,11 @@ export class Picture {
       this.#things = thingsOf(this.#scene, this.#active);
     }
     const things = this.#things, { shapes } = things;
-    shapes.forEach((shape) => this.#trace(shape));
+    shapes.forEach((shape) => {
+      this.#trace(shape);
+      makeSkin(shape, width, height);
+    });
     things.lines.forEach((line) => this.#follow(line));
-    this.#skins.make(shapes, width, height);
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(this.#backdropNow(size), 0, 0);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -126,7 +124,7 @@ export class Picture {
   // The outline, the skin and the strain of a shape as they are now.
   #trace(shape) {
     const { scale, camera: { zoom } } = this, by = Math.min(shape.grown * zoom, 40 * scale) + shape.extra * scale;
-    const loops = grown(shape.loops.map((loop) => this.#points(loop)), by), box = boxOf(loops[0]);
+    const loops = shape.loops.map((loop) => grown(this.#points(loop), by)), box = boxOf(loops[0]);
     shape.path = pathOf(loops, shape.keep);
     shape.box = box;
     shape.depth = clamp(Math.sqrt((box[2] - box[0]) * (box[3] - box[1])) * (ROUNDING[shape.skin] ?? 0.17), 6 * scale,
@@ -184,53 +182,36 @@ export class Picture {
 
   // A smooth way through particles, in pieces; rate: periods of the texture in a metre.
   #curve(particles, springs, rate) {
-    const p = this.#points(particles), last = particles.length - 1, pieces = [];
-    const isClosed = particles[0] === particles[last];
+    const last = particles.length - 1, isClosed = particles[0] === particles[last], pieces = [];
+    const p = particles.map((slot) => this.#points([slot]));
+    const beyond = (end, inner, other) => (isClosed ? other : end.map((value, i) => 2 * value - inner[i]));
+    const way = [beyond(p[0], p[1], p[last - 1]), ...p, beyond(p[last], p[last - 1], p[1])];
     let along = 0;
     for (let k = 0; k < last; k++) {
-      const before = k || !isClosed ? Math.max(k - 1, 0) : last - 1, after = k + 2 > last ? (isClosed ? 1 : last) : k + 2;
-      const [a, b, c, d] = [before, k, k + 1, after].map((i) => [p[2 * i], p[2 * i + 1]]);
-      const turn = Math.max(...[0, 1].map((i) => Math.max(Math.abs(a[i] - 2 * b[i] + c[i]) * (before !== k),
-        Math.abs(b[i] - 2 * c[i] + d[i]) * (after !== k + 1))));
-      const count = turn > BENT ? 3 : 1, long = this.rest[springs[k]] * rate;
-      let from = b;
-      for (let n = 1; n <= count; n++) {
-        const t = n / count, to = [0, 1].map((i) => b[i] + (t * (c[i] - a[i] + t * (2 * a[i] - 5 * b[i] + 4 * c[i] - d[i]
-          + t * (3 * (b[i] - c[i]) + d[i] - a[i])))) / 2);
-        pieces.push([...from, ...(n < count ? to : c), along + (long * (n - 1)) / count, along + long * t, springs[k]]);
-        from = to;
+      const [a, b, c, d] = way.slice(k, k + 4), bends = (q, r, s) => q.map((_, i) => Math.abs(q[i] - 2 * r[i] + s[i]));
+      const count = Math.max(...bends(a, b, c), ...bends(b, c, d)) > BENT ? 3 : 1, length = this.rest[springs[k]] * rate;
+      // Catmull and Rom's curve.
+      const place = (t) => b.map((_, i) => b[i] + (t / 2) * (c[i] - a[i]
+        + t * (2 * a[i] - 5 * b[i] + 4 * c[i] - d[i] + t * (3 * (b[i] - c[i]) + d[i] - a[i]))));
+      for (let n = 0; n < count; n++) {
+        const [from, to] = [n / count, (n + 1) / count];
+        pieces.push([...place(from), ...place(to), along + length * from, along + length * to, springs[k]]);
       }
-      along += long;
+      along += length;
     }
     return pieces;
   }
 
   #castShadows({ shapes, sheets, lines: bars, working }) {
-    const { shadow, shadow_strength: strength } = this.theme;
-    this.#castShadow(this.#context, strength, (context) => {
+    const { theme: { shadow }, scale } = this;
+    castShadow(this.#context, this.camera, this.theme, scale, (context) => {
       shapes.forEach((shape) => context.fill(shape.path, 'evenodd'));
       sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
         context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
       bars.forEach(({ path, half }) => stroke(context, path, shadow, half + 1));
-      working.forEach(({ ends }) => stroke(context, linesOf([this.#points(ends)]), shadow, 3 * this.scale));
+      working.forEach(({ ends }) => stroke(context, linesOf([this.#points(ends)]), shadow, 3 * scale));
       this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, shadow));
     });
-  }
-
-  // Lay on a picture the soft shadow of what a function draws.
-  #castShadow(onto, strength, draw) {
-    const { camera, theme, scale } = this, context = this.#shadow, { canvas } = context;
-    const width = Math.ceil(camera.width / SHADOW), height = Math.ceil(camera.height / SHADOW);
-    Object.assign(canvas, { width, height });
-    context.setTransform(1 / SHADOW, 0, 0, 1 / SHADOW, 0, 0);
-    context.fillStyle = theme.shadow;
-    context.lineCap = context.lineJoin = 'round';
-    draw(context);
-    const part = soften(context, theme.shadow), [x, y, ...size] = part.map((value) => value * SHADOW);
-    if (!part.length) return;
-    onto.globalAlpha = strength;
-    onto.drawImage(canvas, ...part, x + 4 * scale, y + 8 * scale, ...size);
-    onto.globalAlpha = 1;
   }
 
   // Stage and ground, kept while the camera stands still.
@@ -273,7 +254,7 @@ export class Picture {
       wood: ['#c28e57', '#9a6c40', 0.3, 0.4, 1, '#6e4a28'], glass: ['#d4eefa', '#8cc4e6', 0.6, 0.3, 0.42, '#6fa8c8'],
     }[kind] ?? [...metal, 0.45, 0.45, 1, theme.metal[1]];
     const isEarth = kind === 'soil' || kind === 'rock', grain = isEarth ? 'earth' : kind === 'wood' ? 'wood' : null;
-    const look = { near, deep, light: '#ffffff', up, shade: '#000000', down, gloss: 0, clear: 0, alpha };
+    const look = [near, deep, up, '#000000', down, 0, 0, alpha];
     return { kind, look, depth: (isEarth ? 26 : 9) * this.scale, line: mixed(line, '#000000', 0.35), grain };
   }
 
@@ -293,12 +274,12 @@ export class Picture {
       if (!isSolid || area > 0) bars = bars.concat(pieces);
       else shapes.push({ pieces, path: pathOf([points]), box: boxOf(points), ...this.#groundOf(this.#scene.ground[k]) });
     });
-    this.#castShadow(context, 0.7 * theme.shadow_strength, (shadow) => {
+    castShadow(context, camera, { ...theme, shadow_strength: 0.7 * theme.shadow_strength }, scale, (shadow) => {
       for (const { kind, path } of shapes) if (kind !== 'soil') shadow.fill(path);
     });
-    this.#groundSkins.make(shapes, camera.width, camera.height);
     for (const shape of shapes) {
-      this.#groundSkins.fill(context, shape);
+      makeSkin(shape, camera.width, camera.height);
+      fillSkin(context, shape);
       if (shape.grain) layGrain(context, shape.path, shape.grain, ...camera.toPixels(0, 0));
       stroke(context, shape.path, shape.line, 0.9 * scale, shape.kind === 'glass' ? 0.5 : 0.9);
     }
@@ -358,7 +339,7 @@ export class Picture {
   }
 
   #drawShape(shape) {
-    this.#skins.fill(this.#context, shape);
+    fillSkin(this.#context, shape);
     if (!LAID.includes(shape.skin)) stroke(this.#context, shape.path, outlineOf(shape.colour), 0.75 * this.scale);
   }
 

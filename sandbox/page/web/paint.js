@@ -13,7 +13,7 @@ export function mixed(first, second, share) {
 export const outlineOf = (colour) => mixed(colour, '#28003c', 0.46);
 export const darkEdge = (colour) => mixed(colour, '#180a00', 0.66);
 
-const kept = new Map();
+const WHITE = [255, 255, 255], kept = new Map();
 
 // What was made under a name, or is made now.
 function once(name, make) {
@@ -48,22 +48,12 @@ export function pathOf(loops, keep = 0) {
   return path;
 }
 
-// Loops of points moved outwards by so much: the first lies around the others, and holes run the other way.
-export function grown(loops, by) {
-  const next = (points, k) => (k + 2) % points.length;
-  const area = loops[0].reduce((sum, x, k, all) =>
-    (k % 2 ? sum : sum + x * all[next(all, k) + 1] - all[next(all, k)] * all[k + 1]), 0);
-  const side = area > 0 ? by : -by;
-  return loops.map((points) => {
-    const result = new Float64Array(points.length);
-    for (let k = 0; k < points.length; k += 2) {
-      const before = (k + points.length - 2) % points.length, after = next(points, k);
-      const dx = points[after] - points[before], dy = points[after + 1] - points[before + 1];
-      const length = Math.hypot(dx, dy) || 1;
-      result[k] = points[k] + (dy / length) * side;
-      result[k + 1] = points[k + 1] - (dx / length) * side;
-    }
-    return result;
+// A loop of points moved outwards by so much; it runs anticlockwise, and a hole the other way.
+export function grown(points, by) {
+  return points.map((value, k) => {
+    const x = k & ~1, before = (x + points.length - 2) % points.length, after = (x + 2) % points.length;
+    const dx = points[after] - points[before], dy = points[after + 1] - points[before + 1];
+    return value + ((k % 2 ? dx : -dy) * by) / (Math.hypot(dx, dy) || 1);
   });
 }
 
@@ -77,178 +67,136 @@ export function boxOf(points) {
   return box;
 }
 
-// Of each skin: the colour and the strength of light and of shade, its gleam, and how much shows through inside.
+// Of each skin: the strength of light, the colour and strength of shade, its gleam, and how much shows through inside.
 const SKINS = {
-  jelly: ['#ffffff', 0.46, '#5a0a6e', 0.34, 0.75, 0.13], balloon: ['#ffffff', 0.38, '#3c0046', 0.36, 0, 0.14],
-  tyre: ['#ffffff', 0.22, '#000000', 0.51, 0.15, 0], window: ['#ffffff', 0.52, '#3c6e96', 0.34, 0.5, 0.1],
-  rubber: ['#ffffff', 0.24, '#140028', 0.32, 0.15, 0], wood: ['#ffffff', 0.19, '#1e0a00', 0.38, 0, 0],
+  jelly: [0.46, '#5a0a6e', 0.34, 0.75, 0.13], balloon: [0.38, '#3c0046', 0.36, 0, 0.14],
+  tyre: [0.22, '#000000', 0.51, 0.15, 0], window: [0.52, '#3c6e96', 0.34, 0.5, 0.1],
+  wood: [0.19, '#1e0a00', 0.38, 0, 0], rubber: [0.24, '#140028', 0.32, 0.15, 0],
 };
 const INSIDE = 32, LIT = 128, STRONGEST = 1.5;
 
-// How a skin of a colour looks, as table() takes it.
+// How a skin of a colour looks, as table() takes it: near its edge and deep inside, in light and in shade.
 export function skinOf(skin, colour) {
-  const [light, up, shade, down, gloss, clear] = SKINS[skin] ?? SKINS[skin === 'stone' || skin === 'brick' ? 'wood'
-    : 'rubber'];
-  return { near: colour, deep: colour, light, up, shade, down, gloss, clear, alpha: 1 };
+  return [colour, colour, ...SKINS[skin] ?? SKINS.rubber, 1];
 }
 
 // Colours of a skin by how far inside a place is, and how lit.
 function table(look) {
-  return once(JSON.stringify(look), () => {
-    const [near, deep, light, shade] = ['near', 'deep', 'light', 'shade'].map((name) => parse(look[name]));
+  return once(look.join(), () => {
+    const [near, deep, up, shade, down, gloss, clear, alpha] = look.map((value) => (value.length ? parse(value) : value));
     const colours = new Uint8ClampedArray(4 * INSIDE * LIT);
     for (let k = 0; k < INSIDE * LIT; k++) {
       const inside = Math.floor(k / LIT) / (INSIDE - 1), lit = STRONGEST * ((2 * (k % LIT)) / (LIT - 1) - 1);
-      const gleam = clamp((lit - 0.3) * 5) * clamp((inside - 0.16) * 6) * clamp((0.8 - inside) * 4) * look.gloss;
-      let colour = mean(near, deep, clamp(1.15 * inside - 0.08));
-      colour = mean(colour, lit > 0 ? light : shade, lit > 0 ? look.up * Math.min(lit, 1.1)
-        : look.down * Math.min(-lit, 1));
-      colours.set(mean(colour, [255, 255, 255], gleam), 4 * k);
-      colours[4 * k + 3] = 255 * look.alpha * (1 - look.clear * inside * (1 - 0.5 * Math.min(Math.abs(lit), 1)));
+      const gleam = clamp((lit - 0.3) * 5) * clamp((inside - 0.16) * 6) * clamp((0.8 - inside) * 4) * gloss;
+      const own = mean(near, deep, clamp(1.15 * inside - 0.08));
+      const colour = lit > 0 ? mean(own, WHITE, up * Math.min(lit, 1.1)) : mean(own, shade, down * Math.min(-lit, 1));
+      const shown = alpha * (1 - clear * inside * (1 - 0.5 * Math.min(Math.abs(lit), 1)));
+      colours.set([...mean(colour, WHITE, gleam), 255 * shown], 4 * k);
     }
     return new Uint32Array(colours.buffer);
   });
 }
 
-// Blur cells by the mean of `reach` of them to each side, so many times; beyond them lies nothing.
-function blur(cells, width, height, reach, times) {
-  const line = new Float32Array(Math.max(width, height) + 2 * reach + 1), full = 2 * reach + 1;
-  const along = (first, step, count) => {
-    line.fill(0);
-    for (let k = 0; k < count; k++) line[k + reach + 1] = cells[first + k * step];
-    let sum = 0;
-    for (let k = 1; k < full; k++) sum += line[k];
-    for (let k = 0; k < count; k++) {
-      sum += line[k + full] - line[k];
-      cells[first + k * step] = sum / full;
+// Blur cells in rows by the mean of `reach` of them to each side, so many times; cells at the border are empty.
+function blur(cells, columns, reach, times) {
+  for (let time = 0; time < 2 * times; time++) {
+    const step = time % 2 ? columns : 1, before = cells.slice();
+    for (let k = reach * step; k < cells.length - reach * step; k++) {
+      let sum = 0;
+      for (let by = -reach; by <= reach; by++) sum += before[k + by * step];
+      cells[k] = sum / (2 * reach + 1);
     }
-  };
-  for (let time = 0; time < times; time++) {
-    for (let y = 0; y < height; y++) along(y * width, 1, width);
-    for (let x = 0; x < width; x++) along(x, width, height);
   }
 }
 
-// Make of what is drawn on a small picture its soft shadow; the part with anything in it: left, top, width and height.
-export function soften(context, colour) {
-  const { width, height } = context.canvas, image = context.getImageData(0, 0, width, height);
-  const pixels = new Uint32Array(image.data.buffer), found = [];
-  for (let k = 0; k < pixels.length; k++) if (pixels[k]) found.push(k % width, Math.floor(k / width));
-  if (!found.length) return [];
-  const box = boxOf(found), left = Math.max(box[0] - 3, 0), top = Math.max(box[1] - 3, 0);
-  const across = Math.min(box[2] + 4, width) - left, down = Math.min(box[3] + 4, height) - top;
-  const cells = new Float32Array(across * down), [red, green, blue] = parse(colour);
-  const each = (act) => {
-    for (let k = 0; k < cells.length; k++) act(k, (top + Math.floor(k / across)) * width + left + (k % across));
-  };
-  each((cell, pixel) => { cells[cell] = pixels[pixel] >>> 24; });
-  blur(cells, across, down, 1, 3);
-  each((cell, pixel) => { pixels[pixel] = (cells[cell] << 24) | (blue << 16) | (green << 8) | red; });
+// Pixels of the page to one of a shadow, and how often that is blurred.
+const SHADOW = 6, SOFTNESS = 3, shadowed = canvasOf(1, 1, { willReadFrequently: true });
+
+// Lay the soft shadow of what a function draws on a picture of this size: down and to the right.
+export function castShadow(onto, { width, height }, { shadow: colour, shadow_strength: strength }, scale, draw) {
+  const context = shadowed, { canvas } = context, columns = Math.ceil(width / SHADOW) + 2 * SOFTNESS;
+  Object.assign(canvas, { width: columns, height: Math.ceil(height / SHADOW) + 2 * SOFTNESS });
+  context.setTransform(1 / SHADOW, 0, 0, 1 / SHADOW, SOFTNESS, SOFTNESS);
+  context.fillStyle = colour;
+  context.lineCap = context.lineJoin = 'round';
+  draw(context);
+  const image = context.getImageData(0, 0, columns, canvas.height), pixels = new Uint32Array(image.data.buffer);
+  const found = [], [red, green, blue] = parse(colour);
+  for (let k = 0; k < pixels.length; k++) if (pixels[k]) found.push(k % columns, Math.floor(k / columns));
+  if (!found.length) return;
+  // Only where there is any.
+  const [left, top, right, bottom] = boxOf(found), x = Math.max(left - SOFTNESS, 0), y = Math.max(top - SOFTNESS, 0);
+  const wide = right + SOFTNESS + 1 - x, high = Math.min(bottom + SOFTNESS + 1, canvas.height) - y;
+  const first = y * columns, cells = new Float32Array(high * columns);
+  for (let k = 0; k < cells.length; k++) cells[k] = pixels[first + k] >>> 24;
+  blur(cells, columns, 1, SOFTNESS);
+  for (let k = 0; k < cells.length; k++) pixels[first + k] = (cells[k] << 24) | (blue << 16) | (green << 8) | red;
   context.putImageData(image, 0, 0);
-  return [left, top, across, down];
+  onto.globalAlpha = strength;
+  onto.drawImage(canvas, x, y, wide, high, (x - SOFTNESS) * SHADOW + 4 * scale, (y - SOFTNESS) * SHADOW + 8 * scale,
+    wide * SHADOW, high * SHADOW);
+  onto.globalAlpha = 1;
 }
 
 // Cells of a skin are this part of its depth wide; they are blurred by so many to each side, so often; cells around it.
-const CELL = 0.25, REACH = 3, TIMES = 3, AROUND = REACH * (TIMES - 1) + 1, ATLAS = 512;
+const CELL = 0.25, REACH = 3, TIMES = 3, AROUND = REACH * (TIMES - 1) + 1;
 // Light from above, a little from the left.
 const DOWNWARDS = 0.9, ACROSS = 0.42, STEEPNESS = 1.45 / CELL / 2;
 const FLUSH = 0.74, SQUEEZED = parse('#4a3fd8'), STRETCHED = parse('#fff0b0');
 
-// Skins of shapes that bulge: a shape is filled with cells, blurred they are how high its skin stands, and the slope of
-// that is how it is lit. All are made in one small picture, of which fill() takes its part.
-export class Skins {
-  #context = canvasOf(1, 1, { willReadFrequently: true });
-  #pattern = null;
-
-  // shapes: each with its path, box, depth, look, and maybe splats of strain; of which a view shows a part.
-  make(shapes, width, height) {
-    const context = this.#context, { canvas } = context;
-    let x = 0, y = 0, high = 0, wide = ATLAS;
-    for (const shape of shapes) {
-      const cell = Math.max(CELL * shape.depth, 1), room = AROUND * cell, [left, top, right, bottom] = shape.box;
-      const from = [Math.max(left, -room) - room, Math.max(top, -room) - room];
-      const size = [Math.min(right, width + room) + room - from[0], Math.min(bottom, height + room) + room - from[1]];
-      const [columns, rows] = size.map((length) => Math.ceil(length / cell));
-      shape.part = columns > 2 * AROUND && rows > 2 * AROUND ? { cell, from, columns, rows } : null;
-      if (!shape.part) continue;
-      if (x && x + columns > ATLAS) [x, y, high] = [0, y + high, 0];
-      Object.assign(shape.part, { x, y });
-      [x, high, wide] = [x + columns, Math.max(high, rows), Math.max(wide, columns)];
-    }
-    const seen = shapes.filter((shape) => shape.part);
-    if (!seen.length) return;
-    Object.assign(canvas, { width: wide, height: y + high });
-    for (const { part, path } of seen) {
-      context.save();
-      context.beginPath();
-      context.rect(part.x, part.y, part.columns, part.rows);
-      context.clip();
-      context.setTransform(...this.#place(part, true));
-      context.fill(path, 'evenodd');
-      context.restore();
-    }
-    const image = context.getImageData(0, 0, wide, y + high), pixels = new Uint32Array(image.data.buffer);
-    for (const shape of seen) this.#light(shape, pixels, wide);
-    context.putImageData(image, 0, 0);
-    this.#pattern = context.createPattern(canvas, 'repeat');
+// Make the skin of a shape that bulges, of which a view of this size is seen. The shape has a path, a box, a depth, a
+// look, and splats of strain or none: it is filled with cells; blurred they are how high its skin stands, and the slope
+// of that is how it is lit.
+export function makeSkin(shape, width, height) {
+  const { box: [left, top, right, bottom], depth, path, look } = shape, cell = Math.max(CELL * depth, 1);
+  const room = AROUND * cell, x = Math.max(left, -room) - room, y = Math.max(top, -room) - room;
+  const columns = Math.ceil((Math.min(right, width + room) + room - x) / cell);
+  const rows = Math.ceil((Math.min(bottom, height + room) + room - y) / cell);
+  shape.fill = null;
+  if (columns <= 2 * AROUND || rows <= 2 * AROUND) return;
+  const context = (shape.cells ??= canvasOf(1, 1, { willReadFrequently: true })), { canvas } = context;
+  Object.assign(canvas, { width: columns, height: rows });
+  context.setTransform(1 / cell, 0, 0, 1 / cell, -x / cell, -y / cell);
+  context.fill(path, 'evenodd');
+  const image = context.getImageData(0, 0, columns, rows), pixels = new Uint32Array(image.data.buffer);
+  const colours = table(look), high = new Float32Array(pixels.length);
+  const strain = shape.splats && strainOf(shape.splats.map(([across, down, amount]) =>
+    [(across - x) / cell, (down - y) / cell, amount]), Math.max(shape.reach / cell, 1), columns, rows);
+  for (let k = 0; k < pixels.length; k++) high[k] = (pixels[k] >>> 24) / 255;
+  blur(high, columns, REACH, TIMES);
+  for (let k = columns; k < pixels.length - columns; k++) {
+    const lit = STEEPNESS * (ACROSS * (high[k + 1] - high[k - 1]) + DOWNWARDS * (high[k + columns] - high[k - columns]));
+    const inside = clamp(Math.round(1.9 * (high[k] - 0.45) * (INSIDE - 1)), 0, INSIDE - 1);
+    pixels[k] = colours[inside * LIT + clamp(Math.round((lit / STRONGEST + 1) * 0.5 * (LIT - 1)), 0, LIT - 1)];
+    if (!strain?.[k]) continue;
+    const share = FLUSH * Math.abs(strain[k]), over = strain[k] > 0 ? STRETCHED : SQUEEZED;
+    for (let at = 0; at < 3; at++) image.data[4 * k + at] += (over[at] - image.data[4 * k + at]) * share;
   }
+  context.putImageData(image, 0, 0);
+  shape.fill = context.createPattern(canvas, 'repeat');
+  shape.fill.setTransform(new DOMMatrix([cell, 0, 0, cell, x, y]));
+}
 
-  // From cells of the picture to the page, or back.
-  #place({ x, y, cell, from }, isBack) {
-    return isBack ? [1 / cell, 0, 0, 1 / cell, x - from[0] / cell, y - from[1] / cell]
-      : [cell, 0, 0, cell, from[0] - x * cell, from[1] - y * cell];
-  }
-
-  #light(shape, pixels, wide) {
-    const { part: { x, y, columns, rows }, look } = shape, height = new Float32Array(columns * rows);
-    const colours = table(look), first = y * wide + x, strain = shape.splats && this.#strain(shape);
-    for (let row = 0; row < rows; row++) {
-      for (let column = 0; column < columns; column++) {
-        height[row * columns + column] = (pixels[first + row * wide + column] >>> 24) / 255;
-      }
-    }
-    blur(height, columns, rows, REACH, TIMES);
-    for (let row = 1; row < rows - 1; row++) {
-      for (let column = 1; column < columns - 1; column++) {
-        const k = row * columns + column, lit = STEEPNESS * (ACROSS * (height[k + 1] - height[k - 1])
-          + DOWNWARDS * (height[k + columns] - height[k - columns]));
-        const inside = clamp(Math.round(1.9 * (height[k] - 0.45) * (INSIDE - 1)), 0, INSIDE - 1);
-        let colour = colours[inside * LIT + clamp(Math.round((lit / STRONGEST + 1) * 0.5 * (LIT - 1)), 0, LIT - 1)];
-        if (strain) {
-          const share = FLUSH * Math.abs(strain[k]), [red, green, blue] = strain[k] > 0 ? STRETCHED : SQUEEZED;
-          const over = (value, at) => (((colour >>> at) & 255) * (1 - share) + value * share) << at;
-          colour = ((colour & 0xff000000) | over(blue, 16) | (over(green, 8) & 0xff00) | (over(red, 0) & 255)) >>> 0;
-        }
-        pixels[first + row * wide + column] = colour;
+// How squeezed (-1) or stretched (1) cells are, by splats [x, y, amount] that reach so far.
+function strainOf(splats, reach, columns, rows) {
+  const sum = new Float32Array(columns * rows), weight = new Float32Array(columns * rows).fill(0.25);
+  for (const [x, y, amount] of splats) {
+    for (let row = Math.max(Math.ceil(y - 2 * reach), 0); row < Math.min(y + 2 * reach, rows); row++) {
+      for (let column = Math.max(Math.ceil(x - 2 * reach), 0); column < Math.min(x + 2 * reach, columns); column++) {
+        const near = Math.max(1 - ((column - x) ** 2 + (row - y) ** 2) / (4 * reach * reach), 0) ** 2;
+        sum[row * columns + column] += near * amount;
+        weight[row * columns + column] += near;
       }
     }
   }
+  return sum.map((value, k) => clamp(value / weight[k], -1, 1));
+}
 
-  // How squeezed (-1) or stretched (1) each cell is, by splats [x, y, amount].
-  #strain({ splats, reach, part: { cell, from, columns, rows } }) {
-    const sum = new Float32Array(columns * rows), weight = new Float32Array(columns * rows).fill(0.25);
-    const wide = Math.max(reach / cell, 1);
-    for (const [x, y, amount] of splats) {
-      const middle = (x - from[0]) / cell, level = (y - from[1]) / cell;
-      for (let row = Math.max(Math.ceil(level - 2 * wide), 0); row < Math.min(level + 2 * wide, rows); row++) {
-        const begin = Math.max(Math.ceil(middle - 2 * wide), 0), end = Math.min(middle + 2 * wide, columns);
-        for (let column = begin; column < end; column++) {
-          const near = Math.max(1 - ((column - middle) ** 2 + (row - level) ** 2) / (4 * wide * wide), 0) ** 2;
-          sum[row * columns + column] += near * amount;
-          weight[row * columns + column] += near;
-        }
-      }
-    }
-    return sum.map((value, k) => clamp(value / weight[k], -1, 1));
-  }
-
-  // Fill a shape with its skin.
-  fill(context, { part, path }) {
-    if (!part) return;
-    this.#pattern.setTransform(new DOMMatrix(this.#place(part, false)));
-    context.fillStyle = this.#pattern;
-    context.fill(path, 'evenodd');
-  }
+// Fill a shape with its skin.
+export function fillSkin(context, { fill, path }) {
+  if (!fill) return;
+  context.fillStyle = fill;
+  context.fill(path, 'evenodd');
 }
 
 // Of each kind of line: the line around it and its own colour.
