@@ -21,6 +21,7 @@ from sandbox.app.draw.things.soft import Shape, shape_of
 from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
+from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.snapshot import Snapshot
 
 # Digits of lengths [m]: a tenth of a millimetre.
@@ -104,6 +105,8 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
         window = [k for k in look.window if k < len(actor.slots)]
         made["shapes"] = [_shape(Shape([actor.slots[hull]], "rubber", look.panel, 0, extra=PANEL_OUT, keep=0.2))]
         if len(window) > 2:
+            corners = actor.made.form[window]
+            window = window[:: 1 if signed_area(corners, np.roll(corners, -1, axis=0)) > 0.0 else -1]
             pane = Shape([actor.slots[np.array(window)]], "window", WINDOW, 0, extra=WINDOW_IN, keep=0.2)
             made["shapes"].append(_shape(pane))
     return made
@@ -153,8 +156,8 @@ def _folded(sheet: NDArray[np.int64]) -> NDArray[np.int64]:
     # A page has no shades of its own at the corners of a cell.
     turn = 2.0 * np.pi / (FOLD * CLOTH_TEXELS) * np.arange(sheet.shape[1])
     shade = 1.0 + 0.5 * FOLD_DEPTH * (np.sin(turn) - 1.0)
-    channels = [((sheet >> shift & 255) * shade).astype(np.int64) << shift for shift in (0, 8, 16)]
-    return sum(channels, np.int64(0xFF000000))
+    red, green, blue = (((sheet >> shift & 255) * shade).astype(np.int64) << shift for shift in (16, 8, 0))
+    return 0xFF000000 | red | green | blue
 
 
 def _picture(pixels: NDArray[Any]) -> dict[str, Any]:

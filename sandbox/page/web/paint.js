@@ -99,12 +99,17 @@ function table(look) {
 
 // Blur cells in rows by the mean of `reach` of them to each side, so many times; cells at the border are empty.
 function blur(cells, columns, reach, times) {
+  const full = 2 * reach + 1;
   for (let time = 0; time < 2 * times; time++) {
-    const step = time % 2 ? columns : 1, before = cells.slice();
-    for (let k = reach * step; k < cells.length - reach * step; k++) {
+    const step = time % 2 ? columns : 1, before = new Float32Array(cells.length + full * step);
+    before.set(cells, (reach + 1) * step);
+    for (let first = 0; first < step; first++) {
       let sum = 0;
-      for (let by = -reach; by <= reach; by++) sum += before[k + by * step];
-      cells[k] = sum / (2 * reach + 1);
+      for (let k = first; k < first + reach * step; k += step) sum += cells[k];
+      for (let k = first; k < cells.length; k += step) {
+        sum += before[k + full * step] - before[k];
+        cells[k] = sum / full;
+      }
     }
   }
 }
