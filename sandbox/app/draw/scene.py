@@ -132,7 +132,7 @@ def _wheel(wheel: DrawnWheel) -> dict[str, Any]:
     return {"hub": int(wheel.hub), "radius": round(wheel.radius, DIGITS), "is_tyre": wheel.is_tyre, **loops}
 
 
-def _pictures(slots: LevelSlots, ground: list[str]) -> dict[str, dict[str, Any]]:
+def _pictures(slots: LevelSlots, ground: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
     """Textures of lines by their kind or colour, of turf by theme, of sheets by skin and colour."""
     looks = [actor.look for actor in slots.actors] + [join.look for join in slots.joins]
     bars, names = Tiles(THEMES["dark"]), {"steel", *(look.line for look in looks)}
@@ -142,7 +142,7 @@ def _pictures(slots: LevelSlots, ground: list[str]) -> dict[str, dict[str, Any]]
     for colour in sorted(colours):
         number = bars.bar(colour)
         made[_hex(colour)] = bars.array[number]
-    for name, theme in THEMES.items() if "soil" in ground else ():
+    for name, theme in THEMES.items() if any(each["kind"] == "soil" for each in ground) else ():
         made[f"turf {name}"] = Tiles(theme).array[TILE["turf"]]
     for look in [actor.look for actor in slots.actors if actor.body.type == "jelly"]:
         if look.skin == CLOTH:
@@ -173,13 +173,16 @@ def _runs(slots: NDArray[np.int64]) -> list[list[int]]:
     return [list(run) for run in zip(slots[begins].tolist(), np.diff(begins, append=len(slots)).tolist(), strict=True)]
 
 
-def _ground(level: Level, snapshot: Snapshot) -> list[str]:
-    """What each chain of the terrain is made of."""
-    terrain, kinds = snapshot.terrain, []
+def _ground(level: Level, snapshot: Snapshot) -> list[dict[str, Any]]:
+    """What each chain of the terrain is made of, or "line", and its points [m]; what is closed ends where it begins."""
+    terrain, made = snapshot.terrain, []
     left, _, right, _ = view_of(level, snapshot)
     extent = max(float(np.ptp(terrain.vertex[:, 0])) if len(terrain.vertex) else 0.0, right - left)
     for chain in np.unique(terrain.chain).tolist():
-        across = terrain.vertex[terrain.edge_a[terrain.chain == chain], 0]
+        edges = np.flatnonzero(terrain.chain == chain)
+        corners, after = terrain.vertex[terrain.edge_a[edges]], terrain.vertex[terrain.edge_b[edges]]
         name = level.terrain[chain].id if chain < len(level.terrain) else ""
-        kinds.append(ground_look(level, name, bool(np.ptp(across) > WIDE * extent)))
-    return kinds
+        is_solid = terrain.solid[edges[0]] and signed_area(corners, after) > 0.0
+        kind = ground_look(level, name, bool(np.ptp(corners[:, 0]) > WIDE * extent)) if is_solid else "line"
+        made.append({"kind": kind, "points": np.concatenate([corners[:1], after]).round(DIGITS).tolist()})
+    return made

@@ -1,6 +1,6 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
 import { ball, boxOf, canvasOf, castShadow, clamp, darkEdge, disc, drawBar, drawGleams, drawMuscle, drawTurf, fillSkin,
-  fillTriangles, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, pathOf, skinOf, stroke,
+  fillTriangles, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, pathOf, radial, skinOf, stroke,
 } from './paint.js';
 import { LAID, thingsOf, unfolded } from './things.js';
 
@@ -227,21 +227,15 @@ export class Picture {
     context.fillStyle = fade;
     context.fillRect(0, 0, width, height);
     // A lamp behind the stage, which is darker towards the corners.
-    const light = context.createRadialGradient(0, 0, 0, 0, 0, 1.6);
-    const dark = context.createRadialGradient(0, 0, 0, 0, 0, 1.6);
-    for (let k = 0; k <= 16; k++) {
-      const away = k / 10, dim = theme.vignette * clamp(away - 0.55, 0, 1.2) ** 1.6;
-      light.addColorStop(k / 16, mixed('#000000', theme.lamp, Math.max(1 - 1.25 * away, 0) ** 2));
-      dark.addColorStop(k / 16, `rgb(0 0 0 / ${dim})`);
-    }
+    const steps = Array.from({ length: 17 }, (_, k) => k / 10), stops = (tone) => steps.map((away) => [away / 1.6, tone(away)]);
     context.save();
     context.translate(width / 2, 0.46 * height);
     context.scale(0.62 * width, 0.72 * height);
-    for (const [fill, how] of [[light, 'lighter'], [dark, 'source-over']]) {
-      context.globalCompositeOperation = how;
-      context.fillStyle = fill;
-      context.fillRect(-1, -1, 2, 2);
-    }
+    context.globalCompositeOperation = 'lighter';
+    radial(context, [0, 0], [0, 0, 1.6], stops((away) => mixed('#000000', theme.lamp, Math.max(1 - 1.25 * away, 0) ** 2)));
+    context.globalCompositeOperation = 'source-over';
+    radial(context, [0, 0], [0, 0, 1.6], stops((away) =>
+      `rgb(0 0 0 / ${theme.vignette * clamp(away - 0.55, 0, 1.2) ** 1.6})`));
     context.restore();
     this.#drawGround(context);
     return context.canvas;
@@ -259,44 +253,27 @@ export class Picture {
   }
 
   #drawGround(context) {
-    const { theme, scale, camera } = this, view = (name) => this.#state(`terrain.${name}`), chains = [];
-    const vertex = view('vertex'), first = view('edge_a'), second = view('edge_b'), solid = view('solid');
-    const place = (slot) => camera.toPixels(vertex[2 * Number(slot)], vertex[2 * Number(slot) + 1]);
-    view('chain').forEach((chain, edge) => {
-      const own = (chains[chain] ??= { pieces: [], isSolid: solid[edge] });
-      own.pieces.push([...place(first[edge]), ...place(second[edge])]);
+    const { theme, scale, camera } = this, { width, height } = camera, paler = { ...theme };
+    const shapes = this.#scene.ground.map(({ kind, points }) => {
+      const way = points.map(([x, y]) => camera.toPixels(x, y)), corners = way.slice(1).flat();
+      const pieces = way.slice(1).map((point, k) => [...way[k], ...point]);
+      return { kind, pieces, path: pathOf([corners]), box: boxOf(corners), ...this.#groundOf(kind) };
     });
-    const shapes = [];
-    let bars = [];
-    Object.values(chains).forEach(({ pieces, isSolid }, k) => {
-      const area = pieces.reduce((sum, [ax, ay, bx, by]) => sum + ax * by - ay * bx, 0);
-      const points = pieces.flatMap(([x, y]) => [x, y]);
-      if (!isSolid || area > 0) bars = bars.concat(pieces);
-      else shapes.push({ pieces, path: pathOf([points]), box: boxOf(points), ...this.#groundOf(this.#scene.ground[k]) });
+    const solid = shapes.filter(({ kind }) => kind !== 'line');
+    paler.shadow_strength *= 0.7;
+    castShadow(context, camera, paler, scale, (shadow) => {
+      for (const { kind, path } of solid) if (kind !== 'soil') shadow.fill(path);
     });
-    castShadow(context, camera, { ...theme, shadow_strength: 0.7 * theme.shadow_strength }, scale, (shadow) => {
-      for (const { kind, path } of shapes) if (kind !== 'soil') shadow.fill(path);
-    });
-    for (const shape of shapes) {
-      makeSkin(shape, camera.width, camera.height);
+    for (const shape of solid) {
+      makeSkin(shape, width, height);
       fillSkin(context, shape);
       if (shape.grain) layGrain(context, shape.path, shape.grain, ...camera.toPixels(0, 0));
       stroke(context, shape.path, shape.line, 0.9 * scale, shape.kind === 'glass' ? 0.5 : 0.9);
     }
-    for (const { kind, pieces } of shapes) if (kind === 'soil') drawTurf(context, this.#turfOn(pieces), theme, scale);
-    if (bars.length) drawBar(context, bars, linesOf(bars), 2.4 * scale, 'steel', () => [theme.metal[0], 0.7]);
-  }
-
-  // Pieces of turf on what faces up.
-  #turfOn(pieces) {
-    const period = 46 * this.scale, turf = [];
-    let along = 0;
-    for (const [ax, ay, bx, by] of pieces) {
-      const length = Math.hypot(bx - ax, by - ay), from = along, sunk = 2 * this.scale;
-      along += length / period;
-      if ((ax - bx) / length > 0.8) turf.push([ax, ay + sunk, bx, by + sunk, from, along]);
+    for (const { kind, pieces } of shapes) {
+      if (kind === 'soil') drawTurf(context, pieces, theme, scale);
+      if (kind === 'line') drawBar(context, pieces, linesOf(pieces), 2.4 * scale, 'steel', () => [theme.metal[0], 0.7]);
     }
-    return turf;
   }
 
   #drawLine(line) {

@@ -158,7 +158,8 @@ export function makeSkin(shape, width, height) {
   const columns = Math.ceil((Math.min(right, width + room) + room - x) / cell);
   const rows = Math.ceil((Math.min(bottom, height + room) + room - y) / cell);
   shape.fill = null;
-  if (columns <= 2 * AROUND || rows <= 2 * AROUND) return;
+  // Nothing of what is elsewhere, or nowhere.
+  if (!(columns > 2 * AROUND && rows > 2 * AROUND)) return;
   const context = (shape.cells ??= canvasOf(1, 1, { willReadFrequently: true })), { canvas } = context;
   Object.assign(canvas, { width: columns, height: rows });
   context.setTransform(1 / cell, 0, 0, 1 / cell, -x / cell, -y / cell);
@@ -261,13 +262,17 @@ export function drawMuscle(context, ends, belly) {
   strip(context, kept.get('muscle'), [...ends, 0, 2], belly, lens);
 }
 
-// Turf along pieces [ax, ay, bx, by, from, to].
+// Turf on those of the pieces [ax, ay, bx, by] of the ground's outline that face up.
 export function drawTurf(context, pieces, theme, scale) {
+  let along = 0;
+  const turf = pieces.map(([ax, ay, bx, by]) => {
+    const length = Math.hypot(bx - ax, by - ay), from = along;
+    along += length / (46 * scale);
+    return [ax, ay + 2 * scale, bx, by + 2 * scale, from, along, (ax - bx) / length > 0.8];
+  }).filter((piece) => piece[6]);
   context.lineCap = 'butt';
-  context.translate(0, scale);
-  stroke(context, linesOf(pieces), mixed(...theme.turf, 0.55), 3.2 * scale);
-  context.translate(0, -scale);
-  for (const piece of pieces) strip(context, kept.get(`turf ${theme.name}`), piece, 12 * scale);
+  stroke(context, linesOf(turf), mixed(...theme.turf, 0.55), 3.2 * scale);
+  for (const piece of turf) strip(context, kept.get(`turf ${theme.name}`), piece, 12 * scale);
 }
 
 // A path of lines [ax, ay, bx, by].
@@ -341,7 +346,8 @@ function sprite(name, size, draw) {
   });
 }
 
-function radial(context, [x, y], [middleX, middleY, radius], stops) {
+// Fill the square with a colour that changes from a place to the rim of a disc.
+export function radial(context, [x, y], [middleX, middleY, radius], stops) {
   const fade = context.createRadialGradient(x, y, 0, middleX, middleY, radius);
   stops.forEach(([at, colour]) => fade.addColorStop(at, colour));
   context.fillStyle = fade;
