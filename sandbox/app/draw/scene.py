@@ -7,17 +7,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.draw.backdrop import WIDE
+from sandbox.app.draw.backdrop import BEVEL, SOIL_DEPTH, WIDE
+from sandbox.app.draw.colours import mixed
 from sandbox.app.draw.looks import SOFT_SKINS, Look, ground_look
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.textures import TILE, Tiles, laid, woven
-from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme
+from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme, outline_of, rgb_of
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
 from sandbox.app.draw.things.faces import spot_of
 from sandbox.app.draw.things.level_slots import Actor, LevelSlots, level_slots_of
 from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
-from sandbox.app.draw.things.soft import Shape, shape_of
+from sandbox.app.draw.things.soft import ROUNDING, USUAL_ROUNDING, Shape, shape_of
 from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
@@ -28,6 +29,14 @@ from sandbox.physics.snapshot import Snapshot
 DIGITS = 4
 # The colour of the cylinder of a piston.
 PISTON = 0xF6B83E
+# Of each skin, as in textures: the strength of light, the colour and strength of shade, its gleam, and how much shows
+# through inside.
+_WOODEN = (0.19, "#1e0a00", 0.38, 0.0, 0.0)
+_SKINS = {
+    "jelly": (0.46, "#5a0a6e", 0.34, 0.75, 0.13), "balloon": (0.38, "#3c0046", 0.36, 0.0, 0.14),
+    "tyre": (0.22, "#000000", 0.51, 0.15, 0.0), "window": (0.52, "#3c6e96", 0.34, 0.5, 0.1),
+    "wood": _WOODEN, "stone": _WOODEN, "brick": _WOODEN, "rubber": (0.24, "#140028", 0.32, 0.15, 0.0),
+}  # fmt: skip
 
 
 def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
@@ -116,8 +125,9 @@ def _shape(shape: Shape) -> dict[str, Any]:
     """A shape; its loops run as they do on the desktop, a hole against the outline."""
     return {
         "loops": [loop.tolist() for loop in shape.loops],
-        "skin": shape.skin,
-        "colour": _hex(shape.colour),
+        "look": [_hex(shape.colour), _hex(shape.colour), *_SKINS.get(shape.skin, _SKINS["rubber"]), 1],
+        "line": _hex(outline_of(shape.colour)) if shape.line else None,
+        "rounding": ROUNDING.get(shape.skin, USUAL_ROUNDING),
         "layer": shape.layer,
         "grown": round(shape.grown, DIGITS),
         "extra": shape.extra,
@@ -184,5 +194,24 @@ def _ground(level: Level, snapshot: Snapshot) -> list[dict[str, Any]]:
         name = level.terrain[chain].id if chain < len(level.terrain) else ""
         is_solid = terrain.solid[edges[0]] and signed_area(corners, after) > 0.0
         kind = ground_look(level, name, bool(np.ptp(corners[:, 0]) > WIDE * extent)) if is_solid else "line"
-        made.append({"kind": kind, "points": np.concatenate([corners[:1], after]).round(DIGITS).tolist()})
+        points = np.concatenate([corners[:1], after]).round(DIGITS).tolist()
+        made.append({"kind": kind, "points": points, **(_solid(kind) if is_solid else {})})
     return made
+
+
+def _solid(kind: str) -> dict[str, Any]:
+    """How ground of a kind looks, in each theme."""
+    is_earth, themes = kind in ("soil", "rock"), {}
+    for name, theme in THEMES.items():
+        kinds = {
+            "soil": (*theme.soil, 0.1, 0.25, 1.0, theme.soil[1]),
+            "rock": (*theme.rock, 0.25, 0.35, 1.0, theme.rock[1]),
+            "wood": (rgb_of(0xC28E57), rgb_of(0x9A6C40), 0.3, 0.4, 1.0, (0x6E, 0x4A, 0x28)),
+            "glass": (rgb_of(0xD4EEFA), rgb_of(0x8CC4E6), 0.6, 0.3, 0.42, (0x6F, 0xA8, 0xC8)),
+            "metal": (mixed(*theme.metal, 0.25), mixed(*theme.metal, 0.55), 0.45, 0.45, 1.0, theme.metal[1]),
+        }
+        near, deep, up, down, alpha, line = kinds.get(kind, kinds["metal"])
+        colours = [_colours(tuple(colour)) for colour in (near, deep, mixed(line, (0, 0, 0), 0.35))]
+        themes[name] = {"look": [*colours[:2], up, "#000000", down, 0, 0, alpha], "line": colours[2]}
+    grain = "earth" if is_earth else kind if kind == "wood" else None
+    return {"rounding": SOIL_DEPTH if is_earth else BEVEL, "grain": grain, "themes": themes}

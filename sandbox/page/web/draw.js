@@ -1,12 +1,11 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, boxOf, canvasOf, castShadow, clamp, darkEdge, disc, drawBar, drawGleams, drawMuscle, drawTurf, fillSkin,
-  fillTriangles, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, pathOf, radial, skinOf, stroke,
+import { ball, boxOf, canvasOf, castShadow, clamp, disc, drawBar, drawGleams, drawMuscle, drawTurf, fillSkin,
+  fillTriangles, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, pathOf, radial, stroke,
 } from './paint.js';
-import { LAID, thingsOf, unfolded } from './things.js';
+import { thingsOf, unfolded } from './things.js';
 
 const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
 const PERIOD = { chain: 5.6, deck: 2 }, USUAL_PERIOD = 6.5, BAR_PERIOD = 8, PLANKS = 3;
-const ROUNDING = { balloon: 0.3, tyre: 0.16, wood: 0.05, stone: 0.07, brick: 0.07, window: 0.2 };
 const FLUSH_FROM = 0.03, FLUSH_RANGE = 0.22, LEAST_FLUSH = 0.02, BENT = 2.5;
 const SANDS = ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'];
 const BOLTS = { bone: ['#4a3a28', '#fff4de'], brass: ['#3a2a10', '#f2ce7c'], wood: ['#3a2614', '#d8a970'] };
@@ -127,9 +126,7 @@ export class Picture {
     const loops = shape.loops.map((loop) => grown(this.#points(loop), by)), box = boxOf(loops[0]);
     shape.path = pathOf(loops, shape.keep);
     shape.box = box;
-    shape.depth = clamp(Math.sqrt((box[2] - box[0]) * (box[3] - box[1])) * (ROUNDING[shape.skin] ?? 0.17), 6 * scale,
-      34 * scale);
-    shape.look ??= skinOf(shape.skin, shape.colour);
+    shape.depth = clamp(Math.sqrt((box[2] - box[0]) * (box[3] - box[1])) * shape.rounding, 6 * scale, 34 * scale);
     shape.splats = this.#splats(shape);
     shape.reach = shape.cell * zoom;
   }
@@ -241,23 +238,13 @@ export class Picture {
     return context.canvas;
   }
 
-  #groundOf(kind) {
-    const { theme } = this, metal = [0.25, 0.55].map((share) => mixed(...theme.metal, share));
-    const [near, deep, up, down, alpha, line] = {
-      soil: [...theme.soil, 0.1, 0.25, 1, theme.soil[1]], rock: [...theme.rock, 0.25, 0.35, 1, theme.rock[1]],
-      wood: ['#c28e57', '#9a6c40', 0.3, 0.4, 1, '#6e4a28'], glass: ['#d4eefa', '#8cc4e6', 0.6, 0.3, 0.42, '#6fa8c8'],
-    }[kind] ?? [...metal, 0.45, 0.45, 1, theme.metal[1]];
-    const isEarth = kind === 'soil' || kind === 'rock', grain = isEarth ? 'earth' : kind === 'wood' ? 'wood' : null;
-    const look = [near, deep, up, '#000000', down, 0, 0, alpha];
-    return { kind, look, depth: (isEarth ? 26 : 9) * this.scale, line: mixed(line, '#000000', 0.35), grain };
-  }
-
   #drawGround(context) {
     const { theme, scale, camera } = this, { width, height } = camera, paler = { ...theme };
-    const shapes = this.#scene.ground.map(({ kind, points }) => {
+    const shapes = this.#scene.ground.map(({ kind, points, rounding, grain, themes }) => {
       const way = points.map(([x, y]) => camera.toPixels(x, y)), corners = way.slice(1).flat();
       const pieces = way.slice(1).map((point, k) => [...way[k], ...point]);
-      return { kind, pieces, path: pathOf([corners]), box: boxOf(corners), ...this.#groundOf(kind) };
+      const depth = rounding * scale, path = pathOf([corners]);
+      return { kind, grain, pieces, path, depth, box: boxOf(corners), ...themes?.[theme.name] };
     });
     const solid = shapes.filter(({ kind }) => kind !== 'line');
     paler.shadow_strength *= 0.7;
@@ -317,7 +304,7 @@ export class Picture {
 
   #drawShape(shape) {
     fillSkin(this.#context, shape);
-    if (!LAID.includes(shape.skin)) stroke(this.#context, shape.path, outlineOf(shape.colour), 0.75 * this.scale);
+    if (shape.line) stroke(this.#context, shape.path, shape.line, 0.75 * this.scale);
   }
 
   // Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
@@ -327,7 +314,7 @@ export class Picture {
     fillTriangles(context, `${body.skin} ${body.colour}`,
       sheet.triangles.map((slots, k) => [this.#points(slots), sheet.texels[k]]));
     const hem = pathOf(sheet.loops.map((loop) => this.#points(loop)));
-    stroke(context, hem, isCloth ? outlineOf(body.colour) : darkEdge(body.colour), (isCloth ? 1.5 : 2.2) * this.scale);
+    stroke(context, hem, isCloth ? outlineOf(body.colour) : mixed(body.colour, '#180a00', 0.66), (isCloth ? 1.5 : 2.2) * this.scale);
   }
 
   // Where the corners of triangles of a body lie in its picture, so many texels to a cell.

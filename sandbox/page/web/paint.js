@@ -11,7 +11,6 @@ export function mixed(first, second, share) {
 }
 
 export const outlineOf = (colour) => mixed(colour, '#28003c', 0.46);
-export const darkEdge = (colour) => mixed(colour, '#180a00', 0.66);
 
 const WHITE = [255, 255, 255], kept = new Map();
 
@@ -67,20 +66,10 @@ export function boxOf(points) {
   return box;
 }
 
-// Of each skin: the strength of light, the colour and strength of shade, its gleam, and how much shows through inside.
-const SKINS = {
-  jelly: [0.46, '#5a0a6e', 0.34, 0.75, 0.13], balloon: [0.38, '#3c0046', 0.36, 0, 0.14],
-  tyre: [0.22, '#000000', 0.51, 0.15, 0], window: [0.52, '#3c6e96', 0.34, 0.5, 0.1],
-  wood: [0.19, '#1e0a00', 0.38, 0, 0], rubber: [0.24, '#140028', 0.32, 0.15, 0],
-};
 const INSIDE = 32, LIT = 128, STRONGEST = 1.5;
 
-// How a skin of a colour looks, as table() takes it: near its edge and deep inside, in light and in shade.
-export function skinOf(skin, colour) {
-  return [colour, colour, ...SKINS[skin] ?? SKINS.rubber, 1];
-}
-
-// Colours of a skin by how far inside a place is, and how lit.
+// Colours of a skin by how far inside a place is, and how lit. look: colours near its edge and deep inside, the strength
+// of light, the colour and strength of shade, its gleam, how much shows through inside, and how little at all.
 function table(look) {
   return once(look.join(), () => {
     const [near, deep, up, shade, down, gloss, clear, alpha] = look.map((value) => (value.length ? parse(value) : value));

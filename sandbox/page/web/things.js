@@ -2,7 +2,7 @@
 
 const STRANDS = ['rope', 'cable', 'chain', 'deck', 'thread', 'silk'];
 const WORKING = ['coil', 'muscle', 'piston'];
-export const LAID = ['wood', 'stone', 'brick'];
+const LAID = ['wood', 'stone', 'brick'];
 // Half widths of bars: as a part of their body's cells, from [pixels], to [pixels].
 const TRUSS = [0.11, 1.6, 4.2], MESH = [0.075, 1.0, 3.4], LOOSE = [0.1, 1.2, 2.6];
 const BRACE = 0.62, HANGER = 0.62, DECK = 0.95;
