@@ -185,8 +185,9 @@ export class Picture {
     const way = [beyond(p[0], p[1], p[last - 1]), ...p, beyond(p[last], p[last - 1], p[1])];
     let along = 0;
     for (let k = 0; k < last; k++) {
-      const [a, b, c, d] = way.slice(k, k + 4), bends = (q, r, s) => q.map((_, i) => Math.abs(q[i] - 2 * r[i] + s[i]));
-      const count = Math.max(...bends(a, b, c), ...bends(b, c, d)) > BENT ? 3 : 1, length = this.rest[springs[k]] * rate;
+      const [a, b, c, d] = way.slice(k, k + 4), length = this.rest[springs[k]] * rate;
+      const bends = (q, r, s) => q.some((_, i) => Math.abs(q[i] - 2 * r[i] + s[i]) > BENT);
+      const count = bends(a, b, c) || bends(b, c, d) ? 3 : 1;
       // Catmull and Rom's curve.
       const place = (t) => b.map((_, i) => b[i] + (t / 2) * (c[i] - a[i]
         + t * (2 * a[i] - 5 * b[i] + 4 * c[i] - d[i] + t * (3 * (b[i] - c[i]) + d[i] - a[i]))));
@@ -205,7 +206,7 @@ export class Picture {
       shapes.forEach((shape) => context.fill(shape.path, 'evenodd'));
       sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
         context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
-      bars.forEach(({ path, half }) => stroke(context, path, shadow, half + 1));
+      bars.forEach(({ path, half, size }) => stroke(context, path, shadow, half + (size ? 1 : 0)));
       working.forEach(({ ends }) => stroke(context, linesOf([this.#points(ends)]), shadow, 3 * scale));
       this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, shadow));
     });
@@ -224,15 +225,16 @@ export class Picture {
     context.fillStyle = fade;
     context.fillRect(0, 0, width, height);
     // A lamp behind the stage, which is darker towards the corners.
-    const steps = Array.from({ length: 17 }, (_, k) => k / 10), stops = (tone) => steps.map((away) => [away / 1.6, tone(away)]);
+    const stops = (tone) => Array.from({ length: 17 }, (_, k) => [k / 16, tone(k / 10)]), rim = [0, 0, 1.6];
+    const lamp = (away) => mixed('#000000', theme.lamp, Math.max(1 - 1.25 * away, 0) ** 2);
+    const dim = (away) => `rgb(0 0 0 / ${theme.vignette * clamp(away - 0.55, 0, 1.2) ** 1.6})`;
     context.save();
     context.translate(width / 2, 0.46 * height);
     context.scale(0.62 * width, 0.72 * height);
     context.globalCompositeOperation = 'lighter';
-    radial(context, [0, 0], [0, 0, 1.6], stops((away) => mixed('#000000', theme.lamp, Math.max(1 - 1.25 * away, 0) ** 2)));
+    radial(context, [0, 0], rim, stops(lamp));
     context.globalCompositeOperation = 'source-over';
-    radial(context, [0, 0], [0, 0, 1.6], stops((away) =>
-      `rgb(0 0 0 / ${theme.vignette * clamp(away - 0.55, 0, 1.2) ** 1.6})`));
+    radial(context, [0, 0], rim, stops(dim));
     context.restore();
     this.#drawGround(context);
     return context.canvas;
@@ -314,7 +316,8 @@ export class Picture {
     fillTriangles(context, `${body.skin} ${body.colour}`,
       sheet.triangles.map((slots, k) => [this.#points(slots), sheet.texels[k]]));
     const hem = pathOf(sheet.loops.map((loop) => this.#points(loop)));
-    stroke(context, hem, isCloth ? outlineOf(body.colour) : mixed(body.colour, '#180a00', 0.66), (isCloth ? 1.5 : 2.2) * this.scale);
+    const [tone, half] = isCloth ? [outlineOf(body.colour), 1.5] : [mixed(body.colour, '#180a00', 0.66), 2.2];
+    stroke(context, hem, tone, half * this.scale);
   }
 
   // Where the corners of triangles of a body lie in its picture, so many texels to a cell.
@@ -336,10 +339,10 @@ export class Picture {
   #drawLugs(wheel) {
     const context = this.#context, size = this.#sizeOf(wheel), period = (Math.PI * size) / wheel.outer.length;
     if (!wheel.is_tyre || size < 22) return;
-    const lug = Math.max(3, Math.min(0.11 * size, 0.4 * period));
+    const lug = Math.max(3, Math.min(0.11 * size, 0.4 * period)), high = 0.075 * size + wheel.radius * this.camera.zoom;
     context.lineCap = 'butt';
     context.setLineDash([lug, period - lug]);
-    stroke(context, pathOf([this.#points(wheel.outer)]), this.theme.tyre, 0.075 * size + wheel.radius * this.camera.zoom);
+    stroke(context, pathOf([this.#points(wheel.outer)]), this.theme.tyre, high);
     context.setLineDash([]);
   }
 
@@ -381,7 +384,8 @@ export class Picture {
     const right = middle(velocity, 0), down = -middle(velocity, 1), speed = Math.hypot(right, down);
     let cosine = 0, sine = 0;
     for (const slot of slots) {
-      const ownX = origin[2 * slot] - u, ownY = v - origin[2 * slot + 1], dx = at[2 * slot] - x, dy = at[2 * slot + 1] - y;
+      const ownX = origin[2 * slot] - u, ownY = v - origin[2 * slot + 1];
+      const dx = at[2 * slot] - x, dy = at[2 * slot + 1] - y;
       cosine += ownX * dx + ownY * dy;
       sine += ownX * dy - ownY * dx;
     }
@@ -398,14 +402,14 @@ export class Picture {
     const back = body.angle - turn;
     const seen = (across, below) => [across * Math.cos(back) - below * Math.sin(back),
       across * Math.sin(back) + below * Math.cos(back)];
-    const far = (0.05 * Math.min(1, 0.3 + speed / 4)) / (speed || 1);
-    const gaze = speed <= 0.25 ? seen(0, 0.015) : seen(right * far, down * far), light = seen(-0.021, -0.028);
+    const wide = (0.05 * Math.min(1, 0.3 + speed / 4)) / (speed || 1);
+    const gaze = speed <= 0.25 ? seen(0, 0.015) : seen(right * wide, down * wide), light = seen(-0.021, -0.028);
     const line = (way, half) => stroke(context, new Path2D(way), INK, Math.max(half, 0.9 / size));
     context.lineCap = context.lineJoin = 'round';
     for (const side of [-1, 1]) {
-      const eye = 0.19 * side, level = -0.09;
+      const eye = 0.19 * side, level = -0.09, far = eye + side * 0.065, near = eye - side * 0.053;
       glow(context, 1.5 * eye, 0.075, 0.085, '#ff5a86', 0.45);
-      if (isSqueezed) line(`M${eye + side * 0.065} -0.16L${eye - side * 0.053} -0.09L${eye + side * 0.065} -0.02`, 0.024);
+      if (isSqueezed) line(`M${far} -0.16L${near} -0.09L${far} -0.02`, 0.024);
       else if (isShut) line(`M${eye - 0.094} ${level}h0.188`, 0.021);
       else {
         disc(context, eye, level, 0.133, INK, 0.35);
@@ -426,7 +430,7 @@ export class Picture {
 
   // Balls that are there: a small one that is held is a pin.
   #eachBall(act) {
-    const active = this.#state('particle_active'), radius = this.#state('radius'), inverse = this.#state('inverse_mass');
+    const [active, radius, inverse] = ['particle_active', 'radius', 'inverse_mass'].map((name) => this.#state(name));
     this.#scene.balls.forEach((one, k) => {
       if (!active[one.slot] || (inverse[one.slot] === 0 && radius[one.slot] <= LARGEST_PIN)) return;
       const size = Math.max(radius[one.slot] * this.camera.zoom, 2.5 * this.scale);

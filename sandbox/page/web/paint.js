@@ -68,11 +68,11 @@ export function boxOf(points) {
 
 const INSIDE = 32, LIT = 128, STRONGEST = 1.5;
 
-// Colours of a skin by how far inside a place is, and how lit. look: colours near its edge and deep inside, the strength
-// of light, the colour and strength of shade, its gleam, how much shows through inside, and how little at all.
+// Colours of a skin by how far inside a place is, and how lit. look: colours near its edge and deep inside, the
+// strength of light, the colour and strength of shade, its gleam, how much shows through inside, and how little at all.
 function table(look) {
   return once(look.join(), () => {
-    const [near, deep, up, shade, down, gloss, clear, alpha] = look.map((value) => (value.length ? parse(value) : value));
+    const [near, deep, up, shade, down, gloss, clear, alpha] = look.map((part) => (part.length ? parse(part) : part));
     const colours = new Uint8ClampedArray(4 * INSIDE * LIT);
     for (let k = 0; k < INSIDE * LIT; k++) {
       const inside = Math.floor(k / LIT) / (INSIDE - 1), lit = STRONGEST * ((2 * (k % LIT)) / (LIT - 1) - 1);
@@ -160,7 +160,8 @@ export function makeSkin(shape, width, height) {
   for (let k = 0; k < pixels.length; k++) high[k] = (pixels[k] >>> 24) / 255;
   blur(high, columns, REACH, TIMES);
   for (let k = columns; k < pixels.length - columns; k++) {
-    const lit = STEEPNESS * (ACROSS * (high[k + 1] - high[k - 1]) + DOWNWARDS * (high[k + columns] - high[k - columns]));
+    const across = high[k + 1] - high[k - 1], down = high[k + columns] - high[k - columns];
+    const lit = STEEPNESS * (ACROSS * across + DOWNWARDS * down);
     const inside = clamp(Math.round(1.9 * (high[k] - 0.45) * (INSIDE - 1)), 0, INSIDE - 1);
     pixels[k] = colours[inside * LIT + clamp(Math.round((lit / STRONGEST + 1) * 0.5 * (LIT - 1)), 0, LIT - 1)];
     if (!strain?.[k]) continue;
@@ -196,8 +197,8 @@ export function fillSkin(context, { fill, path }) {
 
 // Of each kind of line: the line around it and its own colour.
 const LINES = {
-  rope: ['#5b3d20', '#c89b62'], cable: ['#3a4252', '#a3adbf'], deck: ['#4a2e16', '#c48e58'], wood: ['#3a2614', '#c99258'],
-  chain: [], thread: [null, '#aeb5c2'], silk: [null, '#ccd4e0'], steel: ['#161b26', '#96a3ba'],
+  rope: ['#5b3d20', '#c89b62'], cable: ['#3a4252', '#a3adbf'], deck: ['#4a2e16', '#c48e58'], chain: [],
+  wood: ['#3a2614', '#c99258'], thread: [null, '#aeb5c2'], silk: [null, '#ccd4e0'], steel: ['#161b26', '#96a3ba'],
   brass: ['#3a2a10', '#e2b04e'], rubber: ['#3a1418', '#eb605c'], bone: ['#4a3a28', '#f0e4cc'],
 };
 const ALONG = 32, HALF_TILE = 8;
@@ -292,8 +293,10 @@ export function disc(context, x, y, radius, colour, alpha = 1) {
 }
 
 // Waves that tile and look like noise, of about so many to a picture; u and v: angles across and down.
-const noise = (u, v, count) => [1, 2, 3, 4, 5, 6, 7].reduce((sum, k) => sum + Math.sin(
-  Math.round(count * Math.cos(2.4 * k + count)) * u + Math.round(count * Math.sin(2.4 * k + count)) * v + k * k), 0) / 1.9;
+const noise = (u, v, count) => [1, 2, 3, 4, 5, 6, 7].reduce((sum, k) => {
+  const way = 2.4 * k + count, across = Math.round(count * Math.cos(way)), down = Math.round(count * Math.sin(way));
+  return sum + Math.sin(across * u + down * v + k * k) / 1.9;
+}, 0);
 const GRAIN = 256, PEBBLES = 16;
 const chance = (k) => ((Math.sin(12.99 * k) * 43758.55) % 1 + 1) % 1;
 const PLACES = Array.from({ length: PEBBLES }, (_, k) => [1, 40, 80].map((from) => chance(k + from)));
@@ -310,7 +313,8 @@ export function layGrain(context, path, kind, x, y) {
     const image = new ImageData(GRAIN, GRAIN), unit = (2 * Math.PI) / GRAIN;
     for (let k = 0; k < GRAIN * GRAIN; k++) {
       const column = k % GRAIN, row = Math.floor(k / GRAIN), fine = 3 * chance(k) - 1.5;
-      image.data.fill(Math.round(sign * (fine + GRAINS[kind](unit * column, unit * row, column, row))), 4 * k, 4 * k + 3);
+      const value = fine + GRAINS[kind](unit * column, unit * row, column, row);
+      image.data.fill(Math.round(sign * value), 4 * k, 4 * k + 3);
       image.data[4 * k + 3] = 255;
     }
     return patternOf(image);
@@ -345,10 +349,11 @@ export function radial(context, [x, y], [middleX, middleY, radius], stops) {
 
 // A disc of a colour that fades out towards its rim.
 export function glow(context, x, y, radius, colour, alpha) {
-  const shape = sprite(`glow ${colour}`, 64, (own) => radial(own, [0, 0], [0, 0, 1], Array.from({ length: 9 }, (_, k) => {
+  const stops = Array.from({ length: 9 }, (_, k) => {
     const fall = 1 - k / 8, share = Math.round(255 * fall * fall * (3 - 2 * fall));
     return [k / 8, colour + share.toString(16).padStart(2, '0')];
-  })));
+  });
+  const shape = sprite(`glow ${colour}`, 64, (own) => radial(own, [0, 0], [0, 0, 1], stops));
   context.globalAlpha = alpha;
   context.drawImage(shape, x - radius, y - radius, 2 * radius, 2 * radius);
   context.globalAlpha = 1;
@@ -395,8 +400,8 @@ export function ball(context, x, y, radius, angle, kind, colour) {
     MARKS[kind]?.(own);
   });
   const light = whole('light', (own) => {
-    radial(own, [-0.3, -0.45], [-0.1, -0.15, 1.12], [[0, '#ffffff38'], [0.35, '#ffffff08'], [0.6, '#00000028'], [0.85, '#0000006a'],
-      [1, '#00000080']]);
+    radial(own, [-0.3, -0.45], [-0.1, -0.15, 1.12], [[0, '#ffffff38'], [0.35, '#ffffff08'], [0.6, '#00000028'],
+      [0.85, '#0000006a'], [1, '#00000080']]);
     radial(own, [-0.38, -0.5], [-0.38, -0.5, 0.3], [[0, '#ffffffd0'], [0.5, '#ffffff60'], [1, '#ffffff00']]);
   });
   context.save();
@@ -414,8 +419,11 @@ export function fillTriangles(context, name, triangles) {
   context.fillStyle = kept.get(name);
   for (const [[x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]] of triangles) {
     const area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
-    const across = (p, q) => (p * (v2 - v0) - q * (v1 - v0)) / area, down = (p, q) => (q * (u1 - u0) - p * (u2 - u0)) / area;
-    const [a, b, c, d] = [across(x1 - x0, x2 - x0), across(y1 - y0, y2 - y0), down(x1 - x0, x2 - x0), down(y1 - y0, y2 - y0)];
+    // How x and y change across and down the picture.
+    const a = ((x1 - x0) * (v2 - v0) - (x2 - x0) * (v1 - v0)) / area;
+    const b = ((y1 - y0) * (v2 - v0) - (y2 - y0) * (v1 - v0)) / area;
+    const c = ((x2 - x0) * (u1 - u0) - (x1 - x0) * (u2 - u0)) / area;
+    const d = ((y2 - y0) * (u1 - u0) - (y1 - y0) * (u2 - u0)) / area;
     context.transform(a, b, c, d, x0 - a * u0 - c * v0, y0 - b * u0 - d * v0);
     // A little larger, so that no seam shows.
     const u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
