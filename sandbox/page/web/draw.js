@@ -1,5 +1,5 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, boxOf, canvasOf, castShadow, clamp, disc, drawBar, drawGleams, drawMuscle, drawTurf, fillSkin,
+import { ball, boxOf, canvasOf, castShadow, clamp, disc, drawBar, drawMuscle, drawTurf, fillSkin,
   fillTriangles, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, pathOf, radial, stroke,
 } from './paint.js';
 import { thingsOf, unfolded } from './things.js';
@@ -94,7 +94,7 @@ export class Picture {
     things.sheets.forEach((sheet) => this.#drawSheet(sheet));
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
     shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
-    things.balloons.forEach((body) => this.#drawGleams(body, things.degree));
+    things.balloons.forEach((body) => this.#drawGleams(body));
     things.faces.forEach((body, k) => this.#drawFace(body, k));
     this.#drawBalls();
   }
@@ -357,20 +357,22 @@ export class Picture {
   }
 
   // Gleams of a balloon that stay where the light is, and a knot where something is tied.
-  #drawGleams(body, degree) {
-    const [left, top, right, low] = boxOf(this.#points(body.slots)), context = this.#context;
+  #drawGleams({ slots, knots, colour }) {
+    const [left, top, right, low] = boxOf(this.#points(slots)), context = this.#context, tips = [];
     const x = (left + right) / 2, y = (top + low) / 2, radius = (right - left + low - top) / 4;
-    drawGleams(context, x, y, radius);
-    const knots = [];
-    for (const slot of body.slots.filter((each) => degree.get(each) > 2)) {
+    for (const [across, down, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85],
+      [-0.2, -0.56, 0.09, 0.8], [0.34, 0.5, 0.4, 0.16]]) {
+      glow(context, x + radius * across, y + radius * down, radius * size, '#ffffff', alpha);
+    }
+    for (const slot of knots) {
       const [tieX, tieY] = this.#points([slot]), away = Math.hypot(tieX - x, tieY - y) || 1;
-      const out = [(radius * (tieX - x)) / away, (radius * (tieY - y)) / away];
+      const outX = (radius * (tieX - x)) / away, outY = (radius * (tieY - y)) / away;
       for (const by of [-0.07, 0, 0.07]) {
-        knots.push([tieX, tieY, tieX + 0.15 * out[0] - by * out[1], tieY + 0.15 * out[1] + by * out[0]]);
+        tips.push([tieX, tieY, tieX + 0.15 * outX - by * outY, tieY + 0.15 * outY + by * outX]);
       }
     }
     context.lineCap = 'round';
-    stroke(context, linesOf(knots), outlineOf(body.colour), Math.max(1.2, 0.03 * radius));
+    stroke(context, linesOf(tips), outlineOf(colour), Math.max(1.2, 0.03 * radius));
   }
 
   // Eyes that look where it moves, cheeks, and a mouth that says how it feels.

@@ -349,31 +349,20 @@ export function radial(context, [x, y], [middleX, middleY, radius], stops) {
 
 // A disc of a colour that fades out towards its rim.
 export function glow(context, x, y, radius, colour, alpha) {
-  const stops = Array.from({ length: 9 }, (_, k) => {
+  const stop = (_, k) => {
     const fall = 1 - k / 8, share = Math.round(255 * fall * fall * (3 - 2 * fall));
     return [k / 8, colour + share.toString(16).padStart(2, '0')];
-  });
-  const shape = sprite(`glow ${colour}`, 64, (own) => radial(own, [0, 0], [0, 0, 1], stops));
+  };
+  const shape = sprite(`glow ${colour}`, 64, (own) => radial(own, [0, 0], [0, 0, 1], Array.from({ length: 9 }, stop)));
   context.globalAlpha = alpha;
   context.drawImage(shape, x - radius, y - radius, 2 * radius, 2 * radius);
   context.globalAlpha = 1;
 }
 
-// Gleams of a balloon about a place.
-export function drawGleams(context, x, y, radius) {
-  for (const [across, down, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85],
-    [-0.2, -0.56, 0.09, 0.8], [0.34, 0.5, 0.4, 0.16]]) {
-    glow(context, x + radius * across, y + radius * down, radius * size, '#ffffff', alpha);
-  }
-}
-
 const band = (own) => own.fillRect(-1, -0.26, 2, 0.52);
 const MARKS = {
   stripe: band, sand: band,
-  marble: (own) => {
-    const swirl = new Path2D('M-1 0.12C-0.5 0.8 0.5 -0.8 1 -0.12');
-    stroke(own, swirl, '#ffffff', 0.2);
-  },
+  marble: (own) => stroke(own, new Path2D('M-1 0.12C-0.5 0.8 0.5 -0.8 1 -0.12'), '#ffffff', 0.2),
   steel: (own) => {
     stroke(own, new Path2D('M0.62 0A0.62 0.62 0 1 1 0.62 -0.01'), '#39435a', 0.05, 0.5);
     disc(own, 0.62, 0, 0.13, '#39435a');

@@ -29,19 +29,14 @@ export function thingsOf(scene, active) {
   const things = { shapes: [], lines: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
   for (const body of scene.bodies) addBody(things, body, active);
   // Joins of one look may be strands together.
-  const looks = new Map(), joins = scene.joins.filter((join) => active[join.spring]);
-  for (const join of joins) {
+  const looks = new Map();
+  for (const join of scene.joins.filter(({ spring }) => active[spring])) {
     const key = STRANDS.includes(join.line) ? `${join.line} ${join.width}` : join;
     if (!looks.has(key)) looks.set(key, { look: join, springs: [] });
     looks.get(key).springs.push([join.spring, ...join.ends]);
   }
   for (const { look, springs } of looks.values()) addLines(things, look, springs, LOOSE);
   things.lines.sort((first, second) => !first.particles - !second.particles);
-  // How many springs each particle has.
-  things.degree = new Map();
-  const count = (slot) => things.degree.set(slot, (things.degree.get(slot) ?? 0) + 1);
-  scene.bodies.forEach(({ springs }) => springs.forEach(([spring, ...ends]) => active[spring] && ends.forEach(count)));
-  joins.forEach((join) => join.ends.forEach(count));
   return things;
 }
 
