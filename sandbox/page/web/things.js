@@ -94,13 +94,16 @@ function addFilled(things, body, springs, active) {
   addLines(things, body, springs.filter((spring) => !inside(spring)), MESH);
 }
 
-// Loops of particles around triangles of one winding.
+// Loops of particles around triangles of one winding: sides of one of them alone.
 function bordersOf(triangles) {
-  const sides = new Map(), key = (a, b) => a * 0x4000000 + b, loops = [];
-  for (const corners of triangles) corners.forEach((a, k) =>
-    sides.set(key(a, corners[(k + 1) % 3]), [a, corners[(k + 1) % 3]]));
-  const follow = new Map();
-  for (const [a, b] of sides.values()) if (!sides.has(key(b, a))) follow.set(a, [...(follow.get(a) ?? []), b]);
+  const sides = new Map(), key = (a, b) => a * 0x4000000 + b, follow = new Map(), loops = [];
+  for (const corners of triangles) {
+    corners.forEach((a, k) => {
+      const b = corners[(k + 1) % 3];
+      if (!sides.delete(key(b, a))) sides.set(key(a, b), [a, b]);
+    });
+  }
+  for (const [a, b] of sides.values()) follow.set(a, [...(follow.get(a) ?? []), b]);
   while (follow.size) {
     const [first] = follow.keys(), loop = [];
     let at = first;
