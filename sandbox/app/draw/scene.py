@@ -1,30 +1,47 @@
 """Scene: what is drawn of a level, as plain data for a page that draws it by itself."""
 
+import base64
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.draw.backdrop import WIDE
+from sandbox.app.draw.backdrop import BEVEL, SOIL_DEPTH, WIDE
+from sandbox.app.draw.colours import mixed
 from sandbox.app.draw.looks import SOFT_SKINS, Look, ground_look
 from sandbox.app.draw.picture import view_of
-from sandbox.app.draw.themes import THEMES, Theme
+from sandbox.app.draw.textures import TILE, Tiles, laid, woven
+from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme, outline_of, rgb_of
 from sandbox.app.draw.things.borders import hull_of
+from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
 from sandbox.app.draw.things.faces import spot_of
-from sandbox.app.draw.things.level_slots import Actor, level_slots_of
-from sandbox.app.draw.things.soft import keep_of
+from sandbox.app.draw.things.level_slots import Actor, LevelSlots, level_slots_of
+from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
+from sandbox.app.draw.things.soft import ROUNDING, USUAL_ROUNDING, Shape, shape_of
+from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
+from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.snapshot import Snapshot
 
 # Digits of lengths [m]: a tenth of a millimetre.
 DIGITS = 4
+# The colour of the cylinder of a piston.
+PISTON = 0xF6B83E
+# Of each skin, as in textures: the strength of light, the colour and strength of shade, its gleam, and how much shows
+# through inside.
+_WOODEN = (0.19, "#1e0a00", 0.38, 0.0, 0.0)
+_SKINS = {
+    "jelly": (0.46, "#5a0a6e", 0.34, 0.75, 0.13), "balloon": (0.38, "#3c0046", 0.36, 0.0, 0.14),
+    "tyre": (0.22, "#000000", 0.51, 0.15, 0.0), "window": (0.52, "#3c6e96", 0.34, 0.5, 0.1),
+    "wood": _WOODEN, "stone": _WOODEN, "brick": _WOODEN, "rubber": (0.24, "#140028", 0.32, 0.15, 0.0),
+}  # fmt: skip
 
 
 def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
     """All that a page draws of a level, as JSON takes it; colours are "#rrggbb", places and lengths in metres."""
-    slots = level_slots_of(level)
+    slots, ground = level_slots_of(level), _ground(level, snapshot)
     return {
         "view": [round(float(value), DIGITS) for value in view_of(level, snapshot)],
         "theme": level.look.theme if level.look is not None else None,
@@ -36,7 +53,8 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
             {"slot": ball.slot, "kind": ball.kind, "colour": None if ball.colour is None else _hex(ball.colour)}
             for ball in slots.balls
         ],
-        "ground": _ground(level, snapshot),
+        "ground": ground,
+        "pictures": _pictures(slots, ground),
     }
 
 
@@ -59,35 +77,107 @@ def _look(look: Look) -> dict[str, Any]:
 
 
 def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
-    """A body: its look, slots of its particles, its first spring and how many it has."""
+    """A body: its look, slots of its particles, its first spring and how many it has, and what of it is filled."""
     look, there = actor.look, np.ones(len(actor.springs), dtype=np.bool_)
+    radius = float(np.median(snapshot.radius[actor.slots]))
     made: dict[str, Any] = {
         "type": actor.body.type,
         **_look(look),
-        "radius": round(float(np.median(snapshot.radius[actor.slots])), DIGITS),
         "cell": round(actor.cell, DIGITS),
         "angle": round(actor.angle, DIGITS),
         "slots": _runs(actor.slots),
         "spring": int(actor.springs[0]) if len(actor.springs) else 0,
         "springs": len(actor.springs),
+        "segments": actor.body.__dict__.get("segments"),
+        "shapes": [],
+        "needs": [],
     }
-    if "segments" in actor.body.__dict__:
-        made["segments"] = int(actor.body.__dict__["segments"])
-        made["numbers"] = actor.made.numbers.tolist() if actor.body.type == "wheel" else None
-    if look.panel is not None:
-        hull = hull_of(actor.made.form, actor.pairs)
-        made["panel"], made["hull"] = _hex(look.panel) if len(hull) else None, actor.slots[hull].tolist()
-        made["window"] = [int(actor.slots[k]) for k in look.window if k < len(actor.slots)]
+    if look.skin == "lattice":
+        return made
     if actor.body.type == "jelly":
         _, left, loops, _ = actor.filling(there)
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
         made["spacing"] = float(actor.body.__dict__.get("spacing", actor.cell))
-        made["keep"] = round(keep_of(actor, loops), DIGITS)
+        made["shapes"] = [_shape(shape_of(actor, loops, there, radius))]
         if look.face and look.skin in SOFT_SKINS and len(left):
             place, room = spot_of(actor, max(loops, key=len))
             made["face"] = [round(float(value), DIGITS) for value in (*place, room)]
+    elif actor.body.type == "ring":
+        made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], actor.springs.tolist()
+        # Where something is tied to it.
+        tied = np.concatenate([snapshot.particle_a, snapshot.particle_b])[np.tile(snapshot.spring_active, 2)]
+        made["knots"] = [slot for slot in actor.slots.tolist() if np.count_nonzero(tied == slot) > 2]
+    elif actor.body.type == "wheel" and look.skin:
+        wheel, count = DrawnWheel(actor, there, radius), int(made["segments"])
+        numbers = actor.made.numbers
+        made["shapes"], made["wheel"] = [_shape(wheel.shape)], _wheel(wheel)
+        made["needs"] = actor.springs[(numbers >= count) & (numbers < 3 * count)].tolist()
+    elif look.panel is not None and len(hull := hull_of(actor.made.form, actor.pairs)):
+        window = [k for k in look.window if k < len(actor.slots)]
+        made["shapes"] = [_shape(Shape([actor.slots[hull]], "rubber", look.panel, 0, extra=PANEL_OUT, keep=0.2))]
+        if len(window) > 2:
+            corners = actor.made.form[window]
+            window = window[:: 1 if signed_area(corners, np.roll(corners, -1, axis=0)) > 0.0 else -1]
+            pane = Shape([actor.slots[np.array(window)]], "window", WINDOW, 0, extra=WINDOW_IN, keep=0.2)
+            made["shapes"].append(_shape(pane))
     return made
+
+
+def _shape(shape: Shape) -> dict[str, Any]:
+    """A shape; its loops run as they do on the desktop, a hole against the outline."""
+    return {
+        "loops": [loop.tolist() for loop in shape.loops],
+        "look": [_hex(shape.colour), _hex(shape.colour), *_SKINS.get(shape.skin, _SKINS["rubber"]), 1],
+        "line": _hex(outline_of(shape.colour)) if shape.line else None,
+        "rounding": ROUNDING.get(shape.skin, USUAL_ROUNDING),
+        "layer": shape.layer,
+        "grown": round(shape.grown, DIGITS),
+        "extra": shape.extra,
+        "keep": round(shape.keep, DIGITS),
+        "shows_strain": shape.flushed is not None,
+    }
+
+
+def _wheel(wheel: DrawnWheel) -> dict[str, Any]:
+    spokes = wheel.inner[wheel.spokes]
+    loops = {"inner": wheel.inner.tolist(), "outer": wheel.outer.tolist(), "spokes": spokes.tolist()}
+    return {"hub": int(wheel.hub), "radius": round(wheel.radius, DIGITS), "is_tyre": wheel.is_tyre, **loops}
+
+
+def _pictures(slots: LevelSlots, ground: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Textures of lines by their kind or colour, of turf by theme, of sheets by skin and colour."""
+    looks = [actor.look for actor in slots.actors] + [join.look for join in slots.joins]
+    bars, names = Tiles(THEMES["dark"]), {"steel", *(look.line for look in looks)}
+    colours = {look.colour for look in looks if look.line == "paint"} | ({PISTON} if "piston" in names else set())
+    names |= {"deck"} if any(actor.body.type == "bridge" for actor in slots.actors) else set()
+    made = {name: bars.array[TILE[name]] for name in sorted(names & TILE.keys() - {"paint"})}
+    for colour in sorted(colours):
+        number = bars.bar(colour)
+        made[_hex(colour)] = bars.array[number]
+    for name, theme in THEMES.items() if any(each["kind"] == "soil" for each in ground) else ():
+        made[f"turf {name}"] = Tiles(theme).array[TILE["turf"]]
+    for look in [actor.look for actor in slots.actors if actor.body.type == "jelly"]:
+        if look.skin == CLOTH:
+            made[f"{look.skin} {_hex(look.colour)}"] = _folded(woven(look.colour, CLOTH_STRIPE))
+        elif look.skin in CRATES:
+            made[f"{look.skin} {_hex(look.colour)}"] = laid(look.skin, look.colour) | 0xFF000000
+    return {name: _picture(pixels) for name, pixels in made.items()}
+
+
+def _folded(sheet: NDArray[np.int64]) -> NDArray[np.int64]:
+    # A page has no shades of its own at the corners of a cell.
+    turn = 2.0 * np.pi / (FOLD * CLOTH_TEXELS) * np.arange(sheet.shape[1])
+    shade = 1.0 + 0.5 * FOLD_DEPTH * (np.sin(turn) - 1.0)
+    red, green, blue = (((sheet >> shift & 255) * shade).astype(np.int64) << shift for shift in (16, 8, 0))
+    return 0xFF000000 | red | green | blue
+
+
+def _picture(pixels: NDArray[Any]) -> dict[str, Any]:
+    """Pixels (h, w) 0xAARRGGBB, or one column of them where all are alike, as bytes red, green, blue and alpha."""
+    columns = pixels[:, :1] if (pixels == pixels[:, :1]).all() else pixels
+    channels = np.stack([columns >> shift & 255 for shift in (16, 8, 0, 24)], axis=-1).astype(np.uint8)
+    return {"rows": len(columns), "bytes": base64.b64encode(channels.tobytes()).decode()}
 
 
 def _runs(slots: NDArray[np.int64]) -> list[list[int]]:
@@ -96,13 +186,35 @@ def _runs(slots: NDArray[np.int64]) -> list[list[int]]:
     return [list(run) for run in zip(slots[begins].tolist(), np.diff(begins, append=len(slots)).tolist(), strict=True)]
 
 
-def _ground(level: Level, snapshot: Snapshot) -> list[str]:
-    """What each chain of the terrain is made of."""
-    terrain, kinds = snapshot.terrain, []
+def _ground(level: Level, snapshot: Snapshot) -> list[dict[str, Any]]:
+    """What each chain of the terrain is made of, or "line", and its points [m]; what is closed ends where it begins."""
+    terrain, made = snapshot.terrain, []
     left, _, right, _ = view_of(level, snapshot)
     extent = max(float(np.ptp(terrain.vertex[:, 0])) if len(terrain.vertex) else 0.0, right - left)
     for chain in np.unique(terrain.chain).tolist():
-        across = terrain.vertex[terrain.edge_a[terrain.chain == chain], 0]
+        edges = np.flatnonzero(terrain.chain == chain)
+        corners, after = terrain.vertex[terrain.edge_a[edges]], terrain.vertex[terrain.edge_b[edges]]
         name = level.terrain[chain].id if chain < len(level.terrain) else ""
-        kinds.append(ground_look(level, name, bool(np.ptp(across) > WIDE * extent)))
-    return kinds
+        is_solid = terrain.solid[edges[0]] and signed_area(corners, after) > 0.0
+        kind = ground_look(level, name, bool(np.ptp(corners[:, 0]) > WIDE * extent)) if is_solid else "line"
+        points = np.concatenate([corners[:1], after]).round(DIGITS).tolist()
+        made.append({"kind": kind, "points": points, **(_solid(kind) if is_solid else {})})
+    return made
+
+
+def _solid(kind: str) -> dict[str, Any]:
+    """How ground of a kind looks, in each theme."""
+    is_earth, themes = kind in ("soil", "rock"), {}
+    for name, theme in THEMES.items():
+        kinds = {
+            "soil": (*theme.soil, 0.1, 0.25, 1.0, theme.soil[1]),
+            "rock": (*theme.rock, 0.25, 0.35, 1.0, theme.rock[1]),
+            "wood": (rgb_of(0xC28E57), rgb_of(0x9A6C40), 0.3, 0.4, 1.0, (0x6E, 0x4A, 0x28)),
+            "glass": (rgb_of(0xD4EEFA), rgb_of(0x8CC4E6), 0.6, 0.3, 0.42, (0x6F, 0xA8, 0xC8)),
+            "metal": (mixed(*theme.metal, 0.25), mixed(*theme.metal, 0.55), 0.45, 0.45, 1.0, theme.metal[1]),
+        }
+        near, deep, up, down, alpha, line = kinds.get(kind, kinds["metal"])
+        colours = [_colours(tuple(colour)) for colour in (near, deep, mixed(line, (0, 0, 0), 0.35))]
+        themes[name] = {"look": [*colours[:2], up, "#000000", down, 0, 0, alpha], "line": colours[2]}
+    grain = "earth" if is_earth else kind if kind == "wood" else None
+    return {"rounding": SOIL_DEPTH if is_earth else BEVEL, "grain": grain, "themes": themes}

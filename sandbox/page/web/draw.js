@@ -1,13 +1,15 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, darkEdge, disc, drawBar, fillGround, fillSkin, glow, grown, mixed, outlineOf, pathOf, sheetOf, stroke,
-  turfOf } from './paint.js';
+import { ball, boxOf, canvasOf, castShadow, clamp, disc, drawBar, drawMuscle, drawTurf, fillSkin,
+  fillTriangles, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, pathOf, radial, stroke,
+} from './paint.js';
 import { thingsOf, unfolded } from './things.js';
 
 const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
-const ROUNDING = { balloon: 0.3, tyre: 0.16, wood: 0.05, stone: 0.07, brick: 0.07, window: 0.2 };
-const SHADOW = 6, FLUSH_FROM = 0.03, FLUSH_RANGE = 0.22, SANDS = ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'];
+const PERIOD = { chain: 5.6, deck: 2 }, USUAL_PERIOD = 6.5, BAR_PERIOD = 8, PLANKS = 3;
+const FLUSH_FROM = 0.03, FLUSH_RANGE = 0.22, LEAST_FLUSH = 0.02, BENT = 2.5;
+const SANDS = ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'];
 const BOLTS = { bone: ['#4a3a28', '#fff4de'], brass: ['#3a2a10', '#f2ce7c'], wood: ['#3a2614', '#d8a970'] };
-const INK = '#2a1030', DARK = '#161b26', SMALLEST_FACE = 24;
+const INK = '#2a1030', DARK = '#161b26', SMALLEST_FACE = 24, LARGEST_PIN = 0.1;
 
 export class Camera {
   constructor() {
@@ -33,17 +35,11 @@ export class Camera {
 
   zoomAbout(x, y, factor) {
     const [heldX, heldY] = this.toWorld(x, y);
-    this.zoom = Math.min(Math.max(this.zoom * factor, 0.5), 20000);
+    this.zoom = clamp(this.zoom * factor, 0.5, 20000);
     const [nowX, nowY] = this.toWorld(x, y);
     this.x += heldX - nowX;
     this.y += heldY - nowY;
   }
-}
-
-// A box around points, with room for what is drawn beside them, as rect() takes it.
-function boxOf(xs, ys, room = 60) {
-  const left = Math.min(...xs) - room, top = Math.min(...ys) - room;
-  return [left, top, Math.max(...xs) + room - left, Math.max(...ys) + room - top];
 }
 
 export class Picture {
@@ -53,64 +49,68 @@ export class Picture {
   #world;
   #things = null;
   #active = new Uint8Array();
-  #backdrop = document.createElement('canvas');
+  #backdrop = canvasOf(1, 1);
   #backdropKey = '';
-  #shadow = document.createElement('canvas');
 
   constructor(canvas, scene, world) {
     this.#canvas = canvas;
     this.#context = canvas.getContext('2d');
     this.#scene = unfolded(scene, world);
+    keepPictures(scene.pictures);
     this.#world = world;
+  }
+
+  #state(name) {
+    return this.#world.view(`state.${name}`);
   }
 
   // previous: positions a tick ago; part: how much of the way from them to the present ones, 0..1.
   draw(camera, theme, previous, part, seconds) {
     const { width, height } = camera, ratio = Math.min(devicePixelRatio || 1, 2), context = this.#context;
-    if (this.#canvas.width !== Math.round(width * ratio) || this.#canvas.height !== Math.round(height * ratio)) {
-      this.#canvas.width = Math.round(width * ratio);
-      this.#canvas.height = Math.round(height * ratio);
-    }
-    Object.assign(this, { camera, theme, seconds, ratio,
-      scale: Math.min(1, Math.max(0.6, Math.min(width / 1280, height / 720))) });
+    const size = [Math.round(width * ratio), Math.round(height * ratio)], canvas = this.#canvas;
+    if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+    const scale = clamp(Math.min(width / 1280, height / 720), 0.6, 1);
+    Object.assign(this, { camera, theme, seconds, ratio, scale });
     this.#place(previous, part);
-    const active = this.#world.view('state.spring_active');
+    const active = this.#state('spring_active');
     if (!this.#things || active.some((value, k) => value !== this.#active[k])) {
       this.#active = active.slice();
       this.#things = thingsOf(this.#scene, this.#active);
     }
-    const things = this.#things;
-    things.shapes.forEach((shape) => this.#trace(shape));
+    const things = this.#things, { shapes } = things;
+    shapes.forEach((shape) => {
+      this.#trace(shape);
+      makeSkin(shape, width, height);
+    });
+    things.lines.forEach((line) => this.#follow(line));
     context.setTransform(1, 0, 0, 1, 0, 0);
-    context.drawImage(this.#backdropNow(), 0, 0);
+    context.drawImage(this.#backdropNow(size), 0, 0);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    this.#drawShadows(things);
+    this.#castShadows(things);
     things.working.forEach((spring) => this.#drawWorking(spring));
-    things.strands.forEach((strand) => this.#drawStrand(strand));
-    things.bars.forEach((bars) => this.#drawBars(bars));
+    things.lines.forEach((line) => this.#drawLine(line));
     things.wheels.forEach((wheel) => this.#drawLugs(wheel));
-    things.shapes.filter((shape) => shape.layer === 0).forEach((shape) => this.#drawShape(shape));
+    shapes.filter((shape) => shape.layer === 0).forEach((shape) => this.#drawShape(shape));
     things.sheets.forEach((sheet) => this.#drawSheet(sheet));
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
-    things.shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
-    things.balloons.forEach((body) => this.#drawGleams(body, things.degree));
+    shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
+    things.balloons.forEach((body) => this.#drawGleams(body));
     things.faces.forEach((body, k) => this.#drawFace(body, k));
     this.#drawBalls();
-    this.#drawPins();
   }
 
   // Where particles are in the picture, and the strain of springs.
   #place(previous, part) {
-    const position = this.#world.view('state.position'), { camera } = this, count = position.length;
+    const position = this.#state('position'), { camera } = this, count = position.length;
     const at = (this.at = new Float64Array(count));
     for (let k = 0; k < count; k += 2) {
-      const x = previous[k] + (position[k] - previous[k]) * part,
-        y = previous[k + 1] + (position[k + 1] - previous[k + 1]) * part;
+      const x = previous[k] + (position[k] - previous[k]) * part;
+      const y = previous[k + 1] + (position[k + 1] - previous[k + 1]) * part;
       [at[k], at[k + 1]] = camera.toPixels(x, y);
     }
-    const a = this.#world.view('state.particle_a'), b = this.#world.view('state.particle_b');
-    const rest = this.#world.view('state.rest_length');
-    this.strain = Float64Array.from(rest, (length, s) => {
+    const a = this.#state('particle_a'), b = this.#state('particle_b');
+    this.rest = this.#state('rest_length');
+    this.strain = Float64Array.from(this.rest, (length, s) => {
       const dx = position[2 * a[s]] - position[2 * b[s]], dy = position[2 * a[s] + 1] - position[2 * b[s] + 1];
       return length > 0 ? Math.hypot(dx, dy) / length - 1 : 0;
     });
@@ -120,466 +120,341 @@ export class Picture {
     return Float64Array.from({ length: 2 * slots.length }, (_, k) => this.at[2 * slots[k >> 1] + (k & 1)]);
   }
 
+  // The outline, the skin and the strain of a shape as they are now.
   #trace(shape) {
-    const by = Math.min(shape.grown * this.camera.zoom, 40) + shape.extra * this.scale;
-    const loops = shape.loops.map((loop, k) =>
-      grown(this.#points(loop), k && shape.skin !== 'tyre' ? -by : k ? -by : by));
-    shape.path = pathOf(loops, shape.keep, shape.rounds);
-    const xs = loops[0].filter((_, k) => k % 2 === 0), ys = loops[0].filter((_, k) => k % 2);
-    const size = Math.sqrt((Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys)));
-    shape.size = size;
-    shape.box = boxOf(xs, ys);
-    shape.depth = Math.min(Math.max(size * (ROUNDING[shape.skin] ?? 0.17), 6 * this.scale), 34 * this.scale);
+    const { scale, camera: { zoom } } = this, by = Math.min(shape.grown * zoom, 40 * scale) + shape.extra * scale;
+    const loops = shape.loops.map((loop) => grown(this.#points(loop), by)), box = boxOf(loops[0]);
+    shape.path = pathOf(loops, shape.keep);
+    shape.box = box;
+    shape.depth = clamp(Math.sqrt((box[2] - box[0]) * (box[3] - box[1])) * shape.rounding, 6 * scale, 34 * scale);
+    shape.splats = this.#splats(shape);
+    shape.reach = shape.cell * zoom;
   }
 
-  #drawShadows(things) {
-    const { width, height } = this.camera, shadow = this.#shadow, context = shadow.getContext('2d');
-    shadow.width = Math.ceil(width / SHADOW);
-    shadow.height = Math.ceil(height / SHADOW);
-    context.scale(1 / SHADOW, 1 / SHADOW);
-    context.fillStyle = context.strokeStyle = this.theme.shadow;
-    context.lineCap = context.lineJoin = 'round';
-    things.shapes.forEach((shape) => context.fill(shape.path, 'evenodd'));
-    things.sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
-      context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
-    const line = (ends, half) => stroke(context, this.#way(ends), this.theme.shadow, half);
-    things.strands.forEach((strand) => line(strand.particles, this.#halfOf(strand)));
-    things.bars.forEach((bars) =>
-      stroke(context, this.#lines(bars.springs), this.theme.shadow, this.#halfOfBars(bars) + 1));
-    things.working.forEach(({ ends }) => line(ends, 3 * this.scale));
-    this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, this.theme.shadow));
-    const main = this.#context;
-    main.imageSmoothingQuality = 'high';
-    main.globalAlpha = this.theme.shadow_strength;
-    // Thrice, a little apart: the edge of a shadow is soft.
-    const offset = [4 * this.scale, 8 * this.scale];
-    for (const [x, y] of [[-2, -1], [2, -1], [0, 2]]) {
-      main.globalAlpha = 0.4 * this.theme.shadow_strength;
-      main.drawImage(shadow, offset[0] + x, offset[1] + y, shadow.width * SHADOW, shadow.height * SHADOW);
+  // How much strain shows, from -1 where it is squeezed to 1.
+  #flushOf(strain) {
+    return Math.sign(strain) * clamp((Math.abs(strain) - FLUSH_FROM) / FLUSH_RANGE);
+  }
+
+  // The strain of each particle of a shape, the mean of that of its springs; nothing where little of it shows.
+  #splats({ shows_strain: isShown, springs }) {
+    if (!isShown) return null;
+    const sums = new Map();
+    for (const [spring, ...ends] of springs) {
+      for (const slot of ends) {
+        const sum = sums.get(slot) ?? [0, 0];
+        sums.set(slot, [sum[0] + this.strain[spring], sum[1] + 1]);
+      }
     }
-    main.globalAlpha = 1;
+    const splats = Array.from(sums, ([slot, [sum, count]]) =>
+      [this.at[2 * slot], this.at[2 * slot + 1], this.#flushOf(sum / count)]);
+    return splats.some(([, , amount]) => Math.abs(amount) > LEAST_FLUSH) ? splats : null;
+  }
+
+  // The colour of strain over a line, and how much of it.
+  #tintOf = (spring) => {
+    const flush = this.#flushOf(this.strain[spring]);
+    return flush ? [this.theme.strain[flush > 0 ? 2 : 0], 0.7 * Math.abs(flush)] : null;
+  };
+
+  // The pieces of a line, as drawBar() takes them, a path through them and half its width.
+  #follow(line) {
+    const { at, rest, scale, camera: { zoom } } = this, { particles, springs } = line;
+    if (particles) {
+      const step = rest[springs[springs.length >> 1]] * zoom, { kind } = line;
+      line.half = Math.max(Math.min(HALF[kind] * line.width * scale, 0.45 * step), 0.55);
+      line.pieces = this.#curve(particles, springs, zoom / ((PERIOD[kind] ?? USUAL_PERIOD) * line.half));
+    } else {
+      const [part, least, most] = line.size, usual = line.cell ?? rest[springs[0]?.[0]] ?? 0;
+      line.half = clamp(usual * zoom * part, least * scale, most * scale) * line.width;
+      const up = (line.raised ?? 0) * line.half;
+      line.pieces = springs.map(([spring, a, b]) => {
+        const ends = [at[2 * a], at[2 * a + 1] - up, at[2 * b], at[2 * b + 1] - up];
+        const length = Math.hypot(ends[2] - ends[0], ends[3] - ends[1]);
+        return [...ends, 0, line.raised ? PLANKS : length / (BAR_PERIOD * line.half), line.raised ? -1 : spring];
+      });
+    }
+    line.path = linesOf(line.pieces);
+  }
+
+  // A smooth way through particles, in pieces; rate: periods of the texture in a metre.
+  #curve(particles, springs, rate) {
+    const last = particles.length - 1, isClosed = particles[0] === particles[last], pieces = [];
+    const p = particles.map((slot) => this.#points([slot]));
+    const beyond = (end, inner, other) => (isClosed ? other : end.map((value, i) => 2 * value - inner[i]));
+    const way = [beyond(p[0], p[1], p[last - 1]), ...p, beyond(p[last], p[last - 1], p[1])];
+    let along = 0;
+    for (let k = 0; k < last; k++) {
+      const [a, b, c, d] = way.slice(k, k + 4), length = this.rest[springs[k]] * rate;
+      const bends = (q, r, s) => q.some((_, i) => Math.abs(q[i] - 2 * r[i] + s[i]) > BENT);
+      const count = bends(a, b, c) || bends(b, c, d) ? 3 : 1;
+      // Catmull and Rom's curve.
+      const place = (t) => b.map((_, i) => b[i] + (t / 2) * (c[i] - a[i]
+        + t * (2 * a[i] - 5 * b[i] + 4 * c[i] - d[i] + t * (3 * (b[i] - c[i]) + d[i] - a[i]))));
+      for (let n = 0; n < count; n++) {
+        const [from, to] = [n / count, (n + 1) / count];
+        pieces.push([...place(from), ...place(to), along + length * from, along + length * to, springs[k]]);
+      }
+      along += length;
+    }
+    return pieces;
+  }
+
+  #castShadows({ shapes, sheets, lines: bars, working }) {
+    const { theme: { shadow }, scale } = this;
+    castShadow(this.#context, this.camera, this.theme, scale, (context) => {
+      shapes.forEach((shape) => context.fill(shape.path, 'evenodd'));
+      sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
+        context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
+      bars.forEach(({ path, half, size }) => stroke(context, path, shadow, half + (size ? 1 : 0)));
+      working.forEach(({ ends }) => stroke(context, linesOf([this.#points(ends)]), shadow, 3 * scale));
+      this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, shadow));
+    });
   }
 
   // Stage and ground, kept while the camera stands still.
-  #backdropNow() {
-    const { camera, theme, ratio } = this, { width, height } = camera;
+  #backdropNow(size) {
+    const { camera, theme, ratio } = this, { width, height } = camera, context = this.#backdrop;
     const key = [camera.x, camera.y, camera.zoom, width, height, theme.name, ratio].join();
-    if (key === this.#backdropKey) return this.#backdrop;
+    if (key === this.#backdropKey) return context.canvas;
     this.#backdropKey = key;
-    this.#backdrop.width = Math.round(width * ratio);
-    this.#backdrop.height = Math.round(height * ratio);
-    const context = this.#backdrop.getContext('2d');
+    [context.canvas.width, context.canvas.height] = size;
     context.scale(ratio, ratio);
     const fade = context.createLinearGradient(0, 0, 0, height);
     theme.stage.forEach((colour, k) => fade.addColorStop(k, colour));
     context.fillStyle = fade;
     context.fillRect(0, 0, width, height);
     // A lamp behind the stage, which is darker towards the corners.
-    const light = context.createRadialGradient(0, 0, 0, 0, 0, 1.6),
-      dark = context.createRadialGradient(0, 0, 0, 0, 0, 1.6);
-    for (let k = 0; k <= 16; k++) {
-      const away = k / 10, lit = Math.max(1 - 1.25 * away, 0) ** 2,
-        dim = theme.vignette * Math.min(Math.max(away - 0.55, 0), 1.2) ** 1.6;
-      light.addColorStop(k / 16, mixed('#000000', theme.lamp, lit));
-      dark.addColorStop(k / 16, `rgb(0 0 0 / ${dim})`);
-    }
+    const stops = (tone) => Array.from({ length: 17 }, (_, k) => [k / 16, tone(k / 10)]), rim = [0, 0, 1.6];
+    const lamp = (away) => mixed('#000000', theme.lamp, Math.max(1 - 1.25 * away, 0) ** 2);
+    const dim = (away) => `rgb(0 0 0 / ${theme.vignette * clamp(away - 0.55, 0, 1.2) ** 1.6})`;
     context.save();
     context.translate(width / 2, 0.46 * height);
     context.scale(0.62 * width, 0.72 * height);
-    for (const [fill, how] of [[light, 'lighter'], [dark, 'source-over']]) {
-      context.globalCompositeOperation = how;
-      context.fillStyle = fill;
-      context.fillRect(-1, -1, 2, 2);
-    }
+    context.globalCompositeOperation = 'lighter';
+    radial(context, [0, 0], rim, stops(lamp));
+    context.globalCompositeOperation = 'source-over';
+    radial(context, [0, 0], rim, stops(dim));
     context.restore();
     this.#drawGround(context);
-    return this.#backdrop;
+    return context.canvas;
   }
 
   #drawGround(context) {
-    const { theme, scale, camera } = this, view = (name) => this.#world.view(`state.terrain.${name}`);
-    const vertex = view('vertex'), first = view('edge_a'), second = view('edge_b'), solid = view('solid'),
-      chains = new Map();
-    const point = (slot) => camera.toPixels(vertex[2 * Number(slot)], vertex[2 * Number(slot) + 1]);
-    view('chain').forEach((chain, edge) => {
-      if (!chains.has(chain)) chains.set(chain, { points: [], edges: [], isSolid: Boolean(solid[edge]) });
-      chains.get(chain).points.push(...point(first[edge]));
-      chains.get(chain).edges.push([point(first[edge]), point(second[edge])]);
+    const { theme, scale, camera } = this, { width, height } = camera, paler = { ...theme };
+    const shapes = this.#scene.ground.map(({ kind, points, rounding, grain, themes }) => {
+      const way = points.map(([x, y]) => camera.toPixels(x, y)), corners = way.slice(1).flat();
+      const pieces = way.slice(1).map((point, k) => [...way[k], ...point]);
+      const depth = rounding * scale, path = pathOf([corners]);
+      return { kind, grain, pieces, path, depth, box: boxOf(corners), ...themes?.[theme.name] };
     });
-    [...chains.values()].forEach(({ points, edges, isSolid }, k) => {
-      const area = edges.reduce((sum, [a, b]) => sum + a[0] * b[1] - b[0] * a[1], 0), kind = this.#scene.ground[k];
-      if (!isSolid || area > 0) {
-        const way = new Path2D();
-        edges.forEach(([a, b]) => {
-          way.moveTo(...a);
-          way.lineTo(...b);
-        });
-        drawBar(context, way, 2.4 * scale, '', theme.metal[0]);
-        return;
-      }
-      const path = pathOf([points]), metal = [0.25, 0.55].map((share) => mixed(...theme.metal, share));
-      const [near, deep, light, dark, alpha] = {
-        soil: [...theme.soil, 0.1, 0.25, 1], rock: [...theme.rock, 0.25, 0.35, 1],
-          wood: ['#c28e57', '#9a6c40', 0.3, 0.4, 1],
-        glass: ['#d4eefa', '#8cc4e6', 0.6, 0.3, 0.42],
-      }[kind] ?? [...metal, 0.45, 0.45, 1];
-      const isEarth = ['soil', 'rock'].includes(kind), grain = isEarth ? 'earth' : kind === 'wood' ? 'wood' : null;
-      fillGround(context, path, boxOf(points.filter((_, n) => n % 2 === 0), points.filter((_, n) => n % 2)), near, deep,
-        (isEarth ? 26 : 9) * scale, light, dark, alpha, grain);
-      stroke(context, path, mixed(kind === 'glass' ? '#6fa8c8' : deep, '#000000', 0.35), 0.9 * scale,
-        kind === 'glass' ? 0.5 : 0.9);
-      if (kind === 'soil') this.#layTurf(context, edges);
+    const solid = shapes.filter(({ kind }) => kind !== 'line');
+    paler.shadow_strength *= 0.7;
+    castShadow(context, camera, paler, scale, (shadow) => {
+      for (const { kind, path } of solid) if (kind !== 'soil') shadow.fill(path);
     });
-  }
-
-  // Turf on what faces up.
-  #layTurf(context, edges) {
-    const { scale, theme } = this;
-    context.fillStyle = turfOf(context, theme.turf);
-    let along = 0;
-    for (const [a, b] of edges) {
-      const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-      along += length;
-      if ((a[0] - b[0]) / length <= 0.8) continue;
-      context.save();
-      context.translate(b[0], b[1] + 2 * scale);
-      context.rotate(Math.atan2(a[1] - b[1], a[0] - b[0]));
-      context.scale(0.72 * scale, scale);
-      context.translate(along / (0.72 * scale), -12);
-      context.fillRect(-along / (0.72 * scale), 0, length / (0.72 * scale), 24);
-      context.restore();
+    for (const shape of solid) {
+      makeSkin(shape, width, height);
+      fillSkin(context, shape);
+      if (shape.grain) layGrain(context, shape.path, shape.grain, ...camera.toPixels(0, 0));
+      stroke(context, shape.path, shape.line, 0.9 * scale, shape.kind === 'glass' ? 0.5 : 0.9);
+    }
+    for (const { kind, pieces } of shapes) {
+      if (kind === 'soil') drawTurf(context, pieces, theme, scale);
+      if (kind === 'line') drawBar(context, pieces, linesOf(pieces), 2.4 * scale, 'steel', () => [theme.metal[0], 0.7]);
     }
   }
 
-  // A smooth way through particles; lines between the ends of springs.
-  #way(slots) {
-    const path = new Path2D(), p = this.#points(slots), last = slots.length - 1;
-    path.moveTo(p[0], p[1]);
-    if (last === 1) path.lineTo(p[2], p[3]);
-    else {
-      for (let k = 0; k < last; k++) {
-        const [a, b, c, d] = [Math.max(k - 1, 0), k, k + 1, Math.min(k + 2, last)].map((i) => 2 * i);
-        path.bezierCurveTo(
-          p[b] + (p[c] - p[a]) / 6, p[b + 1] + (p[c + 1] - p[a + 1]) / 6,
-          p[c] - (p[d] - p[b]) / 6, p[c + 1] - (p[d + 1] - p[b + 1]) / 6, p[c], p[c + 1],
-        );
-      }
-    }
-    return path;
-  }
-
-  #lines(springs, raised = 0) {
-    const path = new Path2D(), { at } = this;
-    for (const [, a, b] of springs) {
-      path.moveTo(at[2 * a], at[2 * a + 1] - raised);
-      path.lineTo(at[2 * b], at[2 * b + 1] - raised);
-    }
-    return path;
-  }
-
-  #halfOf({ kind, width, springs }) {
-    const rest = this.#world.view('state.rest_length'), step = rest[springs[springs.length >> 1]] * this.camera.zoom;
-    return Math.max(Math.min(HALF[kind] * width * this.scale, 0.45 * step), 0.55);
-  }
-
-  #halfOfBars({ size: [part, least, most], cell, springs, share }) {
-    const usual = cell ?? this.#world.view('state.rest_length')[springs[0]?.[0]] ?? 0;
-    return Math.min(most * this.scale, Math.max(least * this.scale, usual * this.camera.zoom * part)) * share;
-  }
-
-  #drawStrand(strand) {
-    drawBar(this.#context, this.#way(strand.particles), this.#halfOf(strand), strand.kind, '#c89b62');
-    const rows = strand.springs.map((spring, k) => [spring, strand.particles[k], strand.particles[k + 1]]);
-    this.#flush(rows, this.#halfOf(strand));
-  }
-
-  #drawBars(bars) {
-    const half = this.#halfOfBars(bars), context = this.#context;
-    drawBar(context, this.#lines(bars.springs), half, bars.kind, bars.colour);
-    this.#flush(bars.springs, half);
-    if (bars.deck?.length) drawBar(context, this.#lines(bars.deck, 1.15 * half), 0.95 * half, 'deck');
-    if (!bars.bolts.length || (bars.cell ?? 0) * this.camera.zoom < 9) return;
-    const isTruss = bars.size[2] === 4.2, isPaint = bars.kind === 'paint';
-    const [line, tone] = isPaint ? [outlineOf(bars.colour), mixed(bars.colour, '#ffffff', 0.24)]
-      : BOLTS[bars.kind] ?? [DARK, '#b9c4d8'];
-    const [rim, head, middle] = isTruss ? [1.35, 1.05, 0.42] : [1.7, 1.25, 0.5];
-    for (const slot of bars.bolts) {
-      const x = this.at[2 * slot], y = this.at[2 * slot + 1];
-      disc(context, x, y, rim * half, line, 0.85);
-      disc(context, x, y, head * half, tone);
-      disc(context, x, y, middle * half, line, 0.8);
+  #drawLine(line) {
+    const { half, kind, bolts = [] } = line, context = this.#context;
+    drawBar(context, line.pieces, line.path, half, kind === 'paint' ? line.colour : kind, this.#tintOf);
+    if (!bolts.length || (line.cell ?? 0) * this.camera.zoom < 9) return;
+    const [rim, tone] = kind === 'paint' ? [outlineOf(line.colour), mixed(line.colour, '#ffffff', 0.24)]
+      : BOLTS[kind] ?? [DARK, '#b9c4d8'];
+    const sizes = line.isTruss ? [1.35, 1.05, 0.42] : [1.7, 1.25, 0.5];
+    for (const slot of bolts) {
+      const [x, y] = this.#points([slot]);
+      sizes.forEach((size, k) => disc(context, x, y, size * half, k === 1 ? tone : rim, [0.85, 1, 0.8][k]));
     }
   }
 
-  // The colour of strain over lines: squeezed or stretched.
-  #flush(springs, half) {
-    for (const row of springs) {
-      const strain = this.strain[row[0]], share = Math.min((Math.abs(strain) - FLUSH_FROM) / FLUSH_RANGE, 1);
-      if (share > 0) stroke(this.#context, this.#lines([row]), this.theme.strain[strain > 0 ? 2 : 0], half,
-        0.7 * share);
-    }
-  }
-
-  #drawWorking({ kind, ends: [a, b], spring, width }) {
-    const { at, scale } = this, context = this.#context,
-      rest = this.#world.view('state.rest_length')[spring] * this.camera.zoom;
-    const [x, y] = [at[2 * a], at[2 * a + 1]], dx = at[2 * b] - x, dy = at[2 * b + 1] - y,
-      length = Math.hypot(dx, dy) || 1;
-    const point = (share, side) => [x + dx * share - (dy / length) * side, y + dy * share + (dx / length) * side];
-    const clamp = (value, low, high) => Math.min(Math.max(value, low * scale), high * scale) * width;
-    if (kind === 'coil') {
-      const wide = clamp(0.13 * rest, 2.5, 8), path = new Path2D();
-      path.moveTo(x, y);
-      for (let k = 0; k <= 12; k++) path.lineTo(...point(0.12 + (0.76 * k) / 12,
-        k === 0 || k === 12 ? 0 : k % 2 ? wide : -wide));
-      path.lineTo(...point(1, 0));
-      context.lineCap = context.lineJoin = 'round';
-      stroke(context, path, DARK, 2.5 * scale, 0.75);
-      stroke(context, path, '#bcc5d4', 1.5 * scale);
-    } else if (kind === 'muscle') {
-      const belly = clamp((0.16 * rest * rest) / length, 2.5, 11), path = new Path2D();
-      path.moveTo(x, y);
-      path.quadraticCurveTo(...point(0.5, 2 * belly), ...point(1, 0));
-      path.quadraticCurveTo(...point(0.5, -2 * belly), x, y);
-      fillSkin(context, path, boxOf([x, x + dx], [y, y + dy], 2 * belly), 'rubber', '#de5462', belly);
-      stroke(context, path, '#4a1622', 0.8 * scale);
+  #drawWorking({ kind, ends, spring, width }) {
+    const { scale } = this, context = this.#context, rest = this.rest[spring] * this.camera.zoom;
+    const [x, y, endX, endY] = this.#points(ends), dx = endX - x, dy = endY - y, length = Math.hypot(dx, dy) || 1;
+    const size = (value, low, high) => clamp(value, low * scale, high * scale) * width;
+    const bar = (share, half, own) => {
+      const piece = [x, y, x + share * dx, y + share * dy];
+      drawBar(context, [piece], linesOf([piece]), half, own);
+    };
+    if (kind === 'muscle') drawMuscle(context, [x, y, endX, endY], size((0.16 * rest * rest) / length, 2.5, 11));
+    else if (kind === 'piston') {
+      const half = size(0.07 * rest, 2, 4.5);
+      bar(1, 0.5 * half, 'steel');
+      bar(0.55, half, '#f6b83e');
     } else {
-      const half = clamp(0.07 * rest, 2, 4.5), rod = new Path2D(), tube = new Path2D();
-      rod.moveTo(x, y);
-      rod.lineTo(...point(1, 0));
-      tube.moveTo(x, y);
-      tube.lineTo(...point(0.55, 0));
-      drawBar(context, rod, 0.5 * half, 'steel');
-      drawBar(context, tube, half, '', '#f6b83e');
+      const wide = size(0.13 * rest, 2.5, 8) / length, points = Array.from({ length: 15 }, (_, k) => {
+        const share = clamp(0.12 + (0.76 * (k - 1)) / 12), side = k < 2 || k > 12 ? 0 : k % 2 ? -wide : wide;
+        return [x + dx * (k % 14 ? share : k / 14) - dy * side, y + dy * (k % 14 ? share : k / 14) + dx * side];
+      });
+      const wire = points.slice(1).map((point, k) => [...points[k], ...point]);
+      context.lineCap = context.lineJoin = 'round';
+      stroke(context, linesOf(wire), DARK, 2.5 * scale, 0.75);
+      ['#e8edf6', '#8e9ab2'].forEach((tone, odd) =>
+        stroke(context, linesOf(wire.filter((_, k) => k % 2 === odd)), tone, 1.5 * scale));
     }
   }
 
   #drawShape(shape) {
-    const context = this.#context;
-    fillSkin(context, shape.path, shape.box, shape.skin, shape.colour, shape.depth, () => {
-      if (!['jelly', 'rubber'].includes(shape.skin)) return;
-      // A particle's strain is the mean of that of its springs.
-      const sums = new Map();
-      for (const [spring, ...ends] of shape.springs) {
-        for (const slot of ends) {
-          const sum = sums.get(slot) ?? [0, 0];
-          sums.set(slot, [sum[0] + this.strain[spring], sum[1] + 1]);
-        }
-      }
-      for (const [slot, [sum, count]] of sums) {
-        const mean = sum / count, share = Math.min((Math.abs(mean) - FLUSH_FROM) / FLUSH_RANGE, 1);
-        if (share < 0.02) continue;
-        const reach = 2 * shape.reach * this.camera.zoom, colour = mean > 0 ? '#fff0b0' : '#4a3fd8';
-        glow(context, this.at[2 * slot], this.at[2 * slot + 1], reach, colour, 0.7 * share);
-      }
-    });
-    if (!['wood', 'stone', 'brick'].includes(shape.skin)) stroke(context, shape.path, outlineOf(shape.colour),
-      0.75 * this.scale, 0.9);
+    fillSkin(this.#context, shape);
+    if (shape.line) stroke(this.#context, shape.path, shape.line, 0.75 * this.scale);
   }
 
   // Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
-  #drawSheet({ body, triangles, loops, isCloth }) {
-    const context = this.#context, pattern = sheetOf(context, body.skin, body.colour),
-      origin = this.#world.view('state.origin');
-    const cosine = Math.cos(body.angle), sine = Math.sin(body.angle), texels = (isCloth ? 16 : 14) / body.spacing;
-    const u = (slot) => origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
-      v = (slot) => origin[2 * slot + 1] * cosine - origin[2 * slot] * sine;
-    const left = Math.min(...body.slots.map(u)), low = Math.min(...body.slots.map(v));
-    const texel = (slot) => [(u(slot) - left) * texels, (low - v(slot)) * texels];
-    context.save();
-    context.fillStyle = context.strokeStyle = pattern;
-    for (const slots of triangles) {
-      const [[u0, v0], [u1, v1], [u2, v2]] = slots.map(texel), p = this.#points(slots);
-      const d = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
-      const a = ((p[2] - p[0]) * (v2 - v0) - (p[4] - p[0]) * (v1 - v0)) / d,
-        c = ((p[4] - p[0]) * (u1 - u0) - (p[2] - p[0]) * (u2 - u0)) / d;
-      const b = ((p[3] - p[1]) * (v2 - v0) - (p[5] - p[1]) * (v1 - v0)) / d,
-        e = ((p[5] - p[1]) * (u1 - u0) - (p[3] - p[1]) * (u2 - u0)) / d;
-      context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-      context.transform(a, b, c, e, p[0] - a * u0 - c * v0, p[1] - b * u0 - e * v0);
-      context.beginPath();
-      context.moveTo(u0, v0);
-      context.lineTo(u1, v1);
-      context.lineTo(u2, v2);
-      context.closePath();
-      context.fill();
-      context.lineWidth = 1;
-      context.stroke();
-    }
-    context.restore();
-    const hem = pathOf(loops.map((loop) => this.#points(loop)));
-    stroke(context, hem, isCloth ? outlineOf(body.colour) : darkEdge(body.colour), (isCloth ? 1.5 : 2.2) * this.scale);
+  #drawSheet(sheet) {
+    const { body, isCloth } = sheet, context = this.#context;
+    sheet.texels ??= this.#texels(body, sheet.triangles, isCloth ? 16 : 14);
+    fillTriangles(context, `${body.skin} ${body.colour}`,
+      sheet.triangles.map((slots, k) => [this.#points(slots), sheet.texels[k]]));
+    const hem = pathOf(sheet.loops.map((loop) => this.#points(loop)));
+    const [tone, half] = isCloth ? [outlineOf(body.colour), 1.5] : [mixed(body.colour, '#180a00', 0.66), 2.2];
+    stroke(context, hem, tone, half * this.scale);
   }
 
-  #sizeOf(wheel) {
-    const [x, y] = [this.at[2 * wheel.hub], this.at[2 * wheel.hub + 1]];
-    return wheel.outer.reduce((sum, slot) => sum + Math.hypot(this.at[2 * slot] - x, this.at[2 * slot + 1] - y),
-      0) / wheel.outer.length;
+  // Where the corners of triangles of a body lie in its picture, so many texels to a cell.
+  #texels({ angle, spacing, slots }, triangles, texels) {
+    const origin = this.#state('origin'), cosine = Math.cos(angle), sine = Math.sin(angle);
+    const turned = (slot) => [origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
+      origin[2 * slot] * sine - origin[2 * slot + 1] * cosine].map((value) => (value * texels) / spacing);
+    const [left, , , low] = boxOf(slots.flatMap(turned));
+    return triangles.map((corners) => corners.flatMap(turned).map((value, k) => value - (k % 2 ? low : left)));
   }
 
+  // How large a wheel is.
+  #sizeOf({ hub, outer }) {
+    const [x, y, ...points] = this.#points([hub, ...outer]);
+    return outer.reduce((sum, _, k) => sum + Math.hypot(points[2 * k] - x, points[2 * k + 1] - y), 0) / outer.length;
+  }
+
+  // Lugs are dashes of a wide line under the tyre, two to a particle.
   #drawLugs(wheel) {
-    const size = this.#sizeOf(wheel), [x, y] = this.#points([wheel.hub]), path = new Path2D(),
-      feet = this.#points(wheel.outer);
-    if (wheel.body.skin === 'steel wheel' || size < 22) return;
-    for (let k = 0; k < feet.length; k += 2) {
-      const next = (k + 2) % feet.length;
-      for (const [fx, fy] of [[feet[k], feet[k + 1]],
-        [(feet[k] + feet[next]) / 2, (feet[k + 1] + feet[next + 1]) / 2]]) {
-        const out = (1.075 * size + wheel.body.radius * this.camera.zoom) / (Math.hypot(fx - x, fy - y) || 1);
-        path.moveTo(fx, fy);
-        path.lineTo(x + (fx - x) * out, y + (fy - y) * out);
-      }
-    }
-    stroke(this.#context, path, this.theme.tyre, Math.max(1.5, Math.min(0.055 * size, (1.2 * size) / feet.length)));
+    const context = this.#context, size = this.#sizeOf(wheel), period = (Math.PI * size) / wheel.outer.length;
+    if (!wheel.is_tyre || size < 22) return;
+    const lug = Math.max(3, Math.min(0.11 * size, 0.4 * period)), high = 0.075 * size + wheel.radius * this.camera.zoom;
+    context.lineCap = 'butt';
+    context.setLineDash([lug, period - lug]);
+    stroke(context, pathOf([this.#points(wheel.outer)]), this.theme.tyre, high);
+    context.setLineDash([]);
   }
 
   #drawWheel(wheel) {
-    const context = this.#context, size = this.#sizeOf(wheel), [x, y] = this.#points([wheel.hub]),
-      isTyre = wheel.body.skin !== 'steel wheel';
-    if (isTyre && size > 14) drawBar(context, pathOf([this.#points(wheel.inner)], 0.25, 2), Math.max(1.6, 0.045 * size),
-      'steel');
-    const spokes = new Path2D(), inner = this.#points(wheel.inner), step = wheel.body.segments >= 10 ? 4 : 2;
-    for (let k = 0; k < inner.length; k += step) {
-      spokes.moveTo(x, y);
-      spokes.lineTo(inner[k], inner[k + 1]);
-    }
-    drawBar(context, spokes, Math.max(1.2, Math.min(0.034 * size, 4 * this.scale)), 'steel');
-    const hub = Math.max(2.5, Math.min(0.15 * size, 22 * this.scale)),
-      [firstX, firstY] = this.#points([wheel.outer[0]]);
-    disc(context, x, y, hub + 0.8 * this.scale, DARK, 0.8);
-    ball(context, x, y, hub, -Math.atan2(firstY - y, firstX - x), 'steel', '#aeb9cc');
+    const context = this.#context, { scale } = this, { hub, inner, outer } = wheel, size = this.#sizeOf(wheel);
+    const bar = (pieces, half) => drawBar(context, pieces, linesOf(pieces), half, 'steel');
+    const [x, y, firstX, firstY] = this.#points([hub, outer[0]]), radius = clamp(0.15 * size, 2.5, 22 * scale);
+    if (wheel.is_tyre && size > 14) bar(this.#curve([...inner, inner[0]], [], 0), Math.max(1.6, 0.045 * size));
+    bar(wheel.spokes.map((slot) => [x, y, ...this.#points([slot])]), clamp(0.034 * size, 1.2, 4 * scale));
+    disc(context, x, y, radius + 0.8 * scale, DARK, 0.8);
+    ball(context, x, y, radius, -Math.atan2(firstY - y, firstX - x), 'steel', '#aeb9cc');
   }
 
-  #drawGleams(body, degree) {
-    const points = this.#points(body.slots), context = this.#context, count = body.slots.length, mean = [0, 0];
-    points.forEach((value, k) => { mean[k & 1] += value / count; });
-    let radius = 0;
-    for (let k = 0; k < count; k++) radius += Math.hypot(points[2 * k] - mean[0], points[2 * k + 1] - mean[1]) / count;
-    for (const [x, y, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85], [-0.2, -0.56, 0.09, 0.8],
-      [0.34, 0.5, 0.4, 0.16]]) {
-      glow(context, mean[0] + radius * x, mean[1] + radius * y, radius * size, '#ffffff', alpha);
+  // Gleams of a balloon that stay where the light is, and a knot where something is tied.
+  #drawGleams({ slots, knots, colour }) {
+    const [left, top, right, low] = boxOf(this.#points(slots)), context = this.#context, tips = [];
+    const x = (left + right) / 2, y = (top + low) / 2, radius = (right - left + low - top) / 4;
+    for (const [across, down, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85],
+      [-0.2, -0.56, 0.09, 0.8], [0.34, 0.5, 0.4, 0.16]]) {
+      glow(context, x + radius * across, y + radius * down, radius * size, '#ffffff', alpha);
     }
-    // A knot where something is tied.
-    const knots = new Path2D();
-    for (const slot of body.slots.filter((each) => degree.get(each) > 2)) {
-      const x = this.at[2 * slot], y = this.at[2 * slot + 1], away = Math.hypot(x - mean[0], y - mean[1]) || 1;
-      const outX = ((x - mean[0]) / away) * radius, outY = ((y - mean[1]) / away) * radius;
-      knots.moveTo(x, y);
-      knots.lineTo(x + 0.15 * outX - 0.09 * outY, y + 0.15 * outY + 0.09 * outX);
-      knots.lineTo(x + 0.15 * outX + 0.09 * outY, y + 0.15 * outY - 0.09 * outX);
-      knots.closePath();
+    for (const slot of knots) {
+      const [tieX, tieY] = this.#points([slot]), away = Math.hypot(tieX - x, tieY - y) || 1;
+      const outX = (radius * (tieX - x)) / away, outY = (radius * (tieY - y)) / away;
+      for (const by of [-0.07, 0, 0.07]) {
+        tips.push([tieX, tieY, tieX + 0.15 * outX - by * outY, tieY + 0.15 * outY + by * outX]);
+      }
     }
-    context.fillStyle = outlineOf(body.colour);
-    context.fill(knots);
+    context.lineCap = 'round';
+    stroke(context, linesOf(tips), outlineOf(colour), Math.max(1.2, 0.03 * radius));
   }
 
   // Eyes that look where it moves, cheeks, and a mouth that says how it feels.
   #drawFace(body, number) {
-    const [spotX, spotY, room] = body.face, size = Math.min(2 * room * this.camera.zoom, 120 * this.scale);
+    const { slots, springs } = body, { at, camera: { zoom } } = this, count = slots.length, context = this.#context;
+    const [spotX, spotY, room] = body.face, size = Math.min(2 * room * zoom, 120 * this.scale);
     if (size < SMALLEST_FACE * this.scale) return;
-    const origin = this.#world.view('state.origin'), velocity = this.#world.view('state.velocity'), { slots } = body,
-      { at } = this;
-    const mean = { x: 0, y: 0, u: 0, v: 0, w: 0, z: 0 }, count = slots.length;
+    const origin = this.#state('origin'), velocity = this.#state('velocity');
+    const middle = (values, k) => slots.reduce((sum, slot) => sum + values[2 * slot + k], 0) / count;
+    const [x, y, u, v] = [middle(at, 0), middle(at, 1), middle(origin, 0), middle(origin, 1)];
+    const right = middle(velocity, 0), down = -middle(velocity, 1), speed = Math.hypot(right, down);
+    let cosine = 0, sine = 0;
     for (const slot of slots) {
-      mean.x += at[2 * slot] / count;
-      mean.y += at[2 * slot + 1] / count;
-      mean.u += origin[2 * slot] / count;
-      mean.v += origin[2 * slot + 1] / count;
-      mean.w += velocity[2 * slot] / count;
-      mean.z -= velocity[2 * slot + 1] / count;
+      const ownX = origin[2 * slot] - u, ownY = v - origin[2 * slot + 1];
+      const dx = at[2 * slot] - x, dy = at[2 * slot + 1] - y;
+      cosine += ownX * dx + ownY * dy;
+      sine += ownX * dy - ownY * dx;
     }
-    let cosine = 0, sine = 0, load = 0;
-    for (const slot of slots) {
-      const x = origin[2 * slot] - mean.u, y = mean.v - origin[2 * slot + 1], dx = at[2 * slot] - mean.x,
-        dy = at[2 * slot + 1] - mean.y;
-      cosine += x * dx + y * dy;
-      sine += x * dy - y * dx;
-    }
-    const turn = Math.atan2(sine, cosine), springs = body.springs.length;
-    for (const [spring] of body.springs) load += Math.abs(this.strain[spring]) / springs;
-    const speed = Math.hypot(mean.w, mean.z), context = this.#context, zoom = this.camera.zoom,
-      beat = 3.4 + 0.77 * (number % 4);
+    const turn = Math.atan2(sine, cosine), beat = 3.4 + 0.77 * (number % 4);
+    const load = springs.reduce((sum, [spring]) => sum + Math.abs(this.strain[spring]), 0) / springs.length;
     const isSqueezed = load > 0.1, isShut = !isSqueezed && (this.seconds + 1.7 * number) % beat > beat - 0.13;
     context.save();
-    context.translate(mean.x, mean.y);
+    context.translate(x, y);
     context.rotate(turn);
     context.translate(spotX * zoom, -spotY * zoom);
     context.rotate(-body.angle);
     context.scale(size, size);
     // What is seen of a face turns with it, but for where it looks and where the light is.
-    const back = -(turn - body.angle),
-      seen = (x, y) => [x * Math.cos(back) - y * Math.sin(back), x * Math.sin(back) + y * Math.cos(back)];
-    const far = 0.42 * 0.118 * Math.min(1, 0.3 + speed / 4),
-      gaze = speed <= 0.25 ? seen(0, 0.3 * 0.05) : seen((mean.w / speed) * far, (mean.z / speed) * far);
-    const light = seen(-0.021, -0.028), least = 0.9 / size;
-    const line = (path, half) => stroke(context, path, INK, Math.max(half, least));
+    const back = body.angle - turn;
+    const seen = (across, below) => [across * Math.cos(back) - below * Math.sin(back),
+      across * Math.sin(back) + below * Math.cos(back)];
+    const wide = (0.05 * Math.min(1, 0.3 + speed / 4)) / (speed || 1);
+    const gaze = speed <= 0.25 ? seen(0, 0.015) : seen(right * wide, down * wide), light = seen(-0.021, -0.028);
+    const line = (way, half) => stroke(context, new Path2D(way), INK, Math.max(half, 0.9 / size));
     context.lineCap = context.lineJoin = 'round';
     for (const side of [-1, 1]) {
-      const x = 0.19 * side, y = -0.09, lid = new Path2D();
-      glow(context, 1.5 * x, 0.075, 0.085, '#ff5a86', 0.45);
-      if (isSqueezed) {
-        lid.moveTo(x + side * 0.065, y - 0.07);
-        lid.lineTo(x - side * 0.053, y);
-        lid.lineTo(x + side * 0.065, y + 0.07);
-        line(lid, 0.024);
-      } else if (isShut) {
-        lid.moveTo(x - 0.094, y);
-        lid.lineTo(x + 0.094, y);
-        line(lid, 0.021);
-      } else {
-        disc(context, x, y, 0.133, INK, 0.35);
-        disc(context, x, y, 0.118, '#ffffff');
-        disc(context, x + gaze[0], y + gaze[1], 0.067, INK);
-        disc(context, x + gaze[0] + light[0], y + gaze[1] + light[1], 0.024, '#ffffff', 0.95);
+      const eye = 0.19 * side, level = -0.09, far = eye + side * 0.065, near = eye - side * 0.053;
+      glow(context, 1.5 * eye, 0.075, 0.085, '#ff5a86', 0.45);
+      if (isSqueezed) line(`M${far} -0.16L${near} -0.09L${far} -0.02`, 0.024);
+      else if (isShut) line(`M${eye - 0.094} ${level}h0.188`, 0.021);
+      else {
+        disc(context, eye, level, 0.133, INK, 0.35);
+        disc(context, eye, level, 0.118, '#ffffff');
+        disc(context, eye + gaze[0], level + gaze[1], 0.067, INK);
+        disc(context, eye + gaze[0] + light[0], level + gaze[1] + light[1], 0.024, '#ffffff', 0.95);
       }
     }
-    if (speed > 2.5 && !isSqueezed) {
+    const smile = 0.125 + 0.25 * (0.66 - Math.min(9 * load, 0.8));
+    if (isSqueezed) line('M-0.125 0.125q0.042 -0.05 0.083 0t0.084 0t0.083 0', 0.02);
+    else if (speed <= 2.5) line(`M-0.125 0.125Q0 ${smile} 0.125 0.125`, 0.02);
+    else {
       disc(context, 0, 0.145, 0.0725, INK);
       disc(context, 0, 0.17, 0.041, '#f0708a');
-    } else {
-      const mouth = new Path2D(), smile = 0.125 * (0.66 - Math.min(9 * load, 0.8));
-      for (let k = -4; k <= 4; k++) {
-        const t = k / 4;
-        mouth.lineTo(0.125 * t, 0.125 + (isSqueezed ? 0.0275 * Math.sin(3 * Math.PI * t) : smile * (1 - t * t)));
-      }
-      line(mouth, 0.02);
     }
     context.restore();
   }
 
+  // Balls that are there: a small one that is held is a pin.
   #eachBall(act) {
-    const active = this.#world.view('state.particle_active'), radius = this.#world.view('state.radius'),
-      inverse = this.#world.view('state.inverse_mass');
+    const [active, radius, inverse] = ['particle_active', 'radius', 'inverse_mass'].map((name) => this.#state(name));
     this.#scene.balls.forEach((one, k) => {
-      if (!active[one.slot] || (inverse[one.slot] === 0 && radius[one.slot] <= 0.1)) return;
+      if (!active[one.slot] || (inverse[one.slot] === 0 && radius[one.slot] <= LARGEST_PIN)) return;
       const size = Math.max(radius[one.slot] * this.camera.zoom, 2.5 * this.scale);
       act(one.slot, this.at[2 * one.slot], this.at[2 * one.slot + 1], size, one, k);
     });
   }
 
+  // Balls, and a screw at each pin: of balls a smaller one, and none of a bumper.
   #drawBalls() {
-    const angle = this.#world.view('state.angle');
+    const angle = this.#state('angle'), inverse = this.#state('inverse_mass'), active = this.#state('particle_active');
+    const { particle, count } = this.#world.hands, context = this.#context, sizes = new Map();
     this.#eachBall((slot, x, y, radius, { kind, colour }, k) => {
-      ball(this.#context, x, y, radius, angle[slot], kind, colour ?? (kind === 'sand' ? SANDS[k % 4] : '#8d99b0'));
+      ball(context, x, y, radius, angle[slot], kind, colour ?? (kind === 'sand' ? SANDS[k % 4] : '#8d99b0'));
+      sizes.set(slot, kind === 'bumper' ? 0 : 0.55);
     });
-  }
-
-  // A pin is a screw.
-  #drawPins() {
-    const inverse = this.#world.view('state.inverse_mass'), active = this.#world.view('state.particle_active'),
-      context = this.#context;
-    const bumpers = new Set(this.#scene.balls.filter((one) => one.kind === 'bumper').map((one) => one.slot));
-    const balls = new Set(this.#scene.balls.map((one) => one.slot)), hands = this.#world.hands;
     inverse.forEach((value, slot) => {
-      if (value !== 0 || !active[slot] || bumpers.has(slot)
-        || (slot >= hands.particle && slot < hands.particle + hands.count)) return;
-      const k = this.scale * (balls.has(slot) ? 0.55 : 1), x = this.at[2 * slot], y = this.at[2 * slot + 1],
-        slit = new Path2D();
-      disc(context, x, y, 4.4 * k, '#141924', 0.9);
-      disc(context, x, y, 3.5 * k, '#b4bcc9');
-      slit.moveTo(x - 2.5 * k, y - 2.5 * k);
-      slit.lineTo(x + 2.5 * k, y + 2.5 * k);
-      stroke(context, slit, '#4a5363', 0.6 * k);
+      const size = this.scale * (sizes.get(slot) ?? 1);
+      if (value !== 0 || !active[slot] || !size || (slot >= particle && slot < particle + count)) return;
+      const [x, y] = this.#points([slot]), slit = 2.5 * size;
+      disc(context, x, y, 4.4 * size, '#141924', 0.9);
+      disc(context, x, y, 3.5 * size, '#b4bcc9');
+      stroke(context, linesOf([[x - slit, y - slit, x + slit, y + slit]]), '#4a5363', 0.6 * size);
     });
   }
 }

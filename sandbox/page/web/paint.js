@@ -1,37 +1,45 @@
-// Paint: colours, lit skins, bars and balls on a canvas. All sizes are pixels of the page.
+// Paint: colours, lit skins, strips with a texture and balls on a canvas. All sizes are pixels of the page.
 
+export const clamp = (value, low = 0, high = 1) => Math.min(Math.max(value, low), high);
 const parse = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+const mean = (first, second, share) => first.map((value, k) => value + (second[k] - value) * share);
+
 // The colour that has `share` (0..1) of the second in it; colours are '#rrggbb'.
 export function mixed(first, second, share) {
-  const other = parse(second), mix = parse(first).map((value, k) => Math.round(value + (other[k] - value) * share));
-  return `#${mix.map((value) => value.toString(16).padStart(2, '0')).join('')}`;
+  const channels = mean(parse(first), parse(second), share);
+  return `#${channels.map((value) => Math.round(value).toString(16).padStart(2, '0')).join('')}`;
 }
 
 export const outlineOf = (colour) => mixed(colour, '#28003c', 0.46);
-export const darkEdge = (colour) => mixed(colour, '#180a00', 0.66);
 
-// Of each skin: how light and how dark it gets, with what, how it gleams, and how little shows through.
-const SKINS = {
-  jelly: ['#ffffff', 0.62, '#5a0a6e', 0.4, 0.75, 0.9], balloon: ['#ffffff', 0.5, '#3c0046', 0.42, 0, 0.9],
-  tyre: ['#ffffff', 0.3, '#000000', 0.6, 0.15, 1], window: ['#ffffff', 0.7, '#3c6e96', 0.4, 0.5, 0.92],
-  wood: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1], stone: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1],
-  brick: ['#ffffff', 0.25, '#1e0a00', 0.45, 0, 1], rubber: ['#ffffff', 0.32, '#140028', 0.38, 0.15, 1],
-};
-// Light and shade of a skin are thin crescents laid over each other: one for so many pixels of its depth, so many at
-// most, and how far inwards they reach, in depths.
-const CRESCENT = 2.5, MOST_CRESCENTS = 9, REACH = 1.2;
+const WHITE = [255, 255, 255], kept = new Map();
+
+// What was made under a name, or is made now.
+function once(name, make) {
+  if (!kept.has(name)) kept.set(name, make());
+  return kept.get(name);
+}
+
+export function canvasOf(width, height, settings) {
+  const canvas = document.createElement('canvas');
+  Object.assign(canvas, { width, height });
+  return canvas.getContext('2d', settings);
+}
+
+function patternOf(image) {
+  const context = canvasOf(image.width, image.height);
+  context.putImageData(image, 0, 0);
+  return context.createPattern(context.canvas, 'repeat');
+}
 
 // Closed loops of points [x, y, ...] as one path, with their corners cut by `keep` of their sides.
-export function pathOf(loops, keep = 0, rounds = 0) {
-  const path = new Path2D(), cut = rounds ? Math.min(2 * keep, 0.5) : 0;
+export function pathOf(loops, keep = 0) {
+  const path = new Path2D(), cut = Math.min(2 * keep, 0.5);
   for (const points of loops) {
-    const count = points.length / 2;
-    for (let k = 0; k < count; k++) {
-      const x = points[2 * k], y = points[2 * k + 1], before = 2 * ((k + count - 1) % count),
-        after = 2 * ((k + 1) % count);
-      const startX = x + (points[before] - x) * cut, startY = y + (points[before + 1] - y) * cut;
-      if (k === 0) path.moveTo(startX, startY);
-      else path.lineTo(startX, startY);
+    const count = points.length;
+    for (let k = 0; k < count; k += 2) {
+      const x = points[k], y = points[k + 1], before = (k + count - 2) % count, after = (k + 2) % count;
+      path[k ? 'lineTo' : 'moveTo'](x + (points[before] - x) * cut, y + (points[before + 1] - y) * cut);
       if (cut) path.quadraticCurveTo(x, y, x + (points[after] - x) * cut, y + (points[after + 1] - y) * cut);
     }
     path.closePath();
@@ -39,124 +47,232 @@ export function pathOf(loops, keep = 0, rounds = 0) {
   return path;
 }
 
-// Points of a loop moved outwards by so much.
+// A loop of points moved outwards by so much; it runs anticlockwise, and a hole the other way.
 export function grown(points, by) {
-  const count = points.length / 2, result = new Float64Array(points.length);
-  let area = 0;
-  for (let k = 0; k < count; k++) {
-    const next = (k + 1) % count;
-    area += points[2 * k] * points[2 * next + 1] - points[2 * next] * points[2 * k + 1];
-  }
-  const side = area > 0 ? by : -by;
-  for (let k = 0; k < count; k++) {
-    const before = 2 * ((k + count - 1) % count), after = 2 * ((k + 1) % count);
-    const dx = points[after] - points[before], dy = points[after + 1] - points[before + 1],
-      length = Math.hypot(dx, dy) || 1;
-    result[2 * k] = points[2 * k] + (dy / length) * side;
-    result[2 * k + 1] = points[2 * k + 1] - (dx / length) * side;
-  }
-  return result;
+  return points.map((value, k) => {
+    const x = k & ~1, before = (x + points.length - 2) % points.length, after = (x + 2) % points.length;
+    const dx = points[after] - points[before], dy = points[after + 1] - points[before + 1];
+    return value + ((k % 2 ? dx : -dy) * by) / (Math.hypot(dx, dy) || 1);
+  });
 }
 
-// Fill a path with a skin that bulges: `depth` is how far its edge is rounded. over: what is drawn on it, unlit.
-export function fillSkin(context, path, box, skin, colour, depth, over) {
-  const [light, up, shade, down, gloss, alpha] = SKINS[skin] ?? SKINS.rubber;
-  context.save();
-  context.globalAlpha = alpha;
+// Left, top, right and bottom of points [x, y, ...].
+export function boxOf(points) {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  points.forEach((value, k) => {
+    box[k % 2] = Math.min(box[k % 2], value);
+    box[2 + (k % 2)] = Math.max(box[2 + (k % 2)], value);
+  });
+  return box;
+}
+
+const INSIDE = 32, LIT = 128, STRONGEST = 1.5;
+
+// Colours of a skin by how far inside a place is, and how lit. look: colours near its edge and deep inside, the
+// strength of light, the colour and strength of shade, its gleam, how much shows through inside, and how little at all.
+function table(look) {
+  return once(look.join(), () => {
+    const [near, deep, up, shade, down, gloss, clear, alpha] = look.map((part) => (part.length ? parse(part) : part));
+    const colours = new Uint8ClampedArray(4 * INSIDE * LIT);
+    for (let k = 0; k < INSIDE * LIT; k++) {
+      const inside = Math.floor(k / LIT) / (INSIDE - 1), lit = STRONGEST * ((2 * (k % LIT)) / (LIT - 1) - 1);
+      const gleam = clamp((lit - 0.3) * 5) * clamp((inside - 0.16) * 6) * clamp((0.8 - inside) * 4) * gloss;
+      const own = mean(near, deep, clamp(1.15 * inside - 0.08));
+      const colour = lit > 0 ? mean(own, WHITE, up * Math.min(lit, 1.1)) : mean(own, shade, down * Math.min(-lit, 1));
+      const shown = alpha * (1 - clear * inside * (1 - 0.5 * Math.min(Math.abs(lit), 1)));
+      colours.set([...mean(colour, WHITE, gleam), 255 * shown], 4 * k);
+    }
+    return new Uint32Array(colours.buffer);
+  });
+}
+
+// Blur cells in rows by the mean of `reach` of them to each side, so many times; cells at the border are empty.
+function blur(cells, columns, reach, times) {
+  const full = 2 * reach + 1;
+  for (let time = 0; time < 2 * times; time++) {
+    const step = time % 2 ? columns : 1, before = new Float32Array(cells.length + full * step);
+    before.set(cells, (reach + 1) * step);
+    for (let first = 0; first < step; first++) {
+      let sum = 0;
+      for (let k = first; k < first + reach * step; k += step) sum += cells[k];
+      for (let k = first; k < cells.length; k += step) {
+        sum += before[k + full * step] - before[k];
+        cells[k] = sum / full;
+      }
+    }
+  }
+}
+
+// Pixels of the page to one of a shadow, and how often that is blurred.
+const SHADOW = 6, SOFTNESS = 3, shadowed = canvasOf(1, 1, { willReadFrequently: true });
+
+// Lay the soft shadow of what a function draws on a picture of this size: down and to the right.
+export function castShadow(onto, { width, height }, { shadow: colour, shadow_strength: strength }, scale, draw) {
+  const context = shadowed, { canvas } = context, columns = Math.ceil(width / SHADOW) + 2 * SOFTNESS;
+  Object.assign(canvas, { width: columns, height: Math.ceil(height / SHADOW) + 2 * SOFTNESS });
+  context.setTransform(1 / SHADOW, 0, 0, 1 / SHADOW, SOFTNESS, SOFTNESS);
   context.fillStyle = colour;
-  context.fill(path, 'evenodd');
-  context.clip(path, 'evenodd');
-  over?.();
-  crescents(context, path, box, light, 0.8 * up, 0.22 * depth, 0.8 * depth);
-  crescents(context, path, box, shade, down, -0.22 * depth, -0.8 * depth);
-  if (gloss && depth > 5) {
-    const gleam = new Path2D();
-    gleam.addPath(path, new DOMMatrix([1, 0, 0, 1, 0.12 * depth, 0.3 * depth]));
-    context.clip(gleam);
-    crescents(context, gleam, box, '#ffffff', 0.8 * gloss, 0.14 * depth, 0.5 * depth);
-  }
-  context.restore();
-}
-
-// What of a clipped path is within so much of its edge, on the side from which light comes; box: around the path.
-function crescents(context, path, box, colour, strength, x, y) {
-  const count = Math.min(Math.max(Math.round(Math.hypot(x, y) / CRESCENT), 2), MOST_CRESCENTS);
-  context.fillStyle = colour;
-  context.globalAlpha = Math.min((1.5 * strength) / count, 1);
-  for (let k = 1; k <= count; k++) {
-    const share = REACH * (k / count) ** 1.3, moved = new Path2D();
-    moved.rect(...box);
-    moved.addPath(path, new DOMMatrix([1, 0, 0, 1, share * x, share * y]));
-    context.fill(moved, 'evenodd');
-  }
-}
-
-// Fill a path with ground: from `near` its edge to `deep` inside.
-export function fillGround(context, path, box, near, deep, depth, light, dark, alpha = 1, grain = null) {
-  context.save();
-  context.globalAlpha = alpha;
-  context.fillStyle = deep;
-  context.fill(path);
-  context.clip(path);
-  context.strokeStyle = near;
-  for (let k = 10; k > 0; k--) {
-    context.globalAlpha = 0.16 * alpha;
-    context.lineWidth = 0.22 * k * depth;
-    context.stroke(path);
-  }
-  crescents(context, path, box, '#ffffff', 0.8 * light, 0.1 * depth, 0.3 * depth);
-  crescents(context, path, box, '#000000', 0.8 * dark, -0.1 * depth, -0.3 * depth);
-  context.globalAlpha = 1;
-  if (grain) {
-    context.fillStyle = context.createPattern(grains(grain), 'repeat');
-    context.fill(path);
-  }
-  context.restore();
-}
-
-// Of each kind of line: its outline, its colour, a pattern: [colour, part of the width, dash, gap in half widths].
-const LINES = {
-  rope: ['#5b3d20', '#c89b62', ['#80542c', 0.9, 0.9, 2.3]], cable: ['#3a4252', '#a3adbf', ['#5c667a', 0.9, 0.6, 1.5]],
-  deck: ['#4a2e16', '#c48e58', ['#4a2e16', 1, 0.25, 1.75]],
-  thread: [null, '#aeb5c2', null], silk: [null, '#ccd4e0', null], steel: ['#161b26', '#96a3ba', null],
-  brass: ['#3a2a10', '#e2b04e', null], wood: ['#3a2614', '#c99258', null], rubber: ['#3a1418', '#eb605c', null],
-  bone: ['#4a3a28', '#f0e4cc', null], muscle: ['#4a1622', '#de5462', null], piston: ['#161b26', '#96a3ba', null],
-};
-
-// Draw a path as a round bar of a kind; colour: of what is painted, and of bars of no kind.
-export function drawBar(context, path, half, kind, colour) {
-  if (kind === 'chain') {
-    drawChain(context, path, half);
-    return;
-  }
-  const [line, own, pattern] = LINES[kind] ?? [outlineOf(colour), colour, null];
   context.lineCap = context.lineJoin = 'round';
-  if (line && half > 0.7) stroke(context, path, line, half + 0.9, 0.85);
-  stroke(context, path, own, half);
-  if (half < 1.2) return;
-  if (pattern) {
-    const [tone, width, dash, gap] = pattern;
-    context.setLineDash([dash * half, gap * half]);
-    context.lineCap = 'butt';
-    stroke(context, path, tone, width * half);
-    context.setLineDash([]);
-    context.lineCap = 'round';
-  }
-  context.save();
-  context.translate(-0.12 * half, -0.36 * half);
-  stroke(context, path, '#ffffff', 0.26 * half, 0.36);
-  context.restore();
+  draw(context);
+  const image = context.getImageData(0, 0, columns, canvas.height), pixels = new Uint32Array(image.data.buffer);
+  const found = [], [red, green, blue] = parse(colour);
+  for (let k = 0; k < pixels.length; k++) if (pixels[k]) found.push(k % columns, Math.floor(k / columns));
+  if (!found.length) return;
+  // Only where there is any.
+  const [left, top, right, bottom] = boxOf(found), x = Math.max(left - SOFTNESS, 0), y = Math.max(top - SOFTNESS, 0);
+  const wide = right + SOFTNESS + 1 - x, high = Math.min(bottom + SOFTNESS + 1, canvas.height) - y;
+  const first = y * columns, cells = new Float32Array(high * columns);
+  for (let k = 0; k < cells.length; k++) cells[k] = pixels[first + k] >>> 24;
+  blur(cells, columns, 1, SOFTNESS);
+  for (let k = 0; k < cells.length; k++) pixels[first + k] = (cells[k] << 24) | (blue << 16) | (green << 8) | red;
+  context.putImageData(image, 0, 0);
+  onto.globalAlpha = strength;
+  onto.drawImage(canvas, x, y, wide, high, (x - SOFTNESS) * SHADOW + 4 * scale, (y - SOFTNESS) * SHADOW + 8 * scale,
+    wide * SHADOW, high * SHADOW);
+  onto.globalAlpha = 1;
 }
 
-// Links on edge, thin, and between them links seen flat.
-function drawChain(context, path, half) {
-  stroke(context, path, '#1c222e', 0.45 * half, 0.7);
-  stroke(context, path, '#b0bccd', 0.3 * half);
-  context.setLineDash([1.8 * half, 3.8 * half]);
-  stroke(context, path, '#1c222e', 0.95 * half, 0.7);
-  stroke(context, path, '#b0bccd', 0.8 * half);
-  stroke(context, path, '#1c222e', 0.34 * half);
-  context.setLineDash([]);
+// Cells of a skin are this part of its depth wide; they are blurred by so many to each side, so often; cells around it.
+const CELL = 0.25, REACH = 3, TIMES = 3, AROUND = REACH * (TIMES - 1) + 1;
+// Light from above, a little from the left.
+const DOWNWARDS = 0.9, ACROSS = 0.42, STEEPNESS = 1.45 / CELL / 2;
+const FLUSH = 0.74, SQUEEZED = parse('#4a3fd8'), STRETCHED = parse('#fff0b0');
+
+// Make the skin of a shape that bulges, of which a view of this size is seen. The shape has a path, a box, a depth, a
+// look, and splats of strain or none: it is filled with cells; blurred they are how high its skin stands, and the slope
+// of that is how it is lit.
+export function makeSkin(shape, width, height) {
+  const { box: [left, top, right, bottom], depth, path, look } = shape, cell = Math.max(CELL * depth, 1);
+  const room = AROUND * cell, x = Math.max(left, -room) - room, y = Math.max(top, -room) - room;
+  const columns = Math.ceil((Math.min(right, width + room) + room - x) / cell);
+  const rows = Math.ceil((Math.min(bottom, height + room) + room - y) / cell);
+  shape.fill = null;
+  // Nothing of what is elsewhere, or nowhere.
+  if (!(columns > 2 * AROUND && rows > 2 * AROUND)) return;
+  const context = (shape.cells ??= canvasOf(1, 1, { willReadFrequently: true })), { canvas } = context;
+  Object.assign(canvas, { width: columns, height: rows });
+  context.setTransform(1 / cell, 0, 0, 1 / cell, -x / cell, -y / cell);
+  context.fill(path, 'evenodd');
+  const image = context.getImageData(0, 0, columns, rows), pixels = new Uint32Array(image.data.buffer);
+  const colours = table(look), high = new Float32Array(pixels.length);
+  const strain = shape.splats && strainOf(shape.splats.map(([across, down, amount]) =>
+    [(across - x) / cell, (down - y) / cell, amount]), Math.max(shape.reach / cell, 1), columns, rows);
+  for (let k = 0; k < pixels.length; k++) high[k] = (pixels[k] >>> 24) / 255;
+  blur(high, columns, REACH, TIMES);
+  for (let k = columns; k < pixels.length - columns; k++) {
+    const across = high[k + 1] - high[k - 1], down = high[k + columns] - high[k - columns];
+    const lit = STEEPNESS * (ACROSS * across + DOWNWARDS * down);
+    const inside = clamp(Math.round(1.9 * (high[k] - 0.45) * (INSIDE - 1)), 0, INSIDE - 1);
+    pixels[k] = colours[inside * LIT + clamp(Math.round((lit / STRONGEST + 1) * 0.5 * (LIT - 1)), 0, LIT - 1)];
+    if (!strain?.[k]) continue;
+    const share = FLUSH * Math.abs(strain[k]), over = strain[k] > 0 ? STRETCHED : SQUEEZED;
+    for (let at = 0; at < 3; at++) image.data[4 * k + at] += (over[at] - image.data[4 * k + at]) * share;
+  }
+  context.putImageData(image, 0, 0);
+  shape.fill = context.createPattern(canvas, 'repeat');
+  shape.fill.setTransform(new DOMMatrix([cell, 0, 0, cell, x, y]));
+}
+
+// How squeezed (-1) or stretched (1) cells are, by splats [x, y, amount] that reach so far.
+function strainOf(splats, reach, columns, rows) {
+  const sum = new Float32Array(columns * rows), weight = new Float32Array(columns * rows).fill(0.25);
+  for (const [x, y, amount] of splats) {
+    for (let row = Math.max(Math.ceil(y - 2 * reach), 0); row < Math.min(y + 2 * reach, rows); row++) {
+      for (let column = Math.max(Math.ceil(x - 2 * reach), 0); column < Math.min(x + 2 * reach, columns); column++) {
+        const near = Math.max(1 - ((column - x) ** 2 + (row - y) ** 2) / (4 * reach * reach), 0) ** 2;
+        sum[row * columns + column] += near * amount;
+        weight[row * columns + column] += near;
+      }
+    }
+  }
+  return sum.map((value, k) => clamp(value / weight[k], -1, 1));
+}
+
+// Fill a shape with its skin.
+export function fillSkin(context, { fill, path }) {
+  if (!fill) return;
+  context.fillStyle = fill;
+  context.fill(path, 'evenodd');
+}
+
+// Of each kind of line: the line around it and its own colour.
+const LINES = {
+  rope: ['#5b3d20', '#c89b62'], cable: ['#3a4252', '#a3adbf'], deck: ['#4a2e16', '#c48e58'], chain: [],
+  wood: ['#3a2614', '#c99258'], thread: [null, '#aeb5c2'], silk: [null, '#ccd4e0'], steel: ['#161b26', '#96a3ba'],
+  brass: ['#3a2a10', '#e2b04e'], rubber: ['#3a1418', '#eb605c'], bone: ['#4a3a28', '#f0e4cc'],
+};
+const ALONG = 32, HALF_TILE = 8;
+// Lines narrower than this have no texture, nor has any where there are so many.
+const THIN = 1.1, MOST_STRIPS = 1500;
+
+// Keep the pictures of a scene: textures of lines and sheets.
+export function keepPictures(pictures) {
+  for (const [name, { rows, bytes }] of Object.entries(pictures)) {
+    const values = Uint8ClampedArray.from(atob(bytes), (letter) => letter.charCodeAt(0));
+    once(name, () => patternOf(new ImageData(values, values.length / 4 / rows)));
+  }
+}
+
+// Fill a strip from a to b with a style, in the coordinates of a tile: between two places along it, and lit from above.
+// within: a path in those coordinates, of what there is of it.
+function strip(context, style, [ax, ay, bx, by, from = 0, to = 1], half, within) {
+  const dx = bx - ax, dy = by - ay, length = Math.hypot(dx, dy), wide = half / HALF_TILE / length;
+  if (!(length > 0) || !(to > from)) return;
+  const side = dx < 0 || (dx === 0 && dy > 0) ? -wide : wide, long = 1 / (to - from), before = context.getTransform();
+  context.transform((dx * long) / ALONG, (dy * long) / ALONG, -dy * side, dx * side,
+    ax - dx * long * from + dy * side * HALF_TILE, ay - dy * long * from - dx * side * HALF_TILE);
+  context.fillStyle = style;
+  if (within) context.fill(within);
+  else context.fillRect(ALONG * from, 0, ALONG * (to - from), 2 * HALF_TILE);
+  context.setTransform(before);
+}
+
+// Draw pieces [ax, ay, bx, by, from, to, spring] as a bar of a kind, or of a colour, along a path through them.
+// tintOf(spring): a colour over it and how much of that, or nothing.
+export function drawBar(context, pieces, path, half, kind, tintOf) {
+  const [line, own] = LINES[kind] ?? [outlineOf(kind), kind];
+  context.lineCap = context.lineJoin = 'round';
+  if (line && half > 0.7) stroke(context, path, line, half + 0.9, 0.8);
+  if (own) stroke(context, path, own, half);
+  const style = half >= THIN && pieces.length < MOST_STRIPS && kept.get(kind);
+  for (const piece of pieces) {
+    if (style) strip(context, style, piece, half);
+    const tint = tintOf?.(piece[6]);
+    if (!tint) continue;
+    [, context.globalAlpha] = tint;
+    strip(context, tint[0], piece, kind === 'chain' ? 0.3 * half : half);
+    context.globalAlpha = 1;
+  }
+}
+
+// A muscle between two places, as thick as its belly.
+export function drawMuscle(context, ends, belly) {
+  const lens = new Path2D('M0 6C19 -2.4 45 -2.4 64 6V10C45 18.4 19 18.4 0 10Z');
+  strip(context, '#4a1622', [...ends, 0, 2], belly + 1.2, lens);
+  strip(context, kept.get('muscle'), [...ends, 0, 2], belly, lens);
+}
+
+// Turf on those of the pieces [ax, ay, bx, by] of the ground's outline that face up.
+export function drawTurf(context, pieces, theme, scale) {
+  let along = 0;
+  const turf = pieces.map(([ax, ay, bx, by]) => {
+    const length = Math.hypot(bx - ax, by - ay), from = along;
+    along += length / (46 * scale);
+    return [ax, ay + 2 * scale, bx, by + 2 * scale, from, along, (ax - bx) / length > 0.8];
+  }).filter((piece) => piece[6]);
+  context.lineCap = 'butt';
+  stroke(context, linesOf(turf), mixed(...theme.turf, 0.55), 3.2 * scale);
+  for (const piece of turf) strip(context, kept.get(`turf ${theme.name}`), piece, 12 * scale);
+}
+
+// A path of lines [ax, ay, bx, by].
+export function linesOf(pieces) {
+  const path = new Path2D();
+  for (const [ax, ay, bx, by] of pieces) {
+    path.moveTo(ax, ay);
+    path.lineTo(bx, by);
+  }
+  return path;
 }
 
 export function stroke(context, path, colour, half, alpha = 1) {
@@ -176,114 +292,82 @@ export function disc(context, x, y, radius, colour, alpha = 1) {
   context.globalAlpha = 1;
 }
 
-// Noise that tiles, of patches about `reach` texels wide.
-function noise(size, reach) {
-  let values = Float32Array.from({ length: size * size },
-    ((seed) => () => (seed = (seed * 16807) % 2147483647) / 1073741824 - 1)(7));
-  for (const step of [1, size, 1, size]) {
-    const at = (k, by) =>
-      (step === 1 ? (k & ~(size - 1)) | ((k + by) & (size - 1)) : (k + by * size) & (size * size - 1));
-    const smooth = values.slice();
-    for (let k = 0; k < values.length; k++) {
-      let sum = 0;
-      for (let by = -reach; by <= reach; by++) sum += values[at(k, by)];
-      smooth[k] = sum / (2 * reach + 1);
+// Waves that tile and look like noise, of about so many to a picture; u and v: angles across and down.
+const noise = (u, v, count) => [1, 2, 3, 4, 5, 6, 7].reduce((sum, k) => {
+  const way = 2.4 * k + count, across = Math.round(count * Math.cos(way)), down = Math.round(count * Math.sin(way));
+  return sum + Math.sin(across * u + down * v + k * k) / 1.9;
+}, 0);
+const GRAIN = 256, PEBBLES = 16;
+const chance = (k) => ((Math.sin(12.99 * k) * 43758.55) % 1 + 1) % 1;
+const PLACES = Array.from({ length: PEBBLES }, (_, k) => [1, 40, 80].map((from) => chance(k + from)));
+const GRAINS = {
+  wood: (u, v) => 5 * Math.sin(18 * v + 1.5 * Math.sin(u)) + 3 * Math.sin(46 * v + Math.sin(2 * u)),
+  earth: (u, v, x, y) => PLACES.reduce((sum, [left, top, size], k) => sum + (k % 2 ? 18 : -15)
+    * clamp(1.4 + 2 * size - Math.hypot(x - GRAIN * left, y - GRAIN * top)),
+  1.3 * noise(u, v, 10) + 4 * Math.tanh(2 * Math.sin(4 * v + Math.sin(u) + 0.6 * noise(u, v, 4)))),
+};
+
+// Lay the grain of earth or wood over a path; its place on the page moves with x and y.
+export function layGrain(context, path, kind, x, y) {
+  const grain = once(`grain ${kind}`, () => [1, -1].map((sign) => {
+    const image = new ImageData(GRAIN, GRAIN), unit = (2 * Math.PI) / GRAIN;
+    for (let k = 0; k < GRAIN * GRAIN; k++) {
+      const column = k % GRAIN, row = Math.floor(k / GRAIN), fine = 3 * chance(k) - 1.5;
+      const value = fine + GRAINS[kind](unit * column, unit * row, column, row);
+      image.data.fill(Math.round(sign * value), 4 * k, 4 * k + 3);
+      image.data[4 * k + 3] = 255;
     }
-    values = smooth;
-  }
-  const spread = Math.sqrt(values.reduce((sum, value) => sum + value * value, 0) / values.length);
-  return values.map((value) => value / spread);
+    return patternOf(image);
+  }));
+  // What is lighter is added, and what is darker taken away.
+  ['lighter', 'difference'].forEach((how, k) => {
+    context.globalCompositeOperation = how;
+    grain[k].setTransform(new DOMMatrix([1, 0, 0, 1, x, y]));
+    context.fillStyle = grain[k];
+    context.fill(path);
+  });
+  context.globalCompositeOperation = 'source-over';
 }
 
-// The grain of earth or wood: what is lighter and darker of it, as a picture to lay over.
-function grains(kind) {
-  return sprite(`grain ${kind}`, 256, (own) => {
-    const size = 256, picture = own.createImageData(size, size), fine = noise(size, 2), coarse = noise(size, 9),
-      wide = noise(size, 16);
-    for (let k = 0; k < size * size; k++) {
-      const x = ((k & 255) * Math.PI) / 128, y = ((k >> 8) * Math.PI) / 128, bent = 0.6 * Math.sin(x) + 0.3 * wide[k];
-      const earth = 1.2 * fine[k] + 1.8 * coarse[k] + 4 * Math.tanh(2 * Math.sin(4 * y + 1.6 * bent))
-        + (fine[k] > 3.6 ? 18 : fine[k] < -3.6 ? -15 : 0);
-      const wood = 5 * Math.sin(18 * y + 1.5 * Math.sin(x)) + 3 * Math.sin(46 * y + Math.sin(2 * x)) + fine[k];
-      const value = kind === 'wood' ? wood : earth;
-      picture.data.fill(value > 0 ? 255 : 0, 4 * k, 4 * k + 3);
-      picture.data[4 * k + 3] = Math.min(Math.abs(value) * (value > 0 ? 1.7 : 2.4), 90);
-    }
-    own.putImageData(picture, 0, 0);
+// A picture that is drawn once, between -1 and 1 each way.
+function sprite(name, size, draw) {
+  return once(`${name} ${size}`, () => {
+    const context = canvasOf(size, size);
+    context.setTransform(size / 2, 0, 0, size / 2, size / 2, size / 2);
+    draw(context);
+    return context.canvas;
   });
 }
 
-// A piece of turf that tiles, as long as 64 texels and 24 high; its middle lies on the ground.
-export function turfOf(context, [light, dark]) {
-  return context.createPattern(sprite(`turf ${light}`, 64, (own) => {
-    own.setTransform(1, 0, 0, 1, 0, 0);
-    const fade = own.createLinearGradient(0, 0, 0, 24);
-    fade.addColorStop(0, light);
-    fade.addColorStop(1, dark);
-    own.fillStyle = fade;
-    for (let x = 0; x < 64; x++) {
-      const u = ((x + 0.5) / 64) * Math.PI;
-      const top = -0.45 + 0.38 * Math.abs(Math.sin(5 * u)) + 0.16 * Math.sin(6 * u + 0.7),
-        low = 0.52 + 0.2 * Math.sin(4 * u + 0.5) + 0.1 * Math.sin(10 * u);
-      own.fillRect(x, 12 + 12 * top, 1, 12 * (low - top));
-    }
-  }), 'repeat');
-}
-
-const sprites = new Map();
-
-function sprite(name, size, draw) {
-  if (!sprites.has(name)) {
-    const canvas = document.createElement('canvas');
-    canvas.width = canvas.height = size;
-    const context = canvas.getContext('2d');
-    context.scale(size / 2, size / 2);
-    context.translate(1, 1);
-    draw(context);
-    sprites.set(name, canvas);
-  }
-  return sprites.get(name);
+// Fill the square with a colour that changes from a place to the rim of a disc.
+export function radial(context, [x, y], [middleX, middleY, radius], stops) {
+  const fade = context.createRadialGradient(x, y, 0, middleX, middleY, radius);
+  stops.forEach(([at, colour]) => fade.addColorStop(at, colour));
+  context.fillStyle = fade;
+  context.fillRect(-1, -1, 2, 2);
 }
 
 // A disc of a colour that fades out towards its rim.
 export function glow(context, x, y, radius, colour, alpha) {
-  const picture = sprite(`glow ${colour}`, 64, (own) => {
-    const fade = own.createRadialGradient(0, 0, 0, 0, 0, 1);
-    for (let k = 0; k <= 8; k++) {
-      const fall = 1 - k / 8, share = fall * fall * (3 - 2 * fall);
-      fade.addColorStop(k / 8, colour + Math.round(255 * share).toString(16).padStart(2, '0'));
-    }
-    own.fillStyle = fade;
-    own.fillRect(-1, -1, 2, 2);
-  });
+  const stop = (_, k) => {
+    const fall = 1 - k / 8, share = Math.round(255 * fall * fall * (3 - 2 * fall));
+    return [k / 8, colour + share.toString(16).padStart(2, '0')];
+  };
+  const shape = sprite(`glow ${colour}`, 64, (own) => radial(own, [0, 0], [0, 0, 1], Array.from({ length: 9 }, stop)));
   context.globalAlpha = alpha;
-  context.drawImage(picture, x - radius, y - radius, 2 * radius, 2 * radius);
+  context.drawImage(shape, x - radius, y - radius, 2 * radius, 2 * radius);
   context.globalAlpha = 1;
 }
 
+const band = (own) => own.fillRect(-1, -0.26, 2, 0.52);
 const MARKS = {
-  stripe: (own) => own.fillRect(-1, -0.26, 2, 0.52),
-  sand: (own) => own.fillRect(-1, -0.26, 2, 0.52),
-  marble: (own) => {
-    own.lineWidth = 0.4;
-    own.beginPath();
-    own.moveTo(-1, 0.12);
-    own.bezierCurveTo(-0.5, 0.8, 0.5, -0.8, 1, -0.12);
-    own.stroke();
-  },
+  stripe: band, sand: band,
+  marble: (own) => stroke(own, new Path2D('M-1 0.12C-0.5 0.8 0.5 -0.8 1 -0.12'), '#ffffff', 0.2),
   steel: (own) => {
-    own.lineWidth = 0.1;
-    own.globalAlpha = 0.5;
-    own.beginPath();
-    own.arc(0, 0, 0.62, 0, 7);
-    own.stroke();
-    own.globalAlpha = 1;
-    own.beginPath();
-    own.arc(0.62, 0, 0.13, 0, 7);
-    own.fill();
+    stroke(own, new Path2D('M0.62 0A0.62 0.62 0 1 1 0.62 -0.01'), '#39435a', 0.05, 0.5);
+    disc(own, 0.62, 0, 0.13, '#39435a');
   },
 };
-const MARK_COLOURS = { steel: '#39435a', sand: '#b97f3a' };
 
 // A ball of a kind, lit from above, with its mark turned by an angle (anticlockwise).
 export function ball(context, x, y, radius, angle, kind, colour) {
@@ -291,28 +375,23 @@ export function ball(context, x, y, radius, angle, kind, colour) {
     disc(context, x, y, radius, colour);
     return;
   }
-  const turning = sprite(`ball ${kind} ${colour}`, 128, (own) => {
+  // At most twice as fine as it is shown.
+  const size = Math.min(2 ** Math.ceil(Math.log2(4 * radius)), 256);
+  const whole = (name, draw) => sprite(name, size, (own) => {
     own.beginPath();
     own.arc(0, 0, 0.98, 0, 7);
     own.clip();
-    own.fillStyle = colour;
-    own.fillRect(-1, -1, 2, 2);
-    own.fillStyle = own.strokeStyle = MARK_COLOURS[kind] ?? '#ffffff';
+    draw(own);
+  });
+  const turning = whole(`ball ${kind} ${colour}`, (own) => {
+    disc(own, 0, 0, 1, colour);
+    own.fillStyle = kind === 'sand' ? '#b97f3a' : '#ffffff';
     MARKS[kind]?.(own);
   });
-  const light = sprite('light', 128, (own) => {
-    own.beginPath();
-    own.arc(0, 0, 0.98, 0, 7);
-    own.clip();
-    const shade = own.createRadialGradient(-0.3, -0.45, 0, -0.1, -0.15, 1.12);
-    [[0, '#ffffff38'], [0.35, '#ffffff08'], [0.6, '#00000028'], [0.85, '#0000006a'],
-      [1, '#00000080']].forEach((stop) => shade.addColorStop(...stop));
-    own.fillStyle = shade;
-    own.fillRect(-1, -1, 2, 2);
-    const gleam = own.createRadialGradient(-0.38, -0.5, 0, -0.38, -0.5, 0.3);
-    [[0, '#ffffffd0'], [0.5, '#ffffff60'], [1, '#ffffff00']].forEach((stop) => gleam.addColorStop(...stop));
-    own.fillStyle = gleam;
-    own.fillRect(-1, -1, 2, 2);
+  const light = whole('light', (own) => {
+    radial(own, [-0.3, -0.45], [-0.1, -0.15, 1.12], [[0, '#ffffff38'], [0.35, '#ffffff08'], [0.6, '#00000028'],
+      [0.85, '#0000006a'], [1, '#00000080']]);
+    radial(own, [-0.38, -0.5], [-0.38, -0.5, 0.3], [[0, '#ffffffd0'], [0.5, '#ffffff60'], [1, '#ffffff00']]);
   });
   context.save();
   context.translate(x, y);
@@ -323,36 +402,23 @@ export function ball(context, x, y, radius, angle, kind, colour) {
   context.restore();
 }
 
-// A square of cloth, planks, stones or bricks as a pattern of 64 texels.
-export function sheetOf(context, skin, colour) {
-  const picture = sprite(`sheet ${skin} ${colour}`, 64, (own) => {
-    own.setTransform(1, 0, 0, 1, 0, 0);
-    own.fillStyle = colour;
-    own.fillRect(0, 0, 64, 64);
-    if (skin === 'cloth') {
-      own.fillStyle = '#f3e6cd';
-      own.fillRect(0, 0, 20, 64);
-      for (let x = 0; x < 64; x++) {
-        const fold = 0.2 * Math.sin((x * Math.PI) / 32);
-        own.fillStyle = fold > 0 ? `rgb(255 255 255 / ${fold})` : `rgb(0 0 0 / ${-fold})`;
-        own.fillRect(x, 0, 1, 64);
-      }
-      own.fillStyle = 'rgb(0 0 0 / 0.06)';
-      for (let k = 0; k < 1024; k += 2) own.fillRect(2 * ((k & 31) + ((k >> 5) & 1)), 2 * (k >> 5), 2, 2);
-      return;
-    }
-    const isWood = skin === 'wood';
-    for (let row = 0; row < 4; row++) {
-      for (let k = 0; k < (isWood ? 1 : 2); k++) {
-        const x = isWood ? (row % 2) * 32 : (row % 2) * 16 + 32 * k;
-        own.fillStyle = isWood ? mixed(colour, '#000000', 0.36) : mixed(colour, '#b4b4b4', 0.5);
-        own.fillRect(0, 16 * row, 64, isWood ? 1 : 2);
-        own.fillRect(x, 16 * row, isWood ? 1 : 2, 16);
-        if (isWood) own.fillRect((x + 3) % 64, 16 * row + 7, 3, 3);
-      }
-      own.fillStyle = row % 2 ? '#ffffff14' : '#00000012';
-      own.fillRect(0, 16 * row + 1, 64, 15);
-    }
-  });
-  return context.createPattern(picture, 'repeat');
+// Fill triangles of a skin and colour: corners on the page, and places of its picture.
+export function fillTriangles(context, name, triangles) {
+  const before = context.getTransform();
+  context.fillStyle = kept.get(name);
+  for (const [[x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]] of triangles) {
+    const area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
+    // How x and y change across and down the picture.
+    const a = ((x1 - x0) * (v2 - v0) - (x2 - x0) * (v1 - v0)) / area;
+    const b = ((y1 - y0) * (v2 - v0) - (y2 - y0) * (v1 - v0)) / area;
+    const c = ((x2 - x0) * (u1 - u0) - (x1 - x0) * (u2 - u0)) / area;
+    const d = ((y2 - y0) * (u1 - u0) - (y1 - y0) * (u2 - u0)) / area;
+    context.transform(a, b, c, d, x0 - a * u0 - c * v0, y0 - b * u0 - d * v0);
+    // A little larger, so that no seam shows.
+    const u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
+    context.beginPath();
+    for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + 0.1 * (cu - u), cv + 0.1 * (cv - v));
+    context.fill();
+    context.setTransform(before);
+  }
 }

@@ -5,7 +5,7 @@ const WORKING = ['coil', 'muscle', 'piston'];
 const LAID = ['wood', 'stone', 'brick'];
 // Half widths of bars: as a part of their body's cells, from [pixels], to [pixels].
 const TRUSS = [0.11, 1.6, 4.2], MESH = [0.075, 1.0, 3.4], LOOSE = [0.1, 1.2, 2.6];
-const BRACE = 0.62, HANGER = 0.62;
+const BRACE = 0.62, HANGER = 0.62, DECK = 0.95;
 
 // The scene with the slots of each body's particles and its springs as [spring, first end, second end].
 export function unfolded(scene, world) {
@@ -26,70 +26,53 @@ export function unfolded(scene, world) {
 
 // What there is to draw of an unfolded scene, where active (m,) says which springs there are.
 export function thingsOf(scene, active) {
-  const things = { shapes: [], strands: [], bars: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
+  const things = { shapes: [], lines: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
   for (const body of scene.bodies) addBody(things, body, active);
-  // How many springs each particle has.
-  things.degree = new Map();
-  const count = (slot) => things.degree.set(slot, (things.degree.get(slot) ?? 0) + 1);
-  scene.bodies.forEach(({ springs }) => springs.forEach(([spring, ...ends]) => active[spring] && ends.forEach(count)));
-  scene.joins.forEach((join) => active[join.spring] && join.ends.forEach(count));
-  for (const join of scene.joins) {
-    if (active[join.spring]) addLines(things, join, [[join.spring, ...join.ends]], LOOSE);
+  // Joins of one look may be strands together.
+  const looks = new Map();
+  for (const join of scene.joins.filter(({ spring }) => active[spring])) {
+    const key = STRANDS.includes(join.line) ? `${join.line} ${join.width}` : join;
+    if (!looks.has(key)) looks.set(key, { look: join, springs: [] });
+    looks.get(key).springs.push([join.spring, ...join.ends]);
   }
+  for (const { look, springs } of looks.values()) addLines(things, look, springs, LOOSE);
+  things.lines.sort((first, second) => !first.particles - !second.particles);
   return things;
 }
 
 function addBody(things, body, active) {
-  const springs = body.springs.filter(([spring]) => active[spring]), isWhole = springs.length === body.springs.length,
-    shape = { springs, keep: 0.25, rounds: 2, extra: 0, ...own(body) };
-  if (body.skin === 'lattice') addLines(things, body, springs, MESH);
-  else if (body.triangles) addFilled(things, body, springs, active);
-  else if (body.type === 'ring' && isWhole) {
+  const springs = body.springs.filter(([spring]) => active[spring]);
+  if (body.triangles) addFilled(things, body, springs, active);
+  else if (body.shapes.length && body.needs.every((spring) => active[spring])) {
+    for (const shape of body.shapes) things.shapes.push({ ...shape, springs, cell: body.cell });
     if (body.skin === 'balloon') things.balloons.push(body);
-    things.shapes.push({ ...shape, loops: [body.slots], layer: 1 });
-  } else if (body.type === 'wheel' && body.skin && hasRings(body, active)) {
-    things.wheels.push(wheelOf(body));
-    const isTyre = body.skin !== 'steel wheel', { inner, outer } = things.wheels.at(-1);
-    const colour = !isTyre ? '#96a3ba' : ['rubber', 'jelly', 'plain'].includes(body.skin) ? body.colour : '#343842';
-    things.shapes.push({ ...shape, loops: [outer, inner], skin: isTyre ? 'tyre' : 'rubber', colour, layer: 0 });
-  } else if (body.panel) {
-    const panel = { springs: [], grown: 0, layer: 0, keep: 0.2, rounds: 2 };
-    things.shapes.push({ ...panel, loops: [body.hull], skin: 'rubber', colour: body.panel, extra: 4 });
-    if (body.window.length > 2) things.shapes.push({ ...panel, loops: [body.window], skin: 'window', colour: '#bfe6ff',
-      extra: -3 });
+    if (body.wheel) things.wheels.push(body.wheel);
   } else addLines(things, body, springs, ['bridge', 'girder'].includes(body.type) ? TRUSS : MESH);
-}
-
-function own(body) {
-  return { skin: body.skin, colour: body.colour, grown: body.radius, reach: body.cell };
 }
 
 // Springs of one look as strands, working springs or bars.
 function addLines(things, look, springs, size) {
   if (!springs.length || look.line === 'hidden') return;
-  if (STRANDS.includes(look.line)) {
+  const { line: kind, colour, width, cell } = look;
+  const bars = (some, share, more) =>
+    things.lines.push({ kind, colour, cell, size, springs: some, width: share * width, ...more });
+  const bolts = [...new Set(springs.flatMap(([, a, b]) => [a, b]))];
+  if (STRANDS.includes(kind)) {
     for (const chain of chainsOf(springs)) {
-      const isHanger = look.line === 'rope' && chain.springs.length === 1;
-      things.strands.push({ kind: look.line, width: look.width * (isHanger ? HANGER : 1), ...chain });
+      const isHanger = kind === 'rope' && chain.springs.length === 1;
+      things.lines.push({ kind, width: width * (isHanger ? HANGER : 1), ...chain });
     }
-  } else if (WORKING.includes(look.line)) {
-    for (const [spring, ...ends] of springs) things.working.push({ kind: look.line, spring, ends, width: look.width });
+  } else if (WORKING.includes(kind)) {
+    for (const [spring, ...ends] of springs) things.working.push({ kind, spring, ends, width });
   } else if (size === TRUSS) {
     // The first row of a bridge or girder has one particle more than there are cells.
-    const row = (slot) => look.slots.indexOf(slot) > look.segments;
-    const isChord = ([, a, b]) => row(a) === row(b);
-    const isDeck = (spring) => look.type === 'bridge' && isChord(spring) && !row(spring[1]);
-    const bar = { kind: look.line, colour: look.colour, cell: look.cell, size };
-    things.bars.push({ ...bar, springs: springs.filter((each) => !isChord(each)), share: BRACE * look.width,
-      bolts: [] });
-    const bolts = [...new Set(springs.flatMap(([, a, b]) => [a, b]))];
-    things.bars.push({ ...bar, springs: springs.filter(isChord), share: look.width, bolts,
-      deck: springs.filter(isDeck) });
-  } else {
-    const bolts = size === MESH ? [...new Set(springs.flatMap(([, a, b]) => [a, b]))] : [];
-    things.bars.push({ kind: look.line, colour: look.colour, cell: look.cell, size, springs, share: look.width,
-      bolts });
-  }
+    const row = (slot) => look.slots.indexOf(slot) > look.segments, isChord = ([, a, b]) => row(a) === row(b);
+    bars(springs.filter((each) => !isChord(each)), BRACE);
+    bars(springs.filter(isChord), 1);
+    const deck = springs.filter((each) => look.type === 'bridge' && isChord(each) && !row(each[1]));
+    if (deck.length) bars(deck, DECK, { kind: 'deck', raised: 1 / DECK });
+    bars([], 1, { bolts, isTruss: true });
+  } else bars(springs, 1, { bolts: size === MESH ? bolts : [] });
 }
 
 // A body of triangles, each of which is there while the springs along its sides are.
@@ -102,36 +85,25 @@ function addFilled(things, body, springs, active) {
     triangle.forEach((slot) => filled.add(slot));
   }
   const inside = ([, a, b]) => filled.has(a) && filled.has(b), loops = bordersOf(left), isCloth = body.skin === 'cloth';
-  const isLaid = LAID.includes(body.skin);
   if (left.length) {
-    const shape = { ...own(body), loops, springs: isLaid ? [] : springs.filter(inside), extra: 0 };
-    if (!isCloth) things.shapes.push({ ...shape, layer: isLaid ? 0 : 1, keep: isLaid ? 0.12 : body.keep,
-      rounds: isLaid ? 1 : 2 });
+    const [shape] = body.shapes, isLaid = LAID.includes(body.skin);
+    if (!isCloth) things.shapes.push({ ...shape, loops, springs: springs.filter(inside), cell: body.cell });
     if (isCloth || isLaid) things.sheets.push({ body, triangles: left, loops, isCloth });
     if (body.face) things.faces.push(body);
   }
   addLines(things, body, springs.filter((spring) => !inside(spring)), MESH);
 }
 
-function wheelOf(body) {
-  const { segments, slots } = body;
-  return { body, hub: slots[0], inner: slots.slice(1, segments + 1),
-    outer: slots.slice(segments + 1, 2 * segments + 1) };
-}
-
-// Whether both rings of a wheel are closed.
-function hasRings(body, active) {
-  return body.numbers.every((number, k) => number < body.segments || number >= 3 * body.segments
-    || active[body.spring + k]);
-}
-
-// Loops of particles around triangles of one winding.
+// Loops of particles around triangles of one winding: sides of one of them alone.
 function bordersOf(triangles) {
-  const sides = new Map(), key = (a, b) => a * 0x4000000 + b, loops = [];
-  for (const corners of triangles) corners.forEach((a, k) =>
-    sides.set(key(a, corners[(k + 1) % 3]), [a, corners[(k + 1) % 3]]));
-  const follow = new Map();
-  for (const [a, b] of sides.values()) if (!sides.has(key(b, a))) follow.set(a, [...(follow.get(a) ?? []), b]);
+  const sides = new Map(), key = (a, b) => a * 0x4000000 + b, follow = new Map(), loops = [];
+  for (const corners of triangles) {
+    corners.forEach((a, k) => {
+      const b = corners[(k + 1) % 3];
+      if (!sides.delete(key(b, a))) sides.set(key(a, b), [a, b]);
+    });
+  }
+  for (const [a, b] of sides.values()) follow.set(a, [...(follow.get(a) ?? []), b]);
   while (follow.size) {
     const [first] = follow.keys(), loop = [];
     let at = first;

@@ -1,0 +1,75 @@
+"""What a page draws is what the desktop draws."""
+
+import base64
+import io
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+from numpy.typing import NDArray
+
+from sandbox import load_level
+from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.picture import view_of
+from sandbox.app.draw.renderer import Renderer
+from sandbox.app.draw.themes import THEMES
+from sandbox.session.session import Session
+from tests.page.browser import Browser, Tab
+from tests.page.levels import level_page
+from tests.page.opened import opened
+
+TICKS, SIZE, BLOCK = 90, (1280, 720), 16
+# Blocks of pixels differ by so little on average, and no more than one in a hundred by so much, of 255 a channel.
+USUAL, MOST = 2.5, 25.0
+DRAW = """(() => {{
+  const {{ toy }} = page, canvas = document.createElement('canvas');
+  canvas.style.width = '{0}px';
+  const camera = Object.assign(new toy.camera.constructor(), toy.camera,
+    {{ width: {0}, height: {1}, x: {2}, y: {3}, zoom: {4} }});
+  const picture = new toy.picture.constructor(canvas, toy.level.scene, toy.world);
+  picture.draw(camera, toy.level.scene.themes['{5}'], toy.world.view('state.position').slice(), 1, {6});
+  return canvas.toDataURL('image/png').slice(22);
+}})()"""
+
+
+def _ran(browser: Browser, folder: Path, name: str) -> Tab:
+    tab = opened(browser, folder, level_page(name))
+    tab.evaluate(f"page.toy.pause(); page.toy.seek(0); for (let k = 0; k < {TICKS}; k++) page.toy.tick()")
+    return tab
+
+
+def _blocks(picture: pygame.Surface) -> NDArray[np.float64]:
+    pixels = pygame.surfarray.array3d(picture).astype(np.float64)
+    wide, high = SIZE[0] // BLOCK, SIZE[1] // BLOCK
+    return np.asarray(pixels.reshape(wide, BLOCK, high, BLOCK, 3).mean(axis=(1, 3)))
+
+
+@pytest.mark.parametrize("name", ["jelly_wheel", "curtain", "walker", "pinball", "suspension_car"])
+def test_a_page_looks_as_the_desktop_does(browser: Browser, tmp_path: Path, name: str) -> None:
+    level = load_level(name)
+    session = Session(level)
+    for _ in range(TICKS):
+        session.advance()
+    snapshot, camera = session.snapshot(), Camera(viewport=(0, 0, *SIZE))
+    camera.fit(view_of(level, snapshot))
+    tab = _ran(browser, tmp_path, name)
+    for theme in THEMES:
+        surface, renderer = pygame.Surface(SIZE, 0, 32), Renderer(1.0, level)
+        renderer.theme, renderer.has_effects = THEMES[theme], False
+        renderer.draw(surface, camera, snapshot, snapshot, 1.0)
+        seconds = (snapshot.tick + 1.0) / snapshot.settings.tick_rate
+        x, y = camera.centre
+        drawn = tab.evaluate(DRAW.format(*SIZE, x, y, camera.zoom, theme, seconds))
+        page = pygame.image.load(io.BytesIO(base64.b64decode(drawn)), "page.png")
+        apart = np.abs(_blocks(page) - _blocks(surface)).mean(axis=2)
+        assert apart.mean() < USUAL, theme
+        assert np.quantile(apart, 0.99) < MOST, theme
+    assert tab.faults == []
+
+
+def test_what_is_nowhere_is_not_drawn(browser: Browser, tmp_path: Path) -> None:
+    tab = _ran(browser, tmp_path, "jelly_wheel")
+    tab.evaluate("page.toy.world.view('state.position').fill(NaN)")
+    tab.evaluate(DRAW.format(*SIZE, 0.0, 0.0, 50.0, "dark", 1.0))
+    assert tab.faults == []
