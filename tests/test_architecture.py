@@ -23,7 +23,7 @@ ROOMS = (
 # Rooms of the window, from the ground up.
 ROOMS_OF_APP = (
     "base", "run", "draw", "sound", "kernels", "widgets", "film", "settings", "contracts", "graphs", "share", "parts",
-    "panel", "play", "edit", "compare", "toy", "gallery", "window",
+    "panel", "play", "edit", "compare", "toy", "gallery", "site", "window",
 )  # fmt: skip
 # Folders that import each other both ways: the table of solvers says where joints bear a load.
 BOTH_WAYS: dict[str, list[tuple[str, str]]] = {"physics": [], "level": []}

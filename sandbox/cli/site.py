@@ -42,7 +42,7 @@ def site(options: argparse.Namespace) -> int:
 def _write_documents(start: Path, folder: Path) -> dict[str, str]:
     """Write the pages of documents; their addresses by what they are called. Raises Refused."""
     try:
-        from sandbox.app.site.documents import DocumentError, documents_of, titles_of, write_documents
+        from sandbox.app.site.markdown_pages import DocumentError, documents_of, titles_of, write_documents
     except ModuleNotFoundError:
         raise Refused("--document: needs markdown-it-py; install the extra site") from None
     try:

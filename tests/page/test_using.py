@@ -10,7 +10,11 @@ from tests.page.levels import level_page
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 # Until a browser has seen a finger stand still.
-FRAMES = "new Promise((done) => { let k = 20; const next = () => (k-- ? requestAnimationFrame(next) : done()); next(); })"
+FRAMES = """new Promise((done) => {
+  let left = 20;
+  const next = () => (left-- ? requestAnimationFrame(next) : done());
+  next();
+})"""
 # Colours of text and of what is behind it, by their names in a page.
 PAIRS = (
     ["text", "surface"], ["muted", "field"], ["text", "back"], ["muted", "back"], ["on", "accent"], ["accent", "back"],

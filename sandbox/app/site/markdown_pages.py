@@ -1,4 +1,4 @@
-"""Documents: Markdown files as pages of a site, with all files that they link to."""
+"""Markdown pages: Markdown files as pages of a site, with all files that they link to."""
 
 import html
 import os
