@@ -9,7 +9,8 @@
 # make libraries: machine code of the kernels for all platforms, after a kernel was changed; minutes. CHECK=1 compares
 # it with what is there, HERE=1 only this platform's.
 # make abuse: stir, throw and drive bodies, and print figures; hours.
-# make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen.
+# make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen; and ten minutes
+# of random mouse and touch at pages, where Chromium is installed.
 # make pictures: draw the pictures of the gallery and of docs/ again, after a level or the look was changed.
 # make site: the levels, each at an address of its own, and the documents, as files for any web server, in the folder site.
 PYTHON ?= python3
@@ -90,6 +91,7 @@ abuse: $(VENV)/installed-dev
 soak: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m tests.abuse.soak
 	$(BIN)/python -m tests.abuse.soak --seconds 120 --screen
+	$(BIN)/python -m tests.page.soak
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
