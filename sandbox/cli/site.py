@@ -42,13 +42,11 @@ def site(options: argparse.Namespace) -> int:
 def _write_documents(start: Path, folder: Path) -> dict[str, str]:
     """Write the pages of documents; their addresses by what they are called. Raises Refused."""
     try:
-        from sandbox.app.site.markdown_pages import DocumentError, documents_of, titles_of, write_documents
+        from sandbox.app.site.markdown_pages import DocumentError, documents_of, write_documents
     except ModuleNotFoundError:
         raise Refused("--document: needs markdown-it-py; install the extra site") from None
     try:
         documents = documents_of(start)
     except DocumentError as error:
         raise Refused(*error.faults) from None
-    for _ in write_documents(documents, folder):
-        pass
-    return titles_of(documents)
+    return write_documents(documents, folder)

@@ -12,7 +12,7 @@ VERDICT = """new Promise((done) => {
   const look = () => (state.className ? done(state.textContent) : requestAnimationFrame(look));
   look();
 })"""
-SAVE = """page.toy.recording().then(async (file) => {
+SAVE = """TOY.recording().then(async (file) => {
   const bytes = new Uint8Array(await file.arrayBuffer());
   return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
 })"""
@@ -25,8 +25,8 @@ def opened(browser: Browser, folder: Path, text: str, **how: object) -> Tab:
     return browser.tab(**how).open(page_address(file))  # type: ignore[arg-type]
 
 
-def saved(tab: Tab, folder: Path) -> Path:
-    """The file of what was done in a page."""
+def saved(tab: Tab, folder: Path, toy: str = "page.toy") -> Path:
+    """The file of what was done in a page to its toy."""
     file = folder / "saved.replay.gz"
-    file.write_bytes(base64.b64decode(tab.evaluate(SAVE)))
+    file.write_bytes(base64.b64decode(tab.evaluate(SAVE.replace("TOY", toy))))
     return file

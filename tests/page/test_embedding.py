@@ -1,6 +1,5 @@
 """A toy on a page of one's own: the page of docs/how-to-embed.md, and what its handle gives."""
 
-import base64
 import json
 import re
 import textwrap
@@ -16,6 +15,7 @@ from sandbox.level.reading.files import parse_level
 from sandbox.replay import read_replay, verify
 from sandbox.session.check_run import run_checks
 from tests.page.browser import Browser, Tab
+from tests.page.opened import saved
 from tests.page.site_server import served
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "how-to-embed.md"
@@ -121,21 +121,15 @@ def test_checks_and_breaks_are_told_as_the_desktop_finds_them(browser: Browser, 
 
 def test_commands_by_name_are_recorded_and_verified(browser: Browser, address: str, tmp_path: Path) -> None:
     tab = _opened(browser, address, "rope")
-    saved = tab.evaluate(
-        """(async () => {
-          toy.restart();
-          toy.pause();
-          for (let k = 0; k < 10; k++) toy.tick();
-          toy.command({ type: 'pin', particle: 'rope.20' });
-          toy.command({ type: 'set_coefficients', stiffness: 0.3, material: 'hemp' });
-          for (let k = 0; k < 30; k++) toy.tick();
-          const bytes = new Uint8Array(await (await toy.recording()).arrayBuffer());
-          return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
-        })()"""
+    tab.evaluate(
+        """toy.restart();
+        toy.pause();
+        for (let k = 0; k < 10; k++) toy.tick();
+        toy.command({ type: 'pin', particle: 'rope.20' });
+        toy.command({ type: 'set_coefficients', stiffness: 0.3, material: 'hemp' });
+        for (let k = 0; k < 30; k++) toy.tick();"""
     )
-    file = tmp_path / "saved.replay.gz"
-    file.write_bytes(base64.b64decode(saved))
-    replay = read_replay(file)
+    replay = read_replay(saved(tab, tmp_path, "toy"))
     assert [line.record["type"] for line in replay.script] == ["pin", "set_coefficients"]
     assert verify(replay) is None
     told = tab.evaluate("try { toy.command({ type: 'add_body' }) } catch (error) { error.message }")

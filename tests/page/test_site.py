@@ -131,14 +131,17 @@ def test_levels_of_ones_own_are_a_site_too(tmp_path: Path, capsys: pytest.Captur
 
 
 def test_what_cannot_be_a_site_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    own, document = tmp_path / "rope.json", tmp_path / "broken.md"
+    own, document, outside = (tmp_path / name for name in ("rope.json", "broken.md", "in/outside.md"))
     own.write_bytes((ROOT / "levels" / "rope.json").read_bytes())
-    document.write_text("# Broken\n\n[gone](gone.md)\n", encoding="utf-8")
+    outside.parent.mkdir()
+    outside.write_text("No heading, and [a level](../rope.json)\n", encoding="utf-8")
     refused = (
         (["rope", str(own)], "two levels have files of one name"),
         (["rope", "--document", str(document)], "there is no gone.md"),
+        (["rope", "--document", str(outside)], "../rope.json lies outside of the folder"),
         (["nothing_like_it"], "there is no such file"),
     )
+    document.write_text("# Broken\n\n[gone](gone.md), [mail](mailto:nobody@example.org)\n", encoding="utf-8")
     for given, said in refused:
         assert main(["site", *given, "-o", str(tmp_path / "site")]) == 2
         told = capsys.readouterr().err

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.page.browser import Browser, Tab, page_address
+from tests.page.browser import Browser, Tab
 from tests.page.contrast import CONTRAST, LEAST_CONTRAST
 from tests.page.levels import level_page
+from tests.page.opened import opened
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 # Until a browser has seen a finger stand still.
@@ -23,9 +24,7 @@ PAIRS = (
 
 
 def _opened(browser: Browser, folder: Path, name: str, **how: object) -> Tab:
-    file = folder / "page.html"
-    file.write_text(level_page(name), encoding="utf-8")
-    return browser.tab(**how).open(page_address(file))  # type: ignore[arg-type]
+    return opened(browser, folder, level_page(name), **how)
 
 
 def _middle(tab: Tab, chosen: str) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from sandbox.app.draw.looks import ground_look
 from sandbox.app.draw.raster.bodies import GRAIN, BodyRows, Flush, Outlines, Skins
 from sandbox.app.draw.raster.painter import NO_GRAIN, BodyLayer, MarkList, Painter
 from sandbox.app.draw.raster.shadows import Thrown
-from sandbox.app.draw.textures import EARTH, TILE, TIMBER, Tiles, grains, skin_table
+from sandbox.app.draw.textures import EARTH, GROUND, TILE, TIMBER, Tiles, grains, ground_tones, skin_table
 from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.things.borders import starts_of
 from sandbox.level.document.model import Level
@@ -130,7 +130,7 @@ class Backdrop:
         size[:, 0] = [(SOIL_DEPTH if kind in ("soil", "rock") else BEVEL) * scale for kind in kinds]
         size[:, 1], size[:, 2] = LINE_HALF * scale, [0.5 if kind == "glass" else 0.9 for kind in kinds]
         loops = np.stack([np.arange(count), np.arange(1, count + 1)], axis=1)
-        tables = np.stack([skin_table(f"ground {kind}", 0, theme) for kind in kinds])
+        tables = np.stack([skin_table(f"{GROUND}{kind}", 0, theme) for kind in kinds])
         x, y = camera.origin
         shift = (round(y) % GRAIN, round(x) % GRAIN)
         rolled = np.ascontiguousarray(np.roll(grains(), shift, axis=(1, 2)))
@@ -169,8 +169,7 @@ def _lay_turf(marks: MarkList, corners: Floats, theme: Theme, scale: float) -> N
 
 
 def _line_of(kind: str, theme: Theme) -> int:
-    deep = {"soil": theme.soil[1], "rock": theme.rock[1], "wood": (0x6E, 0x4A, 0x28), "glass": (0x6F, 0xA8, 0xC8)}
-    red, green, blue = (int(0.65 * channel) for channel in deep.get(kind, theme.metal[1]))
+    red, green, blue = (int(0.65 * channel) for channel in ground_tones(kind, theme).line)
     return red << 16 | green << 8 | blue
 
 

@@ -11,14 +11,15 @@ from sandbox.app.draw.backdrop import BEVEL, SOIL_DEPTH, WIDE
 from sandbox.app.draw.colours import mixed
 from sandbox.app.draw.looks import SOFT_SKINS, Look, ground_look
 from sandbox.app.draw.picture import view_of
-from sandbox.app.draw.textures import TILE, Tiles, laid, woven
-from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme, outline_of, rgb_of
+from sandbox.app.draw.textures import BLACK, LIT_DOWN, LIT_UP, TILE, Tiles, ground_tones, laid, skin_look, woven
+from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme, outline_of
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
 from sandbox.app.draw.things.faces import spot_of
 from sandbox.app.draw.things.level_slots import Actor, LevelSlots, level_slots_of
 from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
 from sandbox.app.draw.things.soft import ROUNDING, USUAL_ROUNDING, Shape, shape_of
+from sandbox.app.draw.things.springs import CYLINDER
 from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
@@ -27,16 +28,6 @@ from sandbox.physics.snapshot import Snapshot
 
 # Digits of lengths [m]: a tenth of a millimetre.
 DIGITS = 4
-# The colour of the cylinder of a piston.
-PISTON = 0xF6B83E
-# Of each skin, as in textures: the strength of light, the colour and strength of shade, its gleam, and how much shows
-# through inside.
-_WOODEN = (0.19, "#1e0a00", 0.38, 0.0, 0.0)
-_SKINS = {
-    "jelly": (0.46, "#5a0a6e", 0.34, 0.75, 0.13), "balloon": (0.38, "#3c0046", 0.36, 0.0, 0.14),
-    "tyre": (0.22, "#000000", 0.51, 0.15, 0.0), "window": (0.52, "#3c6e96", 0.34, 0.5, 0.1),
-    "wood": _WOODEN, "stone": _WOODEN, "brick": _WOODEN, "rubber": (0.24, "#140028", 0.32, 0.15, 0.0),
-}  # fmt: skip
 
 
 def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
@@ -128,7 +119,7 @@ def _shape(shape: Shape) -> dict[str, Any]:
     """A shape; its loops run as they do on the desktop, a hole against the outline."""
     return {
         "loops": [loop.tolist() for loop in shape.loops],
-        "look": [_hex(shape.colour), _hex(shape.colour), *_SKINS.get(shape.skin, _SKINS["rubber"]), 1],
+        "look": [_hex(shape.colour), _hex(shape.colour), *_lighting(shape.skin), 1],
         "line": _hex(outline_of(shape.colour)) if shape.line else None,
         "rounding": ROUNDING.get(shape.skin, USUAL_ROUNDING),
         "layer": shape.layer,
@@ -137,6 +128,12 @@ def _shape(shape: Shape) -> dict[str, Any]:
         "keep": round(shape.keep, DIGITS),
         "shows_strain": shape.flushed is not None,
     }
+
+
+def _lighting(skin: str) -> list[Any]:
+    """The strength of light, the colour and strength of shade, the gleam, and how much shows through inside."""
+    look = skin_look(skin)
+    return [round(LIT_UP * look.light, 2), _colours(look.shade), round(LIT_DOWN * look.dark, 2), look.gloss, look.clear]
 
 
 def _wheel(wheel: DrawnWheel) -> dict[str, Any]:
@@ -149,7 +146,7 @@ def _pictures(slots: LevelSlots, ground: list[dict[str, Any]]) -> dict[str, dict
     """Textures of lines by their kind or colour, of turf by theme, of sheets by skin and colour."""
     looks = [actor.look for actor in slots.actors] + [join.look for join in slots.joins]
     bars, names = Tiles(THEMES["dark"]), {"steel", *(look.line for look in looks)}
-    colours = {look.colour for look in looks if look.line == "paint"} | ({PISTON} if "piston" in names else set())
+    colours = {look.colour for look in looks if look.line == "paint"} | ({CYLINDER} if "piston" in names else set())
     names |= {"deck"} if any(actor.body.type == "bridge" for actor in slots.actors) else set()
     made = {name: bars.array[TILE[name]] for name in sorted(names & TILE.keys() - {"paint"})}
     for colour in sorted(colours):
@@ -206,15 +203,9 @@ def _solid(kind: str) -> dict[str, Any]:
     """How ground of a kind looks, in each theme."""
     is_earth, themes = kind in ("soil", "rock"), {}
     for name, theme in THEMES.items():
-        kinds = {
-            "soil": (*theme.soil, 0.1, 0.25, 1.0, theme.soil[1]),
-            "rock": (*theme.rock, 0.25, 0.35, 1.0, theme.rock[1]),
-            "wood": (rgb_of(0xC28E57), rgb_of(0x9A6C40), 0.3, 0.4, 1.0, (0x6E, 0x4A, 0x28)),
-            "glass": (rgb_of(0xD4EEFA), rgb_of(0x8CC4E6), 0.6, 0.3, 0.42, (0x6F, 0xA8, 0xC8)),
-            "metal": (mixed(*theme.metal, 0.25), mixed(*theme.metal, 0.55), 0.45, 0.45, 1.0, theme.metal[1]),
-        }
-        near, deep, up, down, alpha, line = kinds.get(kind, kinds["metal"])
-        colours = [_colours(tuple(colour)) for colour in (near, deep, mixed(line, (0, 0, 0), 0.35))]
-        themes[name] = {"look": [*colours[:2], up, "#000000", down, 0, 0, alpha], "line": colours[2]}
+        tones = ground_tones(kind, theme)
+        near, deep, line = map(_colours, (tones.near, tones.deep, mixed(tones.line, BLACK, 0.35)))
+        look = [near, deep, tones.light, _colours(BLACK), tones.dark, 0, 0, tones.alpha]
+        themes[name] = {"look": look, "line": line}
     grain = "earth" if is_earth else kind if kind == "wood" else None
     return {"rounding": SOIL_DEPTH if is_earth else BEVEL, "grain": grain, "themes": themes}

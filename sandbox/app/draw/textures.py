@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,10 @@ BLACK: Colour = (0, 0, 0)
 # Tables of skins and sheets in colours that are kept, those used last; levels choose colours freely. A table has 64 kB,
 # a sheet 32.
 MOST_TABLES, MOST_SHEETS = 128, 64
+# How names of tables of ground begin.
+GROUND = "ground "
+# How much of a skin's light and shade there is where it faces the light, and away from it.
+LIT_UP, LIT_DOWN = 0.75, 0.85
 
 
 def _packed(channels: Floats, alpha: Floats) -> Packed:
@@ -30,7 +35,7 @@ def _lit_table(base: Colour, light: Colour, shade: Colour, gloss: float, clear: 
     """Colours (INSIDE, LIT) of a skin; gloss: how strong its gleam is, clear: how much shows through inside, 0..1."""
     inside = np.linspace(0.0, 1.0, INSIDE)[:, None]
     lit = np.linspace(-1.5, 1.5, LIT)[None, :]
-    up, down = np.clip(lit * 0.75, 0.0, 0.85)[..., None], np.clip(-lit * 0.85, 0.0, 0.8)[..., None]
+    up, down = np.clip(lit * LIT_UP, 0.0, 0.85)[..., None], np.clip(-lit * LIT_DOWN, 0.0, 0.8)[..., None]
     own = np.array(base, dtype=np.float64)
     colour = own + (np.array(light) - own) * up + (np.array(shade) - own) * down
     gleam = np.clip((lit - 0.30) * 5, 0, 1) * np.clip((inside - 0.16) * 6, 0, 1) * np.clip((0.80 - inside) * 4, 0, 1)
@@ -48,36 +53,68 @@ def _deep_table(near: Colour, deep: Colour, light: float, dark: float, alpha: fl
     return _packed(colour, np.full(colour.shape[:2], 255.0 * alpha))
 
 
+class SkinLook(NamedTuple):
+    """How white a skin is where light falls; its colour in shade, and how much; its gleam; how clear it is inside."""
+
+    light: float
+    shade: Colour
+    dark: float
+    gloss: float
+    clear: float
+
+
+_LAID = SkinLook(0.25, (30, 10, 0), 0.45, 0.0, 0.0)
+_SKINS = {
+    "jelly": SkinLook(0.62, (90, 10, 110), 0.40, 0.75, 0.13), "balloon": SkinLook(0.5, (60, 0, 70), 0.42, 0.0, 0.14),
+    "tyre": SkinLook(0.30, BLACK, 0.6, 0.15, 0.0), "window": SkinLook(0.7, (60, 110, 150), 0.4, 0.5, 0.1),
+    "lattice": SkinLook(0.25, BLACK, 0.2, 0.0, 0.66), "wood": _LAID, "stone": _LAID, "brick": _LAID,
+}  # fmt: skip
+_RUBBER = SkinLook(0.32, (20, 0, 40), 0.38, 0.15, 0.0)
+
+
+def skin_look(skin: str) -> SkinLook:
+    """How a skin is lit; rubber, what is plain, and panels are alike."""
+    return _SKINS.get(skin, _RUBBER)
+
+
+class GroundTones(NamedTuple):
+    """Colours of ground near its edge and deep inside, how lit, shaded and dense it is, and the colour of its line."""
+
+    near: Colour
+    deep: Colour
+    light: float
+    dark: float
+    alpha: float
+    line: Colour
+
+
+def ground_tones(kind: str, theme: Theme) -> GroundTones:
+    """How a kind of ground looks in a theme; all that is not soil, rock, wood or glass is metal."""
+    match kind:
+        case "soil":
+            return GroundTones(*theme.soil, 0.10, 0.25, 1.0, theme.soil[1])
+        case "rock":
+            return GroundTones(*theme.rock, 0.25, 0.35, 1.0, theme.rock[1])
+        case "wood":
+            return GroundTones(rgb_of(0xC28E57), rgb_of(0x9A6C40), 0.30, 0.40, 1.0, rgb_of(0x6E4A28))
+        case "glass":
+            return GroundTones(rgb_of(0xD4EEFA), rgb_of(0x8CC4E6), 0.6, 0.30, 0.42, rgb_of(0x6FA8C8))
+    near, deep = mixed(*theme.metal, 0.25), mixed(*theme.metal, 0.55)
+    return GroundTones(near, deep, 0.45, 0.45, 1.0, theme.metal[1])
+
+
 @lru_cache(MOST_TABLES)
 def skin_table(skin: str, colour: int, theme: Theme) -> Packed:
     """The table of a skin, or of a kind of ground, in a colour 0xRRGGBB (ground has its own)."""
     base = rgb_of(colour)
-    if skin == "jelly":
-        return _lit_table(base, mixed(base, WHITE, 0.62), mixed(base, (90, 10, 110), 0.40), 0.75, 0.13)
-    if skin == "balloon":
-        return _lit_table(base, mixed(base, WHITE, 0.5), mixed(base, (60, 0, 70), 0.42), 0.0, 0.14)
-    if skin == "tyre":
-        return _lit_table(base, mixed(base, WHITE, 0.30), mixed(base, BLACK, 0.6), 0.15, 0.0)
-    if skin == "window":
-        return _lit_table(base, mixed(base, WHITE, 0.7), mixed(base, (60, 110, 150), 0.4), 0.5, 0.1)
+    if skin.startswith(GROUND):
+        tones = ground_tones(skin.removeprefix(GROUND), theme)
+        return _deep_table(tones.near, tones.deep, tones.light, tones.dark, tones.alpha)
     if skin == "lattice":
         # Glass between springs at rest and what the theme is drawn on, so that they stand out on it.
-        glass = mixed(base, theme.card, 0.55)
-        return _lit_table(glass, mixed(glass, WHITE, 0.25), mixed(glass, BLACK, 0.2), 0.0, 0.66)
-    if skin in ("wood", "stone", "brick"):
-        return _lit_table(base, mixed(base, WHITE, 0.25), mixed(base, (30, 10, 0), 0.45), 0.0, 0.0)
-    if skin == "ground soil":
-        return _deep_table(*theme.soil, 0.10, 0.25, 1.0)
-    if skin == "ground rock":
-        return _deep_table(*theme.rock, 0.25, 0.35, 1.0)
-    if skin == "ground wood":
-        return _deep_table(rgb_of(0xC28E57), rgb_of(0x9A6C40), 0.30, 0.40, 1.0)
-    if skin == "ground glass":
-        return _deep_table(rgb_of(0xD4EEFA), rgb_of(0x8CC4E6), 0.6, 0.30, 0.42)
-    if skin == "ground metal":
-        return _deep_table(mixed(*theme.metal, 0.25), mixed(*theme.metal, 0.55), 0.45, 0.45, 1.0)
-    # Rubber, plain, and panels.
-    return _lit_table(base, mixed(base, WHITE, 0.32), mixed(base, (20, 0, 40), 0.38), 0.15, 0.0)
+        base = mixed(base, theme.card, 0.55)
+    light, shade, dark, gloss, clear = skin_look(skin)
+    return _lit_table(base, mixed(base, WHITE, light), mixed(base, shade, dark), gloss, clear)
 
 
 def _profile(base: int, gleam: float, top: float = 0.5, bottom: float = 0.55) -> Floats:

@@ -96,9 +96,8 @@ def playable_in_slices(
 
 def _checks(level: Level, world: World) -> list[dict[str, Any]]:
     """Checks of a level that a page can follow while somebody plays: those that hold no key, without energies."""
-    return [
-        _check(check, world) for check in level.checks if not check.hold and check.metric not in NOT_MEASURED
-    ]  # fmt: skip
+    measured = [check for check in level.checks if not check.hold and check.metric not in NOT_MEASURED]
+    return [_check(check, world) for check in measured]
 
 
 def _check(check: CheckDef, world: World) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path, PurePosixPath
-from typing import Any
+from urllib.parse import urlsplit
 
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
@@ -18,6 +18,7 @@ from sandbox.page.page import filled
 MARKDOWN, PAGE = ".md", ".html"
 # What is no letter of an address, as GitHub has it.
 _NO_LETTER = re.compile(r"[^\w -]")
+_PARSER = MarkdownIt("commonmark").enable("table")
 
 
 class DocumentError(Exception):
@@ -36,28 +37,29 @@ def documents_of(start: Path) -> dict[Path, list[Token]]:
         path = waiting.pop(0)
         if path in found:
             continue
-        found[path] = MarkdownIt("commonmark").enable("table").parse(path.read_text(encoding="utf-8"))
+        try:
+            found[path] = _PARSER.parse(path.read_text(encoding="utf-8"))
+        except UnicodeDecodeError:
+            raise DocumentError([f"{path}: is no text in UTF-8"]) from None
         for token, name in _links(found[path]):
             linked = _file_at(path, str(token.attrs[name]))
-            if linked is not None and not linked.is_file():
+            if linked is None:
+                continue
+            if not linked.is_file():
                 faults.append(f"{path}: there is no {token.attrs[name]}")
-            elif linked is not None and linked.suffix == MARKDOWN:
+            elif not linked.is_relative_to(start.resolve().parent):
+                faults.append(f"{path}: {token.attrs[name]} lies outside of the folder of {start}")
+            elif linked.suffix == MARKDOWN:
                 waiting.append(linked)
     if faults:
         raise DocumentError(faults)
     return found
 
 
-def titles_of(documents: Mapping[Path, list[Token]]) -> dict[str, str]:
-    """Addresses of the pages of documents, from the folder of the first one, by their headings."""
+def write_documents(documents: Mapping[Path, list[Token]], folder: Path) -> dict[str, str]:
+    """Write documents as pages, with the files that they show; their addresses by their headings. Raises OSError."""
     root = next(iter(documents)).parent
-    return {_title(tokens): _address(path, root) for path, tokens in documents.items()}
-
-
-def write_documents(documents: Mapping[Path, list[Token]], folder: Path) -> Iterator[Path]:
-    """Write pages, and give each path once it is there; files that they show lie beside them. Raises OSError."""
-    root = next(iter(documents)).parent
-    titles = titles_of(documents)
+    titles = {_title(path, tokens): _address(path, root) for path, tokens in documents.items()}
     for path, tokens in documents.items():
         page = folder / _address(path, root)
         page.parent.mkdir(parents=True, exist_ok=True)
@@ -68,22 +70,21 @@ def write_documents(documents: Mapping[Path, list[Token]], folder: Path) -> Iter
             write_file(there, file.read_bytes())
         links = {"Levels": f"{back}/index.html"} | {title: f"{back}/{at}" for title, at in titles.items()}
         text = filled(
-            "document", TITLE=html.escape(_title(tokens)), LINKS=link_list(links), STYLE=f"{back}/{STYLE}",
-            TEXT=MarkdownIt("commonmark").renderer.render(tokens, _OPTIONS, {}),
+            "document", TITLE=html.escape(_title(path, tokens)), LINKS=link_list(links), STYLE=f"{back}/{STYLE}",
+            TEXT=_PARSER.renderer.render(tokens, _PARSER.options, {}),
         )  # fmt: skip
         write_file(page, text.encode())
-        yield page
-
-
-_OPTIONS: Any = MarkdownIt("commonmark").options
+    return titles
 
 
 def _address(path: Path, root: Path) -> str:
     return PurePosixPath(path.relative_to(root)).with_suffix(PAGE).as_posix()
 
 
-def _title(tokens: list[Token]) -> str:
-    return next(inline.content for opening, inline in pairwise(tokens) if opening.type == "heading_open")
+def _title(path: Path, tokens: list[Token]) -> str:
+    """The first heading of a document, or the name of its file."""
+    headings = (inline.content for opening, inline in pairwise(tokens) if opening.type == "heading_open")
+    return next(headings, path.stem)
 
 
 def _links(tokens: list[Token]) -> Iterator[tuple[Token, str]]:
@@ -96,7 +97,7 @@ def _links(tokens: list[Token]) -> Iterator[tuple[Token, str]]:
 def _file_at(page: Path, address: str) -> Path | None:
     """The file that an address in a document stands for; None where it leads elsewhere, or into the document."""
     name = address.partition("#")[0]
-    if not name or "://" in name:
+    if not name or urlsplit(name).scheme:
         return None
     linked = page.parent / name
     return (linked if linked.is_file() or linked.suffix else linked.with_suffix(MARKDOWN)).resolve()

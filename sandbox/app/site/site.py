@@ -26,16 +26,9 @@ class SiteLevel:
     path: Path
     level: Level
 
-    @property
-    def key(self) -> str:
-        """What its picture is called."""
-        return picture_key(self.path.read_bytes())
 
-
-def write_site(
-    levels: Mapping[str, SiteLevel], folder: Path, title: str, links: Mapping[str, str]
-) -> Iterator[SiteLevel]:
-    """Write a site into a folder, and give each level, by stem, once its page is there. Raises OSError.
+def write_site(levels: Mapping[str, SiteLevel], folder: Path, title: str, links: Mapping[str, str]) -> Iterator[None]:
+    """Write a site of levels by stem into a folder; it goes on after each level. Raises OSError.
 
     links: addresses of other pages of the site by what they are called.
     """
@@ -45,7 +38,7 @@ def write_site(
     write_file(folder / STYLE, (WEB / STYLE).read_bytes())
     for each in levels.values():
         _write_level(each, folder)
-        yield each
+        yield
     cards = "".join(_section(section, levels) for section in sections_of(levels))
     documents = f'<h2>Documents</h2><nav aria-label="Documents"><ul>{link_list(links)}</ul></nav>' if links else ""
     text = filled("index", TITLE=html.escape(title), LEVELS=cards, DOCUMENTS=documents)
@@ -75,8 +68,9 @@ def _write_level(each: SiteLevel, folder: Path) -> None:
     write_file(_made(folder / LEVELS / f"{each.stem}.toy"), toy_file(made.content))
     page = linked_page_text(made.title, made.hints, f"{each.stem}.toy", f"../{SCRIPTS}", "../index.html")
     write_file(folder / LEVELS / f"{each.stem}.html", page.encode())
+    key = picture_key(each.path.read_bytes())
     for theme in THEME_NAMES:
-        there, drawn = folder / PICTURES / f"{each.stem}-{theme}{SUFFIX}", shipped_picture(each.path, each.key, theme)
+        there, drawn = folder / PICTURES / f"{each.stem}-{theme}{SUFFIX}", shipped_picture(each.path, key, theme)
         if drawn.is_file():
             write_file(_made(there), drawn.read_bytes())
         else:

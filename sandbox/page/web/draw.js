@@ -443,14 +443,14 @@ export class Picture {
   // Balls, and a screw at each pin: of balls a smaller one, and none of a bumper.
   #drawBalls() {
     const angle = this.#state('angle'), inverse = this.#state('inverse_mass'), active = this.#state('particle_active');
-    const { particle, count } = this.#world.hands, context = this.#context, sizes = new Map();
+    const context = this.#context, sizes = new Map();
     this.#eachBall((slot, x, y, radius, { kind, colour }, k) => {
       ball(context, x, y, radius, angle[slot], kind, colour ?? (kind === 'sand' ? SANDS[k % 4] : '#8d99b0'));
       sizes.set(slot, kind === 'bumper' ? 0 : 0.55);
     });
     inverse.forEach((value, slot) => {
       const size = this.scale * (sizes.get(slot) ?? 1);
-      if (value !== 0 || !active[slot] || !size || (slot >= particle && slot < particle + count)) return;
+      if (value !== 0 || !active[slot] || !size || this.#world.isCursor(slot)) return;
       const [x, y] = this.#points([slot]), slit = 2.5 * size;
       disc(context, x, y, 4.4 * size, '#141924', 0.9);
       disc(context, x, y, 3.5 * size, '#b4bcc9');

@@ -1,6 +1,7 @@
 // Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut; what holds nothing moves the view.
 
-const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98, SOFT_REACH = 2, NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
+const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98, SOFT_REACH = 2;
+const NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
 const UNITS = [[1e6, 'MN'], [1e3, 'kN'], [1, 'N'], [1e-3, 'mN']];
 
 // What of a world lies near a point [m].
@@ -13,8 +14,7 @@ class Near {
   }
 
   isShown(slot) {
-    const { particle, count } = this.world.hands;
-    return this.particle_active[slot] && !(slot >= particle && slot < particle + count);
+    return this.particle_active[slot] && !this.world.isCursor(slot);
   }
 
   #nearest(count, distance, within) {
@@ -121,7 +121,8 @@ export class Hands {
   // changed: called when the view has been moved by hand; say: tells a person something in a line.
   constructor(canvas, run, camera, { changed, say }) {
     Object.assign(this, { canvas, run, camera, changed, say });
-    const { signal } = this.#closing, on = (name, act) => canvas.addEventListener(name, act, { signal, passive: false });
+    const how = { signal: this.#closing.signal, passive: false };
+    const on = (name, act) => canvas.addEventListener(name, act, how);
     on('pointerdown', (event) => this.#press(event));
     on('pointermove', (event) => this.#move(event));
     for (const name of ['pointerup', 'pointercancel']) on(name, (event) => this.#lift(event));

@@ -172,7 +172,8 @@ export class Toy extends EventTarget {
       return Math.min(Math.max((2 * x) / this.camera.width - 1, -1), 1);
     });
     this.#tell('tick');
-    if (world.broken.length) this.#tell('break', { springs: world.broken.map((s) => this.level.about.names.spring[s]) });
+    const { spring: names } = this.level.about.names;
+    if (world.broken.length) this.#tell('break', { springs: world.broken.map((spring) => names[spring]) });
     for (const result of this.#checks.look()) this.#tell('check', result);
     if (wasFollowing && !this.run.isFollowing) this.pause();
     this.refresh();
@@ -215,8 +216,10 @@ export class Toy extends EventTarget {
     this.#jump(() => {
       this.hands.releaseAll();
       this.drives.releaseAll();
-      this.run.seek(0);
-      if (this.level.recording) return;
+      if (this.level.recording) {
+        this.run.seek(0);
+        return;
+      }
       this.run.seek(0, 0);
       this.run.takeOver();
     });

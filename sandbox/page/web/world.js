@@ -234,10 +234,15 @@ export class World {
     return this.#about.area;
   }
 
+  // Whether a particle is the cursor of a hand.
+  isCursor(particle) {
+    const first = this.hands.particle;
+    return particle >= first && particle < first + this.hands.count;
+  }
+
   // All particles and springs but those of hands.
   get particles() {
-    const { particle, count } = this.hands;
-    return Array.from(this.view('state.mass').keys()).filter((p) => p < particle || p >= particle + count);
+    return Array.from(this.view('state.mass').keys()).filter((p) => !this.isCursor(p));
   }
 
   get springs() {

@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.textures import TILE
-from sandbox.app.draw.themes import rgb_of
 from sandbox.app.draw.things.frame import Frame
 from sandbox.app.draw.things.level_slots import Join
 
@@ -14,7 +13,7 @@ Floats = NDArray[np.float64]
 
 TURNS = 6
 PARTS = 8
-DARK, MUSCLE_LINE = 0x161B26, 0x4A1622
+DARK, MUSCLE_LINE, CYLINDER = 0x161B26, 0x4A1622, 0xF6B83E
 
 
 class Working:
@@ -90,5 +89,4 @@ def _pistons(ends: Floats, rest: Floats, width: Floats, marks: MarkList, frame: 
     marks.strokes(ends, 0.5 * half + frame.scale, DARK, 0.8)
     marks.strips(ends, 0.5 * half, TILE["steel"], period)
     marks.strokes(case, half + frame.scale, DARK, 0.9)
-    red, green, blue = rgb_of(0xF6B83E)
-    marks.strips(case, half, frame.tiles.bar(red << 16 | green << 8 | blue), period)
+    marks.strips(case, half, frame.tiles.bar(CYLINDER), period)
