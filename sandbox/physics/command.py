@@ -23,7 +23,8 @@ from sandbox.physics.topology.sorting import list_ends
 # SET_COEFFICIENTS     material, -1: all; whether Cs is set, whether Cd is; Cs, Cd
 # DRIVE       part; value
 # PUSH        first cursor; place [m] x, y, impulse [N s] x, y, outward [N s], radius [m]
-GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, SET_COEFFICIENTS, DRIVE, PUSH = range(11)
+# SHAKE       first cursor; acceleration of the frame [m/s^2] x, y, tick rate [1/s]
+GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
 # In place of a result: the arena is full, and nothing was changed.
 NO_ARENA = -1
 
@@ -37,7 +38,7 @@ class Commanded(NamedTuple):
 
 @kernel
 def command(lent: Any, arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
-    """Carry out a command, see GRAB; how many particles were pushed, for all others 0, or NO_ARENA."""
+    """Carry out a command, see GRAB; how many particles were pushed or shaken, for all others 0, or NO_ARENA."""
     world: Commanded = contents(lent)
     state = world.state
     if kind == GRAB:
@@ -62,6 +63,8 @@ def command(lent: Any, arena: Arena, kind: int, slots: Slots, numbers: Floats) -
         state.actuator_value[slots[0]] = numbers[0]
     elif kind == PUSH:
         return _push(state, world.good, slots[0], numbers)
+    elif kind == SHAKE:
+        return _shake(state, world.good, slots[0], numbers)
     return 0
 
 
@@ -204,12 +207,17 @@ def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Flo
 
 
 @inner_kernel
-def _weight_of_push(state: State, first_cursor: int, p: int, numbers: Floats) -> float:
-    # 1 - (d / radius)^2 of what is near, can move and is no cursor; -1 of all else.
+def _can_move(state: State, first_cursor: int, p: int) -> bool:
     is_cursor = 0 <= first_cursor <= p < first_cursor + GRAB_COUNT
+    return state.particle_active[p] and not is_cursor and state.inverse_mass[p] > 0.0
+
+
+@inner_kernel
+def _weight_of_push(state: State, first_cursor: int, p: int, numbers: Floats) -> float:
+    # 1 - (d / radius)^2 of what is near and can move; -1 of all else.
     dx, dy = state.position[p, 0] - numbers[0], state.position[p, 1] - numbers[1]
     square, reach = dx * dx + dy * dy, numbers[5] * numbers[5]
-    if not state.particle_active[p] or is_cursor or not state.inverse_mass[p] > 0.0 or not square < reach:
+    if not _can_move(state, first_cursor, p) or not square < reach:
         return -1.0
     return 1.0 - square / reach
 
@@ -239,13 +247,29 @@ def _push(state: State, good: GoodValues, first_cursor: int, numbers: Floats) ->
     return count
 
 
+@inner_kernel
+def _shake(state: State, good: GoodValues, first_cursor: int, numbers: Floats) -> int:
+    # Seen from the frame, every free particle gets the opposite velocity: dv_i = -a / tick_rate, for any gravity scale.
+    count = 0
+    for p in range(state.owner.shape[0]):
+        if _can_move(state, first_cursor, p):
+            for axis in range(2):
+                dv = numbers[axis] / numbers[2]
+                state.velocity[p, axis] -= dv
+                good.velocity[p, axis] = state.velocity[p, axis]
+                state.slow_velocity[p, axis] -= dv
+            state.energy_bank[p] = BANK_UNOPENED
+            count += 1
+    return count
+
+
 def lend(state: State, good: GoodValues) -> Any:
     """What commands change, as kernels take it."""
     return bundle(Commanded(state, good))
 
 
 def carry_out(lent: Any, kind: int, slots: Sequence[int] | Slots, numbers: Sequence[float]) -> int:
-    """Carry out a command, see GRAB; how many particles were pushed."""
+    """Carry out a command, see GRAB; how many particles were pushed or shaken."""
     given = np.array(slots, np.int64), np.array(numbers, np.float64)
     arena = np.zeros(1, np.int64)
     while (result := command(lent, arena, kind, *given)) == NO_ARENA:

@@ -19,6 +19,7 @@ from sandbox.physics.command import (
     PUSH,
     RELEASE,
     SET_COEFFICIENTS,
+    SHAKE,
     UNPIN,
     carry_out,
     lend,
@@ -486,6 +487,12 @@ class World(StateArrays):
         so that what is near moves more, whatever its mass, and the momentum grows by J.
         """
         return self._command(PUSH, [self.grab_particle], (*place, *impulse, outward, radius)) > 0
+
+    def shake(self, acceleration: Point) -> bool:
+        """Accelerate the frame that holds the world, its terrain and its pins, by `acceleration` [m/s^2] for the coming
+        tick: free particles stay behind. False: nothing can move.
+        """
+        return self._command(SHAKE, [self.grab_particle], (*acceleration, self.settings.tick_rate)) > 0
 
     def fit(self, driven: Actuators, values: ArrayLike) -> None:
         """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 from sandbox.level.format.quantities import Gravity
-from sandbox.physics.changing.shaking import shake
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 
@@ -19,5 +18,5 @@ class Shake(Command):
     acceleration: Gravity
 
     def carry_out(self, world: World) -> None:
-        if not shake(world, self.acceleration):
+        if not world.shake(self.acceleration):
             raise CommandError("there is nothing that moves to be shaken")
