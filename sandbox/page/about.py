@@ -11,7 +11,7 @@ from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline import block, collide, tick
 from sandbox.physics.sanitise import ABSURD
 from sandbox.physics.settings import SOLVER_NAMES
-from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Family
+from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Column, Family
 from sandbox.physics.world import World
 
 # Kernels that a page calls.
@@ -19,22 +19,29 @@ KERNELS = {path.rpartition(".")[2]: path for path in WEB.entries}
 CODES = ("FINISHED", "UNSOUND", "NO_ROOM", "LOST", "BROKE")
 PROGRESS = ("TICK", "MAY_FLY", "COUNT", "DONE", "BROKEN", "CHECKED")
 # Arrays of a block beside its state that go on from tick to tick.
-KEPT = ("numbers", "choices")
+SETTING_ARRAYS = ("numbers", "choices")
 CONTACT = "contact_"
 # Commands by their names in files, and what the kernel calls them.
 COMMANDS = {
     "grab": command.GRAB, "move_grab": command.MOVE_GRAB, "release": command.RELEASE, "pin": command.PIN,
     "unpin": command.UNPIN, "freeze": command.FREEZE, "cut_springs": command.CUT, "break_springs": command.BREAK,
     "set_coefficients": command.SET_COEFFICIENTS, "set_drive": command.DRIVE, "push": command.PUSH,
+    "shake": command.SHAKE,
 }  # fmt: skip
-# What a page does beside these; undoing is left out of what it plays.
+# What a page does beside these; of other commands of a recording it is told what they change.
 SETTINGS = ("set_gravity", "set_air")
-HISTORY = ("undo", "redo")
+# What makes arrays longer, for which a page has no room.
+ADDING = ("add_body", "add_particle", "add_spring")
 
 
 def can_play(types: Iterable[str]) -> bool:
-    """Whether a page can carry out commands of these types."""
-    return set(types) <= {*COMMANDS, *SETTINGS, *HISTORY}
+    """Whether a page can play a recording with commands of these types."""
+    return not set(types) & set(ADDING)
+
+
+def is_done_by_pages(name: str) -> bool:
+    """Whether pages carry out commands of that type themselves."""
+    return name in COMMANDS or name in SETTINGS
 
 
 def about(world: World, words: int) -> dict[str, Any]:
@@ -52,8 +59,8 @@ def about(world: World, words: int) -> dict[str, Any]:
         "area": AREA,
         "absurd": ABSURD,
         "columns": [_column(column) for column in COLUMNS],
-        "topology": [f"state.{column.name}" for column in TOPOLOGY],
-        "kept": kept + list(KEPT),
+        "topology": [*(f"state.{column.name}" for column in TOPOLOGY), "choices"],
+        "kept": kept + list(SETTING_ARRAYS),
         "names": {
             "particle": world.particle_names,
             "spring": world.spring_names,
@@ -63,14 +70,19 @@ def about(world: World, words: int) -> dict[str, Any]:
     }
 
 
-def _column(column: Any) -> dict[str, Any]:
-    is_contact = column.family is Family.CONTACT
-    path = f"collisions.kept.{column.name.removeprefix(CONTACT)}" if is_contact else f"state.{column.name}"
+def array_path(column: Column) -> str:
+    """Where in a block the array of a line of the table of state is."""
+    if column.family is Family.CONTACT:
+        return f"collisions.kept.{column.name.removeprefix(CONTACT)}"
+    return f"state.{column.name}"
+
+
+def _column(column: Column) -> dict[str, Any]:
     return {
         "stored": column.stored,
-        "path": path,
+        "path": array_path(column),
         "width": column.width,
-        "isContact": is_contact,
+        "isContact": column.family is Family.CONTACT,
         "isSparse": column.sparse,
         "usual": float(column.usual),
     }

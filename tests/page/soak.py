@@ -18,8 +18,10 @@ from tests.page.levels import LEVELS
 from tests.page.opened import opened, saved
 
 SIZES = ({"width": 1280, "height": 720}, {"width": 390, "height": 844, "is_phone": True})
-BUTTONS = ("play", "step", "slow", "undo", "drag", "drag", "pin", "cut", "sound", "tune", "hint")
-KEYS = (" ", ".", "s", "d", "p", "c", "n", "Enter", "ArrowLeft", "ArrowUp", "Escape", "+", "-", "h", "a")
+BUTTONS = ("play", "step", "slow", "undo", *["drag"] * 6, "pin", "cut", "sound", "tune", "hint")
+KEYS = (" ", ".", "s", "d", "p", "c", "n", "Enter", "ArrowLeft", "ArrowUp", "Escape", "+", "-", "h", "a", "d", "w")
+# Gestures from one return of the view to the next, so that the level stays in sight.
+RETURN = 15
 # Where a particle is that is in the picture [pixels].
 PLACE = """(() => {
   const { at } = page.toy.picture, count = page.toy.world.particles.length, k = Math.floor(SHARE * count);
@@ -75,6 +77,8 @@ def _soak(browser: Browser, folder: Path, name: str, size: dict[str, int], secon
         done += 1
         if done % 4 == 0:
             tab.evaluate("page.toy.play()")
+        if done % RETURN == 0:
+            tab.evaluate("page.toy.fit()")
         if done % 20 == 0:
             tab.send("HeapProfiler.collectGarbage")
             heaps.append(tab.send("Runtime.getHeapUsage")["usedSize"] / 1e6)

@@ -2,13 +2,10 @@
 
 from pathlib import Path
 
-from sandbox import Session, load_level
-from sandbox.app.share.playing import page_of
-from sandbox.commands import Grab, Release
 from sandbox.replay import Replay, read_replay, verify
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import START_OVER, VERDICT, opened, saved
+from tests.page.opened import START_OVER, opened, saved
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 
@@ -75,6 +72,40 @@ def test_several_fingers_hold_several_bodies(browser: Browser, tmp_path: Path) -
     assert verify(_saved(tab, tmp_path)) is None
 
 
+def test_two_fingers_on_one_particle_let_go_of_it(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "rope", **PHONE)
+    _steps(tab, 20)
+    x, y = _place(tab, "rope.20")
+    tab.touch("touchStart", (x, y))
+    tab.touch("touchStart", (x, y), (x + 3, y + 2))
+    tab.touch("touchMove", (x - 30, y), (x + 40, y - 20))
+    _steps(tab, 20)
+    tab.touch("touchEnd")
+    _steps(tab, 20)
+    assert not tab.evaluate("Array.from({ length: 10 }, (_, hand) => page.toy.world.isHeld(hand)).some(Boolean)")
+    assert verify(_saved(tab, tmp_path)) is None
+
+
+def test_what_is_dragged_is_let_go_where_somebody_goes_back_in_time(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "rope")
+    _steps(tab, 20)
+    x, y = _place(tab, "rope.20")
+    tab.mouse("mousePressed", x, y)
+    _steps(tab, 20)
+    tab.evaluate("page.toy.seek(30)")
+    # The button is still down.
+    tab.mouse("mouseMoved", x + 90, y)
+    tab.mouse("mouseReleased", x + 90, y)
+    x, y = _place(tab, "rope.10")
+    tab.mouse("mousePressed", x, y)
+    _steps(tab, 10)
+    tab.mouse("mouseReleased", x, y)
+    _steps(tab, 10)
+    replay = _saved(tab, tmp_path)
+    assert _types(replay) == ["grab", "release", "grab", "release"]
+    assert (verify(replay), replay.ticks) == (None, 50)
+
+
 def test_a_stroke_cuts_what_it_crosses_and_undo_makes_it_whole(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "curtain")
     _steps(tab, 60)
@@ -104,20 +135,3 @@ def test_a_particle_is_pinned_and_unpinned(browser: Browser, tmp_path: Path) -> 
         _steps(tab, 40)
     replay = _saved(tab, tmp_path)
     assert (verify(replay), _types(replay)) == (None, ["pin", "unpin"])
-
-
-def test_a_bridge_that_is_torn_breaks_as_it_does_on_the_desktop(browser: Browser, tmp_path: Path) -> None:
-    session, file = Session(load_level("breaking_bridge")), tmp_path / "torn.replay.gz"
-    session.record_to(file)
-    middle = session.world.particle_slot("deck.8")
-    x, y = session.world.position[middle].tolist()
-    session.submit(Grab(0, middle, (x, y - 5.0), strength=300.0), 1)
-    while len(session.breaks) < 2:
-        session.advance()
-    session.submit(Release(0), 1)
-    for _ in range(60):
-        session.advance()
-    session.stop_recording()
-    replay = read_replay(file)
-    tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
-    assert tab.evaluate(VERDICT).startswith("Verified")

@@ -6,13 +6,11 @@ from pathlib import Path
 import pytest
 
 from sandbox import Session, load_level
-from sandbox.app.share.playing import page_of
-from sandbox.commands import SetCoefficients, SetDrive
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
 from tests.page.browser import Browser
 from tests.page.levels import LEVELS, level_page
-from tests.page.opened import START_OVER, VERDICT, opened, saved
+from tests.page.opened import START_OVER, opened, saved
 
 TICKS = 90
 
@@ -101,34 +99,6 @@ def test_an_undo_brings_back_the_state_before_the_gesture(browser: Browser, tmp_
     tab.evaluate("for (let k = 0; k < 100; k++) page.toy.tick(); document.getElementById('undo').click()")
     assert tab.evaluate("[page.toy.world.time, page.toy.world.hash().whole]") == [70, before]
     assert verify(read_replay(saved(tab, tmp_path))) is None
-
-
-def _recorded(folder: Path) -> Path:
-    session, file = Session(load_level("suspension_car")), folder / "run.replay.gz"
-    session.record_to(file)
-    for tick in range(150):
-        if tick == 10:
-            session.submit(SetDrive(0, 1.0))
-        if tick == 40:
-            session.submit(SetCoefficients(stiffness=0.4, damping=0.7, material=1))
-        session.advance()
-    session.stop_recording()
-    return file
-
-
-def test_a_recording_is_verified_scrubbed_and_taken_over(browser: Browser, tmp_path: Path) -> None:
-    replay = read_replay(_recorded(tmp_path))
-    tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
-    assert tab.evaluate(VERDICT).startswith("Verified")
-    tab.evaluate("page.toy.pause()")
-    for tick in (150, 30, 90):
-        hashed = tab.evaluate(f"page.toy.seek({tick}); page.toy.world.hash().whole")
-        assert replay.hashes[tick].fits(hashed)
-    tab.evaluate("page.toy.run.submit({ type: 'set_drive', part: 0, value: -1 }, page.toy.run.newGesture())")
-    assert tab.evaluate("[page.toy.run.last, page.toy.run.isFollowing]") == [90, False]
-    tab.evaluate("for (let k = 0; k < 30; k++) page.toy.tick()")
-    taken = read_replay(saved(tab, tmp_path))
-    assert (taken.ticks, verify(taken)) == (120, None)
 
 
 def test_a_page_that_was_cut_off_says_so_in_a_line(browser: Browser, tmp_path: Path) -> None:

@@ -80,6 +80,24 @@ def test_two_fingers_zoom_and_one_moves_the_view(browser: Browser, tmp_path: Pat
     assert tab.evaluate(f"(page.toy.camera.x - {x!r}) * page.toy.camera.zoom") == pytest.approx(50, rel=0.01)
 
 
+def test_two_taps_beside_everything_or_a_key_show_the_whole_level_again(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "rope", **PHONE)
+    view = "[page.toy.camera.x, page.toy.camera.y, page.toy.camera.zoom]"
+    whole = tab.evaluate(view)
+    for again in ("taps", "f"):
+        tab.touch("touchStart", (150, 500))
+        tab.touch("touchMove", (100, 560))
+        tab.touch("touchEnd")
+        assert tab.evaluate(view) != whole
+        if again == "taps":
+            for _ in range(2):
+                tab.touch("touchStart", (60, 600))
+                tab.touch("touchEnd")
+        else:
+            tab.key("f")
+        assert tab.evaluate(view) == whole
+
+
 def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "jelly_wheel", **PHONE)
     _tap(tab, "#tune")

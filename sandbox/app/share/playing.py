@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from sandbox import __version__
 from sandbox.app.draw.scene import scene_of
+from sandbox.app.share.recorded import recorded
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.checks import CheckDef, bounds_of, window_of
@@ -18,12 +19,12 @@ from sandbox.page.start import start_of
 from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange
 from sandbox.physics.equation import of_springs
 from sandbox.physics.keeping.forms import Firmness
-from sandbox.physics.snapshot import state_hash, take
+from sandbox.physics.snapshot import take
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
-from sandbox.session.commands import CommandError, Redo, Undo
-from sandbox.session.commands.records import ScriptLine, from_record, script_of
-from sandbox.session.replay.format import TICK_DIGITS, header, seal
+from sandbox.session.commands import CommandError
+from sandbox.session.commands.records import ScriptLine
+from sandbox.session.replay.format import header, seal
 from sandbox.session.session import Session
 
 # Cs and Cd for the words of firmness where no body's form says what they mean.
@@ -33,13 +34,6 @@ ALL = "All"
 NOT_MEASURED = ("energy", "potential_energy")
 # Digits, and decimals at most, of Cs and Cd.
 DIGITS, DECIMALS = 4, 12
-
-
-class Recorded(NamedTuple):
-    """What of a recording a page plays: its commands without those that were undone, and the hash of each tick."""
-
-    script: tuple[ScriptLine, ...]
-    hashes: list[str]
 
 
 class Playable(NamedTuple):
@@ -73,11 +67,12 @@ def playable_in_slices(
 
     begin: the tick that is shown first. Raises CommandError, also for a command that a page cannot carry out.
     """
-    unknown = {str(line.record.get("type")) for line in script if not can_play([str(line.record.get("type"))])}
+    types = {str(line.record.get("type")) for line in script}
+    unknown = {name for name in types if not can_play([name])}
     if unknown:
         raise CommandError(f"a page cannot play {', '.join(sorted(unknown))}")
     world = Session(level).world
-    recorded = None if ticks is None else (yield from _recorded(level, script, ticks))
+    played = None if ticks is None else (yield from recorded(level, script, ticks))
     start = start_of(level)
     data = {
         "name": level.name,
@@ -88,7 +83,7 @@ def playable_in_slices(
         "checks": _checks(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
-        "recording": None if recorded is None else _shown(world, recorded),
+        "recording": None if played is None else played._asdict(),
         "begin": begin,
     }
     return Playable(level.name, level.description, toy_content(data, start.image))
@@ -125,33 +120,6 @@ def _header(level: Level) -> str:
     """The first line of a recording, without its end."""
     line, _ = seal(header(level, PHYSICS_VERSION, __version__), "")
     return line.decode().rpartition(', "chain"')[0]
-
-
-def _recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generator[float, None, Recorded]:
-    session = Session(level, script)
-    hashes = [state_hash(session.world)]
-    while session.tick < ticks:
-        session.advance()
-        hashes.append(state_hash(session.world))
-        yield session.tick / ticks
-    session.apply_pending()
-    if any(isinstance(entry.command, Undo | Redo) for entry in session.history.log):
-        counted = [entry for entry in session.history.timeline if entry.in_effect]
-        return (yield from _recorded(level, script_of(counted, session.world), ticks))
-    return Recorded(tuple(script), [each[:TICK_DIGITS] for each in hashes])
-
-
-def _shown(world: World, recorded: Recorded) -> dict[str, Any]:
-    """A recording as a page reads it: slots in place of names."""
-    commands = [
-        {
-            "tick": line.tick,
-            "gesture": line.gesture,
-            "record": {"type": line.record["type"], **asdict(from_record(line.record, world))},  # type: ignore[call-overload]
-        }
-        for line in recorded.script
-    ]
-    return {"commands": commands, "hashes": recorded.hashes}
 
 
 def _materials(world: World) -> list[dict[str, Any]]:

@@ -37,4 +37,10 @@ export class Drives {
   releaseAll() {
     [...this.#held.keys()].forEach((name) => this.release(name));
   }
+
+  // No key is held any more, as time has jumped.
+  forget() {
+    for (const name of this.#held.keys()) this.told(name, false);
+    this.#held.clear();
+  }
 }

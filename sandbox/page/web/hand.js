@@ -2,6 +2,8 @@
 
 const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98, SOFT_REACH = 2;
 const NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
+// Two taps so soon after each other [ms] and so near to each other [pixels] are one gesture.
+const TWICE = 350, BESIDE = 30;
 const UNITS = [[1e6, 'MN'], [1e3, 'kN'], [1, 'N'], [1e-3, 'mN']];
 
 // What of a world lies near a point [m].
@@ -115,12 +117,14 @@ export class Hands {
   tool = 'drag';
   marked = null;
   #pointers = new Map();
+  // What each hand holds that a pointer or a key moves.
   #held = new Map();
+  #tapped = null;
   #closing = new AbortController();
 
-  // changed: called when the view has been moved by hand; say: tells a person something in a line.
-  constructor(canvas, run, camera, { changed, say }) {
-    Object.assign(this, { canvas, run, camera, changed, say });
+  // changed: called when the view has been moved by hand; fit: shows all again; say: tells a person something in a line.
+  constructor(canvas, run, camera, { changed, fit, say }) {
+    Object.assign(this, { canvas, run, camera, changed, fit, say });
     const how = { signal: this.#closing.signal, passive: false };
     const on = (name, act) => canvas.addEventListener(name, act, how);
     on('pointerdown', (event) => this.#press(event));
@@ -149,22 +153,28 @@ export class Hands {
     this.canvas.setPointerCapture(event.pointerId);
     const point = this.camera.toWorld(event.offsetX, event.offsetY),
       within = REACH[event.pointerType] / this.camera.zoom;
-    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan' };
+    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', began: event };
     this.#pointers.set(event.pointerId, pointer);
     if (event.button !== 0 || event.altKey) return;
-    const near = new Near(this.run.world);
+    const near = new Near(this.run.world), touched = near.particle(point, within), free = near.free(point, within);
+    pointer.isBeside = touched === null && free === null && this.#pointers.size === 1;
     if (this.tool === 'cut') {
       Object.assign(pointer, { kind: 'cut', point, gesture: this.run.newGesture() });
       this.#cut(pointer, near.spring(point, within / 2));
-    } else if (this.tool === 'pin') {
-      this.#pin(near, near.particle(point, within), pointer);
-    } else {
-      const particle = near.free(point, within);
-      if (particle !== null && this.hold(particle, point, within)) pointer.kind = particle;
-      else if (particle === null
-        && near.particle(point,
-        within) !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
-    }
+    } else if (this.tool === 'pin') this.#pin(near, touched, pointer);
+    else if (free !== null) {
+      pointer.hand = this.hold(free, point, within);
+      if (pointer.hand !== null) pointer.kind = 'hold';
+    } else if (touched !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
+  }
+
+  // Two taps where nothing is show all again.
+  #tap(began, ended) {
+    const isNear = (one, two) => Math.hypot(one.offsetX - two.offsetX, one.offsetY - two.offsetY) < BESIDE;
+    if (!isNear(began, ended)) return;
+    const isSecond = ended.timeStamp - this.#tapped?.timeStamp < TWICE && isNear(began, this.#tapped);
+    this.#tapped = isSecond ? null : began;
+    if (isSecond) this.fit();
   }
 
   #pin(near, particle, pointer) {
@@ -179,12 +189,11 @@ export class Hands {
       pointer.gesture)) this.say('This page cannot cut.');
   }
 
-  // Take a particle into a free hand and draw it to a point [m]. Whether one was free.
+  // Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
   hold(particle, point, within) {
-    const near = new Near(this.run.world), { count } = this.run.world.hands, { position } = near;
-    const hand = Array.from({ length: count },
-      (_, k) => k).find((k) => ![...this.#held.values()].some((each) => each.hand === k));
-    if (hand === undefined) return false;
+    const near = new Near(this.run.world), { world } = this.run, { position } = near;
+    const hand = Array.from({ length: world.hands.count }, (_, k) => k).find((k) => !world.isHeld(k));
+    if (hand === undefined) return null;
     const dx = position[2 * particle] - point[0], dy = position[2 * particle + 1] - point[1];
     // A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
     const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy],
@@ -193,20 +202,16 @@ export class Hands {
     // What a command changes may lie elsewhere after it: all is asked before.
     const limit = STRENGTH * near.bodyMass(particle),
       record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
-    if (!this.run.submit(record, gesture)) {
-      this.say('This page cannot hold anything.');
-      return false;
-    }
-    this.#held.set(particle,
-      { hand, gesture, beside, target, isMoved: false, limit });
-    return true;
+    if (!this.run.submit(record, gesture)) return null;
+    this.#held.set(hand, { particle, gesture, beside, target, isMoved: false, limit });
+    return hand;
   }
 
   #move(event) {
     const pointer = this.#pointers.get(event.pointerId);
     if (!pointer) return;
     const [x, y] = [event.offsetX, event.offsetY], point = this.camera.toWorld(x, y),
-      held = this.#held.get(pointer.kind);
+      held = this.#held.get(pointer.hand);
     if (held) this.#aim(held, point);
     else if (pointer.kind === 'cut') {
       this.#cut(pointer, new Near(this.run.world).crossing(pointer.point, point));
@@ -236,32 +241,31 @@ export class Hands {
   #lift(event) {
     const pointer = this.#pointers.get(event.pointerId);
     this.#pointers.delete(event.pointerId);
-    if (pointer && this.#held.has(pointer.kind)) this.release(pointer.kind);
+    if (this.#held.has(pointer?.hand)) this.release(pointer.hand);
+    else if (pointer?.isBeside) this.#tap(pointer.began, event);
   }
 
-  release(particle) {
-    const { hand, gesture } = this.#held.get(particle);
-    this.#held.delete(particle);
+  release(hand) {
+    const { gesture } = this.#held.get(hand);
+    this.#held.delete(hand);
     if (this.run.world.isHeld(hand)) this.run.submit({ type: 'release', grab: hand }, gesture);
   }
 
-  // Let go of everything, also of what a recording holds; after time has jumped nobody holds on.
   releaseAll() {
+    [...this.#held.keys()].forEach((hand) => this.release(hand));
+  }
+
+  // Hold nothing any more, as time has jumped.
+  forget() {
     this.#held.clear();
-    const { count } = this.run.world.hands;
-    for (let hand = 0; hand < count; hand++) {
-      if (!this.run.world.isHeld(hand)) continue;
-      const grab = this.run.commands.findLast(({ record }) => record.type === 'grab' && record.grab === hand);
-      this.run.submit({ type: 'release', grab: hand }, grab?.gesture ?? this.run.newGesture());
-    }
   }
 
   // Before a tick: send every hand to where its pointer is now.
   update() {
-    for (const held of this.#held.values()) {
+    for (const [hand, held] of this.#held) {
       if (!held.isMoved) continue;
       held.isMoved = false;
-      this.run.submit({ type: 'move_grab', grab: held.hand, target: held.target }, held.gesture);
+      this.run.submit({ type: 'move_grab', grab: hand, target: held.target }, held.gesture);
     }
   }
 
@@ -269,12 +273,12 @@ export class Hands {
   key(event) {
     const near = new Near(this.run.world),
       way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-    const held = this.#held.get(this.marked);
+    const [hand, held] = [...this.#held].find(([, { particle }]) => particle === this.marked) ?? [];
     if (event.key === 'n' || event.key === 'N') {
       const free = Array.from(near.mass.keys()).filter((k) => near.isShown(k) && near.inverse_mass[k] > 0);
       this.marked = free.find((k) => k > (this.marked ?? -1)) ?? free[0] ?? null;
     } else if (event.key === 'Enter' && this.marked !== null) {
-      if (held) this.release(this.marked);
+      if (held) this.release(hand);
       else this.hold(this.marked, Array.from(near.position.subarray(2 * this.marked, 2 * this.marked + 2)), 1);
     } else if (event.key === 'Escape') {
       this.marked = null;
@@ -294,7 +298,7 @@ export class Hands {
     for (let hand = 0; hand < count; hand++) {
       if (!world.isHeld(hand)) continue;
       const held = b[spring + hand], pull = Math.hypot(force[2 * hand], force[2 * hand + 1]),
-        own = this.#held.get(held);
+        own = this.#held.get(hand);
       const colour = own && pull > AT_LIMIT * own.limit ? '#ffb454' : theme.accent;
       context.strokeStyle = context.fillStyle = colour;
       context.lineWidth = 1.6;

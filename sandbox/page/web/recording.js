@@ -14,7 +14,7 @@ async function* repeated(world, commands, ticks) {
     const hash = world.hash(), first = next;
     while (next < commands.length && commands[next].tick === world.time) next += 1;
     yield { hash, commands: commands.slice(first, next) };
-    for (const { record } of commands.slice(first, next)) world.command(record);
+    for (const done of commands.slice(first, next)) world.carryOut(done);
     if (world.time >= ticks) return;
     world.tick();
     if (performance.now() - since > SLICE) {
@@ -63,7 +63,9 @@ export async function written(world, about, header, commands, ticks, progress) {
     before = hash.arrays;
     line({ tick: world.time, hash: isStored ? hash.whole : hash.whole.slice(0, TICK_DIGITS), arrays });
     if (isStored) await writeState(hash);
-    for (const { gesture, record } of due) line({ tick: world.time, gesture, command: named(record, about.names) });
+    for (const { gesture, record, changes } of due) {
+      line({ tick: world.time, gesture, command: changes ? record : named(record, about.names) });
+    }
     last = { hash, isStored, isChanged: due.length > 0 };
     progress(world.time, ticks);
   }

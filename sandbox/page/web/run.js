@@ -5,7 +5,11 @@ import { Refusal } from './world.js';
 const KEEP_EVERY = 60, KEPT = 120;
 
 export class Run {
-  // commands: [{ tick, gesture, record }] of a recording, with slots in place of names, in order; ticks: of it.
+  // Whether what goes on now was begun by what is told again, so that nobody is there to end it.
+  #isTold = true;
+
+  // commands: [{ tick, gesture, record, changes }] of a recording in order, with slots in place of names but where
+  // there are changes; ticks: of it.
   constructor(world, commands = [], ticks = 0) {
     Object.assign(this, { world, commands, last: ticks, every: KEEP_EVERY, kept: [world.save()], next: 0,
       revision: 0 });
@@ -28,12 +32,26 @@ export class Run {
 
   // Carry out a command now, and forget what would have come later. Whether it could be.
   submit(record, gesture) {
-    if (!this.world.command(record)) return false;
+    if (!this.world.canDo(record)) return false;
     if (this.isFollowing) this.takeOver();
+    if (this.#isTold) this.#endAll(gesture);
+    this.world.command(record);
     this.commands.push({ tick: this.time, gesture, record });
     this.next = this.commands.length;
     this.last = this.time;
     return true;
+  }
+
+  // Let go what hands hold and stop what is driven, which nobody does any more. gesture: null: each belongs to what
+  // began it.
+  #endAll(gesture = null) {
+    this.#isTold = false;
+    const going = new Map();
+    for (const { record, gesture: begun } of this.commands) {
+      if (record.type === 'grab') going.set(`hand ${record.grab}`, [{ type: 'release', grab: record.grab }, begun]);
+      else if (record.type === 'set_drive') going.set(`part ${record.part}`, [{ ...record, value: 0 }, begun]);
+    }
+    for (const [ending, begun] of going.values()) if (this.world.isGoing(ending)) this.submit(ending, gesture ?? begun);
   }
 
   // Go on from here by hand.
@@ -46,6 +64,7 @@ export class Run {
 
   // One tick, and the commands that follow at its end.
   step() {
+    if (this.#isTold && !this.isFollowing) this.#endAll();
     this.world.tick();
     this.last = Math.max(this.last, this.time);
     if (this.time % this.every === 0 && this.time > this.kept.at(-1).time) {
@@ -61,8 +80,7 @@ export class Run {
   // The commands of this tick that a recording has.
   #follow() {
     while (this.next < this.commands.length && this.commands[this.next].tick === this.time) {
-      const { record } = this.commands[this.next];
-      if (!this.world.command(record)) throw new Refusal('This page cannot do what was done here.');
+      if (!this.world.carryOut(this.commands[this.next])) throw new Refusal('This page cannot do what was done here.');
       this.next += 1;
     }
   }
@@ -71,6 +89,7 @@ export class Run {
   seek(tick, place = Infinity) {
     const state = this.kept.findLast((each) => each.time <= tick);
     this.world.restore(state);
+    this.#isTold = true;
     this.next = this.commands.findIndex((each) => each.tick >= state.time);
     if (this.next < 0) this.next = this.commands.length;
     const dropped = this.commands.splice(place);
@@ -87,6 +106,7 @@ export class Run {
     const { tick } = this.commands[place];
     this.seek(tick, place);
     this.takeOver();
+    this.#endAll();
     return true;
   }
 }

@@ -40,7 +40,7 @@ export class Toy extends EventTarget {
     if (level.begin) this.run.seek(level.begin);
     this.picture = new Picture(canvas, level.scene, this.world);
     this.hands = new Hands(canvas, this.run, this.camera, {
-      changed: () => { this.#isMoved = this.#isDirty = true; }, say: (text) => this.say(text),
+      changed: () => { this.#isMoved = this.#isDirty = true; }, fit: () => this.fit(), say: (text) => this.say(text),
     });
     this.drives = new Drives(this.run, level.keys);
     this.sound = new Sound(this.world, level.sounds);
@@ -81,7 +81,8 @@ export class Toy extends EventTarget {
     else if (event.key === '+' || event.key === '-') {
       this.#isMoved = true;
       this.camera.zoomAbout(this.camera.width / 2, this.camera.height / 2, event.key === '+' ? KEY_ZOOM : 1 / KEY_ZOOM);
-    } else if (!this.hands.key(event)) return;
+    } else if (['f', 'home'].includes(event.key.toLowerCase())) this.fit();
+    else if (!this.hands.key(event)) return;
     this.refresh();
     event.preventDefault();
   }
@@ -130,6 +131,12 @@ export class Toy extends EventTarget {
     this.camera.height = Math.max(this.canvas.clientHeight, 1);
     if (!this.#isMoved) this.camera.fit(this.level.scene.view, this.#covered);
     this.refresh();
+  }
+
+  // Show the whole level.
+  fit() {
+    this.#isMoved = false;
+    this.#resize();
   }
 
   #play(now) {
@@ -214,8 +221,6 @@ export class Toy extends EventTarget {
 
   restart() {
     this.#jump(() => {
-      this.hands.releaseAll();
-      this.drives.releaseAll();
       if (this.level.recording) {
         this.run.seek(0);
         return;
@@ -229,16 +234,15 @@ export class Toy extends EventTarget {
   // Back to before the last thing that was done. Whether there was one.
   undo() {
     let isDone = false;
-    this.#jump(() => {
-      isDone = this.run.undo();
-      this.hands.releaseAll();
-    });
+    this.#jump(() => { isDone = this.run.undo(); });
     if (!isDone) this.say('There is nothing to undo.');
     return isDone;
   }
 
   // Go elsewhere in time: nothing is compared with what was before.
   #jump(go) {
+    this.hands.forget();
+    this.drives.forget();
     this.#guarded(go);
     this.#previous = this.world.view('state.position').slice();
     this.sound.forget();

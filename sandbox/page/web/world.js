@@ -29,6 +29,7 @@ const COMMANDS = {
   ]],
   set_drive: [null, (r) => [[r.part], [r.value]]],
   push: [null, (r, hands) => [[hands.particle], [...r.position, ...(r.impulse ?? [0, 0]), r.outward ?? 0, r.radius]]],
+  shake: [null, (r, hands, rate) => [[hands.particle], [...r.acceleration, rate]]],
 };
 
 // Where the settings are that commands change, among the numbers of a world.
@@ -169,10 +170,30 @@ export class World {
     for (const particle of lost) this.command({ type: 'freeze', particle });
   }
 
+  // Carry out what was done: a command, or what it changes where no kernel carries it out. Whether it could be.
+  carryOut({ record, changes }) {
+    if (!changes) return this.command(record);
+    for (const [path, runs] of Object.entries(changes)) {
+      this.#change(path, runs);
+      const good = path.replace('state', 'good');
+      if (good !== path && this.#table.has(good)) this.#change(good, runs);
+    }
+    if (this.#about.topology.some((path) => path in changes)) this.#derive(DERIVATIONS);
+    return true;
+  }
+
+  // Write rows of an array: the first, how many, and what each is to hold.
+  #change(path, runs) {
+    const view = this.view(path), number = view instanceof BigInt64Array ? BigInt : Number;
+    for (const [first, count, ...row] of runs) {
+      for (let k = first; k < first + count; k++) view.set(row.map(number), row.length * k);
+    }
+  }
+
   // Carry out a command: the record of a recording with slots in place of names. Whether it could be.
   command(record) {
+    if (!this.canDo(record)) return false;
     if (record.type in SETTINGS) return this.#set(record);
-    if (!(record.type in COMMANDS)) return false;
     const [derives, pack] = COMMANDS[record.type], { tick_rate } = this.settings(), { buffer } = this.#kernels.memory;
     const [slots, numbers] = pack(record, this.hands, tick_rate), at = this.#arguments + ARGUMENTS * WORD;
     new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
@@ -182,6 +203,15 @@ export class World {
     this.#inArena('command', ...given);
     if (derives !== null) this.#derive(derives);
     return true;
+  }
+
+  canDo({ type }) {
+    return type in SETTINGS || type in COMMANDS;
+  }
+
+  // Whether what a command would end goes on: a hand holds something, or a part is driven.
+  isGoing({ type, grab, part }) {
+    return type === 'release' ? this.isHeld(grab) : this.view('state.actuator_value')[part] !== 0;
   }
 
   // Gravity and air are numbers that a tick reads.

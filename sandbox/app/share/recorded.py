@@ -1,0 +1,109 @@
+"""Recorded: what of a recording a page plays, for its own kernels: slots in place of names, and what they cannot do."""
+
+from collections.abc import Generator, Iterator, Sequence
+from dataclasses import asdict
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.level.document.model import Level
+from sandbox.page.about import SETTING_ARRAYS, array_path, is_done_by_pages
+from sandbox.physics.snapshot import Snapshot, state_hash, take
+from sandbox.physics.state import COLUMNS
+from sandbox.physics.step import step
+from sandbox.physics.world import World
+from sandbox.session.commands import CommandError, Redo, Undo, apply
+from sandbox.session.commands.records import ScriptLine, from_record, script_of
+from sandbox.session.replay.format import TICK_DIGITS
+from sandbox.session.session import Session
+
+
+class Recorded(NamedTuple):
+    """Commands in order, as a page carries them out, and the hash of each tick."""
+
+    commands: list[dict[str, Any]]
+    hashes: list[str]
+
+
+def recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generator[float, None, Recorded]:
+    """What a page plays of a recording, a slice of the work at a time: each gives the part that is done, 0..1.
+
+    Commands that were undone are left out. Raises CommandError.
+    """
+    if any(line.record["type"] in (Undo.type, Redo.type) for line in script):
+        script = yield from _without_undone(level, script, ticks)
+    world, commands = Session(level).world, []
+    hashes = [_tick_hash(world)]
+    for line in script:
+        if line.tick > ticks:
+            break
+        yield from _stepped(world, line.tick, ticks, hashes)
+        try:
+            commands.append(_carried_out(world, line))
+        except CommandError as error:
+            raise CommandError(f"line {line.line}: {error}") from None
+    yield from _stepped(world, ticks, ticks, hashes)
+    return Recorded(commands, hashes)
+
+
+def _without_undone(
+    level: Level, script: Sequence[ScriptLine], ticks: int
+) -> Generator[float, None, tuple[ScriptLine, ...]]:
+    session = Session(level, script)
+    while session.tick < ticks:
+        session.advance()
+        yield 0.0
+    session.apply_pending()
+    return script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
+
+
+def _stepped(world: World, tick: int, ticks: int, hashes: list[str]) -> Iterator[float]:
+    while world.tick < tick:
+        step(world)
+        hashes.append(_tick_hash(world))
+        yield world.tick / ticks
+
+
+def _tick_hash(world: World) -> str:
+    return state_hash(world)[:TICK_DIGITS]
+
+
+def _carried_out(world: World, line: ScriptLine) -> dict[str, Any]:
+    """Carry out a command of a recording; it as a page reads it, with all that it changed where no kernel does it."""
+    command, entry = from_record(line.record, world), {"tick": line.tick, "gesture": line.gesture}
+    if is_done_by_pages(command.type):
+        apply(world, command)
+        return entry | {"record": {"type": command.type, **asdict(command)}}  # type: ignore[call-overload]
+    before = take(world)
+    apply(world, command)
+    return entry | {"record": line.record, "changes": _changes(before, world)}
+
+
+def _changes(before: Snapshot, world: World) -> dict[str, list[list[Any]]]:
+    """By the path of an array, runs of its rows that are other ones now: the first, how many, and what each holds."""
+    pairs = {array_path(column): (getattr(before, column.name), getattr(world, column.name)) for column in COLUMNS}
+    for name in SETTING_ARRAYS:
+        pairs[name] = np.array(getattr(before.settings, name)), np.array(getattr(world.settings, name))
+    found = {path: _runs(past, present) for path, (past, present) in pairs.items()}
+    return {path: runs for path, runs in found.items() if runs}
+
+
+def _runs(past: NDArray[Any], present: NDArray[Any]) -> list[list[Any]]:
+    if not len(present):
+        return []
+    rows = present.reshape(len(present), -1)
+    # By their bits, so that 0 and -0 differ.
+    other = np.flatnonzero((_bytes(past) != _bytes(present)).any(axis=1)).tolist()
+    runs: list[list[Any]] = []
+    for slot in other:
+        row = rows[slot].tolist()
+        if runs and slot == runs[-1][0] + runs[-1][1] and row == runs[-1][2:]:
+            runs[-1][1] += 1
+        else:
+            runs.append([slot, 1, *row])
+    return runs
+
+
+def _bytes(array: NDArray[Any]) -> NDArray[np.uint8]:
+    return np.ascontiguousarray(array).view(np.uint8).reshape(len(array), -1)
