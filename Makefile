@@ -2,7 +2,8 @@
 # make quick: run the tests of what differs from main, without slow ones; about a minute.
 # make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-record: record them again, after a
 # change of a tick's arithmetic or of a shipped level; never to make a failing test pass. make goldens-everywhere: run
-# them in WebAssembly and on an emulated arm64 too, where node and qemu-user with libc6-arm64-cross are installed.
+# them in WebAssembly and on an emulated arm64 too, where node and qemu-user with libc6-arm64-cross are installed, and
+# in pages, where Chromium is.
 # make seeds: random levels and commands, run several ways, bit for bit; half an hour. SEEDS=50: fewer than 1,000;
 # ARGUMENTS="--ways all --jobs 2": with kernels that numba compiles too, in two processes.
 # make bounds: run every test with kernels that check each index; usual kernels do not.
@@ -63,6 +64,7 @@ goldens: $(VENV)/installed-dev
 
 goldens-everywhere: $(VENV)/installed-dev
 	$(BIN)/python -m tests.determinism.elsewhere
+	$(BIN)/python -m tests.page.goldens
 
 goldens-record: $(VENV)/installed-dev
 	$(BIN)/python -m tests.determinism.make_goldens --processes $(WORKERS)

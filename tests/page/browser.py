@@ -79,11 +79,19 @@ class Tab:
         fingers = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
         self.send("Input.dispatchTouchEvent", type=kind, touchPoints=fingers)
 
-    def key(self, key: str) -> None:
-        """Press and release a key."""
+    def press(self, key: str) -> None:
+        """Press a key."""
         text = {"text": key} if len(key) == 1 else {}
         self.send("Input.dispatchKeyEvent", type="keyDown", key=key, **text)
+
+    def release(self, key: str) -> None:
+        """Release a key."""
         self.send("Input.dispatchKeyEvent", type="keyUp", key=key)
+
+    def key(self, key: str) -> None:
+        """Press and release a key."""
+        self.press(key)
+        self.release(key)
 
 
 class Browser:

@@ -135,3 +135,73 @@ def test_a_particle_is_pinned_and_unpinned(browser: Browser, tmp_path: Path) -> 
         _steps(tab, 40)
     replay = _saved(tab, tmp_path)
     assert (verify(replay), _types(replay)) == (None, ["pin", "unpin"])
+
+
+def test_sliders_and_words_set_cs_and_cd(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "jelly_wheel")
+    tab.evaluate("document.getElementById('tune').click()")
+    _steps(tab, 20)
+    for slider, share in (("slider0", 0.3), ("slider1", 0.8)):
+        box = f"document.getElementById('{slider}').getBoundingClientRect()"
+        x, y, width, height = tab.evaluate(f"(({{ x, y, width, height }}) => [x, y, width, height])({box})")
+        tab.mouse("mousePressed", x + width / 2, y + height / 2)
+        tab.mouse("mouseMoved", x + share * width, y + height / 2)
+        tab.mouse("mouseReleased", x + share * width, y + height / 2)
+        _steps(tab, 30)
+    tab.evaluate("document.querySelector('.words button').click()")
+    _steps(tab, 30)
+    replay = _saved(tab, tmp_path)
+    assert verify(replay) is None
+    assert (set(_types(replay)), len({line.gesture for line in replay.script})) == ({"set_coefficients"}, 3)
+
+
+def test_after_an_undo_the_run_goes_on_from_where_it_was(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "jelly_wheel")
+    _steps(tab, 20)
+    for way in (60, -60, 80):
+        x, y = _place(tab, "wheel.0")
+        tab.mouse("mousePressed", x, y)
+        tab.mouse("mouseMoved", x + way, y - 40)
+        _steps(tab, 15)
+        tab.mouse("mouseReleased", x + way, y - 40)
+        _steps(tab, 15)
+        if way < 0:
+            tab.evaluate("document.getElementById('undo').click()")
+            assert tab.evaluate("page.toy.run.time") == 50
+    replay = _saved(tab, tmp_path)
+    assert (verify(replay), replay.ticks) == (None, 80)
+    assert len({line.gesture for line in replay.script}) == 2
+
+
+def test_keys_drive_motors_while_they_are_held(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "suspension_car")
+    keys = tab.evaluate("Object.keys(page.toy.drives.keys)")
+    _steps(tab, 30)
+    for key in keys:
+        name = f"Arrow{key.capitalize()}" if key in ("left", "right", "up", "down") else key
+        tab.press(name)
+        # Keys repeat while they are held.
+        tab.press(name)
+        _steps(tab, 40)
+        tab.release(name)
+        _steps(tab, 10)
+    replay = _saved(tab, tmp_path)
+    assert verify(replay) is None
+    assert set(_types(replay)) == {"set_drive"} and len({line.gesture for line in replay.script}) == len(keys)
+
+
+def test_a_bridge_is_torn_by_mouse(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "breaking_bridge")
+    tab.evaluate("globalThis.torn = []; page.toy.addEventListener('break', (e) => torn.push(...e.detail.springs))")
+    _steps(tab, 30)
+    x, y = _place(tab, "deck.8")
+    tab.mouse("mousePressed", x, y)
+    for k in range(20):
+        tab.mouse("mouseMoved", x, min(y + 25 * k, 715))
+        _steps(tab, 8)
+    tab.mouse("mouseReleased", x, 715)
+    _steps(tab, 60)
+    assert tab.evaluate("torn")
+    replay = _saved(tab, tmp_path)
+    assert verify(replay) is None
+    assert _types(replay)[0] == "grab" and tab.faults == []

@@ -3,7 +3,7 @@
 import contextlib
 import os
 import tempfile
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -105,25 +105,30 @@ class Export:
 
     def _write_page(self, path: Path) -> Slices:
         """A page that can be taken over; of two runs, and of what such a page cannot do, one that shows what was."""
-        from sandbox.page.about import can_play
-
         film, excerpt = self.film, self.excerpt
-        script = film.script if isinstance(film, Film) else None
-        if isinstance(film, Film) and script is not None and can_play(line.record["type"] for line in script):
-            yield from self._write_playing(film, script, path)
-        else:
-            yield from self._write_reel(path)
+        playing = self._playing()
+        yield from self._write_reel(path) if playing is None else self._write_playing(path, *playing)
         # For the clipboard.
         for picture in film.pictures(excerpt.end, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
             self.picture = picture or self.picture
             yield 1.0
 
-    def _write_playing(self, film: Film, script: Sequence[ScriptLine], path: Path) -> Slices:
+    def _playing(self) -> tuple[list[ScriptLine], int, int] | None:
+        """The commands of what a page can play, its first tick and its last; None: a page can only show it."""
+        from sandbox.page.about import can_play
+
+        film, excerpt = self.film, self.excerpt
+        if not isinstance(film, Film) or film.script is None:
+            return None
+        begin, end = (film.first + round(at * film.rate) for at in (excerpt.start, excerpt.end))
+        script = [line for line in film.script if line.tick <= end]
+        return (script, begin, max(end, begin + 1)) if can_play(line.record["type"] for line in script) else None
+
+    def _write_playing(self, path: Path, script: list[ScriptLine], begin: int, end: int) -> Slices:
         from sandbox.app.share.playing import playable_in_slices
         from sandbox.page.page import page_text
 
-        begin, end = (film.first + round(at * film.rate) for at in (self.excerpt.start, self.excerpt.end))
-        made = yield from playable_in_slices(film.level, script, max(end, begin + 1), begin)
+        made = yield from playable_in_slices(self.film.level, script, end, begin)
         write_file(path, page_text(*made).encode())
 
     def _write_reel(self, path: Path) -> Slices:

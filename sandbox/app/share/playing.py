@@ -67,12 +67,13 @@ def playable_in_slices(
 
     begin: the tick that is shown first. Raises CommandError, also for a command that a page cannot carry out.
     """
-    types = {str(line.record.get("type")) for line in script}
+    until = [line for line in script if ticks is not None and line.tick <= ticks]
+    types = {str(line.record.get("type")) for line in until}
     unknown = {name for name in types if not can_play([name])}
     if unknown:
         raise CommandError(f"a page cannot play {', '.join(sorted(unknown))}")
     world = Session(level).world
-    played = None if ticks is None else (yield from recorded(level, script, ticks))
+    played = None if ticks is None else (yield from recorded(level, until, ticks))
     start = start_of(level)
     data = {
         "name": level.name,

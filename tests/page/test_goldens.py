@@ -1,0 +1,13 @@
+"""Goldens that pages play, as far as nothing is added. All of them: make goldens-everywhere."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.page.browser import Browser
+from tests.page.goldens import played
+
+
+@pytest.mark.parametrize("name", ["catapult", "curtain", "jelly_pile", "tumble_drum", "wrecking_crane"])
+def test_a_page_plays_a_golden_bit_for_bit(browser: Browser, tmp_path: Path, name: str) -> None:
+    assert played(browser, tmp_path, name).startswith("Verified")
