@@ -117,6 +117,19 @@ def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:
     assert tab.evaluate("page.panel.pair") == soft
 
 
+def test_gravity_is_typed_and_undone(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "hourglass")
+    tab.evaluate("page.toy.pause(); document.getElementById('tune').click()")
+    assert tab.evaluate("document.querySelector('#panel h2').textContent") == "World"
+    field = "document.querySelectorAll('.fields input')[1]"
+    for typed, wanted in (("9.81", 9.81), ("", 9.81), ("1e9", 9.81), ("-3", -3)):
+        tab.evaluate(f"{field}.focus(); {field}.value = '{typed}'; {field}.dispatchEvent(new Event('change'))")
+        assert tab.evaluate("page.toy.world.settings().gravity[1]") == wanted
+        assert tab.evaluate(f"Number({field}.value)") == wanted
+    tab.evaluate(f"{field}.blur(); page.toy.undo()")
+    assert tab.evaluate(f"[page.toy.world.settings().gravity[1], Number({field}.value)]") == [9.81, 9.81]
+
+
 def test_a_button_drives_a_motor_while_it_is_touched(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
     tab.touch("touchStart", _middle(tab, ".key"))

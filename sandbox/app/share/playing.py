@@ -12,6 +12,7 @@ from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
+from sandbox.level.format.limits import GRAVITY_LIMIT
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.page.about import can_play
 from sandbox.page.page import page_text, toy_content
@@ -81,6 +82,7 @@ def playable_in_slices(
         "scene": scene_of(level, take(world)),
         "sounds": _sounds(world),
         "materials": _materials(world),
+        "gravity_limit": GRAVITY_LIMIT,
         "checks": _checks(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
@@ -124,10 +126,10 @@ def _header(level: Level) -> str:
 
 
 def _materials(world: World) -> list[dict[str, Any]]:
-    """Materials that springs have, with Cs and Cd by the words of firmness; where there are several, all come first."""
+    """Materials that springs have, with Cs and Cd by the words of firmness; before several of them, all as one."""
     used = [slot for slot in range(len(world.material_names)) if (world.material == slot).any()]
     rows: list[tuple[str, int | None]] = [(world.material_names[slot], slot) for slot in used]
-    if len(rows) != 1:
+    if len(rows) > 1:
         rows.insert(0, (ALL, None))
     return [{"name": name, "slot": slot, "words": _words(world, slot)} for name, slot in rows]
 

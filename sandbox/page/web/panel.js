@@ -1,4 +1,4 @@
-// Panel: Cs and Cd of each material by a pad, sliders and words.
+// Panel: Cs and Cd of each material by a pad, sliders and words, and the gravity of the world.
 
 // The axes of the pad: softest value, and how wide the last tenth is.
 const LOWEST = 0.003, REST = 0.02, STEP = 0.02, MARGIN = 14;
@@ -45,11 +45,27 @@ export class Panel {
       return { row: element('label', { htmlFor: slider.id, className: 'slider' },
         element('span', { textContent: text }), slider, output), slider, output };
     });
-    root.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
+    this.gravity = ['x', 'y'].map((axis, k) => this.#gravityField(axis, k));
+    if (this.chosen) root.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
+    root.append(element('h2', { textContent: 'World' }), element('div', { className: 'fields' }, ...this.gravity.map((field) => field.parentElement)));
     for (const name of ['pointerdown', 'pointermove']) this.pad.addEventListener(name, (event) => this.#drag(event));
     for (const name of ['pointerup', 'pointercancel']) this.pad.addEventListener(name, () => this.#end());
     this.pad.addEventListener('keydown', (event) => this.#key(event));
     this.show();
+  }
+
+  #gravityField(axis, k) {
+    const limit = this.level.gravity_limit, field = element('input', { type: 'number', step: 'any', required: true,
+      min: -limit, max: limit });
+    element('label', {}, `Gravity ${axis} [m/s²]`, field);
+    field.addEventListener('change', () => {
+      const { gravity } = this.run.world.settings(), value = field.valueAsNumber;
+      // What is wrong with it, the browser says.
+      if (!field.reportValidity()) field.value = gravity[k];
+      else if (value !== gravity[k]) this.run.submit({ type: 'set_gravity', gravity: gravity.map((old, n) => (n === k
+        ? value : old)) }, this.run.newGesture());
+    });
+    return field;
   }
 
   // Cs and Cd of the first spring of the material that is chosen.
@@ -96,7 +112,15 @@ export class Panel {
   }
 
   show() {
-    const { pair } = this, word = this.#wordFor(pair), { words } = this.chosen;
+    const { gravity } = this.run.world.settings();
+    this.gravity.forEach((field, k) => {
+      if (document.activeElement !== field) field.value = gravity[k];
+    });
+    if (this.chosen) this.#showChosen(this.pair);
+  }
+
+  #showChosen(pair) {
+    const word = this.#wordFor(pair), { words } = this.chosen;
     if (this.words.childElementCount !== Object.keys(words).length) {
       this.words.replaceChildren(...Object.keys(words).map((name) =>
         element('button', { type: 'button', textContent: name, onclick: () => {
