@@ -20,8 +20,13 @@ from tests.page.opened import opened, saved
 SIZES = ({"width": 1280, "height": 720}, {"width": 390, "height": 844, "is_phone": True})
 BUTTONS = ("play", "step", "slow", "undo", *["drag"] * 6, "pin", "cut", "sound", "tune", "hint")
 KEYS = (" ", ".", "s", "d", "p", "c", "n", "Enter", "ArrowLeft", "ArrowUp", "Escape", "+", "-", "h", "a", "d", "w")
-# Gestures from one return of the view to the next, so that the level stays in sight.
+# Gestures from one return of the view to the next, so that something stays in sight.
 RETURN = 15
+FOLLOW = """(() => {
+  const { camera, world } = page.toy, at = world.view('state.position'), k = Math.floor(SHARE * world.particles.length);
+  page.toy.fit();
+  [camera.x, camera.y] = [at[2 * k], at[2 * k + 1]];
+})()"""
 # Where a particle is that is in the picture [pixels].
 PLACE = """(() => {
   const { at } = page.toy.picture, count = page.toy.world.particles.length, k = Math.floor(SHARE * count);
@@ -78,7 +83,7 @@ def _soak(browser: Browser, folder: Path, name: str, size: dict[str, int], secon
         if done % 4 == 0:
             tab.evaluate("page.toy.play()")
         if done % RETURN == 0:
-            tab.evaluate("page.toy.fit()")
+            tab.evaluate(FOLLOW.replace("SHARE", str(dice.random())))
         if done % 20 == 0:
             tab.send("HeapProfiler.collectGarbage")
             heaps.append(tab.send("Runtime.getHeapUsage")["usedSize"] / 1e6)
