@@ -1,6 +1,5 @@
 """About: what a page must know of a world beside its memory: places, names, codes and the table of state arrays."""
 
-from collections.abc import Iterable
 from typing import Any
 
 from sandbox.physics import command
@@ -30,13 +29,6 @@ COMMANDS = {
 }  # fmt: skip
 # What a page does beside these; of other commands of a recording it is told what they change.
 SETTINGS = ("set_gravity", "set_air")
-# What makes arrays longer, for which a page has no room.
-ADDING = ("add_body", "add_particle", "add_spring")
-
-
-def can_play(types: Iterable[str]) -> bool:
-    """Whether a page can play a recording with commands of these types."""
-    return not set(types) & set(ADDING)
 
 
 def is_done_by_pages(name: str) -> bool:
@@ -82,6 +74,7 @@ def _column(column: Column) -> dict[str, Any]:
         "stored": column.stored,
         "path": array_path(column),
         "width": column.width,
+        "family": column.family.name.lower(),
         "isContact": column.family is Family.CONTACT,
         "isSparse": column.sparse,
         "usual": float(column.usual),

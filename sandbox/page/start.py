@@ -1,12 +1,12 @@
-"""Start: the block of a level's world before its first tick, as a page is given it."""
+"""Start: the block of a world before its first tick, as a page is given it."""
 
 from typing import Any, NamedTuple
 
-from sandbox.level.document.model import Level
 from sandbox.page.about import about
 from sandbox.page.image import Image, image_of
+from sandbox.page.room import Counts, leave_unused
 from sandbox.physics.pipeline.making import block_of
-from sandbox.session.session import Session
+from sandbox.physics.world import World
 
 
 class Start(NamedTuple):
@@ -16,12 +16,13 @@ class Start(NamedTuple):
     about: dict[str, Any]
 
 
-def start_of(level: Level) -> Start:
-    """The start of a level's run."""
-    world = Session(level).world
+def start_of(world: World, counts: Counts) -> Start:
+    """The start of a world, of whose rows so many are in use then; the others are taken out of use."""
+    leave_unused(world, counts)
     block = block_of(world)
     block.begin(world)
     image = image_of(block.given)
     # Words follow each other as the arrays do.
     table = {path: [place.dtype, place.dimensions] for path, place in image.table.items()}
-    return Start(image, about(world, block.pointer.nbytes // 8) | {"table": table, "copies": image.copies})
+    known = about(world, block.pointer.nbytes // 8)
+    return Start(image, known | {"table": table, "copies": image.copies, "counts": counts})

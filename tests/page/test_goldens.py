@@ -1,4 +1,4 @@
-"""Goldens that pages play, as far as nothing is added. All of them: make goldens-everywhere."""
+"""Goldens that pages play. All of them: make goldens-everywhere."""
 
 from pathlib import Path
 

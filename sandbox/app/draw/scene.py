@@ -13,10 +13,11 @@ from sandbox.app.draw.looks import SOFT_SKINS, Look, ground_look
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.textures import BLACK, LIT_DOWN, LIT_UP, TILE, Tiles, ground_tones, laid, skin_look, woven
 from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme, outline_of
+from sandbox.app.draw.things.balls import added_balls
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
 from sandbox.app.draw.things.faces import spot_of
-from sandbox.app.draw.things.level_slots import Actor, LevelSlots, level_slots_of
+from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots, joined_slots, level_slots_of
 from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
 from sandbox.app.draw.things.soft import ROUNDING, USUAL_ROUNDING, Shape, shape_of
 from sandbox.app.draw.things.springs import CYLINDER
@@ -24,29 +25,47 @@ from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
 from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot
 
+# What a spring looks like that joined the world while it ran.
+ADDED = Look("", "steel", 0)
 # Digits of lengths [m]: a tenth of a millimetre.
 DIGITS = 4
 
 
 def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
     """All that a page draws of a level, as JSON takes it; colours are "#rrggbb", places and lengths in metres."""
-    slots, ground = level_slots_of(level), _ground(level, snapshot)
+    slots, ground = joined_slots(level_slots_of(level), snapshot.equipment.joined), _ground(level, snapshot)
     return {
         "view": [round(float(value), DIGITS) for value in view_of(level, snapshot)],
         "theme": level.look.theme if level.look is not None else None,
         "themes": {name: _theme(theme) for name, theme in THEMES.items()},
         "palette": [_hex(colour) for colour in PALETTE.values()],
         "bodies": [_body(actor, snapshot) for actor in slots.actors],
-        "joins": [{"spring": join.spring, "ends": list(join.ends), **_look(join.look)} for join in slots.joins],
+        "joins": [
+            {"spring": join.spring, "ends": list(join.ends), **_look(join.look)}
+            for join in [*slots.joins, *_added_springs(slots, snapshot)]
+        ],
         "balls": [
             {"slot": ball.slot, "kind": ball.kind, "colour": None if ball.colour is None else _hex(ball.colour)}
-            for ball in slots.balls
+            for ball in [*slots.balls, *added_balls(_added_particles(slots, snapshot), snapshot)]
         ],
         "ground": ground,
         "pictures": _pictures(slots, ground),
     }
+
+
+def _added_particles(slots: LevelSlots, snapshot: Snapshot) -> NDArray[np.int64]:
+    hands = np.arange(snapshot.grab_particle, snapshot.grab_particle + GRAB_COUNT)
+    return np.setdiff1d(np.arange(len(snapshot.mass)), [*slots.particles, *hands])
+
+
+def _added_springs(slots: LevelSlots, snapshot: Snapshot) -> list[Join]:
+    hands = np.arange(snapshot.grab_spring, snapshot.grab_spring + GRAB_COUNT)
+    added = np.setdiff1d(np.arange(len(snapshot.rest_length)), [*slots.springs, *hands])
+    ends = np.stack([snapshot.particle_a, snapshot.particle_b], axis=1)[added].tolist()
+    return [Join(spring, (a, b), ADDED) for spring, (a, b) in zip(added.tolist(), ends, strict=True)]
 
 
 def _hex(colour: int) -> str:

@@ -104,7 +104,7 @@ class Export:
         write_png(self.picture, path)
 
     def _write_page(self, path: Path) -> Slices:
-        """A page that can be taken over; of two runs, and of what such a page cannot do, one that shows what was."""
+        """A page that can be taken over; of two runs, and of one that began with nothing, one that shows what was."""
         film, excerpt = self.film, self.excerpt
         playing = self._playing()
         yield from self._write_reel(path) if playing is None else self._write_playing(path, *playing)
@@ -115,14 +115,12 @@ class Export:
 
     def _playing(self) -> tuple[list[ScriptLine], int, int] | None:
         """The commands of what a page can play, its first tick and its last; None: a page can only show it."""
-        from sandbox.page.about import can_play
-
         film, excerpt = self.film, self.excerpt
-        if not isinstance(film, Film) or film.script is None:
+        if not isinstance(film, Film) or film.script is None or not (film.level.bodies or film.level.particles):
             return None
         begin, end = (film.first + round(at * film.rate) for at in (excerpt.start, excerpt.end))
         script = [line for line in film.script if line.tick <= end]
-        return (script, begin, max(end, begin + 1)) if can_play(line.record["type"] for line in script) else None
+        return script, begin, max(end, begin + 1)
 
     def _write_playing(self, path: Path, script: list[ScriptLine], begin: int, end: int) -> Slices:
         from sandbox.app.share.playing import playable_in_slices

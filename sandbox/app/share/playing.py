@@ -14,8 +14,8 @@ from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import GRAVITY_LIMIT
 from sandbox.level.plan.actuators import driving_keys
-from sandbox.page.about import can_play
 from sandbox.page.page import page_text, toy_content
+from sandbox.page.room import make_room, row_counts
 from sandbox.page.start import start_of
 from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange
 from sandbox.physics.equation import of_springs
@@ -23,7 +23,6 @@ from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.snapshot import take
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
-from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import header, seal
 from sandbox.session.session import Session
@@ -66,19 +65,16 @@ def playable_in_slices(
 ) -> Generator[float, None, Playable]:
     """As `playable`, a slice of the work at a time: each gives the part that is done, 0..1.
 
-    begin: the tick that is shown first. Raises CommandError, also for a command that a page cannot carry out.
+    begin: the tick that is shown first. Raises CommandError, also where a page has no room for what was added.
     """
     until = [line for line in script if ticks is not None and line.tick <= ticks]
-    types = {str(line.record.get("type")) for line in until}
-    unknown = {name for name in types if not can_play([name])}
-    if unknown:
-        raise CommandError(f"a page cannot play {', '.join(sorted(unknown))}")
-    world = Session(level).world
     played = None if ticks is None else (yield from recorded(level, until, ticks))
-    start = start_of(level)
+    world = Session(level).world
+    counts = row_counts(world)
+    if played is not None:
+        make_room(world, played.world)
     data = {
         "name": level.name,
-        "about": start.about,
         "scene": scene_of(level, take(world)),
         "sounds": _sounds(world),
         "materials": _materials(world),
@@ -86,10 +82,11 @@ def playable_in_slices(
         "checks": _checks(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
-        "recording": None if played is None else played._asdict(),
+        "recording": None if played is None else {"commands": played.commands, "hashes": played.hashes},
         "begin": begin,
     }
-    return Playable(level.name, level.description, toy_content(data, start.image))
+    start = start_of(world, counts)
+    return Playable(level.name, level.description, toy_content(data | {"about": start.about}, start.image))
 
 
 def _checks(level: Level, world: World) -> list[dict[str, Any]]:

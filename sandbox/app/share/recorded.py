@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sandbox.level.document.model import Level
 from sandbox.page.about import SETTING_ARRAYS, array_path, is_done_by_pages
+from sandbox.page.room import row_counts
 from sandbox.physics.snapshot import Snapshot, state_hash, take
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.step import step
@@ -20,20 +21,24 @@ from sandbox.session.session import Session
 
 
 class Recorded(NamedTuple):
-    """Commands in order, as a page carries them out, and the hash of each tick."""
+    """Commands in order, as a page carries them out, the hash of each tick, and the world at the end."""
 
     commands: list[dict[str, Any]]
     hashes: list[str]
+    world: World
 
 
 def recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generator[float, None, Recorded]:
     """What a page plays of a recording, a slice of the work at a time: each gives the part that is done, 0..1.
 
-    Commands that were undone are left out. Raises CommandError.
+    Commands that were undone are left out. Raises CommandError, also where nothing was there at first: hands get their
+    slots when they first hold something then.
     """
     if any(line.record["type"] in (Undo.type, Redo.type) for line in script):
         script = yield from _without_undone(level, script, ticks)
     world, commands = Session(level).world, []
+    if script and world.grab_particle < 0:
+        raise CommandError("a page cannot play a recording that begins with nothing")
     hashes = [_tick_hash(world)]
     for line in script:
         yield from _stepped(world, line.tick, ticks, hashes)
@@ -42,7 +47,7 @@ def recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generato
         except CommandError as error:
             raise CommandError(f"line {line.line}: {error}") from None
     yield from _stepped(world, ticks, ticks, hashes)
-    return Recorded(commands, hashes)
+    return Recorded(commands, hashes, world)
 
 
 def _without_undone(
@@ -73,9 +78,10 @@ def _carried_out(world: World, line: ScriptLine) -> dict[str, Any]:
     if is_done_by_pages(command.type):
         apply(world, command)
         return entry | {"record": {"type": command.type, **asdict(command)}}  # type: ignore[call-overload]
-    before = take(world)
+    before, counts = take(world), row_counts(world)
     apply(world, command)
-    return entry | {"record": line.record, "changes": _changes(before, world)}
+    changes, present = _changes(before, world), row_counts(world)
+    return entry | {"record": line.record, "changes": changes} | ({"counts": present} if present != counts else {})
 
 
 def _changes(before: Snapshot, world: World) -> dict[str, list[list[Any]]]:
@@ -90,12 +96,14 @@ def _changes(before: Snapshot, world: World) -> dict[str, list[list[Any]]]:
 def _runs(past: NDArray[Any], present: NDArray[Any]) -> list[list[Any]]:
     if not len(present):
         return []
-    rows = present.reshape(len(present), -1)
-    # By their bits, so that 0 and -0 differ.
-    other = np.flatnonzero((_bytes(past) != _bytes(present)).any(axis=1)).tolist()
+    rows, kept = present.reshape(len(present), -1), len(past)
+    # By their bits, so that 0 and -0 differ; and all that were added.
+    other = np.flatnonzero((_bytes(past) != _bytes(present[:kept])).any(axis=1)) if kept else np.zeros(0, np.int64)
     runs: list[list[Any]] = []
-    for slot in other:
+    for slot in [*other.tolist(), *range(kept, len(present))]:
         row = rows[slot].tolist()
+        # JavaScript reads a long number as a float.
+        row = list(map(str, row)) if present.dtype == np.int64 else row
         if runs and slot == runs[-1][0] + runs[-1][1] and row == runs[-1][2:]:
             runs[-1][1] += 1
         else:

@@ -75,7 +75,7 @@ export class Picture {
     const active = this.#state('spring_active');
     if (!this.#things || active.some((value, k) => value !== this.#active[k])) {
       this.#active = active.slice();
-      this.#things = thingsOf(this.#scene, this.#active);
+      this.#things = thingsOf(this.#scene, this.#active, this.#state('particle_active'));
     }
     const things = this.#things, { shapes } = things;
     shapes.forEach((shape) => {

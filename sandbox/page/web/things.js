@@ -24,10 +24,11 @@ export function unfolded(scene, world) {
   return { ...scene, bodies };
 }
 
-// What there is to draw of an unfolded scene, where active (m,) says which springs there are.
-export function thingsOf(scene, active) {
+// What there is to draw of an unfolded scene, where active (m,) and present (n,) say which springs and particles there
+// are.
+export function thingsOf(scene, active, present) {
   const things = { shapes: [], lines: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
-  for (const body of scene.bodies) addBody(things, body, active);
+  for (const body of scene.bodies) if (body.slots.some((slot) => present[slot])) addBody(things, body, active);
   // Joins of one look may be strands together.
   const looks = new Map();
   for (const join of scene.joins.filter(({ spring }) => active[spring])) {

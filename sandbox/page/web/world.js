@@ -53,7 +53,7 @@ export class World {
   #views = new Map();
   #hashed = new Map();
   #saved = new Map();
-  // Ticks since the level's start; springs that broke in the last one.
+  // Rows in use, by family: a page has room for what a recording adds later. Ticks since the level's start; springs that broke in the last one.
   time = 0;
   broken = [];
 
@@ -61,6 +61,7 @@ export class World {
   constructor(kernels, image, about) {
     this.#kernels = kernels;
     this.#about = about;
+    this.counts = about.counts;
     this.#arguments = aligned(kernels.__heap_base.value);
     this.#base = aligned(this.#arguments + (ARGUMENTS + 2 * RECORD + about.names.spring.length) * WORD);
     this.#end = this.#base;
@@ -171,8 +172,9 @@ export class World {
   }
 
   // Carry out what was done: a command, or what it changes where no kernel carries it out. Whether it could be.
-  carryOut({ record, changes }) {
+  carryOut({ record, changes, counts }) {
     if (!changes) return this.command(record);
+    this.counts = counts ?? this.counts;
     for (const [path, runs] of Object.entries(changes)) {
       this.#change(path, runs);
       const good = path.replace('state', 'good');
@@ -272,12 +274,12 @@ export class World {
 
   // All particles and springs but those of hands.
   get particles() {
-    return Array.from(this.view('state.mass').keys()).filter((p) => !this.isCursor(p));
+    return Array.from({ length: this.counts.particle }, (_, p) => p).filter((p) => !this.isCursor(p));
   }
 
   get springs() {
-    const { spring, count } = this.hands;
-    return Array.from(this.view('state.rest_length').keys()).filter((s) => s < spring || s >= spring + count);
+    const { spring: first, count } = this.hands, { spring } = this.counts;
+    return Array.from({ length: spring }, (_, s) => s).filter((s) => s < first || s >= first + count);
   }
 
   isHeld(hand) {
@@ -298,14 +300,13 @@ export class World {
       arrays.set(path, last && isEqual(last, present) ? last : present.slice());
     }
     this.#saved = arrays;
-    return { time: this.time, arrays, contacts: this.#contactRows() };
+    return { time: this.time, counts: this.counts, arrays, contacts: this.#contactRows() };
   }
 
-  restore({ time, arrays, contacts }) {
+  restore({ time, counts, arrays, contacts }) {
     const isOther = this.#about.topology.some((path) => !isEqual(this.view(path), arrays.get(path)));
     for (const [path, kept] of arrays) this.view(path).set(kept);
-    this.time = time;
-    this.broken = [];
+    Object.assign(this, { time, counts, broken: [] });
     if (isOther) this.#derive(DERIVATIONS, contacts);
     else if (contacts[0].length > this.view(CONTACTS[0]).length) this.#derive(ROOM, contacts);
     else {
@@ -316,9 +317,8 @@ export class World {
 
   // The rows of a state array that are in use, flat.
   rows(column) {
-    const view = this.view(column.path);
-    if (!column.isContact) return view;
-    return view.subarray(0, column.width * this.contacts().length);
+    const count = column.isContact ? this.contacts().length : this.counts[column.family];
+    return this.view(column.path).subarray(0, column.width * count);
   }
 
   // The hash of the whole state, and those of its arrays that are in use, by their names in files.

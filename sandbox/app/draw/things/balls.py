@@ -22,6 +22,15 @@ LEAST, PIN, PIN_RIM, PIN_SLOT = 2.5, 3.5, 4.4, 2.5
 SCREW, SCREW_RIM, SCREW_SLOT = 0xB4BCC9, 0x141924, 0x4A5363
 
 
+def added_balls(slots: Slots, state: Seen) -> list[Ball]:
+    """Particles that joined the world while it ran."""
+    colours = list(PALETTE.values())
+    return [
+        Ball(slot, "stripe" if state.radius[slot] > 2.0 * BODY_RADIUS else "marble", colours[k % len(colours)])
+        for k, slot in enumerate(slots.tolist())
+    ]
+
+
 class Balls:
     """Loose particles of a level, and those that joined the world while it ran, that are there."""
 
@@ -32,11 +41,7 @@ class Balls:
             ball for ball in there
             if state.inverse_mass[ball.slot] > 0.0 or state.radius[ball.slot] > 2.0 * BODY_RADIUS
         ]  # fmt: skip
-        colours = list(PALETTE.values())
-        shown += [
-            Ball(slot, "stripe" if state.radius[slot] > 2.0 * BODY_RADIUS else "marble", colours[k % len(colours)])
-            for k, slot in enumerate(strangers.tolist())
-        ]
+        shown += added_balls(strangers, state)
         self.slots = np.array([ball.slot for ball in shown], dtype=np.int64)
         self._style = np.array([_STYLES[ball.kind] for ball in shown], dtype=np.int64)
         own = [_colour(k, ball) for k, ball in enumerate(shown)]

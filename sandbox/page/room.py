@@ -1,0 +1,46 @@
+"""Room: slots of a world for what is added in the course of a recording; a page has them from the start, unused.
+
+Slots are append-only, and nothing is derived from those that are not active: the others come to the same bits.
+"""
+
+from typing import Any
+
+from sandbox.physics.state import FAMILIES, Family
+from sandbox.physics.world import World
+
+Counts = dict[str, int]
+# Families of rows by their names in pages; contacts are of a step.
+GROWING = {family.name.lower(): family for family in Family if family is not Family.CONTACT}
+# What slots hold that are not in use, where it is not what they will hold.
+_UNUSED: dict[str, Any] = {
+    "particle_active": False, "inverse_mass": 0.0, "velocity": 0.0, "slow_velocity": 0.0, "spin": 0.0, "collides": 0,
+    "energy_bank": 0.0, "unmoved": False, "spring_active": False, "material": -1, "impulse": 0.0, "tension": 0.0,
+    "constraint_active": False, "constraint_material": -1, "actuator_value": 0.0, "actuator_impulse": 0.0,
+}  # fmt: skip
+
+
+def row_counts(world: World) -> Counts:
+    """How many rows the arrays of each family have."""
+    return {name: len(getattr(world, FAMILIES[family][0].name)) for name, family in GROWING.items()}
+
+
+def make_room(world: World, last: World) -> None:
+    """Give a world at its start the slots that it has at its end, where they were made, and its names and equipment."""
+    for name, family in GROWING.items():
+        first = row_counts(world)[name]
+        rows = {column.name: getattr(last, column.name)[first:] for column in FAMILIES[family]}
+        count = len(next(iter(rows.values())))
+        if count:
+            world.append(family, count, **rows | ({"position": rows["origin"]} if "origin" in rows else {}))
+    world.name_slots(
+        last.particle_names[len(world.particle_names) :], last.spring_names[len(world.spring_names) :]
+    )  # fmt: skip
+    world.equipment = last.equipment
+
+
+def leave_unused(world: World, counts: Counts) -> None:
+    """Take the slots beyond these out of use."""
+    for name, family in GROWING.items():
+        for column in FAMILIES[family]:
+            if column.name in _UNUSED and len(getattr(world, column.name)) > counts[name]:
+                world.change(column.name, _UNUSED[column.name], slice(counts[name], None))
