@@ -1,6 +1,6 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, boxOf, canvasOf, castShadow, clamp, disc, drawBar, drawMuscle, drawTurf, fillSkin,
-  fillTriangles, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, pathOf, radial, stroke,
+import { ball, boxOf, canvasOf, castShadow, clamp, disc, drawBar, drawMuscle, drawTurf, fillParts,
+  fillSkin, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, partsOf, pathOf, radial, stroke,
 } from './paint.js';
 import { thingsOf, unfolded } from './things.js';
 
@@ -312,9 +312,8 @@ export class Picture {
   // Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
   #drawSheet(sheet) {
     const { body, isCloth } = sheet, context = this.#context;
-    sheet.texels ??= this.#texels(body, sheet.triangles, isCloth ? 16 : 14);
-    fillTriangles(context, `${body.skin} ${body.colour}`,
-      sheet.triangles.map((slots, k) => [this.#points(slots), sheet.texels[k]]));
+    sheet.parts ??= partsOf(sheet.triangles, this.#texels(body, sheet.triangles, isCloth ? 16 : 14));
+    fillParts(context, `${body.skin} ${body.colour}`, sheet.parts, this.at);
     const hem = pathOf(sheet.loops.map((loop) => this.#points(loop)));
     const [tone, half] = isCloth ? [outlineOf(body.colour), 1.5] : [mixed(body.colour, '#180a00', 0.66), 2.2];
     stroke(context, hem, tone, half * this.scale);

@@ -402,23 +402,73 @@ export function ball(context, x, y, radius, angle, kind, colour) {
   context.restore();
 }
 
-// Fill triangles of a skin and colour: corners on the page, and places of its picture.
-export function fillTriangles(context, name, triangles) {
+// The corners of two triangles that are a cell of a sheet, around it, or null. texels: places of corners in its picture.
+function cellOf(triangles, texels) {
+  const at = new Map(triangles.flatMap((slots, n) =>
+    slots.map((slot, k) => [slot, texels[n].slice(2 * k, 2 * k + 2).map(Math.round)])));
+  const [across, down] = [0, 1].map((axis) => [...new Set([...at.values()].map((place) => place[axis]))].sort(
+    (one, other) => one - other));
+  if (at.size !== 4 || across.length !== 2 || down.length !== 2) return null;
+  const corner = (u, v) => [...at].find(([, place]) => place[0] === across[u] && place[1] === down[v])?.[0];
+  const slots = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+  return slots.includes(undefined) ? null : { slots, texels: [across[0], down[0], across[1], down[1]] };
+}
+
+// Triangles of a sheet as its parts: pairs of them as cells, and the others.
+export function partsOf(triangles, texels) {
+  const parts = [];
+  for (let k = 0; k < triangles.length; k++) {
+    const cell = k + 1 < triangles.length ? cellOf(triangles.slice(k, k + 2), texels.slice(k, k + 2)) : null;
+    parts.push(cell ?? { slots: triangles[k], texels: texels[k] });
+    if (cell) k += 1;
+  }
+  return parts;
+}
+
+// How far [pixels] a cell may be from a parallelogram that is drawn as one; what is drawn is larger by so many texels, so
+// that no seam shows.
+const ASKEW = 1, SEAM = 0.6;
+
+// Fill parts of a sheet with its picture; at: places on the page by slot.
+export function fillParts(context, name, parts, at) {
   const before = context.getTransform();
   context.fillStyle = kept.get(name);
-  for (const [[x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]] of triangles) {
-    const area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
-    // How x and y change across and down the picture.
-    const a = ((x1 - x0) * (v2 - v0) - (x2 - x0) * (v1 - v0)) / area;
-    const b = ((y1 - y0) * (v2 - v0) - (y2 - y0) * (v1 - v0)) / area;
-    const c = ((x2 - x0) * (u1 - u0) - (x1 - x0) * (u2 - u0)) / area;
-    const d = ((y2 - y0) * (u1 - u0) - (y1 - y0) * (u2 - u0)) / area;
-    context.transform(a, b, c, d, x0 - a * u0 - c * v0, y0 - b * u0 - d * v0);
-    // A little larger, so that no seam shows.
-    const u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
-    context.beginPath();
-    for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + 0.1 * (cu - u), cv + 0.1 * (cv - v));
-    context.fill();
+  for (const { slots, texels } of parts) {
+    const points = slots.flatMap((slot) => [at[2 * slot], at[2 * slot + 1]]);
+    if (slots.length === 3) fillTriangle(context, points, texels);
+    else fillCell(context, points, texels);
     context.setTransform(before);
   }
+}
+
+function fillCell(context, points, [left, top, right, bottom]) {
+  const [x0, y0, x1, y1, x2, y2, x3, y3] = points;
+  if (Math.max(Math.abs(x0 - x1 + x2 - x3), Math.abs(y0 - y1 + y2 - y3)) < ASKEW) {
+    lay(context, [x0, y0, x1, y1, x3, y3], [left, top, right, top, left, bottom]);
+    context.fillRect(left - SEAM, top - SEAM, right - left + 2 * SEAM, bottom - top + 2 * SEAM);
+    return;
+  }
+  const before = context.getTransform();
+  fillTriangle(context, points.slice(0, 6), [left, top, right, top, right, bottom]);
+  context.setTransform(before);
+  fillTriangle(context, [x2, y2, x3, y3, x0, y0], [right, bottom, left, bottom, left, top]);
+}
+
+// Go over to the coordinates of a picture, of which three places lie on the page there.
+function lay(context, [x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]) {
+  const area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
+  // How x and y change across and down the picture.
+  const a = ((x1 - x0) * (v2 - v0) - (x2 - x0) * (v1 - v0)) / area;
+  const b = ((y1 - y0) * (v2 - v0) - (y2 - y0) * (v1 - v0)) / area;
+  const c = ((x2 - x0) * (u1 - u0) - (x1 - x0) * (u2 - u0)) / area;
+  const d = ((y2 - y0) * (u1 - u0) - (y1 - y0) * (u2 - u0)) / area;
+  context.transform(a, b, c, d, x0 - a * u0 - c * v0, y0 - b * u0 - d * v0);
+}
+
+function fillTriangle(context, points, texels) {
+  lay(context, points, texels);
+  const [u0, v0, u1, v1, u2, v2] = texels, u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;
+  context.beginPath();
+  for (const [cu, cv] of [[u0, v0], [u1, v1], [u2, v2]]) context.lineTo(cu + 0.1 * (cu - u), cv + 0.1 * (cv - v));
+  context.fill();
 }
