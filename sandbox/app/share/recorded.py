@@ -34,19 +34,26 @@ def recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generato
     Commands that were undone are left out. Raises CommandError, also where nothing was there at first: hands get their
     slots when they first hold something then.
     """
+    begun = 0.0
+
+    def part(tick: int) -> float:
+        return begun + (1.0 - begun) * tick / ticks
+
     if any(line.record["type"] in (Undo.type, Redo.type) for line in script):
+        # It is run twice.
+        begun = 0.5
         script = yield from _without_undone(level, script, ticks)
     world, commands = Session(level).world, []
     if script and world.grab_particle < 0:
         raise CommandError("a page cannot play a recording that begins with nothing")
     hashes = [_tick_hash(world)]
     for line in script:
-        yield from _stepped(world, line.tick, ticks, hashes)
+        yield from map(part, _stepped(world, line.tick, hashes))
         try:
             commands.append(_carried_out(world, line))
         except CommandError as error:
             raise CommandError(f"line {line.line}: {error}") from None
-    yield from _stepped(world, ticks, ticks, hashes)
+    yield from map(part, _stepped(world, ticks, hashes))
     return Recorded(commands, hashes, world)
 
 
@@ -56,16 +63,16 @@ def _without_undone(
     session = Session(level, script)
     while session.tick < ticks:
         session.advance()
-        yield 0.0
+        yield 0.5 * session.tick / ticks
     session.apply_pending()
     return script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
 
 
-def _stepped(world: World, tick: int, ticks: int, hashes: list[str]) -> Iterator[float]:
+def _stepped(world: World, tick: int, hashes: list[str]) -> Iterator[int]:
     while world.tick < tick:
         step(world)
         hashes.append(_tick_hash(world))
-        yield world.tick / ticks
+        yield world.tick
 
 
 def _tick_hash(world: World) -> str:
@@ -96,18 +103,17 @@ def _changes(before: Snapshot, world: World) -> dict[str, list[list[Any]]]:
 def _runs(past: NDArray[Any], present: NDArray[Any]) -> list[list[Any]]:
     if not len(present):
         return []
-    rows, kept = present.reshape(len(present), -1), len(past)
-    # By their bits, so that 0 and -0 differ; and all that were added.
-    other = np.flatnonzero((_bytes(past) != _bytes(present[:kept])).any(axis=1)) if kept else np.zeros(0, np.int64)
+    # By their bits: 0 and -0 differ.
+    rows, bits, kept = present.reshape(len(present), -1), _bytes(present), len(past)
+    other = np.flatnonzero((_bytes(past) != bits[:kept]).any(axis=1)) if kept else np.zeros(0, np.int64)
     runs: list[list[Any]] = []
     for slot in [*other.tolist(), *range(kept, len(present))]:
+        if runs and slot == sum(runs[-1][:2]) and (bits[slot] == bits[slot - 1]).all():
+            runs[-1][1] += 1
+            continue
         row = rows[slot].tolist()
         # JavaScript reads a long number as a float.
-        row = list(map(str, row)) if present.dtype == np.int64 else row
-        if runs and slot == runs[-1][0] + runs[-1][1] and row == runs[-1][2:]:
-            runs[-1][1] += 1
-        else:
-            runs.append([slot, 1, *row])
+        runs.append([slot, 1, *(map(str, row) if present.dtype == np.int64 else row)])
     return runs
 
 
