@@ -115,8 +115,8 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
             made["face"] = [round(float(value), DIGITS) for value in (*place, room)]
     elif actor.body.type == "ring":
         made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], actor.springs.tolist()
-        # Where something is tied to it.
-        tied = np.concatenate([snapshot.particle_a, snapshot.particle_b])[np.tile(snapshot.spring_active, 2)]
+        # Where something is, or will be, tied to it.
+        tied = np.concatenate([snapshot.particle_a, snapshot.particle_b])[np.tile(snapshot.material >= 0, 2)]
         made["knots"] = [slot for slot in actor.slots.tolist() if np.count_nonzero(tied == slot) > 2]
     elif actor.body.type == "wheel" and look.skin:
         wheel, count = DrawnWheel(actor, there, radius), int(made["segments"])

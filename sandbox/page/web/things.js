@@ -38,7 +38,16 @@ export function thingsOf(scene, active, present) {
   }
   for (const { look, springs } of looks.values()) addLines(things, look, springs, LOOSE);
   things.lines.sort((first, second) => !first.particles - !second.particles);
+  if (things.balloons.length) tieBalloons(things, scene, active);
   return things;
+}
+
+// A balloon has a knot where a spring joins its skin that is none of it.
+function tieBalloons(things, { bodies, joins }, active) {
+  const joined = [...bodies.flatMap(({ springs }) => springs), ...joins.map(({ spring, ends }) => [spring, ...ends])];
+  const there = joined.filter(([spring]) => active[spring]);
+  things.balloons = things.balloons.map((body) => ({ ...body, knots: body.knots.filter((slot) =>
+    there.filter(([, a, b]) => a === slot || b === slot).length > 2) }));
 }
 
 function addBody(things, body, active) {
