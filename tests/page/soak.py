@@ -66,8 +66,10 @@ def _do(tab: Tab, dice: random.Random, size: dict[str, int]) -> None:
         _drag(tab, dice, size)
     elif chance < 0.9:
         tab.evaluate(f"document.getElementById('{dice.choice(BUTTONS)}').click()")
-    elif chance < 0.95:
+    elif chance < 0.94:
         tab.key(dice.choice(KEYS))
+    elif chance < 0.95:
+        tab.evaluate(f"page.toy.seek(Math.floor({dice.random()} * page.toy.run.last))")
     else:
         values = f"stiffness: {dice.random()}, damping: {dice.random()}"
         tab.evaluate(f"page.toy.command({{ type: 'set_coefficients', {values} }})")
