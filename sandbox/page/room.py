@@ -20,8 +20,9 @@ _UNUSED: dict[str, Any] = {
 
 
 def row_counts(world: World) -> Counts:
-    """How many rows the arrays of each family have."""
-    return {name: len(getattr(world, FAMILIES[family][0].name)) for name, family in GROWING.items()}
+    """How many rows the arrays of each family have, and how many materials there are."""
+    rows = {name: len(getattr(world, FAMILIES[family][0].name)) for name, family in GROWING.items()}
+    return rows | {"material": len(world.material_names)}
 
 
 def make_room(world: World, last: World) -> None:

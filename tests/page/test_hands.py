@@ -106,6 +106,41 @@ def test_what_is_dragged_is_let_go_where_somebody_goes_back_in_time(browser: Bro
     assert (verify(replay), replay.ticks) == (None, 50)
 
 
+def test_a_button_that_is_down_over_an_undo_moves_nothing_more(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "rope")
+    _steps(tab, 20)
+    x, y = _place(tab, "rope.20")
+    tab.mouse("mousePressed", x, y)
+    _steps(tab, 5)
+    tab.evaluate("page.toy.undo()")
+    tab.key("n")
+    tab.key("Enter")
+    tab.mouse("mouseMoved", x + 80, y)
+    _steps(tab, 5)
+    tab.mouse("mouseReleased", x + 80, y)
+    assert tab.evaluate("page.toy.world.isHeld(0)")
+    assert _types(_saved(tab, tmp_path)) == ["grab"]
+
+
+def test_what_does_not_fit_is_not_recorded(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "rope")
+    records = (
+        "{ type: 'push', position: [900, 900], radius: 1, impulse: [1, 0] }", "{ type: 'release', grab: 0 }",
+        "{ type: 'unpin', particle: 'rope.20' }", "{ type: 'pin', particle: 'rope.0' }",
+    )  # fmt: skip
+    for record in records:
+        told = tab.evaluate(f"try {{ page.toy.command({record}) }} catch (error) {{ error.message }}")
+        assert told.endswith(" does not fit here now.")
+    assert tab.evaluate("page.toy.run.commands.length") == 0
+    # A particle that is pinned is not taken by the keyboard either.
+    tab.key("n")
+    tab.evaluate("page.toy.run.submit({ type: 'pin', particle: page.toy.hands.marked }, 1)")
+    tab.key("Enter")
+    _steps(tab, 5)
+    replay = _saved(tab, tmp_path)
+    assert (_types(replay), verify(replay)) == (["pin"], None)
+
+
 def test_a_stroke_cuts_what_it_crosses_and_undo_makes_it_whole(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "curtain")
     _steps(tab, 60)

@@ -8,6 +8,7 @@ import pytest
 from sandbox import Session, load_level
 from sandbox.app.share.playing import page_of
 from sandbox.commands import (
+    AddBody,
     AddParticle,
     CommandError,
     CutSprings,
@@ -33,7 +34,7 @@ from sandbox.editor.document import empty_level
 from sandbox.replay import Replay, read_replay, verify
 from tests.page.browser import Browser
 from tests.page.opened import VERDICT, opened, saved
-from tests.support.parts import RandomPlayer, furnished
+from tests.support.parts import BODIES, RandomPlayer, furnished
 
 TICKS = 150
 # Ticks of a recording, without commands, between which a page goes back and forth.
@@ -191,6 +192,40 @@ def test_who_takes_over_holds_nothing_that_the_recording_held(browser: Browser, 
     tab.evaluate("page.toy.pause(); page.toy.seek(95)")
     assert tab.evaluate("[page.toy.world.isHeld(0), page.toy.tick(), page.toy.world.isHeld(0)]") == [True, None, False]
     assert verify(read_replay(saved(tab, tmp_path))) is None
+
+
+def test_what_is_added_later_cannot_be_used_before(browser: Browser, tmp_path: Path) -> None:
+    session = Session(furnished())
+    body = BODIES["jelly"] | {"material": "soft"}
+
+    def act(tick: int) -> None:
+        if tick == 30:
+            session.submit(AddBody(body, materials={"soft": {"stiffness": 0.2, "damping": 0.5}}))
+        if tick == 40:
+            session.submit(SetGravity((0.0, -2.0)))
+
+    replay = _record(tmp_path, session, act, 60)
+    tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
+    assert tab.evaluate(VERDICT).startswith("Verified")
+    tab.evaluate("page.toy.pause(); document.getElementById('tune').click()")
+    offered = "[...document.querySelectorAll('#material option')].filter((one) => !one.disabled).map((one) => one.text)"
+    gravity = "new Promise((done) => setTimeout(() => done(document.querySelectorAll('.fields input')[1].value), 100))"
+    tab.evaluate("page.toy.seek(35); document.getElementById('material').value = 2; page.panel.show()")
+    assert "soft" in tab.evaluate(offered) and tab.evaluate(gravity) == "-9.81"
+    tab.evaluate("for (let k = 0; k < 10; k++) page.toy.tick()")
+    assert tab.evaluate(gravity) == "-2"
+    # Marked while it is there.
+    tab.evaluate("page.toy.hands.marked = page.toy.level.about.names.particle.indexOf('+1.0'); page.toy.seek(10)")
+    assert "soft" not in tab.evaluate(offered)
+    tab.evaluate("document.getElementById('picture').focus()")
+    tab.key("Enter")
+    tab.evaluate("document.querySelector('.words button').click()")
+    for use in ("page.toy.particle('+1.0')", "page.toy.command({ type: 'pin', particle: '+1.0' })"):
+        assert tab.evaluate(f"try {{ {use} }} catch (error) {{ error.message }}") == "There is no particle +1.0."
+    tab.evaluate("for (let k = 0; k < 10; k++) page.toy.tick()")
+    taken = read_replay(saved(tab, tmp_path))
+    assert [line.record["type"] for line in taken.script] == ["set_coefficients"]
+    assert (verify(taken), tab.faults) == (None, [])
 
 
 def test_an_excerpt_has_no_commands_of_what_follows(browser: Browser, tmp_path: Path) -> None:

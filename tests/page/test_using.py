@@ -96,6 +96,12 @@ def test_two_taps_beside_everything_or_a_key_show_the_whole_level_again(browser:
         else:
             tab.key("f")
         assert tab.evaluate(view) == whole
+    tab.evaluate("page.toy.camera.x += 1")
+    moved = tab.evaluate(view)
+    for _ in range(2):
+        tab.touch("touchStart", (60, 600))
+        tab.touch("touchCancel")
+    assert tab.evaluate(view) == moved
 
 
 def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:

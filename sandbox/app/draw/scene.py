@@ -37,6 +37,7 @@ DIGITS = 4
 def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
     """All that a page draws of a level, as JSON takes it; colours are "#rrggbb", places and lengths in metres."""
     slots, ground = joined_slots(level_slots_of(level), snapshot.equipment.joined), _ground(level, snapshot)
+    balls = _added(len(snapshot.mass), slots.particles, snapshot.grab_particle)
     return {
         "view": [round(float(value), DIGITS) for value in view_of(level, snapshot)],
         "theme": level.look.theme if level.look is not None else None,
@@ -49,21 +50,20 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         ],
         "balls": [
             {"slot": ball.slot, "kind": ball.kind, "colour": None if ball.colour is None else _hex(ball.colour)}
-            for ball in [*slots.balls, *added_balls(_added_particles(slots, snapshot), snapshot)]
+            for ball in [*slots.balls, *added_balls(balls, snapshot)]
         ],
         "ground": ground,
         "pictures": _pictures(slots, ground),
     }
 
 
-def _added_particles(slots: LevelSlots, snapshot: Snapshot) -> NDArray[np.int64]:
-    hands = np.arange(snapshot.grab_particle, snapshot.grab_particle + GRAB_COUNT)
-    return np.setdiff1d(np.arange(len(snapshot.mass)), [*slots.particles, *hands])
+def _added(count: int, own: NDArray[np.int64], first_hand: int) -> NDArray[np.int64]:
+    """Slots that joined the world while it ran, by themselves: neither the level's own nor those of hands."""
+    return np.setdiff1d(np.arange(count), [*own, *range(first_hand, first_hand + GRAB_COUNT)])
 
 
 def _added_springs(slots: LevelSlots, snapshot: Snapshot) -> list[Join]:
-    hands = np.arange(snapshot.grab_spring, snapshot.grab_spring + GRAB_COUNT)
-    added = np.setdiff1d(np.arange(len(snapshot.rest_length)), [*slots.springs, *hands])
+    added = _added(len(snapshot.rest_length), slots.springs, snapshot.grab_spring)
     ends = np.stack([snapshot.particle_a, snapshot.particle_b], axis=1)[added].tolist()
     return [Join(spring, (a, b), ADDED) for spring, (a, b) in zip(added.tolist(), ends, strict=True)]
 

@@ -15,7 +15,7 @@ from sandbox.app.film.film import Film, picture_count
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.film.kinds import Size
 from sandbox.level.format.writing import write_file
-from sandbox.session.commands.records import ScriptLine
+from sandbox.session.commands import CommandError
 
 # The work, in slices: each gives the part of it that is done, 0..1, the last nothing.
 Slices = Generator[float, None, None]
@@ -104,29 +104,26 @@ class Export:
         write_png(self.picture, path)
 
     def _write_page(self, path: Path) -> Slices:
-        """A page that can be taken over; of two runs, and of one that began with nothing, one that shows what was."""
+        """A page that can be taken over; of two runs, and of what such a page cannot play, one that shows what was."""
         film, excerpt = self.film, self.excerpt
-        playing = self._playing()
-        yield from self._write_reel(path) if playing is None else self._write_playing(path, *playing)
+        try:
+            yield from self._write_playing(path)
+        except CommandError:
+            yield from self._write_reel(path)
         # For the clipboard.
         for picture in film.pictures(excerpt.end, excerpt.end, excerpt.fps, excerpt.size, excerpt.name):
             self.picture = picture or self.picture
             yield 1.0
 
-    def _playing(self) -> tuple[list[ScriptLine], int, int] | None:
-        """The commands of what a page can play, its first tick and its last; None: a page can only show it."""
-        film, excerpt = self.film, self.excerpt
-        if not isinstance(film, Film) or film.script is None or not (film.level.bodies or film.level.particles):
-            return None
-        begin, end = (film.first + round(at * film.rate) for at in (excerpt.start, excerpt.end))
-        script = [line for line in film.script if line.tick <= end]
-        return script, begin, max(end, begin + 1)
-
-    def _write_playing(self, path: Path, script: list[ScriptLine], begin: int, end: int) -> Slices:
+    def _write_playing(self, path: Path) -> Slices:
         from sandbox.app.share.playing import playable_in_slices
         from sandbox.page.page import page_text
 
-        made = yield from playable_in_slices(self.film.level, script, end, begin)
+        film, excerpt = self.film, self.excerpt
+        if not isinstance(film, Film) or film.script is None:
+            raise CommandError("only one run, from its beginning, can be taken over")
+        begin, end = (film.first + round(at * film.rate) for at in (excerpt.start, excerpt.end))
+        made = yield from playable_in_slices(film.level, film.script, max(end, begin + 1), begin)
         write_file(path, page_text(*made).encode())
 
     def _write_reel(self, path: Path) -> Slices:

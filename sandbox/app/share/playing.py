@@ -65,7 +65,7 @@ def playable_in_slices(
 ) -> Generator[float, None, Playable]:
     """As `playable`, a slice of the work at a time: each gives the part that is done, 0..1.
 
-    begin: the tick that is shown first. Raises CommandError, also where a page has no room for what was added.
+    begin: the tick that is shown first. Raises CommandError, also for a recording that begins with nothing.
     """
     until = [line for line in script if ticks is not None and line.tick <= ticks]
     played = None if ticks is None else (yield from recorded(level, until, ticks))

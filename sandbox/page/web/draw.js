@@ -48,7 +48,7 @@ export class Picture {
   #scene;
   #world;
   #things = null;
-  #active = new Uint8Array();
+  #there = [];
   #backdrop = canvasOf(1, 1);
   #backdropKey = '';
 
@@ -72,10 +72,10 @@ export class Picture {
     const scale = clamp(Math.min(width / 1280, height / 720), 0.6, 1);
     Object.assign(this, { camera, theme, seconds, ratio, scale });
     this.#place(previous, part);
-    const active = this.#state('spring_active');
-    if (!this.#things || active.some((value, k) => value !== this.#active[k])) {
-      this.#active = active.slice();
-      this.#things = thingsOf(this.#scene, this.#active, this.#state('particle_active'));
+    const there = [this.#state('spring_active'), this.#state('particle_active')];
+    if (!this.#things || there.some((array, n) => array.some((value, k) => value !== this.#there[n][k]))) {
+      this.#there = there.map((array) => array.slice());
+      this.#things = thingsOf(this.#scene, ...this.#there);
     }
     const things = this.#things, { shapes } = things;
     shapes.forEach((shape) => {

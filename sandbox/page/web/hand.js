@@ -4,6 +4,7 @@ const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98
 const NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
 // Two taps so soon after each other [ms] and so near to each other [pixels] are one gesture.
 const TWICE = 350, BESIDE = 30;
+const isNear = (one, two) => Math.hypot(one.x - two.x, one.y - two.y) < BESIDE;
 const UNITS = [[1e6, 'MN'], [1e3, 'kN'], [1, 'N'], [1e-3, 'mN']];
 
 // What of a world lies near a point [m].
@@ -153,11 +154,12 @@ export class Hands {
     this.canvas.setPointerCapture(event.pointerId);
     const point = this.camera.toWorld(event.offsetX, event.offsetY),
       within = REACH[event.pointerType] / this.camera.zoom;
-    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', began: event };
+    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan',
+      began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
     this.#pointers.set(event.pointerId, pointer);
     if (event.button !== 0 || event.altKey) return;
     const near = new Near(this.run.world), touched = near.particle(point, within), free = near.free(point, within);
-    pointer.isBeside = touched === null && free === null && this.#pointers.size === 1;
+    pointer.isBeside = this.tool !== 'cut' && touched === null && free === null && this.#pointers.size === 1;
     if (this.tool === 'cut') {
       Object.assign(pointer, { kind: 'cut', point, gesture: this.run.newGesture() });
       this.#cut(pointer, near.spring(point, within / 2));
@@ -170,9 +172,7 @@ export class Hands {
 
   // Two taps where nothing is show all again.
   #tap(began, ended) {
-    const isNear = (one, two) => Math.hypot(one.offsetX - two.offsetX, one.offsetY - two.offsetY) < BESIDE;
-    if (!isNear(began, ended)) return;
-    const isSecond = ended.timeStamp - this.#tapped?.timeStamp < TWICE && isNear(began, this.#tapped);
+    const isSecond = ended - this.#tapped?.time < TWICE && isNear(began, this.#tapped);
     this.#tapped = isSecond ? null : began;
     if (isSecond) this.fit();
   }
@@ -191,13 +191,14 @@ export class Hands {
 
   // Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
   hold(particle, point, within) {
+    const gesture = this.run.newGesture();
+    this.run.takeUp(gesture);
     const near = new Near(this.run.world), { world } = this.run, { position } = near;
     const hand = Array.from({ length: world.hands.count }, (_, k) => k).find((k) => !world.isHeld(k));
     if (hand === undefined) return null;
     const dx = position[2 * particle] - point[0], dy = position[2 * particle + 1] - point[1];
     // A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
-    const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy],
-      gesture = this.run.newGesture();
+    const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy];
     const target = [point[0] + beside[0], point[1] + beside[1]];
     // What a command changes may lie elsewhere after it: all is asked before.
     const limit = STRENGTH * near.bodyMass(particle),
@@ -218,6 +219,7 @@ export class Hands {
       pointer.point = point;
     } else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
     Object.assign(pointer, { x, y });
+    if (!isNear(pointer, pointer.began)) pointer.isBeside = false;
   }
 
   // One finger moves the view, two turn it larger or smaller as well.
@@ -242,7 +244,7 @@ export class Hands {
     const pointer = this.#pointers.get(event.pointerId);
     this.#pointers.delete(event.pointerId);
     if (this.#held.has(pointer?.hand)) this.release(pointer.hand);
-    else if (pointer?.isBeside) this.#tap(pointer.began, event);
+    else if (pointer?.isBeside && event.type === 'pointerup') this.#tap(pointer.began, event.timeStamp);
   }
 
   release(hand) {
@@ -258,6 +260,7 @@ export class Hands {
   // Hold nothing any more, as time has jumped.
   forget() {
     this.#held.clear();
+    for (const pointer of this.#pointers.values()) Object.assign(pointer, { kind: 'done', hand: null });
   }
 
   // Before a tick: send every hand to where its pointer is now.
@@ -294,7 +297,7 @@ export class Hands {
   draw(context, at, theme) {
     const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'),
       force = world.view('state.hand_force');
-    if (this.marked !== null) circle(context, at, this.marked, 10, theme.accent);
+    if (world.view('state.particle_active')[this.marked]) circle(context, at, this.marked, 10, theme.accent);
     for (let hand = 0; hand < count; hand++) {
       if (!world.isHeld(hand)) continue;
       const held = b[spring + hand], pull = Math.hypot(force[2 * hand], force[2 * hand + 1]),

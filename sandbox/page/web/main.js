@@ -60,7 +60,10 @@ class Page {
     on('say', ({ text, kind }) => this.#say(text, kind));
     on('theme', ({ name }) => this.#theme(name));
     on('jump', () => this.panel.show());
-    on('draw', () => this.#drawTime());
+    on('draw', () => {
+      this.#drawTime();
+      if (!byId('panel').hidden) this.panel.follow();
+    });
     on('pause', ({ isPaused }) => {
       const button = byId('play');
       press(button, isPaused);

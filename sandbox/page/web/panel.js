@@ -20,6 +20,7 @@ export const element = (name, attributes = {}, ...children) => {
 
 export class Panel {
   #gesture = null;
+  #shown = '';
 
   // materials: [{ name, slot, words }], slot null for all; words: Cs and Cd by the words of firmness.
   constructor(root, run, materials, level) {
@@ -31,6 +32,7 @@ export class Panel {
       this.show();
     });
     const all = element('label', { hidden: materials.length < 2 }, 'Material ', this.choice);
+    this.springs = element('div', { className: 'springs' });
     this.words = element('div', { className: 'words' });
     this.words.setAttribute('role', 'group');
     this.words.setAttribute('aria-label', 'Firmness');
@@ -46,8 +48,8 @@ export class Panel {
         element('span', { textContent: text }), slider, output), slider, output };
     });
     this.gravity = ['x', 'y'].map((axis, k) => this.#gravityField(axis, k));
-    if (this.chosen) root.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
-    root.append(element('h2', { textContent: 'World' }), element('div', { className: 'fields' }, ...this.gravity.map((field) => field.parentElement)));
+    this.springs.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
+    root.append(this.springs, element('h2', { textContent: 'World' }), element('div', { className: 'fields' }, ...this.gravity.map((field) => field.parentElement)));
     for (const name of ['pointerdown', 'pointermove']) this.pad.addEventListener(name, (event) => this.#drag(event));
     for (const name of ['pointerup', 'pointercancel']) this.pad.addEventListener(name, () => this.#end());
     this.pad.addEventListener('keydown', (event) => this.#key(event));
@@ -111,12 +113,34 @@ export class Panel {
       (Math.abs(firmness(each[1]) - own) < Math.abs(firmness(best[1]) - own) ? each : best))[0];
   }
 
+  // Materials that there are by now: a recording may bring more.
+  get #offered() {
+    return this.materials.filter(({ slot }) => slot === null || slot < this.run.world.counts.material);
+  }
+
+  // What is shown, as a text.
+  get #present() {
+    const { counts } = this.run.world, { gravity } = this.run.world.settings();
+    return [counts.material, ...gravity, ...(this.chosen ? this.pair : [])].join();
+  }
+
+  // Show what there is now, where it is other than what was shown.
+  follow() {
+    if (this.#shown !== this.#present) this.show();
+  }
+
   show() {
+    const offered = this.#offered;
+    if (!offered.includes(this.chosen)) [this.chosen] = offered;
+    this.springs.hidden = !this.chosen;
+    this.materials.forEach((each, k) => { this.choice.options[k].disabled = !offered.includes(each); });
+    this.choice.value = this.materials.indexOf(this.chosen);
     const { gravity } = this.run.world.settings();
     this.gravity.forEach((field, k) => {
       if (document.activeElement !== field) field.value = gravity[k];
     });
     if (this.chosen) this.#showChosen(this.pair);
+    this.#shown = this.#present;
   }
 
   #showChosen(pair) {

@@ -33,13 +33,18 @@ export class Run {
   // Carry out a command now, and forget what would have come later. Whether it could be.
   submit(record, gesture) {
     if (!this.world.canDo(record)) return false;
-    if (this.isFollowing) this.takeOver();
-    if (this.#isTold) this.#endAll(gesture);
-    this.world.command(record);
+    this.takeUp(gesture);
+    if (!this.world.fits(record) || !this.world.command(record)) return false;
     this.commands.push({ tick: this.time, gesture, record });
     this.next = this.commands.length;
     this.last = this.time;
     return true;
+  }
+
+  // Go on from here by hand, with a gesture that ends what goes on.
+  takeUp(gesture) {
+    if (this.isFollowing) this.takeOver();
+    if (this.#isTold) this.#endAll(gesture);
   }
 
   // Let go what hands hold and stop what is driven, which nobody does any more. gesture: null: each belongs to what
@@ -54,7 +59,7 @@ export class Run {
     for (const [ending, begun] of going.values()) if (this.world.isGoing(ending)) this.submit(ending, gesture ?? begun);
   }
 
-  // Go on from here by hand.
+  // Forget what would come later.
   takeOver() {
     this.commands.length = this.next;
     this.last = this.time;

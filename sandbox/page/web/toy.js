@@ -11,6 +11,8 @@ import { Refusal, World } from './world.js';
 // Ticks that one frame makes up for at most, and the longest time between two frames that counts [s].
 const MOST_TICKS = 4, LONGEST = 0.25, KEY_ZOOM = 1.15;
 const TYPED_INTO = 'input, select, textarea, [contenteditable], .pad';
+// The rows that have the names of a kind, where they are called otherwise.
+const COUNTED_BY = { part: 'actuator' };
 const light = matchMedia('(prefers-color-scheme: light)');
 
 // It tells what happens as events: tick, break { springs }, check { name, holds, value }, say { text, kind }, pause,
@@ -74,7 +76,9 @@ export class Toy extends EventTarget {
     if (event.target.matches?.(TYPED_INTO)) return;
     if (event.target.matches?.('button, a') && [' ', 'Enter'].includes(event.key)) return;
     const driven = this.drives.nameOf(event);
-    if (driven) this.drives.press(driven);
+    if (driven) {
+      if (!event.repeat) this.drives.press(driven);
+    }
     else if (event.ctrlKey || event.metaKey || event.altKey) return;
     else if (event.key === ' ') this.toggle();
     else if (event.key === '.') this.step();
@@ -253,8 +257,8 @@ export class Toy extends EventTarget {
   }
 
   #slot(kind, name) {
-    const slot = this.level.about.names[kind].indexOf(name);
-    if (slot < 0) throw new Refusal(`There is no ${kind} ${name}.`);
+    const slot = this.level.about.names[kind].indexOf(name), count = this.world.counts[COUNTED_BY[kind] ?? kind];
+    if (slot < 0 || slot >= count) throw new Refusal(`There is no ${kind} ${name}.`);
     return slot;
   }
 
@@ -273,7 +277,8 @@ export class Toy extends EventTarget {
   // Carry out a command as recordings have it, with names: { type: 'set_drive', part: 'wheel', value: 1 }.
   command(record) {
     const withSlots = exchanged(record, (kind, name) => this.#slot(kind, name));
-    if (!this.run.submit(withSlots, this.run.newGesture())) throw new Refusal(`A page cannot do ${record.type}.`);
+    if (!this.world.canDo(record)) throw new Refusal(`A page cannot do ${record.type}.`);
+    if (!this.run.submit(withSlots, this.run.newGesture())) throw new Refusal(`${record.type} does not fit here now.`);
     this.refresh();
   }
 

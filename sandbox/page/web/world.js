@@ -32,6 +32,20 @@ const COMMANDS = {
   shake: [null, (r, hands, rate) => [[hands.particle], [...r.acceleration, rate]]],
 };
 
+// Whether a command fits what is there now, as the desktop asks; it refuses recordings of those that do not.
+const isThere = (world, p) => p < world.counts.particle && !world.isCursor(p) && world.view('state.particle_active')[p];
+const isPinned = (world, p) => world.view('state.inverse_mass')[p] === 0;
+const FITS = {
+  grab: (world, r) => !world.isHeld(r.grab) && isThere(world, r.particle) && !isPinned(world, r.particle),
+  move_grab: (world, r) => world.isHeld(r.grab),
+  release: (world, r) => world.isHeld(r.grab),
+  pin: (world, r) => isThere(world, r.particle) && !isPinned(world, r.particle),
+  unpin: (world, r) => isThere(world, r.particle) && isPinned(world, r.particle),
+  cut_springs: (world, r) => r.springs.every((s) => world.view('state.spring_active')[s]),
+};
+// Commands that may find nothing to act on.
+const COUNTED = ['push', 'shake'];
+
 // Where the settings are that commands change, among the numbers of a world.
 const SETTINGS = { set_gravity: [['gravity', 0]], set_air: [['wind', 2], ['drag', 4]] };
 
@@ -53,7 +67,9 @@ export class World {
   #views = new Map();
   #hashed = new Map();
   #saved = new Map();
-  // Rows in use, by family: a page has room for what a recording adds later. Ticks since the level's start; springs that broke in the last one.
+  // Rows in use, by family: a page has room for what a recording adds later.
+  counts;
+  // Ticks since the level's start; springs that broke in the last one.
   time = 0;
   broken = [];
 
@@ -202,13 +218,17 @@ export class World {
     new Float64Array(buffer, at, numbers.length).set(numbers);
     const given = [this.#about.commands[record.type], [at + RECORD * WORD, slots.length, WORD],
       [at, numbers.length, WORD]];
-    this.#inArena('command', ...given);
+    if (this.#inArena('command', ...given) === 0 && COUNTED.includes(record.type)) return false;
     if (derives !== null) this.#derive(derives);
     return true;
   }
 
   canDo({ type }) {
     return type in SETTINGS || type in COMMANDS;
+  }
+
+  fits(record) {
+    return FITS[record.type]?.(this, record) ?? true;
   }
 
   // Whether what a command would end goes on: a hand holds something, or a part is driven.
@@ -236,12 +256,13 @@ export class World {
   // Call a kernel with the block and its own arena, which grows until there is room.
   #inArena(name, ...given) {
     let arena = (this.#arenas[name] ??= this.#newArena(FIRST_ARENA));
-    this.#call(name, this.#block, arena, ...given);
+    let result = this.#call(name, this.#block, arena, ...given);
     for (let used = this.#used(arena); used > arena[1]; used = this.#used(arena)) {
       arena = this.#arenas[name] = this.#newArena(MORE * used);
-      this.#call(name, this.#block, arena, ...given);
+      result = this.#call(name, this.#block, arena, ...given);
     }
     this.#views.clear();
+    return result;
   }
 
   #newArena(words) {
