@@ -27,15 +27,13 @@ def row_counts(world: World) -> Counts:
 
 def make_room(world: World, last: World) -> None:
     """Give a world at its start the slots that it has at its end, where they were made, and its names and equipment."""
+    here, there = row_counts(world), row_counts(last)
     for name, family in GROWING.items():
-        first = row_counts(world)[name]
-        rows = {column.name: getattr(last, column.name)[first:] for column in FAMILIES[family]}
-        count = len(next(iter(rows.values())))
-        if count:
-            world.append(family, count, **rows | ({"position": rows["origin"]} if "origin" in rows else {}))
-    world.name_slots(
-        last.particle_names[len(world.particle_names) :], last.spring_names[len(world.spring_names) :]
-    )  # fmt: skip
+        if there[name] > here[name]:
+            rows = {column.name: getattr(last, column.name)[here[name] :] for column in FAMILIES[family]}
+            places = {"position": rows["origin"]} if family is Family.PARTICLE else {}
+            world.append(family, there[name] - here[name], **rows | places)
+    world.name_slots(last.particle_names[here["particle"] :], last.spring_names[here["spring"] :])
     world.equipment = last.equipment
 
 

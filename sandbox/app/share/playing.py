@@ -10,6 +10,7 @@ from sandbox.app.draw.scene import scene_of
 from sandbox.app.share.recorded import recorded
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import GRAVITY_LIMIT
@@ -25,7 +26,6 @@ from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import header, seal
-from sandbox.session.session import Session
 
 # Cs and Cd for the words of firmness where no body's form says what they mean.
 USUAL = {"jelly": (0.01, 0.1), "soft": (0.05, 0.2), "firm": (0.3, 0.5), "hard": (0.8, 0.9), "rigid": (1.0, 1.0)}
@@ -69,7 +69,7 @@ def playable_in_slices(
     """
     until = [line for line in script if ticks is not None and line.tick <= ticks]
     played = None if ticks is None else (yield from recorded(level, until, ticks))
-    world = Session(level).world
+    world = build_world(level)
     counts = row_counts(world)
     if played is not None:
         make_room(world, played.world)

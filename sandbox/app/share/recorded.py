@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.page.about import SETTING_ARRAYS, array_path, is_done_by_pages
 from sandbox.page.room import row_counts
@@ -43,7 +44,7 @@ def recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generato
         # It is run twice.
         begun = 0.5
         script = yield from _without_undone(level, script, ticks)
-    world, commands = Session(level).world, []
+    world, commands = build_world(level), []
     if script and world.grab_particle < 0:
         raise CommandError("a page cannot play a recording that begins with nothing")
     hashes = [_tick_hash(world)]

@@ -16,10 +16,6 @@ class Near {
       'spring_active', 'material']) this[name] = world.view(`state.${name}`);
   }
 
-  isShown(slot) {
-    return this.particle_active[slot] && !this.world.isCursor(slot);
-  }
-
   #nearest(count, distance, within) {
     let best = null, least = within;
     for (let k = 0; k < count; k++) {
@@ -34,8 +30,8 @@ class Near {
   }
 
   particle(point, within) {
-    return this.#nearest(this.mass.length, (k) => (this.isShown(k) ? this.#away(k, point) - this.radius[k] : Infinity),
-      within);
+    const away = (k) => (this.world.isShown(k) ? this.#away(k, point) - this.radius[k] : Infinity);
+    return this.#nearest(this.mass.length, away, within);
   }
 
   // The free particle that a press takes: one within reach, else the nearest of a body with springs around the point.
@@ -53,7 +49,7 @@ class Near {
         of.add(`${u}${at <= point[v]}`);
       }
     });
-    const isTaken = (k) => this.isShown(k) && this.inverse_mass[k] > 0 && sides.get(this.owner[k])?.size === 4;
+    const isTaken = (k) => this.world.canMove(k) && sides.get(this.owner[k])?.size === 4;
     return this.#nearest(this.mass.length, (k) => (isTaken(k) ? this.#away(k, point) : Infinity), Infinity);
   }
 
@@ -278,7 +274,7 @@ export class Hands {
       way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     const [hand, held] = [...this.#held].find(([, { particle }]) => particle === this.marked) ?? [];
     if (event.key === 'n' || event.key === 'N') {
-      const free = Array.from(near.mass.keys()).filter((k) => near.isShown(k) && near.inverse_mass[k] > 0);
+      const free = Array.from(near.mass.keys()).filter((k) => near.world.canMove(k));
       this.marked = free.find((k) => k > (this.marked ?? -1)) ?? free[0] ?? null;
     } else if (event.key === 'Enter' && this.marked !== null) {
       if (held) this.release(hand);
@@ -297,7 +293,7 @@ export class Hands {
   draw(context, at, theme) {
     const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'),
       force = world.view('state.hand_force');
-    if (world.view('state.particle_active')[this.marked]) circle(context, at, this.marked, 10, theme.accent);
+    if (this.marked !== null && world.isShown(this.marked)) circle(context, at, this.marked, 10, theme.accent);
     for (let hand = 0; hand < count; hand++) {
       if (!world.isHeld(hand)) continue;
       const held = b[spring + hand], pull = Math.hypot(force[2 * hand], force[2 * hand + 1]),

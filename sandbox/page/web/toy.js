@@ -78,8 +78,7 @@ export class Toy extends EventTarget {
     const driven = this.drives.nameOf(event);
     if (driven) {
       if (!event.repeat) this.drives.press(driven);
-    }
-    else if (event.ctrlKey || event.metaKey || event.altKey) return;
+    } else if (event.ctrlKey || event.metaKey || event.altKey) return;
     else if (event.key === ' ') this.toggle();
     else if (event.key === '.') this.step();
     else if (event.key === '+' || event.key === '-') {

@@ -33,14 +33,12 @@ const COMMANDS = {
 };
 
 // Whether a command fits what is there now, as the desktop asks; it refuses recordings of those that do not.
-const isThere = (world, p) => p < world.counts.particle && !world.isCursor(p) && world.view('state.particle_active')[p];
-const isPinned = (world, p) => world.view('state.inverse_mass')[p] === 0;
 const FITS = {
-  grab: (world, r) => !world.isHeld(r.grab) && isThere(world, r.particle) && !isPinned(world, r.particle),
+  grab: (world, r) => !world.isHeld(r.grab) && world.canMove(r.particle),
   move_grab: (world, r) => world.isHeld(r.grab),
   release: (world, r) => world.isHeld(r.grab),
-  pin: (world, r) => isThere(world, r.particle) && !isPinned(world, r.particle),
-  unpin: (world, r) => isThere(world, r.particle) && isPinned(world, r.particle),
+  pin: (world, r) => world.canMove(r.particle),
+  unpin: (world, r) => world.isShown(r.particle) && !world.canMove(r.particle),
   cut_springs: (world, r) => r.springs.every((s) => world.view('state.spring_active')[s]),
 };
 // Commands that may find nothing to act on.
@@ -204,7 +202,8 @@ export class World {
   #change(path, runs) {
     const view = this.view(path), number = view instanceof BigInt64Array ? BigInt : Number;
     for (const [first, count, ...row] of runs) {
-      for (let k = first; k < first + count; k++) view.set(row.map(number), row.length * k);
+      const values = row.map(number);
+      for (let k = first; k < first + count; k++) view.set(values, row.length * k);
     }
   }
 
@@ -291,6 +290,15 @@ export class World {
   isCursor(particle) {
     const first = this.hands.particle;
     return particle >= first && particle < first + this.hands.count;
+  }
+
+  // Whether people see a particle, and whether it can move.
+  isShown(particle) {
+    return Boolean(this.view('state.particle_active')[particle]) && !this.isCursor(particle);
+  }
+
+  canMove(particle) {
+    return this.isShown(particle) && this.view('state.inverse_mass')[particle] > 0;
   }
 
   // All particles and springs but those of hands.
