@@ -1,27 +1,45 @@
 """The kinds of arrays that kernels take, and named tuples of empty ones."""
 
 import functools
-from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
+from dataclasses import dataclass
+from typing import Annotated, Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Slots = NDArray[np.int64]
-Flags = NDArray[np.bool_]
-Int32s = NDArray[np.int32]
-# Of two dimensions, and of three.
-FloatRows = Annotated[NDArray[np.float64], 2]
-SlotRows = Annotated[NDArray[np.int64], 2]
-FloatTables = Annotated[NDArray[np.float64], 3]
+
+@dataclass(frozen=True)
+class ArrayKind:
+    """What an array of a named tuple holds. It stands beside numpy's alias, whose inside differs between versions."""
+
+    dtype: type[np.generic]
+    dimensions: int = 1
+
+    def empty(self) -> NDArray[Any]:
+        """An array of this kind without items."""
+        return np.zeros((0,) * self.dimensions, self.dtype)
+
+
+Floats = Annotated[NDArray[np.float64], ArrayKind(np.float64)]
+Slots = Annotated[NDArray[np.int64], ArrayKind(np.int64)]
+Flags = Annotated[NDArray[np.bool_], ArrayKind(np.bool_)]
+Int32s = Annotated[NDArray[np.int32], ArrayKind(np.int32)]
+FloatRows = Annotated[NDArray[np.float64], ArrayKind(np.float64, 2)]
+SlotRows = Annotated[NDArray[np.int64], ArrayKind(np.int64, 2)]
+FloatTables = Annotated[NDArray[np.float64], ArrayKind(np.float64, 3)]
 
 Arrays = TypeVar("Arrays")
 
 
 def with_empty(kind: type[Arrays], **given: Any) -> Arrays:
-    """A named tuple of arrays without items, of the kinds that its class says, but for what is given."""
+    """A named tuple of arrays without items, of the kinds that its class says, but for what is given.
+
+    Raises TypeError where a field is neither given, nor has an ArrayKind, nor is such a tuple.
+    """
     hints = get_type_hints(kind, include_extras=True)
-    made: Any = kind(*(given[name] if name in given else _empty(hint) for name, hint in hints.items()))
+    made: Any = kind(
+        *(given[name] if name in given else _empty(hint, f"{kind.__name__}.{name}") for name, hint in hints.items())
+    )
     return made
 
 
@@ -31,11 +49,10 @@ def empty(kind: type[Arrays]) -> Arrays:
     return with_empty(kind)
 
 
-def _empty(hint: Any) -> Any:
+def _empty(hint: Any, place: str) -> Any:
     if isinstance(hint, type) and hasattr(hint, "_fields"):
         return empty(hint)
-    dimensions = 1
-    if get_origin(hint) is Annotated:
-        hint, dimensions = get_args(hint)
-    dtype = get_args(get_args(hint)[1])[0]
-    return np.zeros((0,) * dimensions, dtype)
+    for marker in get_args(hint):
+        if isinstance(marker, ArrayKind):
+            return marker.empty()
+    raise TypeError(f"{place}: has no ArrayKind")
