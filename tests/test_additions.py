@@ -50,7 +50,7 @@ from dataclasses import dataclass
 
 from sandbox.level.format.quantities import Velocity
 from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.command import Subcommand, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
 
 
@@ -124,7 +124,7 @@ LIFT = '''
 """LiftTool: a click throws what it hits up."""
 
 from sandbox.physics.snapshot import Snapshot
-from sandbox.session.commands import Command, Push
+from sandbox.session.commands import Subcommand, Push
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.tool import NOTHING, PlacedTool, PointerEvent, Response, Submission
 
@@ -189,21 +189,27 @@ def solve(state, step, given, h):
 GREET = '''
 """`sandbox greet`."""
 
-from sandbox.cli.command import add_command
+from dataclasses import dataclass
+
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused, level_of
+from sandbox.cli.options import argument
 
 
-def add(commands):
-    parser = add_command(commands, "greet", greet, "say the name of a level")
-    parser.add_argument("level")
+@dataclass(frozen=True, kw_only=True)
+class GreetOptions:
+    level: str = argument(str, "LEVEL")
 
 
-def greet(options):
+def greet(options: GreetOptions) -> int:
     level = level_of(options.level)
     if not level.bodies:
         raise Refused(f"{options.level}: there is nobody to greet")
     print(f"Hello, {level.name}")
     return EXIT_OK
+
+
+COMMAND = Subcommand("greet", "say the name of a level", GreetOptions, greet)
 '''
 
 COUNTS = '''

@@ -5,6 +5,7 @@ import gc
 import os
 import sys
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from sandbox import __version__
 from sandbox.cli import (
@@ -26,14 +27,20 @@ from sandbox.cli import (
     take_home,
     toy,
 )
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_REFUSED, Refused
 from sandbox.terminal import give_up_output, missing_folder, prepare_streams, refusal_of, tell
 
 # In the order in which --help lists them.
-COMMANDS = (
-    play, toy, run, replay, resume, check, diff, bisect, sweep, render, page, site, take_home, export, format, edit,
-    schema,
+COMMANDS: tuple[Subcommand[Any], ...] = tuple(
+    module.COMMAND
+    for module in (
+        play, toy, run, replay, resume, check, diff, bisect, sweep, render, page, site, take_home, export, format, edit,
+        schema,
+    )
 )  # fmt: skip
+# What the program does where no command is named.
+USUAL = ("play",)
 # Python searches for garbage after this many new objects, in place of 700: what is imported stays, and looking through
 # it again and again was a sixth of a start. Objects that hold each other, as those do, are few in a run.
 SEARCH_AFTER = 200_000
@@ -54,12 +61,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     prepare_streams()
     # No linear algebra of numpy's is used: its threads would only cost time, a tenth of a start.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    options = _parser().parse_args(arguments)
+    named = sys.argv[1:] if arguments is None else arguments
+    parsed = _parser().parse_args(named or USUAL)
     gone = missing_folder()
     if gone:
         return _refuse([gone])
     try:
-        code: int = options.action(options)
+        code: int = parsed.command.run(parsed)
         sys.stdout.flush()
         return code
     except Refused as refusal:
@@ -83,8 +91,7 @@ def _refuse(faults: Iterable[str]) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="sandbox", description="A 2D physics sandbox of damped springs.")
     parser.add_argument("--version", action="version", version=f"sandbox {__version__}")
-    parser.set_defaults(action=play.play, level=None, profile=False, seconds=None, scale=None, theme=None)
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for command in COMMANDS:
-        command.add(commands)
+        command.add_to(commands)
     return parser

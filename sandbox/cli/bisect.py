@@ -1,28 +1,33 @@
 """`sandbox bisect`."""
 
-import argparse
 import json
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused, is_replay, level_of, recording_of
+from sandbox.cli.options import argument, option, optional_argument, repeated_option
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "bisect", bisect, "find the edit or value that makes a level fail")
-    parser.add_argument("level", metavar="LEVEL", help="one that holds")
-    parser.add_argument("bad", nargs="?", metavar="BAD", help="another that fails: which of its edits make it so?")
-    text = "a field of the level with a value that holds and one that fails: where between them does it begin?"
-    parser.add_argument("--set", metavar="FIELD=GOOD:BAD", help=text)
-    parser.add_argument("--check", action="append", default=[], metavar="NAME", help="of the level's checks only this")
-    parser.add_argument("--replay", metavar="FILE", help="not the checks: whether this recording runs bit for bit")
+@dataclass(frozen=True, kw_only=True)
+class BisectOptions:
+    """Where to look, and what is to hold."""
+
+    level: str = argument(str, "LEVEL", "one that holds")
+    bad: str | None = optional_argument(str, "BAD", "another that fails: which of its edits make it so?")
+    set: str | None = option(
+        str,
+        metavar="FIELD=GOOD:BAD",
+        help="a field of the level with a value that holds and one that fails: where between them does it begin?",
+    )
+    check: list[str] = repeated_option(str, metavar="NAME", help="of the level's checks only this")
+    replay: str | None = option(str, metavar="FILE", help="not the checks: whether this recording runs bit for bit")
 
 
-def bisect(options: argparse.Namespace) -> int:
+def bisect(options: BisectOptions) -> int:
     """Find what makes a level fail."""
     from sandbox.level.format.level_error import LevelError
     from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edits, deciding_value, recording_holds
@@ -32,9 +37,9 @@ def bisect(options: argparse.Namespace) -> int:
     good = level_of(options.level)
     trial = recording_holds(recording_of(options.replay)) if options.replay else checks_hold(options.check)
     try:
-        if options.set is None:
+        if options.bad is not None:
             work: Any = deciding_edits(good, _bad_level(options.bad), trial)
-        else:
+        elif options.set is not None:
             field, first, last = _range(options.set)
             work = deciding_value(good, field, first, last, trial)
         for found in work:
@@ -67,3 +72,6 @@ def _range(text: str) -> tuple[str, float, float]:
     except ValueError:
         raise Refused(f"--set: {text!r}: write FIELD=GOOD:BAD with two numbers, as settings.substeps=8:1") from None
     return field, first, last
+
+
+COMMAND = Subcommand("bisect", "find the edit or value that makes a level fail", BisectOptions, bisect)

@@ -1,29 +1,31 @@
 """`sandbox check`."""
 
-import argparse
 import json
 import sys
 from contextlib import closing
+from dataclasses import dataclass
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED
+from sandbox.cli.options import arguments, flag, option
 from sandbox.terminal import Progress, cores, processes, tell
 
 # A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.
 LEVELS_PER_PROCESS = 4
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "check", check, "validate levels, report their stability, run the checks they carry")
-    parser.add_argument("levels", nargs="+", metavar="LEVEL")
-    parser.add_argument("--json", action="store_true", help="print one JSON object a level")
-    parser.add_argument(
-        "--processes", type=processes, metavar="N", help="check this many at a time; default: by cores and levels"
+@dataclass(frozen=True, kw_only=True)
+class CheckOptions:
+    """What to check, and how to tell it."""
+
+    levels: list[str] = arguments(str, "LEVEL")
+    json: bool = flag("print one JSON object a level")
+    processes: int | None = option(
+        processes, metavar="N", help="check this many at a time; default: by cores and levels"
     )
 
 
-def check(options: argparse.Namespace) -> int:
+def check(options: CheckOptions) -> int:
     """Check levels, one after another as they were named."""
     from sandbox.session.checking import check_levels
 
@@ -41,3 +43,6 @@ def check(options: argparse.Namespace) -> int:
             worst = max(worst, EXIT_REFUSED if found.faults else EXIT_OK if found.passed else EXIT_FAILED)
             bar.update()
     return worst
+
+
+COMMAND = Subcommand("check", "validate levels, report their stability, run the checks they carry", CheckOptions, check)

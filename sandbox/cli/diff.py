@@ -1,12 +1,13 @@
 """`sandbox diff`."""
 
-import argparse
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_FAILED, EXIT_OK, Refused, level_or_replay
+from sandbox.cli.options import argument, flag, option
 from sandbox.cli.pages import PAGE, watching
 from sandbox.terminal import Progress, interrupted_between_ticks, seconds
 
@@ -18,18 +19,20 @@ DIFF_SECONDS = 10.0
 PICTURE = ".png"
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "diff", diff, "say where two recordings or levels part")
-    parser.add_argument("first", metavar="A", help="a recording or a level")
-    parser.add_argument("second", metavar="B", help="another; a level runs with the commands of the recording")
-    parser.add_argument("--seconds", type=seconds, help="compare no more than this; of two levels default 10")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    text = "draw both where they part, or write a page that plays both"
-    parser.add_argument("-o", "--output", type=Path, metavar="OUT.png|html", help=text)
+@dataclass(frozen=True, kw_only=True)
+class DiffOptions:
+    """What to compare, for how long, and how to tell it."""
+
+    first: str = argument(str, "A", "a recording or a level")
+    second: str = argument(str, "B", "another; a level runs with the commands of the recording")
+    seconds: float | None = option(seconds, help="compare no more than this; of two levels default 10")
+    json: bool = flag("print one JSON object")
+    output: Path | None = option(
+        Path, "-o", metavar="OUT.png|html", help="draw both where they part, or write a page that plays both"
+    )
 
 
-def diff(options: argparse.Namespace) -> int:
+def diff(options: DiffOptions) -> int:
     """Say where two runs part."""
     from sandbox.session.replay.difference import ComparedRun, difference
     from sandbox.session.replay.recording import ReplayError
@@ -66,7 +69,7 @@ def _check_output(path: Path | None) -> None:
         raise Refused(f"{path}: end the name in {PICTURE} or {PAGE}")
 
 
-def _json(options: argparse.Namespace, found: "RunDifference") -> dict[str, Any]:
+def _json(options: DiffOptions, found: "RunDifference") -> dict[str, Any]:
     from dataclasses import asdict
 
     from sandbox.session.probe import finite
@@ -110,3 +113,6 @@ def _draw_both(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDifference",
         ring = differing_particle(found.divergence, state) if found.divergence else None
         shown.append(Shown(f"{letter}  {side.name}, tick {tick}", side.level, state, ring))
     write_sides(shown, path)
+
+
+COMMAND = Subcommand("diff", "say where two recordings or levels part", DiffOptions, diff)

@@ -1,19 +1,20 @@
 """`sandbox edit`."""
 
-import argparse
+from dataclasses import dataclass
 
-from sandbox.cli.command import Commands, add_command, add_window_options
+from sandbox.cli.command import Subcommand, WindowOptions
 from sandbox.cli.inputs import Refused
+from sandbox.cli.options import optional_argument
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "edit", edit, "open the level editor: a level, or an empty sheet")
-    parser.add_argument("level", nargs="?", metavar="LEVEL")
-    add_window_options(parser)
+@dataclass(frozen=True, kw_only=True)
+class EditOptions(WindowOptions):
+    """What to edit, and how it looks."""
+
+    level: str | None = optional_argument(str, "LEVEL")
 
 
-def edit(options: argparse.Namespace) -> int:
+def edit(options: EditOptions) -> int:
     """Open the editor. Raises Refused where there is no display."""
     from sandbox.app.base.display import has_display
 
@@ -26,3 +27,6 @@ def edit(options: argparse.Namespace) -> int:
         return StartRequest(edit=options.level or "")
 
     return open_app(find, scale=options.scale, theme=options.theme, says_states=options.states)
+
+
+COMMAND = Subcommand("edit", "open the level editor: a level, or an empty sheet", EditOptions, edit)

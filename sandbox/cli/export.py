@@ -1,12 +1,13 @@
 """`sandbox export`."""
 
-import argparse
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused, level_of
+from sandbox.cli.options import flag, option, option_or, optional_argument
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
@@ -14,23 +15,31 @@ if TYPE_CHECKING:
 FORMS = ("flat", "svg", "pymunk")
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "export", export, "write a level as data, a picture or a program for other engines")
-    parser.add_argument("level", nargs="?", metavar="LEVEL")
-    text = "flat: particles and springs as JSON; svg: a picture; pymunk: a Python program that runs it; default flat"
-    parser.add_argument("--to", choices=FORMS, default="flat", help=text)
-    parser.add_argument("--schema", action="store_true", help="print the JSON Schema of flat levels instead")
-    parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="where to; default: it is printed")
+@dataclass(frozen=True, kw_only=True)
+class ExportOptions:
+    """Which level, in which form, and where it goes."""
+
+    level: str | None = optional_argument(str, "LEVEL")
+    to: str = option_or(
+        "flat",
+        str,
+        choices=FORMS,
+        help="flat: particles and springs as JSON; svg: a picture; pymunk: a Python program that runs it; default flat",
+    )
+    schema: bool = flag("print the JSON Schema of flat levels instead")
+    output: Path | None = option(Path, "-o", metavar="OUT", help="where to; default: it is printed")
 
 
-def export(options: argparse.Namespace) -> int:
+def export(options: ExportOptions) -> int:
     """Write what was asked for, or print it. Raises Refused."""
     from sandbox.export.flat_model import flat_schema
 
     if options.schema == (options.level is not None):
         raise Refused("name a level, or say --schema: one of the two")
-    text = json.dumps(flat_schema(), indent=2) + "\n" if options.schema else _text(level_of(options.level), options.to)
+    if options.level is None:
+        text = json.dumps(flat_schema(), indent=2) + "\n"
+    else:
+        text = _text(level_of(options.level), options.to)
     if options.output is None:
         print(text, end="")
     else:
@@ -48,3 +57,6 @@ def _text(level: "Level", form: str) -> str:
     if form == "svg":
         return svg(made)
     return flat_text(made) if form == "flat" else pymunk_program(made)
+
+
+COMMAND = Subcommand("export", "write a level as data, a picture or a program for other engines", ExportOptions, export)

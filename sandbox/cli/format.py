@@ -1,20 +1,22 @@
 """`sandbox format`."""
 
-import argparse
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused
+from sandbox.cli.options import argument
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "format", rewrite, "rewrite a level file in its canonical form")
-    parser.add_argument("file", type=Path, metavar="FILE")
+@dataclass(frozen=True, kw_only=True)
+class FormatOptions:
+    """Which file."""
+
+    file: Path = argument(Path, "FILE")
 
 
-def rewrite(options: argparse.Namespace) -> int:
+def rewrite(options: FormatOptions) -> int:
     """Write a level file again. Raises Refused."""
     from sandbox.level.reading.files import LevelError, read_level, write_level
 
@@ -25,3 +27,6 @@ def rewrite(options: argparse.Namespace) -> int:
     if warning:
         print(warning, file=sys.stderr)
     return EXIT_OK
+
+
+COMMAND = Subcommand("format", "rewrite a level file in its canonical form", FormatOptions, rewrite)

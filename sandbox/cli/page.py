@@ -1,22 +1,23 @@
 """`sandbox page`."""
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused, level_or_replay
+from sandbox.cli.options import argument, needed_option
 from sandbox.cli.pages import PAGE
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    does = "write a page that plays a level, or a recording that can be taken over, in any browser"
-    parser = add_command(commands, "page", page, does)
-    parser.add_argument("level", metavar="LEVEL|REPLAY")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.html")
+@dataclass(frozen=True, kw_only=True)
+class PageOptions:
+    """What plays, and where it goes."""
+
+    level: str = argument(str, "LEVEL|REPLAY")
+    output: Path = needed_option(Path, "-o", metavar="OUT.html")
 
 
-def page(options: argparse.Namespace) -> int:
+def page(options: PageOptions) -> int:
     """Write the page, and tell how large it is. Raises Refused."""
     from sandbox.app.share.playing import page_of
     from sandbox.level.format.writing import write_file
@@ -32,3 +33,8 @@ def page(options: argparse.Namespace) -> int:
     write_file(options.output, text.encode())
     print(f"{options.output}: {len(text.encode()) / 1000:.0f} kB")
     return EXIT_OK
+
+
+COMMAND = Subcommand(
+    "page", "write a page that plays a level, or a recording that can be taken over, in any browser", PageOptions, page
+)

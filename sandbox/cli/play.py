@@ -1,11 +1,12 @@
 """`sandbox play`, and `sandbox` alone."""
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.command import Commands, add_command, add_window_options
+from sandbox.cli.command import Subcommand, WindowOptions
 from sandbox.cli.inputs import EXIT_OK, level_or_replay
+from sandbox.cli.options import flag, option, optional_argument
 from sandbox.cli.running import run_with_bar
 from sandbox.terminal import seconds
 
@@ -17,18 +18,16 @@ if TYPE_CHECKING:
 HEADLESS_SECONDS = 10.0
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "play", play, "open the app: the gallery, a level, or a replay to watch")
-    parser.add_argument(
-        "level", nargs="?", metavar="LEVEL", help="a level file, a shipped level's name, or a replay file"
-    )
-    parser.add_argument("--profile", action="store_true", help="print where a frame's time goes, at the end")
-    parser.add_argument("--seconds", type=seconds, help="close the app after this many seconds")
-    add_window_options(parser)
+@dataclass(frozen=True, kw_only=True)
+class PlayOptions(WindowOptions):
+    """What to open, and how."""
+
+    level: str | None = optional_argument(str, "LEVEL", "a level file, a shipped level's name, or a replay file")
+    profile: bool = flag("print where a frame's time goes, at the end")
+    seconds: float | None = option(seconds, help="close the app after this many seconds")
 
 
-def play(options: argparse.Namespace) -> int:
+def play(options: PlayOptions) -> int:
     """Open the app; without a display, play without one."""
     from sandbox.app.base.display import has_display
 
@@ -65,3 +64,6 @@ def _play_headless(level: "Level", replay: "Replay | None") -> int:
     save_picture(session, picture)
     print(summary.text(level.name))
     return EXIT_OK
+
+
+COMMAND = Subcommand("play", "open the app: the gallery, a level, or a replay to watch", PlayOptions, play)

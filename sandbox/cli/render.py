@@ -1,12 +1,13 @@
 """`sandbox render`."""
 
-import argparse
 from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused, level_or_replay
+from sandbox.cli.options import argument, needed_option, option
 from sandbox.cli.pages import write_run
 from sandbox.cli.running import run_with_bar
 from sandbox.terminal import Progress, rate, seconds, size
@@ -18,21 +19,24 @@ if TYPE_CHECKING:
 FILM_SECONDS, FILM_SIZE, PNG_SIZE = 6.0, (640, 360), (1280, 720)
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    does = "draw a level or a replay into a PNG, GIF, MP4 or HTML, off screen"
-    parser = add_command(commands, "render", render, does)
-    parser.add_argument("level", metavar="LEVEL|REPLAY")
-    text = "PNG: simulated time before the picture, default 0; GIF and MP4: how long they are, default 6"
-    parser.add_argument("--seconds", type=seconds, help=text)
-    parser.add_argument("--from", type=seconds, dest="start", help="simulated time before a GIF or MP4; default 0")
-    parser.add_argument("--fps", type=rate, help="pictures a second; default 20 for GIF, 30 for MP4")
-    text = "in pixels; default 1280x720 for PNG, 640x360 for GIF and MP4"
-    parser.add_argument("--size", type=size, metavar="WxH", help=text)
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.png|gif|mp4|html")
+@dataclass(frozen=True, kw_only=True)
+class RenderOptions:
+    """What to draw, of which time, how large, and where to."""
+
+    level: str = argument(str, "LEVEL|REPLAY")
+    start: float | None = option(seconds, "--from", help="simulated time before a GIF or MP4; default 0")
+    seconds: float | None = option(
+        seconds,
+        help="PNG: simulated time before the picture, default 0; GIF and MP4: how long they are, default 6",
+    )
+    fps: float | None = option(rate, help="pictures a second; default 20 for GIF, 30 for MP4")
+    size: tuple[int, int] | None = option(
+        size, metavar="WxH", help="in pixels; default 1280x720 for PNG, 640x360 for GIF and MP4"
+    )
+    output: Path = needed_option(Path, "-o", metavar="OUT.png|gif|mp4|html")
 
 
-def render(options: argparse.Namespace) -> int:
+def render(options: RenderOptions) -> int:
     """Draw, and tell what was written. Raises Refused."""
     from sandbox.session.session import Session
 
@@ -54,7 +58,7 @@ def render(options: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _render_page(options: argparse.Namespace) -> int:
+def _render_page(options: RenderOptions) -> int:
     """Write a page that plays a level or a replay; nothing is drawn here."""
     from sandbox.session.session import Session
 
@@ -74,7 +78,7 @@ def _render_page(options: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _check_render_options(options: argparse.Namespace, kind: str) -> None:
+def _check_render_options(options: RenderOptions, kind: str) -> None:
     from sandbox.app.film.kinds import KINDS, Missing, require
 
     most = KINDS[kind].most_fps
@@ -92,7 +96,7 @@ def _check_render_options(options: argparse.Namespace, kind: str) -> None:
         raise Refused(f"{options.output}: {missing}") from None
 
 
-def _draw_still(session: "Session", options: argparse.Namespace) -> str:
+def _draw_still(session: "Session", options: RenderOptions) -> str:
     """Draw the present state of a run; what was drawn."""
     from sandbox.app.draw.picture import save_picture
 
@@ -103,7 +107,7 @@ def _draw_still(session: "Session", options: argparse.Namespace) -> str:
     return f"{pixels[0]}x{pixels[1]}"
 
 
-def _draw_film(session: "Session", options: argparse.Namespace, kind: str, length: float) -> str:
+def _draw_film(session: "Session", options: RenderOptions, kind: str, length: float) -> str:
     """Draw the last `length` [s] of a run; what was drawn."""
     from sandbox.app.film.film import film_of_view
     from sandbox.app.film.kinds import KINDS, possible_size
@@ -116,3 +120,8 @@ def _draw_film(session: "Session", options: argparse.Namespace, kind: str, lengt
         for done in slices:
             bar.update(int(100 * done) - bar.done)
     return f"{pixels[0]}x{pixels[1]}, {film.seconds:g} s of {fps:g} pictures a second"
+
+
+COMMAND = Subcommand(
+    "render", "draw a level or a replay into a PNG, GIF, MP4 or HTML, off screen", RenderOptions, render
+)

@@ -1,13 +1,13 @@
 """`sandbox replay`."""
 
-import argparse
 import json
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
+from sandbox.cli.options import arguments, flag, option
 from sandbox.cli.pages import PAGE, write_report
 from sandbox.terminal import Progress, tell
 
@@ -15,17 +15,18 @@ if TYPE_CHECKING:
     from sandbox.level.document.model import Level
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "replay", verify_files, "run recordings again and compare every bit")
-    parser.add_argument("files", nargs="+", metavar="FILE")
-    parser.add_argument("--json", action="store_true", help="print one JSON object a file")
-    parser.add_argument("--partial", action="store_true", help="verify what there is of a recording that is cut off")
-    parser.add_argument("--report", type=Path, metavar="OUT.html", help="where it diverges, play both side by side")
-    parser.add_argument("--against", metavar="LEVEL", help="run their commands on this level, not on the recorded one")
+@dataclass(frozen=True, kw_only=True)
+class ReplayOptions:
+    """Which recordings to verify, on what, and how to tell it."""
+
+    files: list[str] = arguments(str, "FILE")
+    json: bool = flag("print one JSON object a file")
+    partial: bool = flag("verify what there is of a recording that is cut off")
+    report: Path | None = option(Path, metavar="OUT.html", help="where it diverges, play both side by side")
+    against: str | None = option(str, metavar="LEVEL", help="run their commands on this level, not on the recorded one")
 
 
-def verify_files(options: argparse.Namespace) -> int:
+def verify_files(options: ReplayOptions) -> int:
     """Verify recordings, one after another. Raises Refused."""
     worst = EXIT_OK
     level = level_of(options.against) if options.against else None
@@ -62,3 +63,6 @@ def _verify(name: str, partial: bool, level: "Level | None", report: Path | None
         write_report(found, report)
     details = finite({**asdict(found.divergence), "text": f"diverged at {found.divergence}"})
     return EXIT_FAILED, {"file": name, "result": "diverged", **details}
+
+
+COMMAND = Subcommand("replay", "run recordings again and compare every bit", ReplayOptions, verify_files)

@@ -1,20 +1,23 @@
 """`sandbox resume`."""
 
-import argparse
+from dataclasses import dataclass
 
-from sandbox.cli.command import Commands, add_command, add_length_options
+from sandbox.cli.command import Subcommand, length_in_seconds, length_in_ticks
 from sandbox.cli.inputs import EXIT_OK, Refused, recording_of
+from sandbox.cli.options import argument
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "resume", resume_file, "go on with a recording that was cut off, and make it whole")
-    parser.add_argument("file", metavar="FILE")
-    add_length_options(parser, " in all; default: up to where it was cut off")
+@dataclass(frozen=True, kw_only=True)
+class ResumeOptions:
+    """Which recording, and how long it is to be."""
+
+    file: str = argument(str, "FILE")
+    seconds: float | None = length_in_seconds(" in all; default: up to where it was cut off")
+    ticks: int | None = length_in_ticks()
 
 
-def resume_file(options: argparse.Namespace) -> int:
+def resume_file(options: ResumeOptions) -> int:
     """Make a recording whole. Raises Refused."""
     from sandbox.session.commands import CommandError
     from sandbox.session.replay.recording import ReplayError
@@ -42,3 +45,6 @@ def resume_file(options: argparse.Namespace) -> int:
         raise Refused(*error.faults) from None
     print(f"{options.file}: whole, {ticks} ticks, {ticks - replay.ticks} of them new")
     return EXIT_OK
+
+
+COMMAND = Subcommand("resume", "go on with a recording that was cut off, and make it whole", ResumeOptions, resume_file)

@@ -1,13 +1,13 @@
 """`sandbox run`."""
 
-import argparse
 import json
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Commands, add_command, add_length_options
+from sandbox.cli.command import Subcommand, length_in_seconds, length_in_ticks
 from sandbox.cli.inputs import EXIT_OK, EXIT_REFUSED, Refused, level_of
+from sandbox.cli.options import argument, flag, option, option_or
 from sandbox.cli.running import run_with_bar
 from sandbox.terminal import count, substeps, tell
 
@@ -17,26 +17,27 @@ if TYPE_CHECKING:
     from sandbox.session.session import Session
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "run", run, "run a level headless and print what came of it")
-    parser.add_argument("level", metavar="LEVEL")
-    add_length_options(parser, "; default 10")
-    parser.add_argument("--solver", help="instead of the level's solver")
-    parser.add_argument("--substeps", type=substeps, help="instead of the level's: a power of two, 1 to 64, or auto")
-    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
-    parser.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
-    text = "commands to carry out, as lines of a replay"
-    parser.add_argument("--commands", type=Path, metavar="FILE.jsonl", help=text)
-    text = "write the last position and velocity of every particle"
-    parser.add_argument("--dump", type=Path, metavar="FILE", help=text)
-    text = "particles and motors to follow, by name, into the file of -o"
-    parser.add_argument("--probe", metavar="ID.K,..", help=text)
-    parser.add_argument("--every", type=count, default=1, metavar="N", help="follow them every N ticks; default 1")
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE.csv", help="where the probe's table goes")
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """What to run, for how long, and what to write of it."""
+
+    level: str = argument(str, "LEVEL")
+    seconds: float | None = length_in_seconds("; default 10")
+    ticks: int | None = length_in_ticks()
+    solver: str | None = option(str, help="instead of the level's solver")
+    substeps: int | str | None = option(substeps, help="instead of the level's: a power of two, 1 to 64, or auto")
+    json: bool = flag("print the summary as one JSON object")
+    record: Path | None = option(Path, metavar="FILE", help="write a replay; .gz compresses")
+    commands: Path | None = option(Path, metavar="FILE.jsonl", help="commands to carry out, as lines of a replay")
+    dump: Path | None = option(Path, metavar="FILE", help="write the last position and velocity of every particle")
+    probe: str | None = option(
+        str, metavar="ID.K,..", help="particles and motors to follow, by name, into the file of -o"
+    )
+    every: int = option_or(1, count, metavar="N", help="follow them every N ticks; default 1")
+    output: Path | None = option(Path, "-o", metavar="FILE.csv", help="where the probe's table goes")
 
 
-def run(options: argparse.Namespace) -> int:
+def run(options: RunOptions) -> int:
     """Run a level and tell what came of it. Raises Refused."""
     level = _with_overrides(level_of(options.level), options)
     rate = level.settings.tick_rate
@@ -69,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
     return EXIT_OK if recorded == options.record else EXIT_REFUSED
 
 
-def _keep_apart(options: argparse.Namespace) -> None:
+def _keep_apart(options: RunOptions) -> None:
     """Refuse to write over what is read, or two outputs into one file."""
     taken = {Path(path).resolve() for path in (options.level, options.commands) if path}
     for path in filter(None, (options.record, options.dump, options.output)):
@@ -78,11 +79,12 @@ def _keep_apart(options: argparse.Namespace) -> None:
         taken.add(path.resolve())
 
 
-def _with_overrides(level: "Level", options: argparse.Namespace) -> "Level":
+def _with_overrides(level: "Level", options: RunOptions) -> "Level":
     from sandbox.level.format.level_error import LevelError
     from sandbox.session.replay.rerecord import with_settings
 
-    given = {name: getattr(options, name) for name in ("solver", "substeps") if getattr(options, name) is not None}
+    settings = {"solver": options.solver, "substeps": options.substeps}
+    given = {name: value for name, value in settings.items() if value is not None}
     if not given:
         return level
     try:
@@ -111,7 +113,7 @@ def _scripted_session(level: "Level", commands: Path | None, ticks: int) -> "Ses
     return Session(level, script)
 
 
-def _probe(options: argparse.Namespace, world: "World") -> Any:
+def _probe(options: RunOptions, world: "World") -> Any:
     from sandbox.session.probe import Probe, near_names
 
     if bool(options.probe) != bool(options.output):
@@ -130,3 +132,6 @@ def _write_text(path: Path, text: str) -> None:
         path.write_text(text, encoding="utf-8", newline="\n")
     except OSError as error:
         raise Refused(f"{path}: {error.strerror or error}") from None
+
+
+COMMAND = Subcommand("run", "run a level headless and print what came of it", RunOptions, run)

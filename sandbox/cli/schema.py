@@ -1,20 +1,23 @@
 """`sandbox schema`."""
 
-import argparse
 import json
+from dataclasses import dataclass
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    add_command(commands, "schema", print_schema, "print the JSON Schema of level files")
+@dataclass(frozen=True)
+class SchemaOptions:
+    """None."""
 
 
-def print_schema(options: argparse.Namespace) -> int:
+def print_schema(options: SchemaOptions) -> int:
     """Print the schema."""
     from sandbox.level.document.schema import schema
 
     print(json.dumps(schema(), indent=2))
     return EXIT_OK
+
+
+COMMAND = Subcommand("schema", "print the JSON Schema of level files", SchemaOptions, print_schema)

@@ -1,24 +1,29 @@
 """`sandbox site`."""
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused, level_of
+from sandbox.cli.options import arguments, needed_option, option, option_or
 from sandbox.terminal import Progress
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "site", site, "write a folder of pages that play levels, for any web server")
-    parser.add_argument("levels", metavar="LEVEL", nargs="*", help="default: all that are shipped")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FOLDER")
-    parser.add_argument("--title", default="Spring Sandbox", help="what the site is called")
-    text = "a Markdown file that becomes pages of the site, with all that it leads to; needs the extra `site`"
-    parser.add_argument("--document", type=Path, metavar="FILE.md", help=text)
+@dataclass(frozen=True, kw_only=True)
+class SiteOptions:
+    """What the site shows, and where it goes."""
+
+    levels: list[str] = arguments(str, "LEVEL", "default: all that are shipped", at_least=0)
+    output: Path = needed_option(Path, "-o", metavar="FOLDER")
+    title: str = option_or("Spring Sandbox", str, help="what the site is called")
+    document: Path | None = option(
+        Path,
+        metavar="FILE.md",
+        help="a Markdown file that becomes pages of the site, with all that it leads to; needs the extra `site`",
+    )
 
 
-def site(options: argparse.Namespace) -> int:
+def site(options: SiteOptions) -> int:
     """Write the site, and tell how large it is. Raises Refused."""
     from sandbox.app.site.site import SiteLevel, write_site
     from sandbox.level.reading.files import shipped_levels
@@ -50,3 +55,6 @@ def _write_documents(start: Path, folder: Path) -> dict[str, str]:
     except DocumentError as error:
         raise Refused(*error.faults) from None
     return write_documents(documents, folder)
+
+
+COMMAND = Subcommand("site", "write a folder of pages that play levels, for any web server", SiteOptions, site)

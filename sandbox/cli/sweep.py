@@ -1,15 +1,16 @@
 """`sandbox sweep`: a level over a grid of settings."""
 
-import argparse
 import json
 import math
 from collections.abc import Generator
 from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of
+from sandbox.cli.options import argument, flag, needed_option, option, option_or, repeated_option
 from sandbox.terminal import Progress, cores, processes, seconds, tell
 
 if TYPE_CHECKING:
@@ -22,31 +23,28 @@ MOST_RUNS = 100_000
 TABLE, MAP = ".csv", ".png"
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    parser = add_command(commands, "sweep", sweep, "run a level over a grid of settings into a table")
-    parser.add_argument("level", metavar="LEVEL")
-    parser.add_argument("--cs", metavar="A:B:N[:log]", help="Cs: N values from A to B, or a,b,..")
-    parser.add_argument("--cd", metavar="A:B:N[:log]", help="Cd, likewise")
-    parser.add_argument("--material", metavar="NAME", help="whose springs have them; default: all")
-    parser.add_argument("--solver", help="names with commas between, or all")
-    parser.add_argument("--substeps", help="numbers with commas between, and auto")
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="FIELD=VALUES", help="any field of the level: deck.height=0.1:1:5"
+@dataclass(frozen=True, kw_only=True)
+class SweepOptions:
+    """The grid, how it is run, and where its results go."""
+
+    level: str = argument(str, "LEVEL")
+    cs: str | None = option(str, metavar="A:B:N[:log]", help="Cs: N values from A to B, or a,b,..")
+    cd: str | None = option(str, metavar="A:B:N[:log]", help="Cd, likewise")
+    material: str | None = option(str, metavar="NAME", help="whose springs have them; default: all")
+    solver: str | None = option(str, help="names with commas between, or all")
+    substeps: str | None = option(str, help="numbers with commas between, and auto")
+    set: list[str] = repeated_option(str, metavar="FIELD=VALUES", help="any field of the level: deck.height=0.1:1:5")
+    seconds: float = option_or(SWEEP_SECONDS, seconds, help="simulated time of each run; default 10")
+    measure: str | None = option(str, metavar="NAMES", help="what the map shows, with commas between; default: all")
+    processes: int | None = option(processes, metavar="N", help="at a time; default: one a processor")
+    dask: str | None = option(
+        str, metavar="ADDRESS", help="run by the scheduler of dask there; local: by one of this machine"
     )
-    parser.add_argument("--seconds", type=seconds, default=SWEEP_SECONDS, help="simulated time of each run; default 10")
-    parser.add_argument("--measure", metavar="NAMES", help="what the map shows, with commas between; default: all")
-    parser.add_argument("--processes", type=processes, metavar="N", help="at a time; default: one a processor")
-    parser.add_argument(
-        "--dask", metavar="ADDRESS", help="run by the scheduler of dask there; local: by one of this machine"
-    )
-    parser.add_argument("--fresh", action="store_true", help="run again what is known already")
-    parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="OUT.csv|png", help="table; or map, with the table beside"
-    )
+    fresh: bool = flag("run again what is known already")
+    output: Path = needed_option(Path, "-o", metavar="OUT.csv|png", help="table; or map, with the table beside")
 
 
-def sweep(options: argparse.Namespace) -> int:
+def sweep(options: SweepOptions) -> int:
     """Run the grid, write its table, and draw its map where that is wanted."""
     from sandbox.session.sweep.grid import SweepError
 
@@ -78,7 +76,7 @@ def sweep(options: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _require(options: argparse.Namespace, kind: str) -> None:
+def _require(options: SweepOptions, kind: str) -> None:
     from sandbox.app.film.kinds import Missing, require_module
 
     try:
@@ -90,7 +88,7 @@ def _require(options: argparse.Namespace, kind: str) -> None:
         raise Refused(str(missing)) from None
 
 
-def _grid(options: argparse.Namespace) -> "SweepGrid":
+def _grid(options: SweepOptions) -> "SweepGrid":
     """The grid that is asked for. Raises Refused and SweepError."""
     from sandbox.session.sweep.grid import SweepGrid, case_level
 
@@ -108,7 +106,7 @@ def _grid(options: argparse.Namespace) -> "SweepGrid":
     return SweepGrid(level, columns, ticks, options.material)
 
 
-def _panels(grid: "SweepGrid", options: argparse.Namespace) -> list[str]:
+def _panels(grid: "SweepGrid", options: SweepOptions) -> list[str]:
     """The measures that the map shows. Raises Refused where it cannot."""
     from sandbox.session.sweep.sweep_map import MOST_MAPS, panel_count
 
@@ -142,7 +140,7 @@ def _known(table: Path, grid: "SweepGrid", is_beside: bool) -> "Rows | None":
     return None
 
 
-def _run(table: Path, grid: "SweepGrid", options: argparse.Namespace) -> "Rows | None":
+def _run(table: Path, grid: "SweepGrid", options: SweepOptions) -> "Rows | None":
     """Run what is not known yet and write the table; its rows, None where it was interrupted. Raises SweepError."""
     from sandbox.session.sweep.journal import Journal
 
@@ -164,9 +162,7 @@ def _run(table: Path, grid: "SweepGrid", options: argparse.Namespace) -> "Rows |
     return journal.rows
 
 
-def _rows(
-    grid: "SweepGrid", known: "Rows", options: argparse.Namespace
-) -> Generator[tuple[int, list[Any]], None, None]:
+def _rows(grid: "SweepGrid", known: "Rows", options: SweepOptions) -> Generator[tuple[int, list[Any]], None, None]:
     workers = min(options.processes or cores(), grid.runs)
     if options.dask:
         from sandbox.session.sweep.cluster import swept_by_dask
@@ -177,7 +173,7 @@ def _rows(
     return swept(grid, list(known), workers)
 
 
-def _columns(options: argparse.Namespace, level: "Level") -> "dict[str, tuple[Value, ...]]":
+def _columns(options: SweepOptions, level: "Level") -> "dict[str, tuple[Value, ...]]":
     """The values of every column, Cs and Cd last. Raises Refused."""
     from sandbox.session.sweep.grid import field_place
 
@@ -189,12 +185,11 @@ def _columns(options: argparse.Namespace, level: "Level") -> "dict[str, tuple[Va
     if options.substeps:
         columns["settings.substeps"] = values_of("--substeps", options.substeps)
     for text in options.set:
-        name, sign, values = text.partition("=")
+        field, sign, value_text = text.partition("=")
         if not sign:
             raise Refused(f"--set: {text!r}: write FIELD=A:B:N, or FIELD=a,b,..")
-        columns[field_place(level, name)] = values_of("--set", values)
-    for name in ("cs", "cd"):
-        given = getattr(options, name)
+        columns[field_place(level, field)] = values_of("--set", value_text)
+    for name, given in (("cs", options.cs), ("cd", options.cd)):
         if given:
             values = values_of(f"--{name}", given)
             if not all(isinstance(value, float | int) and 0.0 <= value <= 1.0 for value in values):
@@ -232,3 +227,6 @@ def _value(text: str) -> float | int | str:
     except ValueError:
         return text
     return value if type(value) in (int, float, str) else text
+
+
+COMMAND = Subcommand("sweep", "run a level over a grid of settings into a table", SweepOptions, sweep)

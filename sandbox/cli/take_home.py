@@ -1,27 +1,28 @@
 """`sandbox take-home`."""
 
-import argparse
+from dataclasses import dataclass
 
-from sandbox.cli.command import Commands, add_command
+from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused, level_of
+from sandbox.cli.options import argument, option, option_or
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    text = "print a body's springs as your own loop or another engine takes them"
-    parser = add_command(commands, "take-home", take_home, text)
-    parser.add_argument("level", metavar="LEVEL")
-    parser.add_argument("--body", metavar="ID", help="which body; default: the first that has springs")
-    parser.add_argument(
-        "--to",
-        default="all",
+@dataclass(frozen=True, kw_only=True)
+class TakeHomeOptions:
+    """Which body, and for what."""
+
+    level: str = argument(str, "LEVEL")
+    body: str | None = option(str, metavar="ID", help="which body; default: the first that has springs")
+    to: str = option_or(
+        "all",
+        str,
         metavar="NAME",
         help="article (the loop in every language), csharp, gdscript, cpp, javascript, python, box2d, unity, godot, "
         "rapier, pymunk, chipmunk; default: all numbers, no programs",
     )
 
 
-def take_home(options: argparse.Namespace) -> int:
+def take_home(options: TakeHomeOptions) -> int:
     """Print what a body takes home. Raises Refused."""
     from sandbox.export.chosen_body import NoSuchBody
     from sandbox.export.take_home_text import TARGETS, take_home_text
@@ -36,3 +37,8 @@ def take_home(options: argparse.Namespace) -> int:
     except NoSuchBody as error:
         raise Refused(f"{options.level}: {error}") from None
     return EXIT_OK
+
+
+COMMAND = Subcommand(
+    "take-home", "print a body's springs as your own loop or another engine takes them", TakeHomeOptions, take_home
+)

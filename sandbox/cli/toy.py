@@ -1,28 +1,28 @@
 """`sandbox toy`."""
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.command import Commands, add_command, add_look_options
+from sandbox.cli.command import LookOptions, Subcommand
 from sandbox.cli.inputs import EXIT_OK, Refused, level_of
+from sandbox.cli.options import option, optional_argument
 from sandbox.terminal import seconds, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
 
 
-def add(commands: Commands) -> None:
-    """The command."""
-    text = "play a level in a small window that stays on top and feels how it is moved"
-    parser = add_command(commands, "toy", play_toy, text)
-    parser.add_argument("level", nargs="?", metavar="LEVEL", help="a level file or a shipped level's name")
-    parser.add_argument("--record", type=Path, metavar="FILE", help="write a replay; .gz compresses")
-    parser.add_argument("--seconds", type=seconds, help="close it after this many seconds")
-    add_look_options(parser)
+@dataclass(frozen=True, kw_only=True)
+class ToyOptions(LookOptions):
+    """What to play, and how it looks."""
+
+    level: str | None = optional_argument(str, "LEVEL", "a level file or a shipped level's name")
+    record: Path | None = option(Path, metavar="FILE", help="write a replay; .gz compresses")
+    seconds: float | None = option(seconds, help="close it after this many seconds")
 
 
-def play_toy(options: argparse.Namespace) -> int:
+def play_toy(options: ToyOptions) -> int:
     """Play a level in a small window that stays on top. Raises Refused where there is no display."""
     from sandbox.app.base.display import has_display
 
@@ -35,3 +35,8 @@ def play_toy(options: argparse.Namespace) -> int:
 
     run_toy(find, lambda line: tell([line]), options.record, options.seconds, options.scale, options.theme)
     return EXIT_OK
+
+
+COMMAND = Subcommand(
+    "toy", "play a level in a small window that stays on top and feels how it is moved", ToyOptions, play_toy
+)
