@@ -1,11 +1,14 @@
 """Person: drives a real window on a virtual screen from outside by xdotool; sees its title and its pixels alone."""
 
 import os
+import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +24,8 @@ PATIENCE = 1.0
 # Between two looks at the window's pixels, and at its title, which takes a process [s]: whoever looks without a pause
 # takes the processor from what is looked at.
 BLINK, GLANCE = 0.02, 0.1
-
+# How xdotool finds the app's window.
+WINDOW = ("search", "--onlyvisible", "--class", "spring-sandbox")
 # So long a drag is held on to where it ends.
 HELD_TICKS = 20
 
@@ -73,30 +77,52 @@ class VirtualScreen:
         self.server.wait()
 
 
-class Person:
-    """Drives the app's window from outside; arguments: of the command `sandbox`; folder: holds documents and data."""
+class Visitor:
+    """Drives a window from outside that a line of the shell opens; a process group of its own."""
 
-    def __init__(self, screen: VirtualScreen, arguments: list[str], folder: Path) -> None:
+    def __init__(self, screen: VirtualScreen, line: str, folder: Path, environment: Mapping[str, str]) -> None:
         self.screen = screen
-        self.environment = {
-            **os.environ,
-            "DISPLAY": screen.display,
-            "XDG_DOCUMENTS_DIR": str(folder / "documents"),
-            "XDG_DATA_HOME": str(folder / "data"),
-            "SDL_VIDEODRIVER": "x11",
-            "PYTHONPATH": os.pathsep.join(sys.path),
-        }
-        command = [sys.executable, "-m", "sandbox", *arguments, "--scale", "1", "--states"]
+        self.environment = {**environment, "DISPLAY": screen.display, "SDL_VIDEODRIVER": "x11"}
         self.app = subprocess.Popen(
-            command, env=self.environment, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-        )
+            line, shell=True, env=self.environment, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            start_new_session=True,
+        )  # fmt: skip
 
     def do(self, *arguments: object) -> str:
         words = ["xdotool", *map(str, arguments)]
         return subprocess.run(words, env=self.environment, capture_output=True, text=True).stdout.strip()
 
     def title(self) -> str:
-        return self.do("search", "--onlyvisible", "--class", "spring-sandbox", "getwindowname")
+        return self.do(*WINDOW, "getwindowname")
+
+    def size(self) -> tuple[int, int]:
+        """Width and height of the window [pixels]."""
+        told = dict(line.split("=") for line in self.do(*WINDOW, "getwindowgeometry", "--shell").splitlines())
+        return int(told["WIDTH"]), int(told["HEIGHT"])
+
+    def click_inside(self) -> None:
+        """Click into the window, above its middle: on a card of the gallery, beside a dialog; the window shows it."""
+        width, height = self.size()
+        # Whoever was here before may have left the mouse at that very place.
+        self.move((0, 0))
+        click = "mousemove", "--window", "%1", width // 2, height // 3, "click", 1
+        assert self.seen(*WINDOW, *click), "a click changes no pixel"
+        assert self.app.poll() is None, "a click ends it"
+
+    def leave(self) -> None:
+        """Close the window by its key; the program ends well and says nothing on the standard error."""
+        for _ in looks(DEADLINE, GLANCE):
+            self.do("key", "ctrl+q")
+            if self.app.poll() is not None:
+                break
+        _, said = self.app.communicate(timeout=DEADLINE)
+        assert (self.app.returncode, said) == (0, b""), f"exit code {self.app.returncode}\n{said.decode()}"
+
+    def end(self) -> None:
+        """End what is left of the process group."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.app.pid, signal.SIGKILL)
+        self.app.wait()
 
     def wait_for(self, *words: str, without: str = "\0") -> None:
         """Poll the title until it has the words."""
@@ -105,7 +131,7 @@ class Person:
             title = self.title()
             if all(word in title for word in words) and without not in title:
                 return
-            assert self.app.poll() is None, self.app.communicate()[0].decode()
+            assert self.app.poll() is None, b"\n".join(self.app.communicate()).decode()
         raise AssertionError(f"the title is {title!r}, without {words}")
 
     def seen(self, *arguments: object, patience: float = DEADLINE) -> bool:
@@ -147,3 +173,16 @@ class Person:
         if while_held:
             self.wait_for_tick(self.tick() + HELD_TICKS)
         self.do("mouseup", 1)
+
+
+class Person(Visitor):
+    """Drives the app's window and reads its states; arguments: of `sandbox`; folder: holds documents and data."""
+
+    def __init__(self, screen: VirtualScreen, arguments: list[str], folder: Path) -> None:
+        line = shlex.join(["exec", sys.executable, "-m", "sandbox", *arguments, "--scale", "1", "--states"])
+        own = {
+            "XDG_DOCUMENTS_DIR": str(folder / "documents"),
+            "XDG_DATA_HOME": str(folder / "data"),
+            "PYTHONPATH": os.pathsep.join(sys.path),
+        }
+        super().__init__(screen, line, folder, {**os.environ, **own})
