@@ -12,6 +12,17 @@ VERDICT = """new Promise((done) => {
   const look = () => (state.className ? done(state.textContent) : requestAnimationFrame(look));
   look();
 })"""
+# Until a toy of one's own page is there.
+READY = """new Promise((done) => {
+  const look = () => (globalThis.toy?.run ? done() : requestAnimationFrame(look));
+  look();
+})"""
+# Until some frames have passed: a browser has seen a finger stand still, or what is out of sight.
+FRAMES = """new Promise((done) => {
+  let left = 20;
+  const next = () => (left-- ? requestAnimationFrame(next) : done());
+  next();
+})"""
 SAVE = """TOY.recording().then(async (file) => {
   const bytes = new Uint8Array(await file.arrayBuffer());
   return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));

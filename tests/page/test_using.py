@@ -7,15 +7,9 @@ import pytest
 from tests.page.browser import Browser, Tab
 from tests.page.contrast import CONTRAST, LEAST_CONTRAST
 from tests.page.levels import level_page
-from tests.page.opened import opened
+from tests.page.opened import FRAMES, opened
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
-# Until a browser has seen a finger stand still.
-FRAMES = """new Promise((done) => {
-  let left = 20;
-  const next = () => (left-- ? requestAnimationFrame(next) : done());
-  next();
-})"""
 # Colours of text and of what is behind it, by their names in a page.
 PAIRS = (
     ["text", "surface"], ["muted", "field"], ["text", "back"], ["muted", "back"], ["on", "accent"], ["accent", "back"],

@@ -1,17 +1,34 @@
 // Drives: motors and hydraulics, driven while their keys are held.
 
+// Where a key is on the keyboard: what it is called changes with others that are down.
+const placeOf = ({ code, key }) => code || key.toLowerCase();
+
 export class Drives {
   #held = new Map();
+  // Names of keys that a keyboard holds, by their places.
+  #typed = new Map();
 
   // keys: parts and values by the name of a key; told: called with a key's name and whether it is held now.
   constructor(run, keys, told = () => {}) {
     Object.assign(this, { run, keys, told });
   }
 
-  // The key of a keyboard event, where it drives something.
-  nameOf(event) {
+  // Whether a key that went down drives something; it does so until the key goes up.
+  typed(event) {
     const name = event.key.replace('Arrow', '').toLowerCase();
-    return name in this.keys && !event.ctrlKey && !event.metaKey && !event.altKey && !event.shiftKey ? name : null;
+    if (!(name in this.keys) || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return false;
+    if (!event.repeat) {
+      this.press(name);
+      this.#typed.set(placeOf(event), name);
+    }
+    return true;
+  }
+
+  // A key went up. Of keys that go up while Meta is down a Mac tells nothing.
+  lifted(event) {
+    if (event.key === 'Meta') this.releaseTyped();
+    this.release(this.#typed.get(placeOf(event)));
+    this.#typed.delete(placeOf(event));
   }
 
   press(name) {
@@ -34,13 +51,21 @@ export class Drives {
     this.told(name, false);
   }
 
+  // Let go the keys that a keyboard holds, as it types elsewhere now.
+  releaseTyped() {
+    [...this.#typed.values()].forEach((name) => this.release(name));
+    this.#typed.clear();
+  }
+
   releaseAll() {
     [...this.#held.keys()].forEach((name) => this.release(name));
+    this.#typed.clear();
   }
 
   // No key is held any more, as time has jumped.
   forget() {
     for (const name of this.#held.keys()) this.told(name, false);
     this.#held.clear();
+    this.#typed.clear();
   }
 }

@@ -126,7 +126,8 @@ export class Hands {
     const on = (name, act) => canvas.addEventListener(name, act, how);
     on('pointerdown', (event) => this.#press(event));
     on('pointermove', (event) => this.#move(event));
-    for (const name of ['pointerup', 'pointercancel']) on(name, (event) => this.#lift(event));
+    // Whatever ends a press, it ends the capture.
+    for (const name of ['pointerup', 'lostpointercapture']) on(name, (event) => this.#lift(event));
     on('contextmenu', (event) => event.preventDefault());
     on('wheel', (event) => this.#turn(event));
   }
@@ -207,6 +208,10 @@ export class Hands {
   #move(event) {
     const pointer = this.#pointers.get(event.pointerId);
     if (!pointer) return;
+    if (!event.buttons) {
+      this.#lift(event);
+      return;
+    }
     const [x, y] = [event.offsetX, event.offsetY], point = this.camera.toWorld(x, y),
       held = this.#held.get(pointer.hand);
     if (held) this.#aim(held, point);
@@ -251,6 +256,12 @@ export class Hands {
 
   releaseAll() {
     [...this.#held.keys()].forEach((hand) => this.release(hand));
+  }
+
+  // End what pointers do, as if they were lifted.
+  letGo() {
+    for (const { hand } of this.#pointers.values()) if (this.#held.has(hand)) this.release(hand);
+    this.#pointers.clear();
   }
 
   // Hold nothing any more, as time has jumped.

@@ -122,10 +122,11 @@ class Page {
         className: 'key' });
       button.setAttribute('aria-label', `Drive with key ${name}`);
       button.addEventListener('pointerdown', (event) => {
+        if (event.button !== 0) return;
         button.setPointerCapture(event.pointerId);
         drives.press(name);
       });
-      for (const end of ['pointerup', 'pointercancel', 'blur', 'keyup']) button.addEventListener(end,
+      for (const end of ['lostpointercapture', 'blur', 'keyup']) button.addEventListener(end,
         () => drives.release(name));
       button.addEventListener('keydown', (event) => [' ', 'Enter'].includes(event.key) && drives.press(name));
       buttons.set(name, button);

@@ -51,7 +51,7 @@ export class Panel {
     this.springs.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
     root.append(this.springs, element('h2', { textContent: 'World' }), element('div', { className: 'fields' }, ...this.gravity.map((field) => field.parentElement)));
     for (const name of ['pointerdown', 'pointermove']) this.pad.addEventListener(name, (event) => this.#drag(event));
-    for (const name of ['pointerup', 'pointercancel']) this.pad.addEventListener(name, () => this.#end());
+    this.pad.addEventListener('lostpointercapture', () => this.#end());
     this.pad.addEventListener('keydown', (event) => this.#key(event));
     this.show();
   }

@@ -1,6 +1,7 @@
 // Sound: what is heard of a run: blows, breaks, jerks of strings and motors, made of a few sines and a little noise.
 
 const SOFTEST = 0.35, HARDEST = 9, NEWS = 1.5, MEMORY = 0.25, MOST = 4, JERK = 1, HARD_JERK = 8, REST = 90, VOICES = 12;
+const FADE = 0.12;
 const LEVELS = { thud: 0.8, pluck: 0.45, snap: 0.85, motor: 0.22 };
 const SCALE = [0, 2, 4, 7, 9], LOWEST = 65.41, STEPS = 26;
 
@@ -55,6 +56,11 @@ export class Sound {
     this.before = null;
     this.#usual = new Float64Array(this.bodies.mass.length).fill(Infinity);
     this.#jerks = this.#usual.slice();
+  }
+
+  // Let motors fall silent until the next tick: time stands.
+  rest() {
+    for (const { out } of this.#motors.values()) out.gain.setTargetAtTime(0, this.#context.currentTime, FADE);
   }
 
   // Take in a tick. pan: of a place across the view, -1..1.
@@ -197,7 +203,7 @@ export class Sound {
       const { hum, out } = this.#motors.get(part),
         effort = value[part] ? 0.2 + 0.8 * Math.min(turning / (Math.abs(speed) || 1), 1) : 0;
       hum.frequency.setTargetAtTime(70 + 9 * turning, this.#context.currentTime, 0.05);
-      out.gain.setTargetAtTime(0.35 * LEVELS.motor * effort, this.#context.currentTime, 0.12);
+      out.gain.setTargetAtTime(0.35 * LEVELS.motor * effort, this.#context.currentTime, FADE);
     }
   }
 }

@@ -59,35 +59,48 @@ export class Toy extends EventTarget {
     canvas.style.touchAction = 'none';
     const size = new ResizeObserver(() => this.#resize()), sight = new IntersectionObserver(([{ isIntersecting }]) => {
       this.#isSeen = isIntersecting;
+      if (!isIntersecting) this.#letGo();
     });
     size.observe(canvas);
     sight.observe(canvas);
     signal.addEventListener('abort', () => [size, sight].forEach((each) => each.disconnect()));
     on(keyboard, 'keydown', (event) => this.#key(event));
-    on(keyboard, 'keyup', (event) => this.drives.release(event.key.replace('Arrow', '').toLowerCase()));
-    on(globalThis, 'blur', () => this.drives.releaseAll());
+    on(keyboard, 'keyup', (event) => this.drives.lifted(event));
+    on(keyboard, 'blur', () => this.drives.releaseTyped());
+    for (const name of ['blur', 'pagehide']) on(globalThis, name, () => this.#letGo());
+    on(document, 'visibilitychange', () => this.#letGo());
     on(canvas, 'pointerdown', () => this.refresh());
     on(light, 'change', () => this.#follow());
     this.#follow();
     this.#resize();
   }
 
+  // Let go what keys and pointers hold: who is elsewhere is not heard when they are lifted.
+  #letGo() {
+    this.hands.letGo();
+    this.drives.releaseAll();
+    this.sound.rest();
+  }
+
   #key(event) {
     if (event.target.matches?.(TYPED_INTO)) return;
     if (event.target.matches?.('button, a') && [' ', 'Enter'].includes(event.key)) return;
-    const driven = this.drives.nameOf(event);
-    if (driven) {
-      if (!event.repeat) this.drives.press(driven);
-    } else if (event.ctrlKey || event.metaKey || event.altKey) return;
-    else if (event.key === ' ') this.toggle();
+    if (!this.drives.typed(event) && !this.#does(event)) return;
+    this.refresh();
+    event.preventDefault();
+  }
+
+  // Whether a key of no drive was of use.
+  #does(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return false;
+    if (event.key === ' ') this.toggle();
     else if (event.key === '.') this.step();
     else if (event.key === '+' || event.key === '-') {
       this.#isMoved = true;
       this.camera.zoomAbout(this.camera.width / 2, this.camera.height / 2, event.key === '+' ? KEY_ZOOM : 1 / KEY_ZOOM);
     } else if (['f', 'home'].includes(event.key.toLowerCase())) this.fit();
-    else if (!this.hands.key(event)) return;
-    this.refresh();
-    event.preventDefault();
+    else return this.hands.key(event);
+    return true;
   }
 
   // Draw at the next frame, also while time stands.
@@ -208,6 +221,7 @@ export class Toy extends EventTarget {
 
   toggle() {
     this.isPaused = !this.isPaused;
+    if (this.isPaused) this.sound.rest();
     this.#tell('pause', { isPaused: this.isPaused });
     this.refresh();
   }
