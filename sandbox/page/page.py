@@ -17,8 +17,8 @@ WEB = Path(__file__).with_name("web")
 KERNELS = FOLDER / "kernels.wasm"
 # In an order in which each is behind what it imports from.
 MODULES = (
-    "hash", "world", "run", "recording", "paint", "things", "draw", "hand", "drives", "panel", "sound", "checks", "toy",
-    "main",
+    "hash", "world", "run", "recording", "paint", "things", "draw", "hand", "drives", "panel", "sound", "checks",
+    "pace", "toy", "main",
 )  # fmt: skip
 GZIP_LEVEL = 9
 # The digits of the numbers that content is written in: none has a meaning in HTML or JavaScript.

@@ -59,6 +59,7 @@ class Page {
     const { toy } = this, on = (name, act) => toy.addEventListener(name, ({ detail }) => act(detail));
     on('say', ({ text, kind }) => this.#say(text, kind));
     on('theme', ({ name }) => this.#theme(name));
+    on('pace', ({ isBehind }) => { byId('pace').textContent = isBehind ? 'slower than real time' : ''; });
     on('jump', () => this.panel.show());
     on('draw', () => {
       this.#drawTime();

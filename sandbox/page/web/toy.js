@@ -3,23 +3,22 @@ import { Checks } from './checks.js';
 import { Camera, Picture } from './draw.js';
 import { Drives } from './drives.js';
 import { Hands } from './hand.js';
+import { Pace } from './pace.js';
 import { exchanged, written } from './recording.js';
 import { Run } from './run.js';
 import { Sound } from './sound.js';
 import { Refusal, World } from './world.js';
 
-// Ticks that one frame makes up for at most, and the longest time between two frames that counts [s].
-const MOST_TICKS = 4, LONGEST = 0.25, KEY_ZOOM = 1.15;
+const KEY_ZOOM = 1.15;
 const TYPED_INTO = 'input, select, textarea, [contenteditable], .pad';
 // The rows that have the names of a kind, where they are called otherwise.
 const COUNTED_BY = { part: 'actuator' };
 const light = matchMedia('(prefers-color-scheme: light)');
 
 // It tells what happens as events: tick, break { springs }, check { name, holds, value }, say { text, kind }, pause,
-// jump, theme and draw.
+// pace { isBehind }, jump, theme and draw.
 export class Toy extends EventTarget {
-  #owed = 0;
-  #then = performance.now();
+  #pace = new Pace();
   #isDirty = true;
   #isMoved = false;
   #isSeen = true;
@@ -30,6 +29,8 @@ export class Toy extends EventTarget {
   #covered = 0;
   #closing = new AbortController();
   isPaused = false;
+  // Whether the machine is too slow for it of late.
+  isBehind = false;
   // How fast time passes: 1 as in the world.
   speed = 1;
 
@@ -156,19 +157,25 @@ export class Toy extends EventTarget {
   }
 
   #play(now) {
-    const passed = Math.min((now - this.#then) / 1000, LONGEST);
-    this.#then = now;
+    const pace = this.#pace;
+    if (this.isPaused || !this.#isSeen) pace.rest(now);
     if (this.#isSeen) this.#guarded(() => {
-      if (!this.isPaused) this.#owed = Math.min(this.#owed + passed * this.rate * this.speed, MOST_TICKS);
-      for (; this.#owed >= 1 && !this.isPaused; this.#owed -= 1) this.tick();
+      if (!this.isPaused) pace.pass(now, this.rate * this.speed, () => {
+        this.tick();
+        return !this.isPaused;
+      });
       if (!this.isPaused || this.#isDirty) this.#draw(now / 1000);
     });
+    if (this.isBehind !== pace.isBehind) {
+      this.isBehind = pace.isBehind;
+      this.#tell('pace', { isBehind: this.isBehind });
+    }
     this.#frame = requestAnimationFrame((next) => this.#play(next));
   }
 
   #draw(seconds) {
     this.#isDirty = false;
-    this.picture.draw(this.camera, this.theme, this.#previous, this.isPaused ? 1 : this.#owed, seconds);
+    this.picture.draw(this.camera, this.theme, this.#previous, this.isPaused ? 1 : this.#pace.part, seconds);
     this.hands.draw(this.canvas.getContext('2d'), this.picture.at, this.theme);
     this.#tell('draw');
   }
@@ -264,7 +271,7 @@ export class Toy extends EventTarget {
     this.#previous = this.world.view('state.position').slice();
     this.sound.forget();
     this.#checks.begin();
-    this.#owed = 0;
+    this.#pace.rest(performance.now());
     this.#tell('jump');
     this.refresh();
   }
