@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from sandbox.export.policy import policy
 from sandbox.page.image import Image
 from sandbox.physics.jit.library import FOLDER
 
@@ -21,6 +22,8 @@ MODULES = (
     "pace", "toy", "main",
 )  # fmt: skip
 GZIP_LEVEL = 9
+# Sources in policies: that lets kernels be compiled, and that of the icon; without one a browser asks a server for it.
+COMPILING, ICON = "'wasm-unsafe-eval'", "data:"
 # The digits of the numbers that content is written in: none has a meaning in HTML or JavaScript.
 DIGITS = string.digits + string.ascii_letters + "!#$%()*+,-./:;=?@[]^_{|"
 _POWERS = (85**4, 85**3, 85**2, 85, 1)
@@ -44,26 +47,37 @@ def toy_file(content: bytes) -> bytes:
 
 def page_text(title: str, hints: str, content: bytes) -> str:
     """The page of a toy that needs no other file. hints: what there is to do."""
+    whole = f"{script()}from_main.start(from_main.unpack());\n"
     held = {
         "TOY": packed(content),
         "KERNELS": packed(KERNELS.read_bytes()),
-        "SCRIPT": packed(f"{script()}from_main.start(from_main.unpack());\n".encode()),
+        "SCRIPT": packed(whole.encode()),
         "DIGITS": DIGITS,
     }
-    return filled("page", TITLE=html.escape(title), HINTS=html.escape(hints), HOME="", PARTS=filled("packed", **held))
+    # The page makes a script of what it has unpacked.
+    return _page(title, hints, "", filled("packed", **held), f"<script>{whole}</script>", script=COMPILING)
 
 
 def linked_page_text(title: str, hints: str, toy: str, modules: str, home: str) -> str:
-    """The page of a toy whose files lie beside it. toy, modules, home: addresses of its file, of scripts, of a list."""
-    back = f'<a href="{html.escape(home)}">All levels</a>'
-    parts = filled("linked", TOY=toy, MODULES=modules)
-    return filled("page", TITLE=html.escape(title), HINTS=html.escape(hints), HOME=back, PARTS=parts)
+    """The page of a toy whose files lie beside it. toy, modules, home: quoted addresses of file, scripts and list."""
+    back, parts = f'<a href="{home}">All levels</a>', filled("linked", TOY=toy, MODULES=modules)
+    return _page(title, hints, back, parts, script=f"'self' {COMPILING}", connect="'self'")
+
+
+def _page(title: str, hints: str, home: str, parts: str, made: str = "", **sources: str) -> str:
+    """A page of these parts, which may run them and what it makes of them, and has these sources."""
+    held_to = policy(_template("page"), parts, made, img=ICON, **sources)
+    given = {"TITLE": html.escape(title), "HINTS": html.escape(hints), "HOME": home, "PARTS": parts}
+    return filled("page", POLICY=held_to, **given)
 
 
 def filled(template: str, **parts: str) -> str:
     """A template of the folder `web` with these parts in place of their names."""
-    text = (WEB / f"{template}.html").read_text(encoding="utf-8")
-    return _PLACE.sub(lambda found: parts[found[1]], text)
+    return _PLACE.sub(lambda found: parts[found[1]], _template(template))
+
+
+def _template(name: str) -> str:
+    return (WEB / f"{name}.html").read_text(encoding="utf-8")
 
 
 def script() -> str:

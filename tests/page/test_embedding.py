@@ -12,17 +12,14 @@ from sandbox import Session, load_level
 from sandbox.cli import main
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import parse_level
+from sandbox.page.page import WEB
 from sandbox.replay import read_replay, verify
 from sandbox.session.check_run import run_checks
 from tests.page.browser import Browser, Tab
-from tests.page.opened import saved
+from tests.page.opened import READY, saved
 from tests.page.site_server import served
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "how-to-embed.md"
-READY = """new Promise((done) => {
-  const look = () => (globalThis.toy?.run ? done() : requestAnimationFrame(look));
-  look();
-})"""
 HEARD = """(async () => {
   const heard = [];
   for (const name of ['break', 'check']) toy.addEventListener(name, ({ detail }) => heard.push([name, detail]));
@@ -35,17 +32,22 @@ HEARD = """(async () => {
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A site of a few levels with the page of the document, and with checks of all kinds."""
     folder = tmp_path_factory.mktemp("own")
     (folder / "checked.json").write_text(level_text(_checked()), encoding="utf-8")
     assert main(["site", "rope", "breaking_bridge", str(folder / "checked.json"), "-o", str(folder)]) == 0
-    (shown,) = re.findall(r"```html\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL)
+    shown, _ = re.findall(r"```html\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL)
     for name in ("rope", "breaking_bridge", "checked"):
         page = textwrap.dedent(shown).replace("levels/rope.toy", f"levels/{name}.toy")
         (folder / f"{name}.html").write_text(page, encoding="utf-8")
     (folder / "own.html").write_text(textwrap.dedent(shown), encoding="utf-8")
-    with served(folder) as at:
+    return folder
+
+
+@pytest.fixture(scope="module")
+def address(own: Path) -> Iterator[str]:
+    with served(own) as at:
         yield at
 
 
@@ -86,6 +88,35 @@ def test_the_page_of_the_document_plays_tells_and_pauses(browser: Browser, addre
     tab.evaluate("document.getElementById('pause').click()")
     assert tab.evaluate("toy.isPaused")
     assert tab.faults == []
+
+
+def test_the_document_has_every_event_that_a_toy_tells() -> None:
+    told = set(re.findall(r"#tell\('(\w+)'", (WEB / "toy.js").read_text(encoding="utf-8")))
+    table = DOCUMENT.read_text(encoding="utf-8").partition("| event | when")[2]
+    names = {name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.partition(" | ")[0])}
+    assert told <= names and "pace" in told
+
+
+def test_a_page_under_the_policy_of_the_document_plays_and_lets_nothing_else_in(browser: Browser, own: Path) -> None:
+    page, policy = re.findall(r"```html\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL)
+    before, script, after = re.split(r'<script type="module">|</script>', textwrap.dedent(page))
+    (own / "own.js").write_text(script, encoding="utf-8")
+    head = f'<meta charset="utf-8">\n{policy}'
+    text = before.replace('<meta charset="utf-8">', head).replace(' style="width: 100%; height: 400px"', "")
+    (own / "under.html").write_text(f'{text}<script type="module" src="own.js"></script>{after}', encoding="utf-8")
+    with served(own) as at:
+        tab = _opened(browser, at, "under")
+        tab.evaluate("new Promise((done) => toy.addEventListener('tick', done, { once: true }))")
+        tab.mouse("mousePressed", 100, 60)
+        tab.mouse("mouseMoved", 140, 90)
+        tab.mouse("mouseReleased", 140, 90)
+        tab.evaluate("toy.sound.toggle()")
+        assert verify(read_replay(saved(tab, own, "toy"))) is None
+        assert tab.faults == []
+        tab.evaluate(
+            "document.body.append(Object.assign(document.createElement('script'), { textContent: 'injected = 1' }))"
+        )
+        assert tab.evaluate("globalThis.injected ?? null") is None
 
 
 def test_a_particle_is_where_the_desktop_has_it(browser: Browser, address: str) -> None:

@@ -1,5 +1,6 @@
 """The site: every link leads somewhere, every level plays at its address, and all can be read and reached by keys."""
 
+import shutil
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 
 from sandbox.cli import main
 from sandbox.level.reading.files import shipped_levels
-from tests.page.browser import Browser
+from tests.page.browser import Browser, page_address
 from tests.page.contrast import CONTRAST, LEAST_CONTRAST
 from tests.page.site_server import served
 
@@ -97,6 +98,15 @@ def test_a_level_plays_at_its_own_address(browser: Browser, address: str, stem: 
     tab.evaluate("page.toy.pause(); for (let k = 0; k < 5; k++) page.toy.tick()")
     assert tab.evaluate("page.toy.world.time") >= 5
     assert tab.faults == []
+
+
+def test_a_page_that_lacks_its_modules_says_so_in_a_line(browser: Browser, site: Path, tmp_path: Path) -> None:
+    said = "document.getElementById('error').textContent"
+    tab = browser.tab().open(page_address(site / "levels" / "rope.html"))
+    assert tab.evaluate(said) == "From a disk browsers load no modules. Put the whole site on a web server."
+    shutil.copytree(site / "levels", tmp_path / "levels")
+    with served(tmp_path) as at:
+        assert browser.tab().open(f"{at}levels/rope.html").evaluate(said).startswith("This page was cut off")
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])

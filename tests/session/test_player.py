@@ -1,42 +1,17 @@
-"""Pages that play runs: what they hold, and in a real browser that keys play, step and seek them."""
+"""Pages that play runs: what they hold."""
 
 import base64
 import json
-import os
 import re
-import shutil
-import signal
-import subprocess
-from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from queue import Queue
-from threading import Thread
-from urllib.parse import unquote, urlsplit
 
 import numpy as np
-import pytest
 
-from sandbox.session.commands import AddParticle, CutSprings
+from sandbox.session.commands import AddParticle
 from sandbox.session.player.page import PlayerPage
-from sandbox.session.player.reel import NOWHERE, STEPS, Reel, gathered, shown_box, steps_between, told_states
+from sandbox.session.player.reel import NOWHERE, STEPS, Reel, shown_box, steps_between
 from sandbox.session.session import Session
+from tests.support.player_page import TICKS, rope_page
 from tests.support.rope_level import rope_level
-
-BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "chrome")
-TICKS = 30
-
-
-def rope_page(title: str = "Rope", lines=("first difference at tick 12",)) -> PlayerPage:
-    """A page of a rope beside one of which a spring is cut at tick 12."""
-    level = rope_level()
-    runs = [Session(level), Session(level)]
-    box = shown_box(level, runs[0].world)
-    for _ in range(12):
-        runs[1].advance()
-    runs[1].submit(CutSprings((4,)))
-    reels = [gathered(Reel(name, level, box), told_states(run, 0, TICKS), 3, 13)
-             for name, run in zip(("expected", "actual"), runs, strict=True)]  # fmt: skip
-    return PlayerPage(title, box, 60, reels, marks=[(12, "cut_springs")], difference=(13, 5), lines=lines)
 
 
 def data_of(page: PlayerPage) -> dict:
@@ -86,84 +61,4 @@ def test_a_page_of_a_long_run_has_fewer_pictures():
 def test_no_name_of_a_level_can_become_part_of_the_page():
     text = rope_page("</title><script>alert(1)</script>@DATA@", ["</script><script>alert(2)</script>"]).text()
     assert "<script>alert" not in text and text.count("@DATA@") == 2
-    assert not re.search(r"https?://|<link|<img|\bsrc=", text)
-
-
-PROBE = """
-<script>
-const seen = [], state = () => [+document.documentElement.dataset.tick, document.documentElement.dataset.playing];
-const press = (key, more) => document.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true, ...more}));
-const note = what => seen.push([what, ...state()]);
-note("begin");
-const keys = ["Home", "ArrowRight", "ArrowRight", "ArrowLeft", "End", "ArrowRight", "d", "Home"];
-for (const key of keys) press(key), note(key);
-press("ArrowRight", {shiftKey: true}); note("ten");
-document.getElementById("scrub").value = 2;
-document.getElementById("scrub").dispatchEvent(new Event("input")); note("scrub");
-press("o"); note(document.getElementById("over").getAttribute("aria-pressed"));
-const pixels = [...document.querySelectorAll("canvas")].map(
-  c => c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some(each => each > 0));
-press("Home"); press(" "); note("plays");
-const waiting = setInterval(() => {
-  if (state()[0] === 0) return;
-  clearInterval(waiting);
-  note("later"); press(" "); note("pauses");
-  const apart = document.getElementById("now").textContent;
-  location.href = "told?" + encodeURIComponent(JSON.stringify({seen, pixels, apart}));
-}, 50);
-</script>
-</body>
-"""
-LONGEST = 120
-
-
-class Probed(BaseHTTPRequestHandler):
-    """Gives a page to a browser, and keeps what the page tells back by where it goes: its policy lets it do no more."""
-
-    def do_GET(self):
-        address = urlsplit(self.path)
-        if address.path == "/told":
-            self.server.told.put(json.loads(unquote(address.query)))
-        self.send_response(200)
-        self.end_headers()
-        self.wfile.write(self.server.page if address.path == "/" else b"")
-
-    def log_message(self, *_):
-        pass
-
-
-@contextmanager
-def opened_in(browser, page: str, folder):
-    """A queue of what a page tells that a real browser shows, in its own time, until the block is left."""
-    with ThreadingHTTPServer(("127.0.0.1", 0), Probed) as server:
-        server.page, server.told = page.encode(), Queue()
-        Thread(target=server.serve_forever, daemon=True).start()
-        quiet = ("--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync")
-        options = ("--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0", *quiet)
-        address = f"http://127.0.0.1:{server.server_port}/"
-        shown = subprocess.Popen(
-            [browser, *options, f"--user-data-dir={folder}", address],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)  # fmt: skip
-        try:
-            yield server.told
-        finally:
-            os.killpg(shown.pid, signal.SIGTERM)
-            shown.wait()
-            server.shutdown()
-
-
-def test_in_a_browser_keys_play_step_and_seek(tmp_path):
-    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if browser is None:
-        pytest.skip(f"no browser is installed: none of {', '.join(BROWSERS)}")
-    with opened_in(browser, rope_page().text().replace("</body>", PROBE), tmp_path) as told:
-        found = told.get(timeout=LONGEST)
-    seen = {what: tick for what, tick, _ in found["seen"]}
-    assert found["seen"][0][1] == 13
-    ticks = [tick for _, tick, _ in found["seen"][1:9]]
-    assert ticks == [0, 3, 6, 3, 30, 30, 13, 0]
-    assert (seen["ten"], seen["scrub"], seen["true"]) == (27, 6, 6)
-    assert found["pixels"] == [True, True]
-    states = {what: playing for what, _, playing in found["seen"]}
-    assert (states["plays"], states["pauses"]) == ("true", "false")
-    assert 0 < seen["later"] <= 30 and found["apart"].endswith("m apart")
+    assert not re.search(r"https?://|<img|\bsrc=|<link(?! rel=\"icon\" href=\"data:,\")", text)

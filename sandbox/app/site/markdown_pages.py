@@ -11,13 +11,16 @@ from urllib.parse import urlsplit
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
-from sandbox.app.site.site import STYLE, link_list
+from sandbox.app.site.site import OWN, STYLE, link_list
+from sandbox.export.policy import policy
 from sandbox.level.format.writing import write_file
 from sandbox.page.page import filled
 
 MARKDOWN, PAGE = ".md", ".html"
 # What is no letter of an address, as GitHub has it.
 _NO_LETTER = re.compile(r"[^\w -]")
+# Where something comes from that is no file of a site.
+_SOURCE = re.compile(r"https?://[\w.-]+(:\d+)?(?=/|$)|data:")
 _PARSER = MarkdownIt("commonmark").enable("table")
 
 
@@ -69,8 +72,10 @@ def write_documents(documents: Mapping[Path, list[Token]], folder: Path) -> dict
             there.parent.mkdir(parents=True, exist_ok=True)
             write_file(there, file.read_bytes())
         links = {"Levels": f"{back}/index.html"} | {title: f"{back}/{at}" for title, at in titles.items()}
+        held_to = policy(style=OWN, img=" ".join([OWN, *_elsewhere(tokens)]))
         text = filled(
             "document", TITLE=html.escape(_title(path, tokens)), LINKS=link_list(links), STYLE=f"{back}/{STYLE}",
+            POLICY=held_to,
             TEXT=_PARSER.renderer.render(tokens, _PARSER.options, {}),
         )  # fmt: skip
         write_file(page, text.encode())
@@ -94,6 +99,12 @@ def _links(tokens: list[Token]) -> Iterator[tuple[Token, str]]:
             yield token, "href" if token.type == "link_open" else "src"
 
 
+def _elsewhere(tokens: list[Token]) -> list[str]:
+    """Where pictures come from that lie outside of a site, as a policy names it."""
+    addresses = (str(token.attrs[name]) for token, name in _links(tokens) if name == "src")
+    return sorted({found[0] for found in map(_SOURCE.match, addresses) if found})
+
+
 def _file_at(page: Path, address: str) -> Path | None:
     """The file that an address in a document stands for; None where it leads elsewhere, or into the document."""
     name = address.partition("#")[0]
@@ -106,6 +117,10 @@ def _file_at(page: Path, address: str) -> Path | None:
 def _turn(tokens: list[Token], path: Path) -> list[Path]:
     """Give headings their names and links the addresses of pages; the files that are shown as they are."""
     shown = []
+    for token in tokens:
+        # A policy allows no styles beside those of the style sheet.
+        if "style" in token.attrs:
+            token.attrSet("class", str(token.attrs.pop("style")).removeprefix("text-align:"))
     for opening, inline in pairwise(tokens):
         if opening.type == "heading_open":
             opening.attrSet("id", _NO_LETTER.sub("", inline.content.strip().lower()).replace(" ", "-"))

@@ -4,11 +4,13 @@ import html
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import quote
 
 from sandbox.app.draw.colours import THEME_NAMES
 from sandbox.app.draw.picture_cache import SIZE, SUFFIX, draw_at_once, keep_picture, picture_key, shipped_picture
 from sandbox.app.gallery.sections import SECTIONS, GallerySection
 from sandbox.app.share.playing import playable
+from sandbox.export.policy import policy
 from sandbox.level.document.model import Level
 from sandbox.level.format.writing import write_file
 from sandbox.page.page import KERNELS, MODULES, WEB, filled, linked_page_text, toy_file
@@ -16,15 +18,22 @@ from sandbox.page.page import KERNELS, MODULES, WEB, filled, linked_page_text, t
 # Folders of a site: pages of levels, their pictures, and the modules with the kernels.
 LEVELS, PICTURES, SCRIPTS = "levels", "pictures", "sandbox"
 STYLE = "site.css"
+# What pages without scripts may load. To some browsers no file of a disk belongs to the page itself.
+OWN = "'self' file:"
 
 
 @dataclass(frozen=True)
 class SiteLevel:
-    """A level of a site; stem: of its addresses, path: of its file."""
+    """A level of a site; stem: of its files, path: of the level's own."""
 
     stem: str
     path: Path
     level: Level
+
+    @property
+    def address(self) -> str:
+        """The stem as addresses have it."""
+        return quote(self.stem)
 
 
 def write_site(levels: Mapping[str, SiteLevel], folder: Path, title: str, links: Mapping[str, str]) -> Iterator[None]:
@@ -41,7 +50,8 @@ def write_site(levels: Mapping[str, SiteLevel], folder: Path, title: str, links:
         yield
     cards = "".join(_section(section, levels) for section in sections_of(levels))
     documents = f'<h2>Documents</h2><nav aria-label="Documents"><ul>{link_list(links)}</ul></nav>' if links else ""
-    text = filled("index", TITLE=html.escape(title), LEVELS=cards, DOCUMENTS=documents)
+    held_to = policy(style=OWN, img=OWN)
+    text = filled("index", TITLE=html.escape(title), POLICY=held_to, LEVELS=cards, DOCUMENTS=documents)
     write_file(folder / "index.html", text.encode())
 
 
@@ -66,7 +76,7 @@ def _made(path: Path) -> Path:
 def _write_level(each: SiteLevel, folder: Path) -> None:
     made = playable(each.level)
     write_file(_made(folder / LEVELS / f"{each.stem}.toy"), toy_file(made.content))
-    page = linked_page_text(made.title, made.hints, f"{each.stem}.toy", f"../{SCRIPTS}", "../index.html")
+    page = linked_page_text(made.title, made.hints, f"{each.address}.toy", f"../{SCRIPTS}", "../index.html")
     write_file(folder / LEVELS / f"{each.stem}.html", page.encode())
     key = picture_key(each.path.read_bytes())
     for theme in THEME_NAMES:
@@ -83,10 +93,10 @@ def _section(section: GallerySection, levels: Mapping[str, SiteLevel]) -> str:
 
 
 def _card(each: SiteLevel, words: str) -> str:
-    dark, light = (f"{PICTURES}/{each.stem}-{theme}{SUFFIX}" for theme in ("dark", "light"))
+    dark, light = (f"{PICTURES}/{each.address}-{theme}{SUFFIX}" for theme in ("dark", "light"))
     width, height = SIZE
     return (
-        f'<li><a href="{LEVELS}/{each.stem}.html"><picture><source media="(prefers-color-scheme: light)" '
+        f'<li><a href="{LEVELS}/{each.address}.html"><picture><source media="(prefers-color-scheme: light)" '
         f'srcset="{light}"><img src="{dark}" alt="" width="{width}" height="{height}" loading="lazy"></picture>'
         f"<h3>{html.escape(each.level.name)}</h3><p>{html.escape(words or each.level.description)}</p></a></li>"
     )

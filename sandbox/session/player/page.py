@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.export.policy import policy
 from sandbox.level.format.look import PALETTE
 from sandbox.level.format.writing import write_file
 from sandbox.session.player.reel import STEPS, Reel
@@ -49,6 +50,7 @@ class PlayerPage:
         # "<" could end the script that holds the data.
         packed = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
         text = TEMPLATE.read_text(encoding="utf-8")
+        text = text.replace("@POLICY@", policy(text, img="data:"))
         before, after = text.replace("@TITLE@", html.escape(self.title)).rsplit("@DATA@", 1)
         return before + packed + after
 
