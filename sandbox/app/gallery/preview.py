@@ -18,10 +18,8 @@ from sandbox.session.session import Session
 
 # It begins after the mouse has rested on a card for so long [s]; then it starts over every so often [s].
 REST, LOOP = 0.15, 8.0
-# Wall time [s] of a frame in which it is brought to where the still picture shows it.
+# Wall time [s] of a frame that its ticks may take; where they would take more, it plays slower than it is.
 BUDGET = 0.012
-# More ticks than this are not made up for in a frame: it then plays slower than it is.
-MOST_TICKS = 2
 
 
 class Preview:
@@ -78,9 +76,12 @@ class Preview:
 
     def _advance(self, session: Session, frame_time: float) -> None:
         rate = session.world.settings.tick_rate
-        for _ in range(min(self._clock.ticks(frame_time, rate), MOST_TICKS)):
+        end = time.perf_counter() + BUDGET
+        for _ in range(self._clock.ticks(frame_time, rate)):
             _tick(session)
             self._previous, self._current = self._current, session.snapshot()
+            if time.perf_counter() > end:
+                break
         # A new surface each time: the card may still show the last one.
         self.picture = pygame.Surface(self._size, 0, 32)
         self._renderer.draw(self.picture, self._camera, self._previous, self._current, self._clock.alpha(rate))
