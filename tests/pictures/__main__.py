@@ -2,10 +2,13 @@
 
 import sys
 
-from tests.pictures import cookbook, gallery, how_to, sharing
+from tests.pictures import cookbook, gallery, how_to, readme, sharing
 from tests.pictures.photographer import own_home
 
-PARTS = {"cookbook": cookbook.draw, "gallery": gallery.draw, "how_to": how_to.draw, "sharing": sharing.draw}
+PARTS = {
+    "cookbook": cookbook.draw, "gallery": gallery.draw, "how_to": how_to.draw, "readme": readme.draw,
+    "sharing": sharing.draw,
+}  # fmt: skip
 
 
 def main(names: list[str]) -> None:
