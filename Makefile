@@ -84,7 +84,7 @@ site: $(VENV)/installed-dev
 	$(BIN)/sandbox site --document README.md -o site
 
 bench: $(VENV)/installed-dev
-	failed=0; for bench in tests/bench/*.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || failed=1; \
+	failed=0; for bench in tests/bench/*.py tests/bench/*/__main__.py; do echo "## $$bench"; PYTHONPATH=. $(BIN)/python "$$bench" || failed=1; \
 	done; exit $$failed
 
 abuse: $(VENV)/installed-dev
