@@ -6,9 +6,13 @@ import tomllib
 import zipfile
 from pathlib import Path
 
+import pytest
+import yaml
+
 from sandbox.app.film.kinds import KINDS
 
 ROOT = Path(__file__).resolve().parents[1]
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 
 
 def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folder(tmp_path):
@@ -66,3 +70,38 @@ def test_make_play_installs_what_shared_files_need_and_no_compiler_and_dev_all_e
     recipe = makefile.split("$(VENV)/installed:")[1].split("\n\n")[0]
     assert '--editable ".[export]"' in recipe
     assert "play: $(VENV)/installed\n" in makefile
+
+
+def steps_of(workflow):
+    return [step for job in workflow["jobs"].values() for step in job.get("steps", ())]
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)
+def test_a_workflow_names_only_targets_of_make_and_files_that_exist(path):
+    workflow = yaml.safe_load(path.read_text(encoding="utf-8"))
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    lines = "\n".join(step.get("run", "") for step in steps_of(workflow))
+    for target in re.findall(r"\bmake ([\w-]+)", lines):
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
+    used = [job["uses"] for job in workflow["jobs"].values() if "uses" in job]
+    named = [*re.findall(r"(?<!\S)(\.[\w-]+/[\w./-]+)", path.read_text(encoding="utf-8")), *used]
+    assert [name for name in named if not (ROOT / name).exists()] == []
+    assert all(re.search(r"@(v\d+|release/v\d+)$", step["uses"]) for step in steps_of(workflow) if "uses" in step)
+
+
+def test_only_tests_run_by_themselves_and_each_other_workflow_is_in_the_guide_for_owners():
+    guide = (ROOT / "docs" / "releasing.md").read_text(encoding="utf-8")
+    for path in WORKFLOWS:
+        # YAML reads the word `on` as true.
+        triggers = set(yaml.safe_load(path.read_text(encoding="utf-8"))[True])
+        assert path.stem == "test" or triggers <= {"workflow_dispatch", "workflow_call"}, path.name
+        assert f"| `{path.stem}` |" in guide
+
+
+def test_only_what_publishes_may_write_and_only_to_where_it_publishes():
+    allowed = {"site": {"pages", "id-token"}, "release": {"id-token"}}
+    for path in WORKFLOWS:
+        workflow = yaml.safe_load(path.read_text(encoding="utf-8"))
+        given = [workflow["permissions"], *(job.get("permissions", {}) for job in workflow["jobs"].values())]
+        writing = {name for each in given for name, right in each.items() if right == "write"}
+        assert writing == allowed.get(path.stem, set()), path.name
