@@ -1,6 +1,8 @@
 """How much does a bridge carry? A check that no bar breaks is run under more and more load, until one does.
 
+```sh
 python examples/bridge_breaks.py
+```
 """
 
 from sandbox import Level, run_checks

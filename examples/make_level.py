@@ -1,6 +1,9 @@
 """A level made in Python: a rope bridge over a gap, a jelly on it, a balloon tied to it; written, read back, played.
 
-python examples/make_level.py [FILE]        then: sandbox play FILE
+```sh
+python examples/make_level.py mind_the_gap.json
+sandbox play mind_the_gap.json
+```
 """
 
 import sys

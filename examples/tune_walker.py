@@ -1,6 +1,8 @@
 """A creature learns to walk faster: a loop turns its two knobs, the swing of its muscles and their period.
 
-python examples/tune_walker.py [seconds]
+```sh
+python examples/tune_walker.py 5        # seconds that it walks; 5 unless told otherwise
+```
 """
 
 import sys

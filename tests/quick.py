@@ -18,10 +18,11 @@ ALWAYS = ("tests/test_architecture.py", "tests/test_contributing.py")
 LARGE = ("app", "physics")
 # Files and folders outside `sandbox` and `tests`, with what tests them.
 ELSEWHERE = {
-    "README.md": ("tests/test_documentation.py", "tests/test_examples.py"),
+    "README.md": ("tests/test_documentation.py",),
     "CHANGELOG.md": ("tests/test_documentation.py",),
     "CONTRIBUTING.md": (),
-    "docs/": ("tests/test_documentation.py",),
+    "docs/": ("tests/test_documentation.py", "tests/test_examples.py"),
+    ".github/": ("tests/test_packaging.py",),
     "examples/": ("tests/test_examples.py",),
     "levels/": ("tests/level/test_shipped_levels.py", "tests/level/test_levels_keep_their_word.py"),
     "assets/": ("tests/app/test_theme.py", "tests/test_packaging.py"),

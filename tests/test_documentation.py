@@ -10,10 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
+from sandbox.app.base.shortcuts import shortcuts
 from sandbox.level.reading.files import load_level, parse_level, shipped_levels
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy, spring_lengths
 from sandbox.physics.analysis.firmness import lowest_mode_of
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.analysis.stability import report
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.settings import WorldSettings
@@ -24,11 +27,13 @@ from sandbox.session.check_run import run_checks
 from sandbox.session.commands import COMMAND_TYPES
 from sandbox.session.replay.script import read_script
 from sandbox.session.session import Session
-from tests.pictures import gallery
+from tests.pictures import gallery, readme
 from tests.support.wobbles import firm_world
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+HEADLESS = (ROOT / "docs" / "headless.md").read_text(encoding="utf-8")
+ARCHITECTURE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 COMMANDS = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 PROSE = " ".join(PHYSICS.split())
@@ -39,17 +44,16 @@ EXACT = {"sqrt", "floor", "inf", "int32", "int64", "uint64", "float64"}
 FOLDERS = "sandbox|levels|assets|docs|tests|examples"
 
 
-def test_the_level_in_the_readme_keeps_its_own_checks():
-    section = README.split("## A level\n")[1]
-    text = "\n".join(line for line in section.lstrip("\n").split("\n\n")[0].splitlines() if line.startswith("    "))
-    results = run_checks(parse_level(text.encode(), "README.md"))
+def test_the_level_that_is_written_as_text_keeps_its_own_checks():
+    (text,) = re.findall(r"```json\n(.*?)```", (ROOT / "docs" / "how-to-levels.md").read_text("utf-8"), re.DOTALL)
+    results = run_checks(parse_level(text.encode(), "how-to-levels.md"))
     assert results and all(result.passed for result in results), [result.text for result in results]
 
 
-def test_the_program_in_the_readme_prints_that_every_tick_is_equal(tmp_path, monkeypatch, capsys):
+def test_the_program_that_uses_the_package_prints_that_every_tick_is_equal(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (program,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    exec(compile(program, "README.md", "exec"), {})
+    (program,) = re.findall(r"```python\n(.*?)```", HEADLESS, re.DOTALL)
+    exec(compile(program, "headless.md", "exec"), {})
     assert capsys.readouterr().out == "None\n"
 
 
@@ -133,23 +137,53 @@ def test_every_link_within_the_project_leads_somewhere(page):
 
 def test_the_gallery_has_every_level_with_its_text_and_picture():
     assert gallery.PAGE.read_text(encoding="utf-8") == gallery.page(), "python -m tests.pictures gallery"
-    named = set(re.findall(r"^    sandbox play (\w+)$", gallery.page(), re.MULTILINE))
+    named = set(re.findall(r"^sandbox play (\w+)$", gallery.page(), re.MULTILINE))
     assert named == {path.stem for path in shipped_levels()}
     assert {path.stem for path in gallery.FOLDER.glob("*")} == named
 
 
 def test_the_pictures_of_the_documentation_are_few_bytes_and_each_is_shown_somewhere():
-    folders = ("gallery", "how-to", "built-by-mouse", "sharing")
-    pictures = [path for folder in folders for path in (ROOT / "docs" / folder).iterdir()]
-    assert sum(path.stat().st_size for path in pictures) < 3_500_000
+    folders = ("gallery", "how-to", "built-by-mouse", "sharing", "readme")
+    pictures = [path for folder in folders for path in (ROOT / "docs" / folder).iterdir() if path.suffix != ".json"]
+    assert sum(path.stat().st_size for path in pictures) < 4_700_000
     shown = "".join(page.read_text(encoding="utf-8") for page in PAGES)
     assert [path.name for path in pictures if f"{path.parent.name}/{path.name}" not in shown] == []
 
 
-def test_the_map_in_the_readme_names_every_room_and_every_folder_and_no_other():
+def test_the_readme_is_short_and_begins_with_a_film_of_four_seconds():
+    assert len(README.splitlines()) <= 140
+    (first, *_) = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README)
+    path = ROOT / first
+    assert path.stat().st_size < 1_500_000
+    with Image.open(path) as film:
+        lengths = []
+        for number in range(film.n_frames):
+            film.seek(number)
+            film.load()
+            lengths.append(film.info["duration"])
+        assert film.info["loop"] == 0
+    assert sum(lengths) / 1000 == pytest.approx(4.0, abs=0.1)
+
+
+def test_the_film_of_the_readme_shows_steel_and_a_cut_and_nothing_leaves_its_pictures():
+    performance = readme.Performance()
+    moved = []
+    for _ in range(round(readme.LENGTH * performance.rate)):
+        performance.advance()
+        moved.append(performance.session.world.position.copy())
+    assert performance.share == 1.0 and not performance.session.messages
+    assert not performance.session.world.spring_active.all()
+    assert np.isfinite(moved[-1]).all()
+    left, bottom, right, top = performance.session.level.view
+    shown = shown_particles(performance.session.world)
+    places = np.array([each[: len(shown)][shown] for each in moved])
+    assert np.all((places > (left, bottom)) & (places < (right, top)))
+
+
+def test_the_map_of_the_project_names_every_room_and_every_folder_and_no_other():
     mapped = {
         name
-        for folders, _ in rows(README, "## Where things are")
+        for folders, _ in rows(ARCHITECTURE, "## Where things are")
         for name in re.findall(r"[\w/.]+", folders.replace("`", ""))
     }
     tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.split()
@@ -275,17 +309,37 @@ def test_kernels_use_no_operation_whose_bits_differ_between_machines():
     assert differing == []
 
 
-def test_every_figure_of_the_readme_s_benchmark_stands_in_the_full_table():
-    full = {(row[0], *row[2:4]) for row in rows(BENCHMARKS, "## Beside other engines")}
-    short = rows(README, "## Beside other engines")
-    assert len(short) == 6
-    assert [row for row in short for k in (1, 3, 5) if (row[0], row[k], row[k + 1]) not in full] == []
+KEYS = re.compile(r"(?<![\w+])((?:Ctrl\+)?(?:Shift\+)?(?:F\d+|[A-Z]|Space|Escape))(?![\w+])")
+
+
+@pytest.mark.parametrize(("heading", "mode"), [("## Play", "play"), ("## Edit", "edit")])
+def test_every_key_of_the_page_of_controls_is_one_of_the_window(heading, mode):
+    page = (ROOT / "docs" / "controls.md").read_text(encoding="utf-8")
+    named = {key for _, does in rows(page, heading) for key in KEYS.findall(does)}
+    known = {key for entry in shortcuts(mode) for key in entry.keys}
+    assert len(named) > 20 and named - known == set()
+
+
+def test_the_six_keys_of_the_readme_do_in_the_window_what_it_says():
+    actions = {key: entry.action for entry in shortcuts("play") for key in entry.keys}
+    told = [key for key, _ in rows(README, "## Start")]
+    assert [actions[key] for key in told] == ["palette", "tool_cut", "pause", "undo", "edit", "help"]
+
+
+def test_every_figure_of_the_readme_s_strip_stands_in_the_table_of_the_same_run():
+    table = {row[0].split(" (")[0]: row[2] for row in reversed(rows(BENCHMARKS, "## The same rope after a second"))}
+    (said,) = re.findall(r"!\[(The same rope[^\]]+)\]", README)
+    figures = dict(re.findall(r"in (pymunk|Box2D v3|Rapier)(?: stretched)? by ([\d.]+ %)", said))
+    (figures["Spring Sandbox"],) = re.findall(r"here by ([\d.]+ %)", said)
+    assert figures == table and len(table) == 4
 
 
 def test_every_benchmark_program_that_is_named_exists():
     named = re.findall(r"python -m tests\.bench\.(\w+)", BENCHMARKS)
     assert len(set(named)) > 5
-    assert [name for name in named if not (ROOT / "tests" / "bench" / f"{name}.py").is_file()] == []
+    bench = ROOT / "tests" / "bench"
+    places = {name: (bench / f"{name}.py", bench / name / "__main__.py") for name in named}
+    assert [name for name, paths in places.items() if not any(path.is_file() for path in paths)] == []
 
 
 def glossary():

@@ -1,6 +1,9 @@
 # Runs a flat level of the Spring Sandbox in Godot 4 and draws it: the script of a Node2D; set `path`.
 #
-# Made with: sandbox export LEVEL --to flat -o level.json
+# ```sh
+# sandbox export walker --to flat -o level.json
+# ```
+#
 # Not tried in Godot by its makers. What differs: discs touch terrain alone; areas, bends, motors, hydraulics and
 # breaking are not there.
 extends Node2D

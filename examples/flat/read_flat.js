@@ -1,8 +1,10 @@
 // Runs a flat level of the Spring Sandbox in plain JavaScript and prints where particles are.
 //
-//     node read_flat.js LEVEL.json [SECONDS [PARTICLE ...]]
+// ```sh
+// sandbox export walker --to flat -o walker.json
+// node examples/flat/read_flat.js walker.json 1 body.4        # for so many seconds, these particles; or all
+// ```
 //
-// Made with: sandbox export LEVEL --to flat -o LEVEL.json
 // What differs: discs touch terrain alone; bends, motors, hydraulics and breaking are not there.
 "use strict";
 

@@ -224,7 +224,7 @@ def _faults() -> str:
         try:
             parse_level(prose.EXAMPLE.replace(right, wrong, 1).encode(), "levels/x.json")
         except LevelError as error:
-            lines += [f"- `{wrong}`", "", "  ```", *(f"  {fault}" for fault in error.faults), "  ```"]
+            lines += [f"- `{wrong}`", "", "  ```text", *(f"  {fault}" for fault in error.faults), "  ```"]
     return "\n".join([*lines, ""])
 
 

@@ -52,7 +52,7 @@ An editor such as VS Code completes and checks a level whose first line is `"$sc
 schema into the same folder: `sandbox schema > level.schema.json`. To do it for every level of a folder, write into
 `.vscode/settings.json`:
 
-```
+```json
 {{"json.schemas": [{{"fileMatch": ["levels/*.json"], "url": "./level.schema.json"}}]}}
 ```
 
@@ -226,7 +226,7 @@ once, `after` a number of seconds. With `always` it measures at every tick of a 
 with `eventually` likewise, and one of them must hold. `sandbox check`, the editor's page Checks and
 [pytest](testing.md) run checks. No keys are pressed, except those that the check names in `hold`. Five examples:
 
-```
+```text
 {"name": "the rope never tears", "metric": "strain", "body": "rope", "always": [0, 10], "at_most": 0.2}
 {"name": "in the cup", "metric": "inside", "particle": "ball", "box": [4, 0, 5, 2], "eventually": [0, 20]}
 {"name": "the cube stands still", "metric": "settled", "body": "cube", "after": 15}

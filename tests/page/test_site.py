@@ -77,6 +77,13 @@ def test_a_crawler_finds_something_behind_every_link(site: Path) -> None:
     assert pages == set(seen)
 
 
+def test_a_document_begins_with_its_heading_below_one_row_of_links_and_ends_with_all_documents(site: Path) -> None:
+    text = (site / "docs" / "physics.html").read_text(encoding="utf-8")
+    first, last = text[: text.index("<h1")], text[text.index("<footer") :]
+    assert first.count("<a ") == 2 and "index.html" in first and "README.html" in first
+    assert last.count("<a ") == len(list(site.glob("docs/*.html"))) + len(list(site.glob("*.html"))) - 1
+
+
 def test_every_page_has_a_title_a_language_one_heading_and_words_for_its_pictures(site: Path) -> None:
     wrong, titles = [], set()
     for path in site.rglob("*.html"):

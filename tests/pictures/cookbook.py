@@ -77,7 +77,9 @@ OPENING = """\
 
 Small levels, one for each subject. Copy one into a file, or play it where it is:
 
-    sandbox play docs/cookbook/hanging_rope.json
+```sh
+sandbox play docs/cookbook/hanging_rope.json
+```
 
 The [level format](level-format.md) explains every field, and [How to make a level](how-to-levels.md) does the same by
 mouse. The program's own levels are in the [gallery](gallery.md).
@@ -111,7 +113,7 @@ def _entry(name: str, level: Level) -> list[str]:
     )  # fmt: skip
     about = textwrap.fill(level.description, 120, break_long_words=False, break_on_hyphens=False)
     picture = f"![{level.name}](cookbook/{name}.webp)"
-    command = f"    sandbox play {path_of(name).relative_to(ROOT).as_posix()}"
+    command = f"```sh\nsandbox play {path_of(name).relative_to(ROOT).as_posix()}\n```"
     return [f"### {level.name}", "", picture, "", about, "", command, "", f"```json\n{text}```"]
 
 

@@ -49,7 +49,7 @@ def page() -> str:
             level = load_level(name)
             about = _wrapped(f"{deed}. {level.description}")
             picture = f"![{level.name}](gallery/{name}.png)"
-            lines += ["", f"### {level.name}", "", picture, "", about, "", f"    sandbox play {name}"]
+            lines += ["", f"### {level.name}", "", picture, "", about, "", "```sh", f"sandbox play {name}", "```"]
     lines += ["", "The pictures are drawn by `make pictures`."]
     return "\n".join(lines) + "\n"
 

@@ -71,12 +71,12 @@ def write_documents(documents: Mapping[Path, list[Token]], folder: Path) -> dict
             there = folder / file.relative_to(root)
             there.parent.mkdir(parents=True, exist_ok=True)
             write_file(there, file.read_bytes())
-        links = {"Levels": f"{back}/index.html"} | {title: f"{back}/{at}" for title, at in titles.items()}
-        held_to = policy(style=OWN, img=" ".join([OWN, *_elsewhere(tokens)]))
+        others = {title: f"{back}/{at}" for title, at in titles.items()}
+        first = {"Levels": f"{back}/index.html"} | dict(list(others.items())[:1])
         text = filled(
-            "document", TITLE=html.escape(_title(path, tokens)), LINKS=link_list(links), STYLE=f"{back}/{STYLE}",
-            POLICY=held_to,
-            TEXT=_PARSER.renderer.render(tokens, _PARSER.options, {}),
+            "document", TITLE=html.escape(_title(path, tokens)), LINKS=link_list(first), STYLE=f"{back}/{STYLE}",
+            POLICY=policy(style=OWN, img=" ".join([OWN, *_elsewhere(tokens)])),
+            TEXT=_PARSER.renderer.render(tokens, _PARSER.options, {}), DOCUMENTS=link_list(others),
         )  # fmt: skip
         write_file(page, text.encode())
     return titles
