@@ -1,0 +1,103 @@
+"""The lines of the shell that documents show, and running them as they are written."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.support.person import DEADLINE, VirtualScreen, Visitor
+
+ROOT = Path(__file__).resolve().parents[2]
+# A fenced block, also one inside a program's comment.
+FENCED = re.compile(r"^([ #/]*)```sh\n(.*?)^\1```", re.DOTALL | re.MULTILINE)
+# Commands that open a window, and play until it is closed.
+WINDOWS = re.compile(r"^(\.venv/bin/)?sandbox( (play|edit|toy)\b.*)?$")
+
+
+@dataclass(frozen=True)
+class ShellLine:
+    """A line of a fenced block, with its page (from the project's root) and number there; text: without its comment."""
+
+    page: str
+    number: int
+    text: str
+
+    @property
+    def opens_a_window(self) -> bool:
+        return WINDOWS.match(self.text) is not None
+
+
+def pages() -> list[Path]:
+    """The documents that a person reads and copies lines from."""
+    found = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "examples").rglob("*")]
+    return sorted(path for path in found if path.suffix in (".md", ".py", ".js", ".gd"))
+
+
+def lines_of(page: Path) -> Iterator[ShellLine]:
+    """All lines of its fenced blocks; one that a backslash continues is one line."""
+    text = page.read_text(encoding="utf-8")
+    for block in FENCED.finditer(text):
+        number = text.count("\n", 0, block.start(2)) + 1
+        whole, begun = "", number
+        for line in block[2].splitlines():
+            whole += line.removeprefix(block[1]).rstrip()
+            number += 1
+            if whole.endswith("\\"):
+                whole = whole[:-1]
+                continue
+            words = re.sub(r"(^|\s)#.*", "", whole).strip()
+            if words:
+                yield ShellLine(page.relative_to(ROOT).as_posix(), begun, words)
+            whole, begun = "", number
+
+
+class Reader:
+    """Copies lines into a shell: in a folder with the project's files, with a home where nobody has been."""
+
+    def __init__(self, folder: Path, screen: VirtualScreen | None) -> None:
+        self.folder, self.home, self._screen = folder / "project", folder / "home", screen
+        self.home.mkdir()
+        self.folder.mkdir()
+        for name in ("docs", "levels", "examples", "assets"):
+            shutil.copytree(ROOT / name, self.folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        for path in (*ROOT.glob("*.md"), ROOT / "LICENSE"):
+            shutil.copy(path, self.folder)
+        (self.folder / ".venv").symlink_to(sys.prefix, target_is_directory=True)
+        kept = {
+            name: value for name, value in os.environ.items() if not name.startswith(("XDG_", "SANDBOX_", "PYTEST"))
+        }
+        programs = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+        self.environment = {**kept, "HOME": str(self.home), "PATH": programs}
+
+    def fault(self, line: ShellLine) -> str | None:
+        """Carry a line out; what was wrong with it."""
+        told = self._visit(line.text) if line.opens_a_window else self._run(line.text)
+        return told and f"{line.page}:{line.number}: {line.text}\n{told}"
+
+    def _run(self, text: str) -> str | None:
+        run = subprocess.run(
+            text, shell=True, env=self.environment, cwd=self.folder, capture_output=True, text=True, timeout=DEADLINE
+        )
+        # What a line answers by || is a difference that was looked for; a refusal says so on the standard error.
+        if run.returncode == 0 and not ("||" in text and run.stderr):
+            return None
+        return f"exit code {run.returncode}\n{run.stdout[-500:]}{run.stderr[-2000:]}"
+
+    def _visit(self, text: str) -> str | None:
+        """Open a window, click into it, close it; what was wrong."""
+        assert self._screen is not None
+        visitor = Visitor(self._screen, f"exec {text}", self.folder, self.environment)
+        try:
+            visitor.wait_for(" - Spring Sandbox")
+            visitor.click_inside()
+            visitor.leave()
+        except AssertionError as error:
+            return str(error)
+        else:
+            return None
+        finally:
+            visitor.end()
