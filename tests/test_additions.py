@@ -328,7 +328,7 @@ for name in ("r.start", "nobody"):
     except ValueError as error:
         print(error)
 """
-    assert play(package, script).splitlines() == ["line 1: r.0 is pinned", "line 1: there is no particle 'nobody'"]
+    assert play(package, script).splitlines() == ["line 1: r.0 is pinned", 'line 1: there is no particle "nobody"']
     assert changed(package) == ["session/commands/nudging.py"]
 
 

@@ -89,7 +89,7 @@ def test_a_script_that_names_nothing_is_refused_with_its_line(rope, tmp_path, ca
     assert main(["run", rope, "--ticks", "60", "--commands", str(moves)]) == 2
     out, err = _lines(capsys)
     assert out == []
-    assert err == [f"{moves}: tick 5: line 1: there is no particle 'rope.99'"]
+    assert err == [f'{moves}: tick 5: line 1: there is no particle "rope.99"']
 
 
 def test_commands_after_the_end_of_a_run_are_refused_and_one_at_its_end_is_carried_out(rope, tmp_path, capsys):
@@ -111,7 +111,7 @@ def test_a_spring_that_is_cut_twice_is_called_by_the_name_in_the_file(rope, tmp_
     line = '{"tick": 1, "command": {"type": "cut_springs", "springs": ["rope:3"]}}\n'
     moves.write_text(line + line.replace('"tick": 1', '"tick": 2'))
     assert main(["run", rope, "--ticks", "3", "--commands", str(moves)]) == 2
-    assert _lines(capsys)[1] == [f"{moves}: tick 2: line 2: there is no spring 'rope:3' to cut"]
+    assert _lines(capsys)[1] == [f'{moves}: tick 2: line 2: there is no spring "rope:3"']
 
 
 def test_a_probe_of_nothing_lists_names_that_are_near(rope, tmp_path, capsys):

@@ -170,7 +170,7 @@ def test_drives_of_nothing_and_beyond_1_are_refused_in_one_line():
         with pytest.raises(CommandError, match=text):
             apply(world, command)
     session = Session(busy_level(), [ScriptLine(0, 1, {"type": "set_drive", "part": "deck", "value": 1}, 1)])
-    with pytest.raises(CommandError, match="there is no driven part 'deck'"):
+    with pytest.raises(CommandError, match='there is no driven part "deck"'):
         session.advance()
 
 
@@ -242,10 +242,10 @@ def test_a_balloon_and_a_jelly_are_pumped_up_by_commands_that_replay_and_undo(tm
 
 def test_what_keeps_no_area_is_not_inflated():
     world = Session(busy_level()).world
-    with pytest.raises(CommandError, match="there is no body 0 that keeps an area"):
+    with pytest.raises(CommandError, match="there is no body that keeps an area 0"):
         apply(world, SetInflation(0, 1.0))
     session = Session(busy_level(), [ScriptLine(0, 1, {"type": "set_inflation", "body": "deck", "value": 1}, 1)])
-    with pytest.raises(CommandError, match="there is no body that keeps an area 'deck'"):
+    with pytest.raises(CommandError, match='there is no body that keeps an area "deck"'):
         session.advance()
     with pytest.raises(CommandError, match="value: must be less than or equal to 100"):
         apply(world, SetInflation(0, 101.0))

@@ -95,7 +95,7 @@ def test_what_cannot_be_had_is_refused_and_changes_nothing():
         (SetFirmness(0), "say sag, or hz"),
         (SetFirmness(0, sag=0.1, hz=2.0), "say sag, or hz"),
         (SetFirmness(0, sag=0.1, ratio=0.2), "say sag, or hz"),
-        (SetFirmness(1, sag=0.1), "there is no body 1 whose form may be stiff"),
+        (SetFirmness(1, sag=0.1), "there is no body whose form may be stiff 1"),
     ):
         with pytest.raises(CommandError, match=message):
             apply(world, command)

@@ -275,7 +275,7 @@ def test_a_recorded_command_that_names_nothing_is_refused(recorded, tmp_path, mo
     session.submit(Pin(5))
     session.advance()
     session.stop_recording()
-    with pytest.raises(ReplayError, match=r"run\.jsonl: line \d+: there is no particle 'rope\.99'"):
+    with pytest.raises(ReplayError, match=r"run\.jsonl: line \d+: there is no particle \"rope\.99\""):
         verify(read_replay(tmp_path / "run.jsonl"))
 
 

@@ -272,7 +272,7 @@ def test_a_command_in_the_past_starts_a_new_future(session):
         (Release(1), "hand 1 holds nothing"),
         (Pin(0), "rope.0 is pinned already"),
         (Unpin(3), "rope.3 is not pinned"),
-        (CutSprings((0, 500)), "there is no spring 500 to cut"),
+        (CutSprings((0, 500)), "there is no spring 500"),
         (AddSpring(3, 3), "a spring joins two different particles, not rope.3 to itself"),
         (SetCoefficients(1.5), "stiffness: must be less than or equal to 1"),
         (SetCoefficients(0.5, None, 9), "there is no material 9"),

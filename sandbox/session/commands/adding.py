@@ -7,7 +7,7 @@ from sandbox.level.format.quantities import FrictionCoefficient, Length, Mass, P
 from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
-from sandbox.session.commands.named import ParticleSlot, particle_of
+from sandbox.session.commands.named import ParticleSlot
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,8 @@ class AddSpring(Command):
     def carry_out(self, world: World) -> None:
         if world.spring_count >= SPRING_LIMIT:
             raise CommandError(f"a world holds at most {SPRING_LIMIT:,} springs")
-        name = particle_of(world, self.particle_a)
-        particle_of(world, self.particle_b)
         if self.particle_a == self.particle_b:
+            name = world.particle_names[self.particle_a]
             raise CommandError(f"a spring joins two different particles, not {name} to itself")
         world.add_springs(
             world.spring_naming.unused("+:", 1),

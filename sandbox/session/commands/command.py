@@ -7,16 +7,10 @@ from typing import Any, ClassVar
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from sandbox.physics.world import World
-
-
-class CommandError(ValueError):
-    """A command that cannot be carried out; its text is one line for a person, of a definition one line per fault."""
-
-    @property
-    def faults(self) -> list[str]:
-        """The lines, one for each fault."""
-        return str(self).splitlines()
-
+from sandbox.session.commands.conditions import Condition, faults_of
+from sandbox.session.commands.faults import CommandError as CommandError
+from sandbox.session.commands.faults import plain_fault
+from sandbox.session.commands.named import namespaces
 
 # Every command by the name that files use.
 COMMAND_TYPES: dict[str, type["Command"]] = {}
@@ -34,6 +28,9 @@ class Command(ABC):
         strict=True, extra="forbid", revalidate_instances="always", allow_inf_nan=False
     )
     type: ClassVar[str]
+    # What must hold of a world, beside that all it names is there; and the fault where there is nothing to act on.
+    conditions: ClassVar[tuple[Condition, ...]] = ()
+    nothing: ClassVar[str] = ""
 
     def __init_subclass__(cls) -> None:
         if "type" in vars(cls):
@@ -64,18 +61,17 @@ def adapter(kind: type[Command]) -> TypeAdapter[Any]:
     return _adapters[kind]
 
 
-def plain_fault(error: ValidationError) -> str:
-    """The first fault of a validation as `field: fault`, in one line."""
-    fault = error.errors(include_url=False, include_context=False, include_input=False)[0]
-    place = ".".join(part if part.isprintable() else repr(part) for part in map(str, fault["loc"]))[:80]
-    text = fault["msg"].replace("Input should be", "must be").splitlines()[0]
-    return f"{place}: {text}" if place else text
-
-
 def apply(world: World, command: Command) -> None:
     """Carry a command out. Raises CommandError and changes nothing where it cannot be."""
     try:
         adapter(type(command)).validate_python(command)
     except ValidationError as error:
         raise CommandError(plain_fault(error)) from None
+    for field, names in namespaces(type(command)).items():
+        value = getattr(command, field)
+        for slot in value if isinstance(value, tuple) else () if value is None else (value,):
+            names.check(world, slot)
+    for condition, row in faults_of(command.conditions, command, world):
+        named = namespaces(type(command)).get(condition.field)
+        raise CommandError(condition.words.format(named.names(world)[row] if named else row))
     command.carry_out(world)

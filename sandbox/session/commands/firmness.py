@@ -28,8 +28,6 @@ class SetFirmness(Command):
     ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = None
 
     def carry_out(self, world: World) -> None:
-        if self.body >= len(world.forms):
-            raise CommandError(f"there is no body {self.body} whose form may be stiff")
         if (self.sag is None) == (self.hz is None) or (self.hz is None and self.ratio is not None):
             raise CommandError("say sag, or hz with or without ratio")
         body = world.forms[self.body]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from sandbox.physics.components import body_of
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
-from sandbox.session.commands.named import ParticleSlot, particle_of
+from sandbox.session.commands.named import ParticleSlot
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Free(Command):
     particle: ParticleSlot
 
     def carry_out(self, world: World) -> None:
-        name = particle_of(world, self.particle)
+        name = world.particle_names[self.particle]
         if not world.has_contacts:
             raise CommandError("nothing touches anything here: there is nothing to free")
         # What finds contacts, which a run in which nothing touches does without.

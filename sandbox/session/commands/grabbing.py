@@ -9,14 +9,16 @@ from pydantic import Field
 from sandbox.level.format.quantities import Length, Point
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.world import HAND_STRENGTH, World
-from sandbox.session.commands.command import Command, CommandError
-from sandbox.session.commands.named import ParticleSlot, particle_of
+from sandbox.session.commands.command import Command
+from sandbox.session.commands.conditions import held_by, pinned
+from sandbox.session.commands.named import ParticleSlot
 
 # The strongest hand [m/s^2]: more than any body bears.
 STRONGEST_HAND = 1e6
 Hand = Annotated[int, Field(ge=0, lt=GRAB_COUNT)]
 # Largest force of a hand over the mass of the body that it holds [m/s^2].
 Strength = Annotated[float, Field(gt=0.0, le=STRONGEST_HAND)]
+_HOLDS = held_by(True, "hand {} holds nothing")
 
 
 @dataclass(frozen=True)
@@ -33,13 +35,12 @@ class Grab(Command):
     target: Point
     strength: Strength = HAND_STRENGTH
     radius: Length = 0.0
+    conditions = (
+        held_by(False, "hand {} holds something already"),
+        pinned(False, "{} is pinned: unpin it to drag it"),
+    )
 
     def carry_out(self, world: World) -> None:
-        name = particle_of(world, self.particle)
-        if world.is_held(self.grab):
-            raise CommandError(f"hand {self.grab} holds something already")
-        if world.inverse_mass[self.particle] == 0.0:
-            raise CommandError(f"{name} is pinned: unpin it to drag it")
         world.hold(self.grab, self.particle, self.target, self.strength, self.radius)
 
     def begins(self) -> Hashable:
@@ -56,9 +57,9 @@ class MoveGrab(Command):
     type = "move_grab"
     grab: Hand
     target: Point
+    conditions = (_HOLDS,)
 
     def carry_out(self, world: World) -> None:
-        _check_held(world, self.grab)
         world.move_grab(self.grab, self.target)
 
 
@@ -68,12 +69,7 @@ class Release(Command):
 
     type = "release"
     grab: Hand
+    conditions = (_HOLDS,)
 
     def carry_out(self, world: World) -> None:
-        _check_held(world, self.grab)
         world.release(self.grab)
-
-
-def _check_held(world: World, hand: int) -> None:
-    if not world.is_held(hand):
-        raise CommandError(f"hand {hand} holds nothing")

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from sandbox.level.format.quantities import Share
 from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import MaterialSlot
 
 
@@ -18,6 +18,4 @@ class SetCoefficients(Command):
     material: MaterialSlot | None = None
 
     def carry_out(self, world: World) -> None:
-        if self.material is not None and self.material >= len(world.material_names):
-            raise CommandError(f"there is no material {self.material}")
         world.set_coefficients(self.stiffness, self.damping, self.material)

@@ -1,33 +1,51 @@
 """Slots in commands, annotated with the namespace by whose names files call them."""
 
+import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, get_args, get_type_hints
 
 from pydantic import Field
 
-from sandbox.level.format.level_error import suggestion
+from sandbox.level.format.level_error import shown, suggestion
 from sandbox.physics.world import World
-from sandbox.session.commands.command import CommandError
+from sandbox.session.commands.faults import NO_NAME, NO_SLOT, CommandError
 
 
 @dataclass(frozen=True)
 class Named:
-    """Names of one kind of slot. noun: as messages call one; names: by slot; find: slot of a name, or KeyError."""
+    """Names of one kind of slot.
+
+    noun: as messages call one; names: by slot; find: slot of a name, or KeyError; kind: how pages call it, "": they
+    have none of it; active: the array of state that says which are in use, "": all.
+    """
 
     noun: str
     names: Callable[[World], Sequence[str]]
     find: Callable[[World, str], int]
+    kind: str = ""
+    active: str = ""
 
     def slot(self, world: World, name: Any) -> int:
         """The slot of a name that a file holds. Raises CommandError."""
         if not isinstance(name, str):
-            raise CommandError(f"a {self.noun} goes by its name in quotes, not {name!r:.80}")
+            raise CommandError(NO_NAME.format(self.noun))
         try:
             return self.find(world, name)
         except (KeyError, ValueError):
             near = suggestion(name, self.names(world))
-            raise CommandError(f"there is no {self.noun} {name!r:.80}{near}") from None
+            raise CommandError(NO_SLOT.format(self.noun, shown(name)) + near) from None
+
+    def check(self, world: World, slot: int) -> None:
+        """Whether a slot is there, in use, and no hand's. Raises CommandError."""
+        names = self.names(world)
+        is_hand = self.active and (world.is_grab_particle if self.kind == "particle" else world.is_grab_spring)(slot)
+        if slot >= len(names) or is_hand or (self.active and not getattr(world, self.active)[slot]):
+            raise CommandError(NO_SLOT.format(self.noun, shown(names[slot]) if slot < len(names) else slot))
+
+    def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
+        """The schema of a slot, with what it goes by."""
+        return {**handler(core_schema), "names": self.kind, "noun": self.noun}
 
 
 def _listed(names: Callable[[World], Sequence[str]]) -> Callable[[World, str], int]:
@@ -51,12 +69,16 @@ def _materials(world: World) -> Sequence[str]:
 
 
 _Slot = Annotated[int, Field(ge=0)]
-ParticleSlot = Annotated[_Slot, Named("particle", lambda world: world.particle_names, World.particle_slot)]
-SpringSlot = Annotated[_Slot, Named("spring", lambda world: world.spring_names, World.spring_slot)]
-PartSlot = Annotated[_Slot, Named("driven part", _parts, _listed(_parts))]
+_PARTICLE = Named(
+    "particle", lambda world: world.particle_names, World.particle_slot, "particle", active="particle_active"
+)
+_SPRING = Named("spring", lambda world: world.spring_names, World.spring_slot, "spring", active="spring_active")
+ParticleSlot = Annotated[_Slot, _PARTICLE]
+SpringSlot = Annotated[_Slot, _SPRING]
+PartSlot = Annotated[_Slot, Named("driven part", _parts, _listed(_parts), "part")]
 BodySlot = Annotated[_Slot, Named("body that keeps an area", _bodies, _listed(_bodies))]
 FormSlot = Annotated[_Slot, Named("body whose form may be stiff", _forms, _listed(_forms))]
-MaterialSlot = Annotated[_Slot, Named("material", _materials, _listed(_materials))]
+MaterialSlot = Annotated[_Slot, Named("material", _materials, _listed(_materials), "material")]
 
 
 def namespace(annotation: Any) -> Named | None:
@@ -68,8 +90,14 @@ def namespace(annotation: Any) -> Named | None:
     return None
 
 
+@functools.cache
+def namespaces(kind: type) -> dict[str, Named]:
+    """The fields of a command that go by name."""
+    found = {field: namespace(hint) for field, hint in get_type_hints(kind, include_extras=True).items()}
+    return {field: names for field, names in found.items() if names is not None}
+
+
 def particle_of(world: World, slot: int) -> str:
     """The name of a particle that a command may work on. Raises CommandError."""
-    if slot >= world.particle_count or world.is_grab_particle(slot) or not world.particle_active[slot]:
-        raise CommandError(f"there is no particle {slot}")
+    _PARTICLE.check(world, slot)
     return world.particle_names[slot]

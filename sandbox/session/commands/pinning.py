@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
-from sandbox.session.commands.named import ParticleSlot, particle_of
+from sandbox.session.commands.command import Command
+from sandbox.session.commands.conditions import pinned
+from sandbox.session.commands.named import ParticleSlot
 
 
 @dataclass(frozen=True)
@@ -13,11 +14,9 @@ class Pin(Command):
 
     type = "pin"
     particle: ParticleSlot
+    conditions = (pinned(False, "{} is pinned already"),)
 
     def carry_out(self, world: World) -> None:
-        name = particle_of(world, self.particle)
-        if world.inverse_mass[self.particle] == 0.0:
-            raise CommandError(f"{name} is pinned already")
         world.pin(self.particle)
 
 
@@ -27,9 +26,7 @@ class Unpin(Command):
 
     type = "unpin"
     particle: ParticleSlot
+    conditions = (pinned(True, "{} is not pinned"),)
 
     def carry_out(self, world: World) -> None:
-        name = particle_of(world, self.particle)
-        if world.inverse_mass[self.particle] > 0.0:
-            raise CommandError(f"{name} is not pinned")
         world.unpin(self.particle)

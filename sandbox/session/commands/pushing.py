@@ -28,8 +28,8 @@ class Push(Command):
     radius: Size
     impulse: tuple[Impulse, Impulse] = (0.0, 0.0)
     outward: Impulse = 0.0
+    nothing = "there is nothing to push there"
 
     def carry_out(self, world: World) -> None:
         if not world.push(self.position, self.impulse, self.outward, self.radius):
-            x, y = self.position
-            raise CommandError(f"there is nothing to push within {self.radius:.3g} m of ({x:.3g}, {y:.3g})")
+            raise CommandError(self.nothing)

@@ -1,16 +1,17 @@
 """Commands as the JSON objects of replay and script files, where everything goes by name."""
 
-import functools
 import json
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import Any, Protocol, get_type_hints
+from typing import Any, Protocol
 
 from pydantic import ValidationError
 
+from sandbox.level.format.level_error import shown
 from sandbox.physics.world import World
-from sandbox.session.commands.command import COMMAND_TYPES, Command, CommandError, adapter, plain_fault
-from sandbox.session.commands.named import Named, namespace
+from sandbox.session.commands.command import COMMAND_TYPES, Command, CommandError, adapter
+from sandbox.session.commands.faults import NO_COMMAND, UNKNOWN, plain_fault
+from sandbox.session.commands.named import namespaces
 
 
 @dataclass(frozen=True)
@@ -23,17 +24,10 @@ class ScriptLine:
     line: int
 
 
-@functools.cache
-def _namespaces(kind: type[Command]) -> dict[str, Named]:
-    """The fields of a command that go by name."""
-    found = {field: namespace(hint) for field, hint in get_type_hints(kind, include_extras=True).items()}
-    return {field: names for field, names in found.items() if names is not None}
-
-
 def to_record(command: Command, world: World) -> dict[str, Any]:
     """A command as the JSON object of a file: slots become names, settings that it leaves alone are left out."""
     record: dict[str, Any] = {"type": command.type}
-    named = _namespaces(type(command))
+    named = namespaces(type(command))
     for field, value in asdict(command).items():  # type: ignore[call-overload]
         if value is None:
             continue
@@ -45,14 +39,16 @@ def to_record(command: Command, world: World) -> dict[str, Any]:
     return record
 
 
-def from_record(record: dict[str, Any], world: World) -> Command:
+def from_record(record: Any, world: World) -> Command:
     """The command of a JSON object, its names looked up in the world. Raises CommandError, one line."""
+    if not isinstance(record, dict) or not isinstance(record.get("type"), str):
+        raise CommandError(NO_COMMAND)
     values = dict(record)
-    type_name = values.pop("type", None)
-    kind = COMMAND_TYPES.get(type_name) if isinstance(type_name, str) else None
+    type_name = values.pop("type")
+    kind = COMMAND_TYPES.get(type_name)
     if kind is None:
-        raise CommandError(f"unknown command {type_name!r:.80}; there are {', '.join(COMMAND_TYPES)}")
-    for field, names in _namespaces(kind).items():
+        raise CommandError(UNKNOWN.format(shown(type_name), ", ".join(COMMAND_TYPES)))
+    for field, names in namespaces(kind).items():
         if isinstance(values.get(field), list):
             values[field] = [names.slot(world, name) for name in values[field]]
         elif values.get(field) is not None:
@@ -61,7 +57,7 @@ def from_record(record: dict[str, Any], world: World) -> Command:
         # JSON mode: lists stand for tuples and whole numbers for floats, and nothing else is converted.
         return adapter(kind).validate_json(json.dumps(values), strict=True)
     except (ValidationError, ValueError) as error:
-        text = plain_fault(error) if isinstance(error, ValidationError) else str(error)
+        text = plain_fault(error, namespaces(kind)) if isinstance(error, ValidationError) else str(error)
         raise CommandError(f"{type_name}: {text}") from None
 
 

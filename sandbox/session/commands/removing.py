@@ -11,7 +11,7 @@ from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
-from sandbox.session.commands.named import ParticleSlot, particle_of
+from sandbox.session.commands.named import ParticleSlot
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,6 @@ class Remove(Command):
         if (self.body is None) == (self.particle is None):
             raise CommandError("say body, or particle: one of the two")
         if self.particle is not None:
-            particle_of(world, self.particle)
             remove_particles(world, _hanging_on(world, self.particle))
             return
         particles, springs = _parts_of(world, str(self.body))

@@ -16,7 +16,8 @@ class Shake(Command):
 
     type = "shake"
     acceleration: Gravity
+    nothing = "there is nothing that moves to be shaken"
 
     def carry_out(self, world: World) -> None:
         if not world.shake(self.acceleration):
-            raise CommandError("there is nothing that moves to be shaken")
+            raise CommandError(self.nothing)

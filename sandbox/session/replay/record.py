@@ -6,7 +6,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sandbox.level.format.level_error import shown
-from sandbox.session.commands.command import plain_fault
+from sandbox.session.commands.faults import plain_fault
 from sandbox.session.replay.recording import ReplayError
 
 Tick = Annotated[int, Field(ge=0, le=2**53)]
