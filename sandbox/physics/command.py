@@ -1,7 +1,7 @@
 """Commands: what people do to a world between ticks, on its arrays, as one kernel. None of it is part of a tick."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,23 +10,51 @@ from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
-from sandbox.physics.state import GoodValues, State
+from sandbox.physics.state import GoodValues, State, StateArrays
 from sandbox.physics.topology.sorting import list_ends
 
-# What is to be done, with what is in `slots` and `numbers` then:
-# GRAB        first cursor, first spring of a hand, hand, particle; target [m] x, y, strength [m/s^2], radius [m]
-# MOVE_GRAB   first cursor, hand; target [m] x, y, tick rate [1/s]
-# RELEASE     first cursor, first spring of a hand, hand
-# PIN, UNPIN, FREEZE   particle
-# CUT, BREAK  springs
-# SET_COEFFICIENTS     material, -1: all; whether Cs is set, whether Cd is; Cs, Cd
-# DRIVE       part; value
-# PUSH        first cursor; place [m] x, y, impulse [N s] x, y, outward [N s], radius [m]
-# SHAKE       first cursor; acceleration of the frame [m/s^2] x, y, tick rate [1/s]
 GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
-# In place of a result: the arena is full, and nothing was changed.
-NO_ARENA = -1
+# In place of a result: the arena is full, and nothing was changed; the k-th of slots and numbers, counted through, is
+# BAD_SLOT - k: a slot that is not there, or a number that is not finite, and nothing was changed.
+NO_ARENA, BAD_SLOT = -1, -2
+# What has to be derived again after a command: nothing, what follows from hands, what follows from topology.
+NOTHING, OF_HANDS, OF_TOPOLOGY = "", "hands", "topology"
+
+
+class KernelCommand(NamedTuple):
+    """A kind of command: its number; what lies in `slots` and `numbers` then; what has to be derived again.
+
+    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; ?name: whether that is given. Others are what
+    commands of files call so: places have two numbers, springs as many slots as there are.
+    """
+
+    code: int
+    slots: tuple[str, ...]
+    numbers: tuple[str, ...] = ()
+    changes: str = NOTHING
+
+
+_HAND = ("first_cursor", "first_spring", "grab")
+_PARTICLE = ("first_cursor", "particle")
+# Kinds of commands by their names in files; files have no `freeze` and `break_springs`, which a tick ends with.
+KINDS = {
+    "grab": KernelCommand(GRAB, (*_HAND, "particle"), ("target", "strength", "radius"), OF_HANDS),
+    "move_grab": KernelCommand(MOVE_GRAB, _HAND, ("target", "tick_rate")),
+    "release": KernelCommand(RELEASE, _HAND, (), OF_HANDS),
+    "pin": KernelCommand(PIN, _PARTICLE, (), OF_TOPOLOGY),
+    "unpin": KernelCommand(UNPIN, _PARTICLE, (), OF_TOPOLOGY),
+    "freeze": KernelCommand(FREEZE, _PARTICLE, (), OF_TOPOLOGY),
+    "cut_springs": KernelCommand(CUT, ("springs",), (), OF_TOPOLOGY),
+    "break_springs": KernelCommand(BREAK, ("springs",), (), OF_TOPOLOGY),
+    "set_coefficients": KernelCommand(
+        SET_COEFFICIENTS, ("?material", "material", "?stiffness", "?damping"), ("stiffness", "damping")
+    ),
+    "set_drive": KernelCommand(DRIVE, ("part",), ("value",)),
+    "push": KernelCommand(PUSH, ("first_cursor",), ("position", "impulse", "outward", "radius")),
+    "shake": KernelCommand(SHAKE, ("first_cursor",), ("acceleration", "tick_rate")),
+}
 
 
 class Commanded(NamedTuple):
@@ -38,23 +66,26 @@ class Commanded(NamedTuple):
 
 @kernel
 def command(lent: Any, arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
-    """Carry out a command, see GRAB; how many particles were pushed or shaken, for all others 0, or NO_ARENA."""
+    """Carry out a command, see KINDS; how many particles were pushed or shaken, for all others 0; or see NO_ARENA."""
     world: Commanded = contents(lent)
     state = world.state
+    bad = _first_bad(state, kind, slots, numbers)
+    if bad >= 0:
+        return BAD_SLOT - bad
     if kind == GRAB:
         _grab(state, slots, numbers)
     elif kind == MOVE_GRAB:
-        cursor = slots[0] + slots[1]
+        cursor = slots[0] + slots[2]
         for axis in range(2):
             state.velocity[cursor, axis] = (numbers[axis] - state.position[cursor, axis]) * numbers[2]
     elif kind == RELEASE:
         _release(state, slots)
     elif kind == PIN:
-        _pin(state, slots[0])
+        _pin(state, slots[1])
     elif kind == UNPIN:
-        _unpin(state, slots[0])
+        _unpin(state, slots[1])
     elif kind == FREEZE:
-        _freeze(state, world.good, slots[0])
+        _freeze(state, world.good, slots[1])
     elif kind in (CUT, BREAK):
         return _cut(state, slots, kind == CUT, arena)
     elif kind == SET_COEFFICIENTS:
@@ -66,6 +97,41 @@ def command(lent: Any, arena: Arena, kind: int, slots: Slots, numbers: Floats) -
     elif kind == SHAKE:
         return _shake(state, world.good, slots[0], numbers)
     return 0
+
+
+@inner_kernel
+def _first_bad(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
+    # The first of slots and numbers, counted through, that is not there or not finite; -1: none.
+    particles, springs = state.owner.shape[0], state.law.shape[0]
+    if kind in (GRAB, MOVE_GRAB, RELEASE):
+        has_hand = 0 <= slots[2] < state.hand_strength.shape[0]
+        if not has_hand or not 0 <= slots[0] + slots[2] < particles or not 0 <= slots[1] + slots[2] < springs:
+            return 2
+    if kind in (GRAB, PIN, UNPIN) and not _is_body(state, slots[0], slots[slots.shape[0] - 1]):
+        return slots.shape[0] - 1
+    if kind == FREEZE and not 0 <= slots[1] < particles:
+        return 1
+    if kind in (CUT, BREAK):
+        for k in range(slots.shape[0]):
+            if not 0 <= slots[k] < springs or not state.spring_active[slots[k]] or state.material[slots[k]] < 0:
+                return k
+    if kind == DRIVE and not 0 <= slots[0] < state.actuator_value.shape[0]:
+        return 0
+    for k in range(numbers.shape[0]):
+        if not -math.inf < numbers[k] < math.inf:
+            return slots.shape[0] + k
+    return -1
+
+
+@inner_kernel
+def _is_body(state: State, first_cursor: int, p: int) -> bool:
+    # Whether a particle is there and in use, and no cursor of a hand.
+    return 0 <= p < state.owner.shape[0] and state.particle_active[p] and not _is_cursor(first_cursor, p)
+
+
+@inner_kernel
+def _is_cursor(first_cursor: int, p: int) -> bool:
+    return 0 <= first_cursor <= p < first_cursor + GRAB_COUNT
 
 
 @inner_kernel
@@ -181,24 +247,24 @@ def _cut(state: State, springs: Slots, disturbs: bool, arena: Arena) -> int:
 
 
 @inner_kernel
-def _is_of(material: int, wanted: int) -> bool:
-    return material >= 0 if wanted < 0 else material == wanted
+def _is_of(material: int, slots: Slots) -> bool:
+    return material == slots[1] if slots[0] != 0 else material >= 0
 
 
 @inner_kernel
 def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Floats) -> None:
     # Of springs and areas; grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
     for s in range(state.material.shape[0]):
-        if _is_of(state.material[s], slots[0]):
-            state.stiffness[s] = good.stiffness[s] = numbers[0] if slots[1] != 0 else state.stiffness[s]
-            state.damping[s] = good.damping[s] = numbers[1] if slots[2] != 0 else state.damping[s]
+        if _is_of(state.material[s], slots):
+            state.stiffness[s] = good.stiffness[s] = numbers[0] if slots[2] != 0 else state.stiffness[s]
+            state.damping[s] = good.damping[s] = numbers[1] if slots[3] != 0 else state.damping[s]
             state.lowest_mode[s] = good.lowest_mode[s] = 0.0
             state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
     for k in range(state.constraint_material.shape[0]):
-        if _is_of(state.constraint_material[k], slots[0]):
+        if _is_of(state.constraint_material[k], slots):
             stiffness, damping = state.constraint_stiffness, state.constraint_damping
-            stiffness[k] = good.constraint_stiffness[k] = numbers[0] if slots[1] != 0 else stiffness[k]
-            damping[k] = good.constraint_damping[k] = numbers[1] if slots[2] != 0 else damping[k]
+            stiffness[k] = good.constraint_stiffness[k] = numbers[0] if slots[2] != 0 else stiffness[k]
+            damping[k] = good.constraint_damping[k] = numbers[1] if slots[3] != 0 else damping[k]
             state.constraint_lowest_mode[k] = good.constraint_lowest_mode[k] = 0.0
             for corner in range(
                 state.constraint_first[k], state.constraint_first[k] + state.constraint_corners[k]
@@ -208,8 +274,7 @@ def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Flo
 
 @inner_kernel
 def _can_move(state: State, first_cursor: int, p: int) -> bool:
-    is_cursor = 0 <= first_cursor <= p < first_cursor + GRAB_COUNT
-    return state.particle_active[p] and not is_cursor and state.inverse_mass[p] > 0.0
+    return state.particle_active[p] and not _is_cursor(first_cursor, p) and state.inverse_mass[p] > 0.0
 
 
 @inner_kernel
@@ -268,10 +333,50 @@ def lend(state: State, good: GoodValues) -> Any:
     return bundle(Commanded(state, good))
 
 
-def carry_out(lent: Any, kind: int, slots: Sequence[int] | Slots, numbers: Sequence[float]) -> int:
-    """Carry out a command, see GRAB; how many particles were pushed or shaken."""
-    given = np.array(slots, np.int64), np.array(numbers, np.float64)
+def carry_out(lent: Any, name: str, given: Mapping[str, Any], state: StateArrays) -> int:
+    """Carry out a command of KINDS with what it is given, by name; how many particles were pushed or shaken.
+
+    lent: what `lend` made of the arrays of `state`. Raises IndexError for a slot that is not there or not in use, and
+    ValueError for a number that is not finite; nothing is changed then.
+    """
+    kind = KINDS[name]
+    if kind.slots == ("springs",):
+        slots = whole_numbers("springs", given["springs"])
+    else:
+        slots = np.array([_packed(kind, each, given) for each in kind.slots], np.int64)
+    values = [given[each] for each in kind.numbers]
+    numbers = np.array(
+        [x for each in values for x in (each if isinstance(each, tuple) else (each or 0.0,))], np.float64
+    )
     arena = np.zeros(1, np.int64)
-    while (result := command(lent, arena, kind, *given)) == NO_ARENA:
+    while (result := command(lent, arena, kind.code, slots, numbers)) == NO_ARENA:
         arena = np.zeros(int(arena[0]), np.int64)
+    if result <= BAD_SLOT:
+        raise _fault(kind, BAD_SLOT - result, given, numbers, state)
     return result
+
+
+def _packed(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> int:
+    if name[0] == "?":
+        return int(given[name[1:]] is not None)
+    is_left_out = given[name] is None and f"?{name}" in kind.slots
+    return 0 if is_left_out else max(-1, min(whole(name, given[name]), FARTHEST))
+
+
+def _fault(kind: KernelCommand, place: int, given: Mapping[str, Any], numbers: Floats, state: StateArrays) -> Exception:
+    """What is wrong with the slot or number at a place, as BAD_SLOT counts."""
+    is_list = kind.slots == ("springs",)
+    beyond = place - (len(given["springs"]) if is_list else len(kind.slots))
+    if beyond >= 0:
+        return ValueError(f"{', '.join(kind.numbers)} {numbers.tolist()}: finite numbers are needed")
+    name = kind.slots[0 if is_list else place]
+    value = given[name][place] if is_list else given[name]
+    rows, count = {
+        "grab": (HANDS, len(state.hand_strength)),
+        "particle": (PARTICLES, len(state.owner)),
+        "springs": (SPRINGS, len(state.law)),
+        "part": (PARTS, len(state.actuator_value)),
+    }[name]
+    if 0 <= value < count:
+        return IndexError(f"{name} {value}: it is not in use, or a hand's")
+    return no_slot(name, value, rows, count)

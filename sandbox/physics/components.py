@@ -4,6 +4,7 @@ import numpy as np
 
 from sandbox.physics.arrays import Flags, Slots
 from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.keeping.arguments import active_particles
 from sandbox.physics.state import State, StateArrays
 
 
@@ -51,7 +52,11 @@ def find_joined(state: State, springs: Flags, particles: Flags, label: Slots) ->
 
 
 def body_of(world: StateArrays, particle: int) -> Slots:
-    """The particles that springs join to one, itself included, also by way of pinned ones; ascending."""
+    """The particles that springs join to one, itself included, also by way of pinned ones; ascending.
+
+    Raises IndexError for a particle that is not there or not in use, and ValueError.
+    """
+    (particle,) = active_particles(world, "particle", [particle])
     joined = np.flatnonzero(world.spring_active & (world.material >= 0))
     label = np.arange(len(world.particle_active))
     label_bodies(world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64), label)

@@ -8,22 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.command import (
-    BREAK,
-    CUT,
-    DRIVE,
-    FREEZE,
-    GRAB,
-    MOVE_GRAB,
-    PIN,
-    PUSH,
-    RELEASE,
-    SET_COEFFICIENTS,
-    SHAKE,
-    UNPIN,
-    carry_out,
-    lend,
-)
+from sandbox.physics.command import KINDS, OF_HANDS, OF_TOPOLOGY, carry_out, lend
 from sandbox.physics.constraints import (
     AREA,
     BEND,
@@ -33,6 +18,8 @@ from sandbox.physics.constraints import (
     rest_of_bend,
 )
 from sandbox.physics.events import Containment
+from sandbox.physics.keeping import arguments
+from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES, SPRINGS
 from sandbox.physics.keeping.capacity import Capacity
 from sandbox.physics.keeping.equipment import Equipment, Joined
 from sandbox.physics.keeping.forms import FirmBody
@@ -68,8 +55,10 @@ _WATCHED = frozenset(
 class World(StateArrays):
     """A world's state, see StateArrays, plus the settings of a tick, and what is constant: limits, driven, terrain.
 
-    Slots are append-only: an index stays a particle's or spring's handle; removing clears the active flag. Arrays that
-    are topology are written by methods of World (`change` where there is no other), or `derived` would not notice.
+    Methods raise IndexError for a slot that is not there or not in use, and ValueError for what makes no sense, such as
+    a number that is not finite; nothing has changed then. Slots are append-only: an index stays a particle's or
+    spring's handle; removing clears the active flag. Arrays that are topology are written by methods of World (`change`
+    where there is no other), or `derived` would not notice.
     """
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
@@ -135,8 +124,15 @@ class World(StateArrays):
         return self._lasting[make]
 
     def change(self, name: str, values: ArrayLike, slots: Any = slice(None)) -> None:
-        """Write values into slots of the state array of that attribute, in place, topology or not, and trust them."""
-        getattr(self, name)[slots] = values
+        """Write values into slots of the state array of that attribute, in place, topology or not, and trust them.
+
+        slots: one, a list, a slice or flags.
+        """
+        if name not in BY_NAME:
+            raise ValueError(f"there is no array {name}; there are {', '.join(BY_NAME)}")
+        array = getattr(self, name)
+        arguments.check_rows(name, slots, len(array))
+        array[slots] = values
         if name in self.good:
             self.good[name][slots] = values
         if BY_NAME[name].topology:
@@ -155,11 +151,14 @@ class World(StateArrays):
 
     def append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
         """Append `count` rows to the arrays of a family: (count, ...) or one value for all; as usual where none is."""
+        self._grow(family, count, arguments.rows_of(family, count, arrays))
+
+    def _grow(self, family: Family, count: int, arrays: dict[str, NDArray[Any]]) -> None:
         room, mine = self._room.appended, self.__dict__
         for column in FAMILIES[family]:
             name = column.name
             grown = room(name, mine[name], count)
-            grown[len(grown) - count :] = arrays.pop(name, column.usual)
+            grown[len(grown) - count :] = arrays.get(name, column.usual)
             # One change of topology for all of them, however many there are.
             mine[name] = grown
             if column.guarded:
@@ -167,10 +166,11 @@ class World(StateArrays):
                 good[len(good) - count :] = grown[len(grown) - count :]
         self.topology_version += 1
         self.may_fly = True
-        assert not arrays, f"no arrays of {family}: {', '.join(arrays)}"
 
     def disturb(self, *particles: NDArray[np.integer] | int) -> None:
         """Begin new energy banks for the bodies of these particles, which something outside has changed."""
+        for slots in particles:
+            arguments.check_rows("particles", slots, self.particle_count)
         for slots in particles:
             self.energy_bank[slots] = BANK_UNOPENED
 
@@ -196,7 +196,7 @@ class World(StateArrays):
 
     def scale_impulses(self, factor: float) -> None:
         """Turn what solvers keep of the last step's impulses into those of a step of another length."""
-        if factor != 1.0:
+        if arguments.number("factor", factor) != 1.0:
             self.impulse *= factor
             self.tension *= factor
             self.contact_impulse *= factor
@@ -258,6 +258,7 @@ class World(StateArrays):
 
     def name_particle(self, slot: int, name: str) -> None:
         """Give a particle a second name to be found by. Raises ValueError where that is taken."""
+        arguments.slot("slot", slot, PARTICLES, len(self.particle_names))
         self.particle_naming.add_second(slot, name)
 
     def spring_slot(self, name: str) -> int:
@@ -293,18 +294,17 @@ class World(StateArrays):
 
         position [m] (k, 2); velocity [m/s] (k, 2) or one for all; the others (k,) or one for all; owner: None = each
         its own; others: arrays of the state by name, such as spin, which springs and constraints take away again.
-        A pinned particle starts at rest. Raises ValueError for a name that is taken or a mass that is not above 0.
+        A pinned particle starts at rest. Raises ValueError for a name that is taken, no mass above 0, what is
+        not finite, and other shapes.
         """
         count, first = len(names), self.particle_count
-        masses, is_pinned = np.asarray(mass, dtype=np.float64), np.asarray(pinned, dtype=np.bool_)
+        masses, is_pinned = arguments.floats("mass", mass, (count,)), arguments.flags("pinned", pinned, (count,))
         if not np.all(masses > 0.0):
             raise ValueError("every particle has a mass above 0 kg")
-        self.particle_naming.append(names)
-        places = np.asarray(position, dtype=np.float64).reshape(count, 2)
-        velocities = np.where(is_pinned[..., None], 0.0, np.asarray(velocity, dtype=np.float64))
-        self.append(
-            Family.PARTICLE,
-            count,
+        places = arguments.floats("position", position, (count, 2))
+        velocities = np.where(is_pinned[:, None], 0.0, arguments.floats("velocity", velocity, (count, 2)))
+        spins = np.where(is_pinned, 0.0, arguments.floats("spin", others.get("spin", 0.0), (count,)))
+        given: dict[str, ArrayLike] = dict(
             position=places,
             origin=places,
             velocity=velocities,
@@ -312,17 +312,20 @@ class World(StateArrays):
             energy_bank=BANK_UNOPENED,
             mass=masses,
             inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
-            radius=radius,
+            radius=arguments.floats("radius", radius, (count,), 0.0),
             gravity_scale=gravity_scale,
             particle_active=True,
             unmoved=True,
-            friction=friction,
-            restitution=restitution,
+            friction=arguments.floats("friction", friction, (count,), 0.0),
+            restitution=arguments.floats("restitution", restitution, (count,), 0.0),
             owner=-1 - first - np.arange(count) if owner is None else owner,
             group=group,
             collides=collides,
-            **others | {"spin": np.where(is_pinned, 0.0, others.get("spin", 0.0))},
+            **others | {"spin": spins},
         )
+        rows = arguments.rows_of(Family.PARTICLE, count, given)
+        self.particle_naming.append(names)
+        self._grow(Family.PARTICLE, count, rows)
         return first
 
     def add_springs(
@@ -343,25 +346,28 @@ class World(StateArrays):
         """Append springs, one per name, and return the first slot.
 
         particle_a, particle_b: slots (k,); the others (k,) or one for all. rest_length [m]: None or NaN = as placed.
-        Raises ValueError for a name that is taken, a slot that does not exist, or a spring from a particle to itself.
+        Raises IndexError for a slot that does not exist, and ValueError for a name that is taken, a spring from a
+        particle to itself, numbers that are not finite, and other shapes.
         """
         count, first = len(names), self.spring_count
-        a = np.asarray(particle_a, dtype=np.int64).reshape(count)
-        b = np.asarray(particle_b, dtype=np.int64).reshape(count)
-        if count and (min(a.min(), b.min()) < 0 or max(a.max(), b.max()) >= self.particle_count):
-            raise ValueError("a spring names a particle slot that does not exist")
+        a = arguments.slots("particle_a", particle_a, PARTICLES, self.particle_count)
+        b = arguments.slots("particle_b", particle_b, PARTICLES, self.particle_count)
+        if not len(a) == len(b) == count:
+            raise ValueError(f"{count} names, {len(a)} slots particle_a and {len(b)} particle_b: one each is needed")
         if np.any(a == b):
             raise ValueError("a spring joins two different particles")
-        self.spring_naming.append(names)
         separation = self.position[b] - self.position[a]
         placed = np.sqrt(separation[:, 0] * separation[:, 0] + separation[:, 1] * separation[:, 1])
-        given = np.broadcast_to(np.asarray(np.nan if rest_length is None else rest_length, dtype=np.float64), count)
-        rest = np.where(np.isnan(given), placed, given)
-        self.append(
-            Family.SPRING, count, particle_a=a, particle_b=b, rest_length=rest, natural_length=rest,
-            stiffness=stiffness, damping=damping, law=law, hooke_stiffness=hooke_stiffness,
-            hooke_damping=hooke_damping, material=material, spring_active=True, edge=edge,
+        rest = placed if rest_length is None else arguments.floats_or("rest_length", rest_length, placed, 0.0)
+        given: dict[str, ArrayLike] = dict(
+            particle_a=a, particle_b=b, rest_length=rest, natural_length=rest, stiffness=stiffness, damping=damping,
+            law=law, hooke_stiffness=hooke_stiffness, hooke_damping=hooke_damping, material=material,
+            spring_active=True, edge=edge,
         )  # fmt: skip
+        rows = arguments.rows_of(Family.SPRING, count, given)
+        arguments.check_materials(rows["material"], len(self.material_names))
+        self.spring_naming.append(names)
+        self._grow(Family.SPRING, count, rows)
         # A grab's spring joins nothing yet.
         joins = np.broadcast_to(np.asarray(material) != GRAB_MATERIAL, count)
         self.spin[a[joins]] = self.spin[b[joins]] = 0.0
@@ -383,25 +389,27 @@ class World(StateArrays):
 
         corners: particle slots (t, k), of an area in the order of its outline. form [m] (t, k, 2): their places at
         rest, None = as they stand. inflation: area wanted as a multiple of the form's. The others (t,) or one for all.
-        Raises ValueError for a slot that does not exist, one that comes twice, a bend with no three corners or with a
-        link of no length, and an area with fewer than three corners.
+        Raises IndexError for a slot that does not exist, and ValueError for one that comes twice, a bend with no three
+        corners or with a link of no length, an area with fewer than three corners, and numbers that are not finite.
         """
-        slots = np.asarray(corners, dtype=np.int64)
+        slots = arguments.slot_rows("corners", corners, PARTICLES, self.particle_count)
         count, size = slots.shape
-        if size < 3 or (kind == BEND and size != 3):
+        if kind not in (AREA, BEND) or size < 3 or (kind == BEND and size != 3):
             raise ValueError("an area has three corners or more, a bend three")
-        if count and (slots.min() < 0 or slots.max() >= len(self.position)):
-            raise ValueError("a constraint names a particle slot that does not exist")
         if np.any(np.diff(np.sort(slots, axis=1), axis=1) == 0):
             raise ValueError("the corners of a constraint are different particles")
-        places = self.position[slots] if form is None else np.asarray(form, dtype=np.float64)
-        rest, weight = rest_of_area(places, inflation) if kind == AREA else rest_of_bend(places)
+        places = self.position[slots] if form is None else arguments.floats("form", form, (count, size, 2))
+        wanted = arguments.floats("inflation", inflation, (count,), 0.0)
+        rest, weight = rest_of_area(places, wanted) if kind == AREA else rest_of_bend(places)
         first = self.constraint_count
-        self.append(
-            Family.CONSTRAINT, count, constraint_kind=kind, constraint_corners=size, constraint_rest=rest,
-            constraint_first=len(self.corner_particle) + size * np.arange(count), constraint_stiffness=stiffness,
-            constraint_damping=damping, constraint_material=material, constraint_active=True,
+        given: dict[str, ArrayLike] = dict(
+            constraint_kind=kind, constraint_corners=size, constraint_rest=rest, constraint_stiffness=stiffness,
+            constraint_first=len(self.corner_particle) + size * np.arange(count), constraint_damping=damping,
+            constraint_material=material, constraint_active=True,
         )  # fmt: skip
+        rows = arguments.rows_of(Family.CONSTRAINT, count, given)
+        arguments.check_materials(rows["constraint_material"], len(self.material_names))
+        self._grow(Family.CONSTRAINT, count, rows)
         self.append(
             Family.CORNER, count * size, corner_particle=slots.reshape(-1), corner_weight=weight.reshape(-1),
             corner_form=places.reshape(-1, 2),
@@ -411,12 +419,15 @@ class World(StateArrays):
         return first
 
     def name_areas(self, name: str, constraints: range) -> None:
-        """Name the areas of a body, to be inflated together."""
+        """Name the areas of a body, to be inflated together. Raises IndexError."""
+        arguments.slots("constraints", constraints, CONSTRAINTS, self.constraint_count)
         self.area_names += (name,)
         self.area_constraints += (constraints,)
 
     def inflate(self, body: int, inflation: float) -> None:
         """Let each area of a body, by its place in `area_names`, want this multiple of its form's."""
+        body = arguments.slot("body", body, "bodies that keep areas", len(self.area_constraints))
+        inflation = arguments.number("inflation", inflation, 0.0)
         first, last = self.area_constraints[body].start, self.area_constraints[body].stop
         self.constraint_rest[first:last, 0] = inflation * self.constraint_rest[first:last, 1]
         self.good["constraint_rest"][first:last] = self.constraint_rest[first:last]
@@ -428,8 +439,13 @@ class World(StateArrays):
 
         Grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
         """
-        which = -1 if material is None else material, int(stiffness is not None), int(damping is not None)
-        self._command(SET_COEFFICIENTS, which, (stiffness or 0.0, damping or 0.0))
+        if material is not None:
+            arguments.slot("material", material, "materials", len(self.material_names))
+        given = {"stiffness": stiffness, "damping": damping}
+        for name, value in given.items():
+            if value is not None:
+                arguments.number(name, value, 0.0, 1.0)
+        self._command("set_coefficients", material=material, **given)
 
     def reserve_grabs(self) -> None:
         """Reserve the slots of all grabs, inactive; done once, when the world is built."""
@@ -446,35 +462,38 @@ class World(StateArrays):
         self.change("particle_active", False, slice(self.grab_particle, None))
         self.change("spring_active", False, slice(self.grab_spring, None))
 
-    def _command(self, kind: int, slots: Sequence[int] | Slots, numbers: Sequence[float] = ()) -> int:
-        """Let a kernel carry out a command, see command.py."""
-        return carry_out(self.derived(_lend, of_hands=False), kind, slots, numbers)
+    def _command(self, name: str, **given: Any) -> int:
+        """Let a kernel carry out a command, see command.py; nothing is changed where it raises."""
+        given["first_cursor"], given["first_spring"] = self.grab_particle, self.grab_spring
+        given["tick_rate"] = self._settings.tick_rate
+        result = carry_out(self.derived(_lend, of_hands=False), name, given, self)
+        changes = KINDS[name].changes
+        if changes == OF_TOPOLOGY:
+            self.topology_version += 1
+        elif changes == OF_HANDS:
+            self.hand_version += 1
+        return result
 
     def pin(self, particle: int) -> None:
         """Hold a particle where it is."""
-        self._command(PIN, [particle])
-        self.topology_version += 1
+        self._command("pin", particle=particle)
 
     def freeze(self, particle: int) -> None:
         """Bring a particle back to its last good values and pin it there."""
-        self._command(FREEZE, [particle])
-        self.topology_version += 1
+        self._command("freeze", particle=particle)
 
     def unpin(self, particle: int) -> None:
         """Let a pinned particle move again, with the mass it has."""
-        self._command(UNPIN, [particle])
-        self.topology_version += 1
+        self._command("unpin", particle=particle)
 
-    def cut(self, springs: Sequence[int]) -> None:
+    def cut(self, springs: Sequence[int] | Slots) -> None:
         """Take springs out of the world, and the constraints that they were a side of; their slots stay."""
-        self._command(CUT, springs)
-        self.topology_version += 1
+        self._command("cut_springs", springs=springs)
 
-    def break_springs(self, springs: Slots) -> None:
+    def break_springs(self, springs: Sequence[int] | Slots) -> None:
         """Take out springs that broke by themselves: the pieces of a body keep its energy."""
-        self._command(BREAK, springs)
-        self.topology_version += 1
-        self.broken = springs
+        self._command("break_springs", springs=springs)
+        self.broken = np.asarray(springs, np.int64)
 
     def push(self, place: Point, impulse: Point, outward: float, radius: float) -> bool:
         """Give the free particles nearer to place [m] than radius [m] an impulse [N s] together; False: there are none.
@@ -486,26 +505,33 @@ class World(StateArrays):
 
         so that what is near moves more, whatever its mass, and the momentum grows by J.
         """
-        return self._command(PUSH, [self.grab_particle], (*place, *impulse, outward, radius)) > 0
+        given = {"position": arguments.point("place", place), "impulse": arguments.point("impulse", impulse)}
+        outward, radius = arguments.number("outward", outward), arguments.number("radius", radius, 0.0)
+        return self._command("push", **given, outward=outward, radius=radius) > 0
 
     def shake(self, acceleration: Point) -> bool:
         """Accelerate the frame that holds the world, its terrain and its pins, by `acceleration` [m/s^2] for the coming
         tick: free particles stay behind. False: nothing can move.
         """
-        return self._command(SHAKE, [self.grab_particle], (*acceleration, self.settings.tick_rate)) > 0
+        return self._command("shake", acceleration=arguments.point("acceleration", acceleration)) > 0
 
     def fit(self, driven: Actuators, values: ArrayLike) -> None:
         """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
+        checked = [arguments.number("values", value, -1.0, 1.0) for value in arguments.listed("values", values)]
+        if len(checked) != len(driven.names):
+            raise ValueError(f"values of {len(checked)} parts: {len(driven.names)} are driven")
         self.actuators = driven
-        self.actuator_value = np.array(values, dtype=np.float64)
+        self.actuator_value = np.array(checked, dtype=np.float64)
         self.actuator_impulse = np.zeros_like(self.actuator_value)
 
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
-        self._command(DRIVE, [part], [value])
+        self._command("set_drive", part=part, value=arguments.number("value", value, -1.0, 1.0))
 
     def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
         """Give springs other rest lengths [m]; the length by which they have yielded does not change."""
+        springs = arguments.slots("springs", springs, SPRINGS, self.spring_count)
+        lengths = arguments.floats("lengths", lengths, springs.shape, 0.0)
         self.rest_length[springs] = lengths
         self.good["rest_length"][springs] = lengths
 
@@ -518,12 +544,18 @@ class World(StateArrays):
         strength [m/s^2]: largest force over the mass of the body held. radius [m]: particles of the body that
         are nearer to this one share the force; 0: it bears all of it.
         """
-        self.reserve_grabs()
-        self._command(GRAB, (self.grab_particle, self.grab_spring, grab, particle), (*target, strength, radius))
-        self.hand_version += 1
+        target, strength = arguments.point("target", target), arguments.number("strength", strength, 0.0)
+        radius = arguments.number("radius", radius, 0.0)
+        if self.grab_particle < 0:
+            # Nothing is left of a hold that cannot be, no slots of hands either.
+            arguments.slot("grab", grab, HANDS, GRAB_COUNT)
+            arguments.active_particles(self, "particle", [particle])
+            self.reserve_grabs()
+        self._command("grab", grab=grab, particle=particle, target=target, strength=strength, radius=radius)
 
     def is_held(self, grab: int) -> bool:
         """Whether a grab holds a particle."""
+        arguments.slot("grab", grab, HANDS, GRAB_COUNT)
         return self.grab_spring >= 0 and bool(self.spring_active[self.grab_spring + grab])
 
     def any_held(self) -> bool:
@@ -532,7 +564,7 @@ class World(StateArrays):
 
     def move_grab(self, grab: int, target: Point) -> None:
         """Send a grab's cursor to target [m]: it travels there in the coming tick."""
-        self._command(MOVE_GRAB, (self.grab_particle, grab), (*target, self.settings.tick_rate))
+        self._command("move_grab", grab=grab, target=arguments.point("target", target))
 
     def end_tick(self) -> None:
         """Count a tick, past the watch over attributes, which takes as long as a tenth of it."""
@@ -540,8 +572,7 @@ class World(StateArrays):
 
     def release(self, grab: int) -> None:
         """Let go; the hand's slots wait for its next use. No bank keeps energy that the hand's work put into it."""
-        self._command(RELEASE, (self.grab_particle, self.grab_spring, grab))
-        self.hand_version += 1
+        self._command("release", grab=grab)
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""
@@ -554,6 +585,8 @@ class World(StateArrays):
 
     def forget_names_beyond(self, particle_count: int, spring_count: int) -> None:
         """Drop the names of slots that a restored state does not have."""
+        for argument, count in (("particle_count", particle_count), ("spring_count", spring_count)):
+            arguments.slot(argument, count, "rows", arguments.FARTHEST)
         self.particle_naming.forget_beyond(particle_count)
         self.spring_naming.forget_beyond(spring_count)
 

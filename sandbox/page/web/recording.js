@@ -64,7 +64,7 @@ export async function written(world, about, header, commands, ticks, progress) {
     line({ tick: world.time, hash: isStored ? hash.whole : hash.whole.slice(0, TICK_DIGITS), arrays });
     if (isStored) await writeState(hash);
     for (const { gesture, record, changes } of due) {
-      line({ tick: world.time, gesture, command: changes ? record : named(record, about.names) });
+      line({ tick: world.time, gesture, command: changes ? record : world.commands.named(record) });
     }
     last = { hash, isStored, isChanged: due.length > 0 };
     progress(world.time, ticks);
@@ -90,21 +90,4 @@ async function packed(bytes) {
 
 async function through(bytes, stream) {
   return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
-}
-
-// A record as files have it: names in place of slots, and nothing that is left out.
-const NAMED = { particle: 'particle', springs: 'spring', material: 'material', part: 'part' };
-
-function named(record, names) {
-  const entries = Object.entries(record).filter(([, value]) => value !== null && value !== undefined);
-  return exchanged(Object.fromEntries(entries), (kind, slot) => names[kind][slot]);
-}
-
-// A record with names in place of slots, or slots in place of names. give: one for the other, of a kind.
-export function exchanged(record, give) {
-  return Object.fromEntries(Object.entries(record).map(([field, value]) => {
-    const kind = NAMED[field];
-    if (!kind || value === null) return [field, value];
-    return [field, Array.isArray(value) ? value.map((each) => give(kind, each)) : give(kind, value)];
-  }));
 }

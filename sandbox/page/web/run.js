@@ -1,5 +1,5 @@
 // Run: what was done to a world and when, so that time can go back; the commands of a run make it again, bit for bit.
-import { Refusal } from './world.js';
+import { Refusal } from './commands.js';
 
 // Ticks from one kept state to the next at first, and how many are kept before every second one is dropped.
 const KEEP_EVERY = 60, KEPT = 120;
@@ -30,14 +30,25 @@ export class Run {
     return (this.gesture += 1);
   }
 
-  // Carry out a command now, and forget what would have come later. Whether it could be.
-  submit(record, gesture) {
-    if (!this.world.canDo(record)) return false;
+  // Carry out a command now, and forget what would have come later. Throws a Refusal where it cannot be.
+  command(record, gesture) {
     this.takeUp(gesture);
-    if (!this.world.fits(record) || !this.world.command(record)) return false;
+    const fault = this.world.commands.faultIn(this.world, record);
+    if (fault) throw new Refusal(fault);
+    this.world.command(record);
     this.commands.push({ tick: this.time, gesture, record });
     this.next = this.commands.length;
     this.last = this.time;
+  }
+
+  // The same. Whether it could be.
+  submit(record, gesture) {
+    try {
+      this.command(record, gesture);
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      return false;
+    }
     return true;
   }
 
@@ -85,7 +96,7 @@ export class Run {
   // The commands of this tick that a recording has.
   #follow() {
     while (this.next < this.commands.length && this.commands[this.next].tick === this.time) {
-      if (!this.world.carryOut(this.commands[this.next])) throw new Refusal('This page cannot do what was done here.');
+      this.world.carryOut(this.commands[this.next]);
       this.next += 1;
     }
   }

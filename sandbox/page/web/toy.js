@@ -1,18 +1,17 @@
 // Toy: a level that plays on a canvas; and the handle by which a page of one's own plays, reads and listens.
 import { Checks } from './checks.js';
+import { Refusal } from './commands.js';
 import { Camera, Picture } from './draw.js';
 import { Drives } from './drives.js';
 import { Hands } from './hand.js';
 import { Pace } from './pace.js';
-import { exchanged, written } from './recording.js';
+import { written } from './recording.js';
 import { Run } from './run.js';
 import { Sound } from './sound.js';
-import { Refusal, World } from './world.js';
+import { World } from './world.js';
 
 const KEY_ZOOM = 1.15;
 const TYPED_INTO = 'input, select, textarea, [contenteditable], .pad';
-// The rows that have the names of a kind, where they are called otherwise.
-const COUNTED_BY = { part: 'actuator' };
 const light = matchMedia('(prefers-color-scheme: light)');
 
 // It tells what happens as events: tick, break { springs }, check { name, holds, value }, say { text, kind }, pause,
@@ -276,12 +275,6 @@ export class Toy extends EventTarget {
     this.refresh();
   }
 
-  #slot(kind, name) {
-    const slot = this.level.about.names[kind].indexOf(name), count = this.world.counts[COUNTED_BY[kind] ?? kind];
-    if (slot < 0 || slot >= count) throw new Refusal(`There is no ${kind} ${name}.`);
-    return slot;
-  }
-
   // Names of particles, as in the level's file: 'rope.39' is the last of a body named rope.
   get particles() {
     return this.world.particles.map((slot) => this.level.about.names.particle[slot]);
@@ -289,16 +282,15 @@ export class Toy extends EventTarget {
 
   // Where a particle is [m], its velocity [m/s], and whether it is pinned.
   particle(name) {
-    const slot = this.#slot('particle', name), of = (array) => this.world.view(`state.${array}`);
+    const { world } = this, slot = world.commands.slot({ names: 'particle' }, name, world.counts),
+      of = (array) => world.view(`state.${array}`);
     const [x, y] = of('position').subarray(2 * slot), [vx, vy] = of('velocity').subarray(2 * slot);
     return { x, y, vx, vy, isPinned: of('inverse_mass')[slot] === 0 };
   }
 
   // Carry out a command as recordings have it, with names: { type: 'set_drive', part: 'wheel', value: 1 }.
   command(record) {
-    const withSlots = exchanged(record, (kind, name) => this.#slot(kind, name));
-    if (!this.world.canDo(record)) throw new Refusal(`A page cannot do ${record.type}.`);
-    if (!this.run.submit(withSlots, this.run.newGesture())) throw new Refusal(`${record.type} does not fit here now.`);
+    this.run.command(this.world.commands.read(record, this.world.counts), this.run.newGesture());
     this.refresh();
   }
 

@@ -1,4 +1,5 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
+import { Commands } from './commands.js';
 import { blake2b, hexOf } from './hash.js';
 
 const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
@@ -13,43 +14,6 @@ const CONTACTS = ['particle', 'feature', 'impulse', 'impact'].map((name) => `col
 const MOTION = ['position', 'velocity', 'angle', 'spin'];
 // Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
 const ARGUMENTS = 64, RECORD = 16;
-// Of commands as records have them: whole numbers and floats as the kernel takes them, and what has to be derived
-// again. hands: first particle and spring of hands.
-const COMMANDS = {
-  grab: [HANDS, (r, hands) => [[hands.particle, hands.spring, r.grab, r.particle], [...r.target, r.strength, r.radius]]],
-  move_grab: [null, (r, hands, rate) => [[hands.particle, r.grab], [...r.target, rate]]],
-  release: [HANDS, (r, hands) => [[hands.particle, hands.spring, r.grab], []]],
-  pin: [DERIVATIONS, (r) => [[r.particle], []]],
-  unpin: [DERIVATIONS, (r) => [[r.particle], []]],
-  freeze: [DERIVATIONS, (r) => [[r.particle], []]],
-  cut_springs: [DERIVATIONS, (r) => [r.springs, []]],
-  break_springs: [DERIVATIONS, (r) => [r.springs, []]],
-  set_coefficients: [null, (r) => [
-    [r.material ?? -1, r.stiffness == null ? 0 : 1, r.damping == null ? 0 : 1], [r.stiffness ?? 0, r.damping ?? 0],
-  ]],
-  set_drive: [null, (r) => [[r.part], [r.value]]],
-  push: [null, (r, hands) => [[hands.particle], [...r.position, ...(r.impulse ?? [0, 0]), r.outward ?? 0, r.radius]]],
-  shake: [null, (r, hands, rate) => [[hands.particle], [...r.acceleration, rate]]],
-};
-
-// Whether a command fits what is there now, as the desktop asks; it refuses recordings of those that do not.
-const FITS = {
-  grab: (world, r) => !world.isHeld(r.grab) && world.canMove(r.particle),
-  move_grab: (world, r) => world.isHeld(r.grab),
-  release: (world, r) => world.isHeld(r.grab),
-  pin: (world, r) => world.canMove(r.particle),
-  unpin: (world, r) => world.isShown(r.particle) && !world.canMove(r.particle),
-  cut_springs: (world, r) => r.springs.every((s) => world.view('state.spring_active')[s]),
-};
-// Commands that may find nothing to act on.
-const COUNTED = ['push', 'shake'];
-
-// Where the settings are that commands change, among the numbers of a world.
-const SETTINGS = { set_gravity: [['gravity', 0]], set_air: [['wind', 2], ['drag', 4]] };
-
-// What a person is to read, in one line.
-export class Refusal extends Error {}
-
 const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 
 export class World {
@@ -67,6 +31,8 @@ export class World {
   #saved = new Map();
   // Rows in use, by family: a page has room for what a recording adds later.
   counts;
+  // What of records is right, and what kernels take of it.
+  commands;
   // Ticks since the level's start; springs that broke in the last one.
   time = 0;
   broken = [];
@@ -76,6 +42,7 @@ export class World {
     this.#kernels = kernels;
     this.#about = about;
     this.counts = about.counts;
+    this.commands = new Commands(about);
     this.#arguments = aligned(kernels.__heap_base.value);
     this.#base = aligned(this.#arguments + (ARGUMENTS + 2 * RECORD + about.names.spring.length) * WORD);
     this.#end = this.#base;
@@ -185,9 +152,12 @@ export class World {
     for (const particle of lost) this.command({ type: 'freeze', particle });
   }
 
-  // Carry out what was done: a command, or what it changes where no kernel carries it out. Whether it could be.
+  // Carry out what was done: a command, or what it changes where no kernel carries it out.
   carryOut({ record, changes, counts }) {
-    if (!changes) return this.command(record);
+    if (!changes) {
+      this.command(record);
+      return;
+    }
     this.counts = counts ?? this.counts;
     for (const [path, runs] of Object.entries(changes)) {
       this.#change(path, runs);
@@ -195,7 +165,6 @@ export class World {
       if (good !== path && this.#table.has(good)) this.#change(good, runs);
     }
     if (this.#about.topology.some((path) => path in changes)) this.#derive(DERIVATIONS);
-    return true;
   }
 
   // Write rows of an array: the first, how many, and what each is to hold.
@@ -207,27 +176,22 @@ export class World {
     }
   }
 
-  // Carry out a command: the record of a recording with slots in place of names. Whether it could be.
+  // Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
   command(record) {
-    if (!this.canDo(record)) return false;
-    if (record.type in SETTINGS) return this.#set(record);
-    const [derives, pack] = COMMANDS[record.type], { tick_rate } = this.settings(), { buffer } = this.#kernels.memory;
-    const [slots, numbers] = pack(record, this.hands, tick_rate), at = this.#arguments + ARGUMENTS * WORD;
+    const places = this.#about.places[record.type];
+    if (places) {
+      this.#set(record, places);
+      return;
+    }
+    const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
+    const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
+    const { code, slots, numbers, changes } = packed, { buffer } = this.#kernels.memory;
+    const at = this.#arguments + ARGUMENTS * WORD;
     new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
     new Float64Array(buffer, at, numbers.length).set(numbers);
-    const given = [this.#about.commands[record.type], [at + RECORD * WORD, slots.length, WORD],
-      [at, numbers.length, WORD]];
-    if (this.#inArena('command', ...given) === 0 && COUNTED.includes(record.type)) return false;
-    if (derives !== null) this.#derive(derives);
-    return true;
-  }
-
-  canDo({ type }) {
-    return type in SETTINGS || type in COMMANDS;
-  }
-
-  fits(record) {
-    return FITS[record.type]?.(this, record) ?? true;
+    const given = [code, [at + RECORD * WORD, slots.length, WORD], [at, numbers.length, WORD]];
+    this.commands.answer(record, packed, this.#inArena('command', ...given));
+    if (changes) this.#derive(changes === 'hands' ? HANDS : DERIVATIONS);
   }
 
   // Whether what a command would end goes on: a hand holds something, or a part is driven.
@@ -235,12 +199,11 @@ export class World {
     return type === 'release' ? this.isHeld(grab) : this.view('state.actuator_value')[part] !== 0;
   }
 
-  // Gravity and air are numbers that a tick reads.
-  #set(record) {
+  // Gravity and air are numbers that a tick reads, each from a place on.
+  #set(record, places) {
     const numbers = this.view('numbers');
-    for (const [name, place] of SETTINGS[record.type]) if (record[name] != null) numbers.set([record[name]].flat(),
+    for (const [name, place] of Object.entries(places)) if (record[name] != null) numbers.set([record[name]].flat(),
       place);
-    return true;
   }
 
   // Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
@@ -292,9 +255,16 @@ export class World {
     return particle >= first && particle < first + this.hands.count;
   }
 
+  // Whether what a name stands for is in use, and no hand's; parts and materials always are.
+  isInUse(kind, slot) {
+    const { [kind]: first, count } = this.hands;
+    if (first === undefined) return true;
+    return Boolean(this.view(`state.${kind}_active`)[slot]) && (slot < first || slot >= first + count);
+  }
+
   // Whether people see a particle, and whether it can move.
   isShown(particle) {
-    return Boolean(this.view('state.particle_active')[particle]) && !this.isCursor(particle);
+    return this.isInUse('particle', particle);
   }
 
   canMove(particle) {

@@ -19,6 +19,7 @@ from sandbox.physics.equation import (
     frequency_from_coefficients,
     of_springs,
 )
+from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.forms import Firmness, StiffForm, strength_of
 from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.world import World
@@ -157,8 +158,11 @@ class FirmnessRange:
 def set_firmness(world: World, body: int, stiffness: float, damping: float) -> None:
     """Give a body, by its place in the world's `forms`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
 
-    They are shared out over its springs, areas and bends.
+    They are shared out over its springs, areas and bends. Raises IndexError and ValueError.
     """
+    body = arguments.slot("body", body, "bodies that may be stiff by their form", len(world.forms))
+    stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
+    damping = arguments.number("damping", damping, 0.0, 1.0)
     form = world.forms[body]
     lowest_mode = lowest_mode_of(form.shape)
     if stiffness == damping == 1.0:

@@ -52,7 +52,7 @@ def free_body(world: World, particle: int) -> None:
     """Move the body of a particle to the nearest place where it touches nothing, at rest and in its own form.
 
     One solid body gets the form that it was made in; several bodies that hang together keep their present shape. Raises
-    NothingFree.
+    NothingFree, and as `body_of` does.
     """
     body = body_of(world, particle)
     places = world.position[body] + 0.0

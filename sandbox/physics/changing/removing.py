@@ -3,12 +3,17 @@
 import numpy as np
 
 from sandbox.physics.arrays import Slots
+from sandbox.physics.keeping.arguments import active_particles
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.world import World
 
 
 def remove_particles(world: World, particles: Slots) -> None:
-    """Take particles out, and every spring and constraint at them; hands that hold one let go."""
+    """Take particles out, and every spring and constraint at them; hands that hold one let go.
+
+    Raises IndexError for a particle that is not there or not in use, and ValueError.
+    """
+    particles = active_particles(world, "particles", particles)
     gone = np.zeros(world.particle_count, dtype=np.bool_)
     gone[particles] = True
     for hand in range(GRAB_COUNT):

@@ -1,0 +1,157 @@
+// Commands: records read as the desktop reads them, with its words, by the table that it makes of its commands.
+
+// What a person is to read, in one line.
+export class Refusal extends Error {}
+
+const PLAIN = /^\w+$/, UNPRINTABLE = /[\p{C}\p{Zl}\p{Zp}]|(?! )\p{Zs}/u, SHOWN = 60, PLACE = 80;
+// Beyond this JSON writes whole numbers as floats.
+const WHOLE = 1e21;
+const LIMITS = {
+  minimum: (value, limit) => value >= limit, exclusiveMinimum: (value, limit) => value > limit,
+  maximum: (value, limit) => value <= limit, exclusiveMaximum: (value, limit) => value < limit,
+};
+// The rows that have the names of a kind, where they are called otherwise.
+const COUNTED_BY = { part: 'actuator' };
+
+const fill = (message, ...values) => message.replace(/\{\}/g, () => values.shift());
+// As JSON would keep it: a copy, without -0.
+const plain = (value) => (Array.isArray(value) ? value.map(plain) : typeof value === 'number' ? value + 0 : value);
+
+// A text in quotes, cut short, as messages of the desktop have it.
+function shown(text) {
+  let quoted = JSON.stringify(text);
+  if (UNPRINTABLE.test(quoted)) {
+    quoted = quoted.replace(/[^ -~]/g, (unit) => `\\u${unit.charCodeAt(0).toString(16).padStart(4, '0')}`);
+  }
+  const letters = [...quoted];
+  return letters.length <= SHOWN ? quoted : `${letters.slice(0, SHOWN - 4).join('')}..."`;
+}
+
+const placed = (parts) => [...parts.map((part) => (PLAIN.test(part) ? part : shown(part))).join('.')]
+  .slice(0, PLACE).join('');
+
+export class Commands {
+  #about;
+
+  // about: what Python says, see about.py.
+  constructor(about) {
+    this.#about = about;
+  }
+
+  #named(type) {
+    const fields = Object.entries(this.#about.commands[type].fields);
+    return fields.map(([field, schema]) => [field, schema.items ?? schema]).filter(([, { names }]) => names);
+  }
+
+  // The slot of a name. kind: particle, spring, part or material; counts: rows in use, by family.
+  slot({ names: kind, noun = kind }, name, counts) {
+    const { messages, names, second } = this.#about;
+    if (typeof name !== 'string') throw new Refusal(fill(messages.noName, noun));
+    const first = names[kind].indexOf(name), others = second[kind] ?? {};
+    const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
+    if (slot < 0 || slot >= counts[COUNTED_BY[kind] ?? kind]) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
+    return slot;
+  }
+
+  // A record as files have it, with slots in place of names, and defaults.
+  read(record, counts) {
+    const { messages, commands } = this.#about, types = Object.keys(commands), type = record?.type;
+    if (typeof record !== 'object' || typeof type !== 'string') throw new Refusal(messages.noCommand);
+    if (!types.includes(type)) throw new Refusal(fill(messages.unknown, shown(type), types.join(', ')));
+    if (!commands[type]) {
+      throw new Refusal(`a page cannot do ${type}; it can do ${types.filter((each) => commands[each]).join(', ')}`);
+    }
+    const { fields } = commands[type];
+    const given = new Map(Object.entries(record).filter(([name, value]) => name !== 'type' && value !== undefined));
+    for (const [field, schema] of this.#named(type)) {
+      const value = given.get(field), slot = (name) => this.slot(schema, name, counts);
+      if (value != null) given.set(field, Array.isArray(value) ? value.map(slot) : slot(value));
+    }
+    const fault = this.#faultOf(given, fields);
+    if (fault) throw new Refusal(`${type}: ${placed(fault[0])}: ${fault[1]}`);
+    const values = Object.entries(fields).map(([field, schema]) => [field, plain(given.get(field) ?? schema.default)]);
+    return { type, ...Object.fromEntries(values.filter(([, value]) => value != null)) };
+  }
+
+  // The first fault: where it is, and words for it.
+  #faultOf(given, fields) {
+    const { messages } = this.#about;
+    for (const [field, schema] of Object.entries(fields)) {
+      const value = given.get(field);
+      if (!given.has(field)) {
+        if (schema.isRequired) return [[field], messages.missing];
+      } else if (value !== null || !schema.isNullable) {
+        const fault = this.#fault(value, schema, [field]);
+        if (fault) return fault;
+      }
+    }
+    const stranger = [...given.keys()].find((field) => !Object.hasOwn(fields, field));
+    return stranger === undefined ? null : [[stranger], messages.unexpected];
+  }
+
+  #fault(value, schema, parts) {
+    const { messages } = this.#about;
+    if (schema.type === 'array') return this.#faultOfList(value, schema, parts);
+    if (schema.type === 'integer' && !(Number.isInteger(value) && Math.abs(value) < WHOLE)) {
+      return [parts, schema.names ? messages.name : messages.integer];
+    }
+    if (typeof value !== 'number') return [parts, messages.number];
+    if (!Number.isFinite(value)) return [parts, messages.finite];
+    const broken = Object.keys(LIMITS).find((key) => key in schema && !LIMITS[key](value, Number(schema[key])));
+    return broken ? [parts, fill(messages[broken], schema[broken])] : null;
+  }
+
+  #faultOfList(value, { maxItems, items, prefixItems }, parts) {
+    const { messages } = this.#about;
+    if (!Array.isArray(value)) return [parts, messages.array];
+    if (value.length > maxItems) return [parts, fill(messages.long, maxItems)];
+    for (let k = 0; k < Math.max(value.length, prefixItems?.length ?? 0); k++) {
+      const place = [...parts, k];
+      const fault = k < value.length ? this.#fault(value[k], items ?? prefixItems[k], place) : [place, messages.missing];
+      if (fault) return fault;
+    }
+    return null;
+  }
+
+  // What of a world does not let a record with slots be carried out, in words; null: nothing.
+  faultIn(world, record) {
+    const { messages, commands, names } = this.#about, kinds = new Map(this.#named(record.type));
+    for (const [field, { names: kind, noun }] of kinds) {
+      const lost = [record[field] ?? []].flat().find((slot) => !world.isInUse(kind, slot));
+      if (lost !== undefined) return fill(messages.noSlot, noun, shown(names[kind][lost]));
+    }
+    for (const [field, array, isSet, text] of commands[record.type].conditions) {
+      const row = record[field], kind = kinds.get(field)?.names;
+      const value = world.view(`state.${array}`)[row + (field === 'grab' ? world.hands.spring : 0)];
+      if (Boolean(value) !== isSet) return fill(text, kind ? names[kind][row] : row);
+    }
+    return null;
+  }
+
+  // What a kernel takes for a record with slots: its number, slots and numbers; and what has to be derived again.
+  packed(record, given) {
+    const kind = this.#about.kinds[record.type], fields = this.#about.commands[record.type]?.fields;
+    const value = (name) => (name.startsWith('?') ? Number(record[name.slice(1)] != null)
+      : given[name] ?? record[name] ?? fields?.[name]?.default ?? 0);
+    const slots = kind.slots.flatMap((name) => [...new Set([value(name)].flat())]);
+    return { ...kind, slots, numbers: kind.numbers.flatMap(value) };
+  }
+
+  // Whether a kernel has done it: throws in words where it has not.
+  answer(record, { slots, numbers }, result) {
+    const place = this.#about.badSlot - result, { type } = record, { nothing } = this.#about.commands[type] ?? {};
+    if (place >= slots.length) throw new Refusal(`${type}: ${numbers.join(', ')}: finite numbers are needed`);
+    if (place >= 0) throw new Refusal(`${type}: ${slots[place]}: it is not there, not in use, or a hand's`);
+    if (nothing && result === 0) throw new Refusal(nothing);
+  }
+
+  // A record with slots as files have it: names in place of slots, and nothing that is left out.
+  named(record) {
+    const { names } = this.#about, kinds = new Map(this.#named(record.type));
+    const entries = Object.entries(record).filter(([, value]) => value !== null && value !== undefined);
+    return Object.fromEntries(entries.map(([field, value]) => {
+      const of = names[kinds.get(field)?.names];
+      return [field, of ? plain(value).map?.((slot) => of[slot]) ?? of[value] : value];
+    }));
+  }
+}

@@ -1,0 +1,219 @@
+"""A page takes and refuses the same commands as the desktop, in the same words, and to the same bits."""
+
+import math
+import random
+from collections import Counter
+from typing import Any
+
+import pytest
+
+from sandbox import load_level
+from sandbox.commands import COMMAND_TYPES, CommandError, apply, from_record
+from sandbox.level.assembly.build_world import build_world
+from sandbox.page.about import is_done_by_pages
+from sandbox.physics.command import KINDS
+from sandbox.physics.snapshot import restore, state_hash, take
+from sandbox.physics.step import step
+from sandbox.physics.world import World
+from tests.page.in_node import NODE, tried_in_node
+
+LEVEL = "suspension_car"
+NAN, INF = math.nan, math.inf
+NUMBERS = [
+    0, 1, -1, 0.5, 5, 10, 5000, 1e-300, 2**53, 10**20, 1e21, 1e300, -1e30, 1e6, -1e15, 1e15, 2e15, NAN, INF, -INF,
+]  # fmt: skip
+STRANGE = [
+    *NUMBERS, None, True, False, "", "0", "x", "a" * 90, 'q"\\uote', "tab\t", "line\u2028", "\x7f", "Ω", "Ω\u200b",
+    "𝄞" * 70, [], [1], [0, 0], [0, 0, 0], [NAN, 0], [0, INF], ["a", 1], [None, 1], [[0, 0]], [1e6, 1e7], {}, {"a": 1},
+]  # fmt: skip
+FIELDS = ["grab", "strength", "Strength", "type ", "weiß", "a.b", "", "x" * 100]
+# What was done before: a hand holds, something is pinned, cut and driven.
+BEFORE: list[dict[str, Any]] = [
+    {"type": "grab", "grab": 1, "particle": "FREE.0", "target": [0.5, 2]},
+    {"type": "pin", "particle": "FREE.1"},
+    {"type": "cut_springs", "springs": ["SPRING.0"]},
+    {"type": "set_drive", "part": "PART.0", "value": 0.5},
+]
+GOOD: dict[str, dict[str, Any]] = {
+    "grab": {"grab": 2, "particle": "FREE.2", "target": [0.5, 1.5], "strength": 50, "radius": 0.25},
+    "move_grab": {"grab": 1, "target": [0.25, 1]},
+    "release": {"grab": 1},
+    "pin": {"particle": "FREE.3"},
+    "unpin": {"particle": "FREE.1"},
+    "cut_springs": {"springs": ["SPRING.1", "SPRING.2", "SPRING.1"]},
+    "set_coefficients": {"stiffness": 0.25, "damping": 0.75, "material": "MATERIAL.0"},
+    "set_drive": {"part": "PART.1", "value": -1},
+    "push": {"position": [0, 0], "radius": 500, "impulse": [1, 2], "outward": 3},
+    "shake": {"acceleration": [1, -2]},
+    "set_gravity": {"gravity": [0, -3]},
+    "set_air": {"wind": [1, 0], "drag": 0.125},
+}
+# Bad values of a field of each kind of command that kernels carry out: eight and more.
+BAD: dict[str, list[dict[str, Any]]] = {
+    "grab": [
+        *({"grab": value} for value in (-1, 10, 5000, 1.5, NAN, None, "0", True)),
+        *({"particle": value} for value in ("no", "+hand.0", 0, None, True, ["FREE.2"], "FREE.1", NAN)),
+        *({"target": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], None, "ab", ["a", 1], 1e7, [0, 2e6])),
+        *({"strength": value} for value in (0, -1, NAN, INF, None, "1", 2e6, True)),
+        *({"radius": value} for value in (-1, NAN, INF, None, "1", 2e6, True, [])),
+    ],
+    "move_grab": [
+        *({"grab": value} for value in (-1, 0, 9, 10, 1.5, NAN, None, "1")),
+        *({"target": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], None, 5, ["a", 1], [0, -2e6])),
+    ],
+    "release": [{"grab": value} for value in (-1, 0, 9, 10, 1.5, NAN, None, "1", True)],
+    "pin": [{"particle": value} for value in ("no", "+hand.1", 0, -1, None, "FREE.1", NAN, True, {})],
+    "unpin": [{"particle": value} for value in ("no", "+hand.1", 0, -1, None, "FREE.2", NAN, True, [])],
+    "freeze": [{"particle": value} for value in ("FREE.2", "no", 0, -1, None, NAN, True, [])],
+    "cut_springs": [
+        {"springs": value}
+        for value in (["SPRING.1", "no"], ["SPRING.1", "SPRING.0"], ["+hand.1"], [0], "SPRING.1", None, [None], NAN)
+    ],
+    "break_springs": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
+    "set_coefficients": [
+        *({"stiffness": value} for value in (5, -1, NAN, INF, "1", True, [], 1.0000001)),
+        *({"damping": value} for value in (5, -1, NAN, INF, "1", True, {}, -1e-300)),
+        *({"material": value} for value in ("no", 0, -1, NAN, True, [], ["MATERIAL.0"], {})),
+    ],
+    "set_drive": [
+        *({"part": value} for value in ("no", 0, -1, None, NAN, True, [], {})),
+        *({"value": value} for value in (1.5, -2, NAN, INF, None, "1", True, [0])),
+    ],
+    "push": [
+        *({"position": value} for value in ([NAN, 0], [0], [0, 0, 0], None, 5, ["a", 1], [2e6, 0], [1e6, 1e6])),
+        *({"radius": value} for value in (0, -1, NAN, INF, None, "1", 2e6, True)),
+        *({"impulse": value} for value in ([NAN, 0], [0], [0, 0, 0], None, 5, ["a", 1], [2e15, 0], "ab")),
+        *({"outward": value} for value in (NAN, INF, None, "1", 2e15, True, [], {})),
+    ],
+    "shake": [{"acceleration": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], None, 5, ["a", 1], [-1e30, 0])],
+}  # fmt: skip
+assert BAD.keys() == KINDS.keys()
+
+needs_node = pytest.mark.skipif(NODE is None, reason="node is not installed")
+
+
+def world_of() -> World:
+    return build_world(load_level(LEVEL))
+
+
+def names_in(value: Any, world: World) -> Any:
+    """A value with names of the world in place of FREE.k, SPRING.k, PART.k and MATERIAL.k."""
+    if isinstance(value, dict):
+        return {key: names_in(each, world) for key, each in value.items()}
+    if isinstance(value, list):
+        return [names_in(each, world) for each in value]
+    kind, _, number = value.partition(".") if isinstance(value, str) else ("", "", "")
+    free = [name for slot, name in enumerate(world.particle_names) if world.inverse_mass[slot] > 0.0]
+    of = {
+        "FREE": free, "SPRING": world.spring_names, "PART": world.actuators.names, "MATERIAL": world.material_names,
+    }.get(kind)  # fmt: skip
+    return of[int(number) % len(of)] if of else value
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON of JavaScript has it: whole numbers without a point."""
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e21:
+        return int(value)
+    return value
+
+
+def wrong_records() -> list[dict[str, Any]]:
+    """Records of every kind, each with one bad value, to be refused once BEFORE is done."""
+    return [{"type": kind, **GOOD.get(kind, {}), **bad} for kind in BAD for bad in BAD[kind]]
+
+
+def any_records(count: int) -> list[Any]:
+    """Records of all types: right ones, ones with fields left out, changed or added, and what is no record."""
+    chance, found = random.Random(5), []
+    types = [*GOOD, *GOOD, *COMMAND_TYPES, "freeze", "break_springs", "nothing", "Grab", "constructor", "toString"]
+    found += [None, [], {}, 5, NAN, "grab", True, {"type": None}, {"type": 5}, {"type": ["grab"]}, {"kind": "grab"}]
+    while len(found) < count:
+        name = chance.choice(types)
+        fields = dict(GOOD.get(name, {}))
+        for _ in range(chance.choice((0, 1, 1, 1, 2))):
+            field = chance.choice(list(fields) if fields and chance.random() < 0.9 else FIELDS)
+            if chance.random() < 0.25:
+                fields.pop(field, None)
+            elif isinstance(fields.get(field), list) and fields[field] and chance.random() < 0.5:
+                value = list(fields[field])
+                value[chance.randrange(len(value))] = plain(chance.choice(STRANGE))
+                fields[field] = value
+            else:
+                fields[field] = plain(chance.choice(STRANGE))
+        found.append({"type": name, **fields})
+    return found
+
+
+def tried_on_the_desktop(before: list[Any], tried: list[Any]) -> list[tuple[str, str]]:
+    """What comes of each record, after others and a tick: words and hash."""
+    world, said = world_of(), []
+    for record in before:
+        apply(world, from_record(record, world))
+    step(world)
+    start = take(world)
+    for record in tried:
+        try:
+            apply(world, from_record(record, world))
+            words = "taken"
+        except CommandError as error:
+            # A page makes no guesses.
+            words = str(error).partition("; did you mean ")[0].partition("; it only looks like ")[0]
+        said.append((words, state_hash(world)))
+        restore(world, start)
+    return said
+
+
+@needs_node
+@pytest.mark.parametrize("records", ["any", "bad"])
+def test_a_page_takes_and_refuses_what_the_desktop_does_in_its_words(records, tmp_path):
+    world = world_of()
+    before = names_in(BEFORE, world)
+    tried = names_in(any_records(3_000) if records == "any" else wrong_records(), world)
+    outcomes = Counter()
+    pages, desktop = tried_in_node(tmp_path, world, before, tried), tried_on_the_desktop(before, tried)
+    for record, page, (words, hashed) in zip(tried, pages, desktop, strict=True):
+        name = record.get("type") if isinstance(record, dict) else None
+        if isinstance(name, str) and name in COMMAND_TYPES and not is_done_by_pages(name):
+            assert page["words"].startswith(f"a page cannot do {name}; it can do cut_springs, "), record
+        else:
+            assert (page["words"], page["hash"]) == (words, hashed), record
+        assert not page["isChanged"], record
+        outcomes[words == "taken"] += 1
+    assert outcomes[False] > 100
+    assert outcomes[True] > 500 if records == "any" else outcomes[True] == 0
+
+
+@needs_node
+def test_the_kernel_itself_refuses_slots_that_are_not_there_in_pages(tmp_path):
+    world, point = world_of(), [0, 0]
+    beyond = [-1, world.particle_count, 10**6, world.grab_particle, 2**31]
+    hands = [-1, 10, 11, 10**6, 2**31]
+    tried = [
+        *({"type": kind, "particle": slot} for kind in ("pin", "unpin") for slot in beyond),
+        *({"type": "freeze", "particle": slot} for slot in beyond if slot != world.grab_particle),
+        *(
+            {"type": "grab", "grab": 3, "particle": slot, "target": point, "strength": 1, "radius": 0}
+            for slot in beyond
+        ),
+        *({"type": "grab", "grab": hand, "particle": 0, "target": point, "strength": 1, "radius": 0} for hand in hands),
+        *({"type": "move_grab", "grab": hand, "target": point} for hand in hands),
+        *({"type": "release", "grab": hand} for hand in hands),
+        *({"type": "set_drive", "part": part, "value": 1} for part in (-1, len(world.actuators.names), 10**6)),
+        *(
+            {"type": kind, "springs": [1, 2, slot]}
+            for kind in ("cut_springs", "break_springs")
+            for slot in (-1, world.grab_spring, world.spring_count, 10**6)
+        ),
+        {"type": "shake", "acceleration": [NAN, 0]},
+        {"type": "push", "position": [0, 0], "radius": INF, "impulse": [0, 0], "outward": 0},
+        {"type": "set_coefficients", "stiffness": NAN},
+    ]
+    told = tried_in_node(tmp_path, world, names_in(BEFORE, world), tried, are_slots=True)
+    for record, page in zip(tried, told, strict=True):
+        assert page["words"].startswith(f"{record['type']}: ") and not page["isChanged"], (record, page)
+    assert {record["type"] for record in tried} == set(KINDS)
+
+
+def test_there_are_eight_bad_values_and_more_of_every_kind():
+    assert all(len(each) >= 8 for each in BAD.values())
+    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {"freeze", "break_springs"}

@@ -1,0 +1,154 @@
+"""What is not there or makes no sense raises, in words that name it, and changes no byte of a world."""
+
+import json
+import os
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sandbox.physics.actuators import Actuators
+from sandbox.physics.analysis.firmness import set_firmness
+from sandbox.physics.changing.freeing import free_body
+from sandbox.physics.changing.moving import move_body
+from sandbox.physics.changing.removing import remove_particles
+from sandbox.physics.command import carry_out, lend
+from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.state import Family, good_of, state_of
+from sandbox.physics.step import step
+from tests.support import bad_commands
+from tests.support.bad_commands import CALLS, INF, NAN, made, outcome, wrong_calls
+
+ROOT = Path(__file__).resolve().parents[2]
+ARGUMENTS = {
+    "grab": ("grab", "particle", "target", "strength", "radius"),
+    "move_grab": ("grab", "target"),
+    "release": ("grab",),
+    "pin": ("particle",),
+    "unpin": ("particle",),
+    "freeze": ("particle",),
+    "cut_springs": ("springs",),
+    "break_springs": ("springs",),
+    "set_coefficients": ("stiffness", "damping", "material"),
+    "set_drive": ("part", "value"),
+    "push": ("place", "impulse", "outward", "radius"),
+    "shake": ("acceleration",),
+}
+# Other methods that change a world, or ask it: the call, and what its fault begins with.
+OTHERS = {
+    "change, no such array": (lambda world: world.change("places", 0.0), "there is no array places"),
+    "change, beyond": (lambda world: world.change("mass", 1.0, 14), "mass 14: a world with rows 0 to 13"),
+    "change, below 0": (lambda world: world.change("mass", 1.0, [0, -1]), "mass -1: "),
+    "change, short flags": (lambda world: world.change("mass", 1.0, np.ones(3, np.bool_)), "mass "),
+    "change, of another shape": (lambda world: world.change("mass", [1.0, 2.0], [0, 1, 2]), ""),
+    "append, no such array": (lambda world: world.append(Family.SPRING, 1, mass=1.0), "springs have no mass"),
+    "append, NaN": (lambda world: world.append(Family.HAND, 1, hand_force=[[0, NAN]]), "hand_force nan: "),
+    "append, shape": (lambda world: world.append(Family.HAND, 2, hand_radius=[1.0] * 3), "hand_radius of shape (3,)"),
+    "disturb": (lambda world: world.disturb(np.array([0]), -1), "particles -1: "),
+    "scale impulses": (lambda world: world.scale_impulses(NAN), "factor nan: "),
+    "name a particle": (lambda world: world.name_particle(14, "second"), "slot 14: "),
+    "add particles, position": (lambda world: world.add_particles(["e"], [[0, NAN]]), "position nan: "),
+    "add particles, rows": (lambda world: world.add_particles(["e"], [[0, 1], [2, 3]]), "position of shape (2, 2)"),
+    "add particles, text": (lambda world: world.add_particles(["e"], [["0", "1"]]), "position [['0', '1']]: "),
+    "add particles, radius": (lambda world: world.add_particles(["e"], [[0, 1]], radius=-1.0), "radius -1.0: "),
+    "add particles, radii": (lambda world: world.add_particles(["e"], [[0, 1]], radius=[1, 2]), "radius of shape (2,)"),
+    "add particles, mass": (lambda world: world.add_particles(["e"], [[0, 1]], mass=INF), "mass inf: "),
+    "add particles, pinned": (lambda world: world.add_particles(["e"], [[0, 1]], pinned="no"), "pinned 'no': "),
+    "add particles, another": (lambda world: world.add_particles(["e"], [[0, 1]], law=1), "particles have no law"),
+    "add particles, owner": (lambda world: world.add_particles(["e"], [[0, 1]], owner=0.5), "owner 0.5: "),
+    "add springs, beyond": (lambda world: world.add_springs(["v"], [0], [14]), "particle_b 14: "),
+    "add springs, no slot": (lambda world: world.add_springs(["v"], [0.5], [1]), "particle_a 0.5: "),
+    "add springs, too few": (lambda world: world.add_springs(["v", "w"], [0], [1]), "2 names"),
+    "add springs, rest": (lambda world: world.add_springs(["v"], [0], [1], rest_length=INF), "rest_length inf: "),
+    "add springs, stiffness": (lambda world: world.add_springs(["v"], [0], [1], stiffness=NAN), "stiffness nan: "),
+    "add springs, dampings": (lambda world: world.add_springs(["v"], [0], [1], damping=[0, 1]), "damping of shape"),
+    "add springs, material": (lambda world: world.add_springs(["v"], [0], [1], material=1), "material 1: "),
+    "add an area, beyond": (lambda world: world.add_constraints(AREA, [[0, 1, 14]]), "corners 14: "),
+    "add an area, no rows": (lambda world: world.add_constraints(AREA, [0, 1, 2]), "corners "),
+    "add an area, inflation": (lambda world: world.add_constraints(AREA, [[0, 1, 2]], inflation=NAN), "inflation nan"),
+    "add an area, form": (lambda world: world.add_constraints(AREA, [[0, 1, 2]], form=[[0, 1, 2]]), "form of shape"),
+    "add a bend, stiffness": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], stiffness=INF), "constraint_"),
+    "add a bend, material": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], material=7), "material 7: "),
+    "name areas": (lambda world: world.name_areas("balloon", range(1)), "constraints 0: a world without constraints"),
+    "inflate": (lambda world: world.inflate(0, 1.0), "body 0: a world without bodies that keep areas"),
+    "fit, too many": (lambda world: world.fit(Actuators(("a",)), [0.0, 0.0]), "values of 2 parts"),
+    "fit, too fast": (lambda world: world.fit(Actuators(("a",)), [2.0]), "values 2.0: "),
+    "rest lengths, beyond": (lambda world: world.set_rest_lengths([0, 13], [1, 1]), "springs 13: "),
+    "rest lengths, NaN": (lambda world: world.set_rest_lengths([0, 1], [1, NAN]), "lengths nan: "),
+    "rest lengths, too few": (lambda world: world.set_rest_lengths([0, 1], [1, 1, 1]), "lengths of shape (3,)"),
+    "is held": (lambda world: world.is_held(10), "grab 10: a world with hands 0 to 9"),
+    "forget names": (lambda world: world.forget_names_beyond(-1, 0), "particle_count -1: "),
+    "move a body, removed": (lambda world: move_body(world, 3, (1.0, 0.0), 10.0), "particle 3: it is not in use"),
+    "move a body, NaN": (lambda world: move_body(world, 0, (NAN, 0.0), 10.0), "by nan: "),
+    "move a body, short": (lambda world: move_body(world, 0, (1.0,), 10.0), "by (1.0,): "),
+    "free a body": (lambda world: free_body(world, -1), "particle -1: "),
+    "remove": (lambda world: remove_particles(world, np.array([0, 14])), "particles 14: "),
+    "firmness": (lambda world: set_firmness(world, 0, 0.5, 0.5), "body 0: a world without bodies"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("has_hands", [True, False])
+@pytest.mark.parametrize("kind", CALLS)
+def test_a_wrong_argument_of_any_command_raises_and_changes_no_byte(kind, has_hands):
+    world, seen = made(has_hands), Counter()
+    for label, act in wrong_calls(kind):
+        text = outcome(world, act)
+        name = ARGUMENTS[kind][int(label.split()[1].rstrip(":"))]
+        assert text.partition(": ")[2].startswith(f"{name} "), f"{label}: {text}"
+        assert text.startswith(("IndexError", "ValueError")) and "changed" not in text, f"{label}: {text}"
+        seen[name] += 1
+    assert all(seen[name] >= 8 for name in ARGUMENTS[kind])
+    # It is as good as new.
+    method, right, _ = CALLS[kind]
+    if has_hands or kind not in ("move_grab", "release"):
+        getattr(world, method)(*right)
+    step(world)
+    assert np.isfinite(world.position).all()
+
+
+def test_the_words_name_the_argument_the_value_and_the_range():
+    world = made(has_hands=False)
+    for act, text in (
+        (lambda: world.pin(99), "particle 99: a world with particles 0 to 3"),
+        (lambda: world.pin(3), "particle 3: it is not in use, or a hand's"),
+        (lambda: world.hold(10, 0, (0.0, 0.0)), "grab 10: a world with hands 0 to 9"),
+        (lambda: world.release(0), "grab 0: a world without hands"),
+        (lambda: world.cut([0, 50]), "springs 50: a world with springs 0 to 2"),
+        (lambda: world.drive(1, 0.0), "part 1: a world with driven parts 0 to 0"),
+        (lambda: world.drive(0, 2.0), "value 2.0: a number from -1 to 1 is needed"),
+        (lambda: world.hold(0, 0, (0.0, NAN)), "target nan: a finite number is needed"),
+    ):
+        with pytest.raises((IndexError, ValueError)) as raised:
+            act()
+        assert str(raised.value) == text
+
+
+def test_interpreted_kernels_say_the_same_of_each():
+    environment = {**os.environ, "SANDBOX_KERNELS": "interpreted"}
+    ended = subprocess.run(
+        [sys.executable, "-m", bad_commands.__name__], env=environment, cwd=ROOT, capture_output=True, check=True
+    )
+    told = json.loads(ended.stdout)
+    assert told == {"way": "interpreted", "outcomes": bad_commands.outcomes()}
+
+
+def test_a_number_that_is_not_finite_is_refused_by_the_kernel_itself():
+    world = made()
+    lent, given = (
+        lend(state_of(world), good_of(world)),
+        {"first_cursor": 4, "acceleration": (NAN, 0.0), "tick_rate": 60},
+    )
+    assert outcome(world, lambda world: carry_out(lent, "shake", given, world)) == (
+        "ValueError: acceleration, tick_rate [nan, 0.0, 60.0]: finite numbers are needed"
+    )
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_methods_raise_and_change_no_byte_too(name):
+    act, begins = OTHERS[name]
+    text = outcome(made(), act)
+    assert text.startswith(("IndexError: ", "ValueError: ")) and "changed" not in text
+    assert text.partition(": ")[2].startswith(begins)

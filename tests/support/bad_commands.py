@@ -1,0 +1,122 @@
+"""Commands of every kind with arguments that are not there or make no sense, and what comes of each.
+
+Run as a program it prints what comes of all, as JSON, by whatever way kernels run.
+"""
+
+import json
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from sandbox.physics.actuators import Actuators
+from sandbox.physics.changing.removing import remove_particles
+from sandbox.physics.command import KINDS
+from sandbox.physics.jit import way
+from sandbox.physics.snapshot import state_hash
+from sandbox.physics.state import COLUMNS
+from sandbox.physics.world import World
+
+NAN, INF = math.nan, math.inf
+# Of a world of `made`: particles 0 to 3, of which 3 was removed, cursors of hands from 4 on; springs 0 to 2, of which 2
+# was cut, and those of hands from 3 on.
+_NO_WHOLE_NUMBER = (1.5, NAN, INF, "0", None, True, [0])
+_BEYOND = (-1, -2, 10**6, 2**31, 10**30, -(10**30))
+PARTICLES = (3, 4, 13, 14, *_BEYOND, *_NO_WHOLE_NUMBER)
+HANDS = (10, 11, *_BEYOND, *_NO_WHOLE_NUMBER)
+PARTS = (1, 2, *_BEYOND, *_NO_WHOLE_NUMBER)
+_NO_SPRINGS = (2, 3, 12, 13, *_BEYOND, 1.5, NAN, "0", None, True)
+# The bad one is also the last of a list.
+LISTS = (*([0, 1, each] for each in _NO_SPRINGS), [-1], [[0]], 0, None, "01", NAN, np.array([0.0]))
+_NO_NUMBERS = (NAN, INF, -INF, 10**400, "1", None, True, [1.0])
+NUMBERS = (*_NO_NUMBERS, np.array([1.0]))
+NOT_BELOW_0 = (*NUMBERS, -1.0, -1e-300)
+SHARES = (*(each for each in NOT_BELOW_0 if each is not None), 1.5)
+DRIVES = (*NUMBERS, 1.5, -1.0000001)
+POINTS = (
+    *((0.0, each) for each in _NO_NUMBERS), *((each, 0.0) for each in _NO_NUMBERS), (0.0,), (0.0, 1.0, 2.0), (), 1.0,
+    None, "ab", np.zeros((2, 2)), NAN,
+)  # fmt: skip
+# Of every kind: the method of World, arguments that are right, and for each of these what is wrong in its place.
+CALLS: dict[str, tuple[str, tuple[Any, ...], tuple[tuple[Any, ...], ...]]] = {
+    "grab": ("hold", (1, 0, (0.0, 1.0), 100.0, 0.1), (HANDS, PARTICLES, POINTS, NOT_BELOW_0, NOT_BELOW_0)),
+    "move_grab": ("move_grab", (0, (0.0, 1.0)), (HANDS, POINTS)),
+    "release": ("release", (0,), (HANDS,)),
+    "pin": ("pin", (0,), (PARTICLES,)),
+    "unpin": ("unpin", (1,), (PARTICLES,)),
+    "freeze": ("freeze", (0,), ((14, *_BEYOND, *_NO_WHOLE_NUMBER),)),
+    "cut_springs": ("cut", ([0, 1],), (LISTS,)),
+    "break_springs": ("break_springs", ([0, 1],), (LISTS,)),
+    "set_coefficients": (
+        "set_coefficients", (0.5, 0.5, 0), (SHARES, SHARES, tuple(each for each in PARTS if each is not None)),
+    ),
+    "set_drive": ("drive", (0, 0.5), (PARTS, DRIVES)),
+    "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),
+    "shake": ("shake", ((1.0, 0.0),), (POINTS,)),
+}  # fmt: skip
+assert CALLS.keys() == KINDS.keys()
+
+
+def made(has_hands: bool = True) -> World:
+    """A world with particles, springs and a part that are in use, and with some that are not any more."""
+    world = World()
+    world.add_particles(["a", "b", "c", "d"], [(0, 0), (1, 0), (0, 1), (5, 5)], pinned=[False, True, False, False])
+    world.add_springs(["s", "t", "u"], [0, 1, 0], [1, 2, 2])
+    world.fit(Actuators(("engine",)), [0.25])
+    if has_hands:
+        world.reserve_grabs()
+        world.hold(0, 2, (0.5, 1.5))
+    remove_particles(world, np.array([3]))
+    world.cut([2])
+    return world
+
+
+def wrong_calls(kind: str) -> Iterator[tuple[str, Callable[[World], Any]]]:
+    """Calls of a kind, each with one argument that is wrong, by what it says."""
+    method, right, wrong = CALLS[kind]
+    for place, values in enumerate(wrong):
+        for value in values:
+            given = (*right[:place], value, *right[place + 1 :])
+            label = f"{kind} {place}: {value!r}"
+            yield label, lambda world, given=given: getattr(world, method)(*given)
+
+
+def memory_of(world: World) -> list[bytes]:
+    """Everything that a world holds, also rows that wait for their use."""
+    arrays = [getattr(world, column.name) for column in COLUMNS] + list(world.good.values())
+    whole = [array if array.base is None else array.base for array in arrays]
+    names = (
+        world.particle_names,
+        world.spring_names,
+        world.topology_version,
+        world.hand_version,
+        world.broken.tolist(),
+    )
+    return [*(array.tobytes() for array in whole), *(array.tobytes() for array in arrays), repr(names).encode()]
+
+
+def outcome(world: World, act: Callable[[World], Any]) -> str:
+    """The fault that a call raises; more where anything of the world has changed."""
+    before, hashed = memory_of(world), state_hash(world)
+    try:
+        act(world)
+        text = "taken"
+    except (IndexError, ValueError) as error:
+        text = f"{type(error).__name__}: {error}"
+    return text if memory_of(world) == before and state_hash(world) == hashed else f"{text}; and the world has changed"
+
+
+def outcomes() -> dict[str, str]:
+    """What comes of all wrong calls, in a world with hands and in one without."""
+    found = {}
+    for has_hands in (True, False):
+        world = made(has_hands)
+        for kind in CALLS:
+            for label, act in wrong_calls(kind):
+                found[f"{label}{'' if has_hands else ', no hands'}"] = outcome(world, act)
+    return found
+
+
+if __name__ == "__main__":
+    print(json.dumps({"way": way(), "outcomes": outcomes()}))
