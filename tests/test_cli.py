@@ -13,6 +13,7 @@ from PIL import Image, ImageSequence
 
 from sandbox.cli import main
 from sandbox.level.reading.files import shipped_folder
+from tests.support.interrupts import interrupts
 
 ROPE = {
     "format": "spring-sandbox/level", "version": 2, "name": "Short rope", "settings": {"solver": "iterative"},
@@ -478,14 +479,25 @@ def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_pa
         write(self, world)
 
     monkeypatch.setattr(Recorder, "write_tick", interrupted)
-    assert main(["run", rope, "--ticks", "200", "--record", str(replay)]) == 130
+    with interrupts(signal.default_int_handler):
+        assert main(["run", rope, "--ticks", "200", "--record", str(replay)]) == 130
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     out, err = _lines(capsys)
     assert out == []
     assert err == [f"{replay}: cut off at tick 90; `sandbox replay --partial` verifies it"]
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     assert main(["replay", str(replay)]) == 2
     assert main(["replay", "--partial", str(replay)]) == 0
     assert "equal, 90 ticks" in capsys.readouterr().out
+
+
+def test_a_run_that_was_started_with_interrupts_ignored_as_by_nohup_goes_on_to_its_end(rope, monkeypatch):
+    from sandbox.session.session import Session
+
+    advance = Session.advance
+    monkeypatch.setattr(Session, "advance", lambda self: (signal.raise_signal(signal.SIGINT), advance(self)))
+    with interrupts(signal.SIG_IGN):
+        assert main(["run", rope, "--ticks", "3"]) == 0
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
 
 
 def test_edit_without_a_display_is_refused_in_one_line(monkeypatch, capsys):
@@ -556,7 +568,9 @@ def test_an_interrupt_of_checks_in_processes_ends_all_of_them_without_a_word(rop
     root = str(Path(__file__).resolve().parents[1])
     environment = {**os.environ, "PYTHONPATH": root, "NUMBA_DISABLE_JIT": "1", "PYTHONUNBUFFERED": "1"}
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with subprocess.Popen(command, env=environment, start_new_session=True, **streams) as checking:
+    with interrupts(signal.default_int_handler):
+        checking = subprocess.Popen(command, env=environment, start_new_session=True, **streams)
+    with checking:
         assert checking.stdout is not None
         assert checking.stdout.readline().startswith(f"{rope}: valid")
         os.killpg(checking.pid, signal.SIGINT)
