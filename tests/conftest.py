@@ -9,6 +9,7 @@ import pytest
 
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.world import World
+from tests.support import wants
 from tests.support.compiling_once import compile_before_tests
 
 with suppress(ImportError):
@@ -39,6 +40,11 @@ def memory_held():
         return 0.0
     with open("/proc/self/statm") as figures:
         return resource.getpagesize() * float(figures.read().split()[1])
+
+
+def pytest_configure(config):
+    """Let each run of tests say what was not here."""
+    config.pluginmanager.register(wants)
 
 
 def pytest_sessionstart(session):

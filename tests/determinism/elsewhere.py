@@ -35,7 +35,7 @@ CHUNK, SOME = 60, 240
 
 
 class Missing(Exception):
-    """What a machine needs is not installed here; says what."""
+    """A machine needs this, and it is not installed here."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Machine:
 def _web() -> list[str]:
     node = shutil.which("node")
     if node is None:
-        raise Missing("node is not installed")
+        raise Missing("node")
     return [node, str(HERE / "web.mjs"), str(FOLDER / "kernels.wasm")]
 
 
@@ -66,13 +66,13 @@ ROOT_OF_ARM64 = Path("/usr/aarch64-linux-gnu")
 def _arm64() -> list[str]:
     qemu = shutil.which("qemu-aarch64")
     if qemu is None or not ROOT_OF_ARM64.exists():
-        raise Missing("qemu-user and libc6-arm64-cross are not installed")
+        raise Missing("qemu-user and libc6-arm64-cross")
     made = Path(tempfile.mkdtemp()) / "machine"
     source = str(HERE / "machine.c")
     compile_it = ["cc", "-target", "aarch64-linux-gnu", "-O1", source, "-o", str(made)]
     ended = subprocess.run([sys.executable, "-m", "ziglang", *compile_it], capture_output=True, text=True, check=False)
     if ended.returncode:
-        raise Missing(f"zig cannot make the machine: {ended.stderr.strip()[:200]}")
+        raise Missing(f"a zig that can make the machine: {ended.stderr.strip()[:200]}")
     return [qemu, "-L", str(ROOT_OF_ARM64), str(made), str(FOLDER / "linux-arm64.so")]
 
 
@@ -260,7 +260,7 @@ def main(names: list[str]) -> int:
         try:
             machine.command()
         except Missing as fault:
-            print(f"{machine.name}: left out, {fault}", flush=True)
+            print(f"{machine.name}: left out for want of {fault}", flush=True)
             continue
         for name in chosen:
             said = verified(name, machine, end)

@@ -6,6 +6,7 @@ from sandbox.physics import jit
 from sandbox.physics.step import step
 from tests.determinism.elsewhere import ARM64, WEB, Image, Missing, watched
 from tests.determinism.kernel_script import busy_world, touching_world
+from tests.support.wants import skip_without
 
 pytestmark = pytest.mark.skipif(jit.way() != "library", reason="calls are noted with the types of the library")
 TICKS = 12
@@ -15,7 +16,7 @@ def image_of(machine):
     try:
         machine.command()
     except Missing as fault:
-        pytest.skip(str(fault))
+        skip_without(str(fault))
     return Image(machine)
 
 

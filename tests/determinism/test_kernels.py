@@ -9,12 +9,14 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.wants import needs
+
 SCRIPT = Path(__file__).with_name("kernel_script.py")
 SOLVERS = ("single_pass", "iterative", "direct")
 SUBSTEPS = (1, 4, "auto")
 TICKS = 40
 
-needs_numba = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
+needs_numba = needs("numba", importlib.util.find_spec("numba"))
 
 
 @functools.cache

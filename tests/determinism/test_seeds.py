@@ -17,6 +17,7 @@ from tests.determinism.seeds.difference import Plant, Watch, ulps
 from tests.determinism.seeds.levels import random_level
 from tests.determinism.seeds.player import recording
 from tests.determinism.seeds.ways import run_way
+from tests.support.wants import skip_without
 
 pytestmark = pytest.mark.skipif(not jit.COMPILED, reason="interpreted kernels take minutes")
 SEEDS, TICKS = range(4), 30
@@ -89,7 +90,7 @@ def needs_web():
     try:
         WEB.command()
     except Missing as fault:
-        pytest.skip(str(fault))
+        skip_without(str(fault))
 
 
 def test_another_process_interprets_kernels_and_names_a_fault_too(recorded):

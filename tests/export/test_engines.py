@@ -16,6 +16,7 @@ from sandbox.export.take_home import take_home
 from sandbox.export.take_home_text import as_text
 from sandbox.physics.analysis.energy import reduced_masses
 from tests.support.springs_elsewhere import Swing, lattice, level_of_springs, swing, swing_here, weight
+from tests.support.wants import skip_without
 
 TICKS = 3000
 # Cs and Cd: slow and soft, as much of both, quick and firm.
@@ -35,7 +36,7 @@ def constants(world, numbers):
 
 def in_pymunk(world, name="pymunk", ticks=TICKS):
     """How particle 1 swings in pymunk, with the numbers for an engine."""
-    pymunk = pytest.importorskip("pymunk", reason="pymunk is not installed")
+    pymunk = pytest.importorskip("pymunk", reason="needs pymunk")
     numbers = engine_numbers(choose_body(world))[name]
     space = pymunk.Space()
     space.gravity, space.damping = GRAVITY, 1.0
@@ -57,7 +58,7 @@ def in_pymunk(world, name="pymunk", ticks=TICKS):
 
 def in_box2d(world, ticks=TICKS):
     """The same in Box2D 3, by frequency and damping ratio."""
-    b2 = pytest.importorskip("pyb2d3", reason="pyb2d3 is not installed")
+    b2 = pytest.importorskip("pyb2d3", reason="needs pyb2d3")
     numbers = engine_numbers(choose_body(world))["box2d"]
     space, bodies = b2.World(gravity=GRAVITY), []
     for place, mass, inverse in zip(world.position, world.mass, world.inverse_mass, strict=True):
@@ -103,7 +104,7 @@ def in_rapier(world, ticks=TICKS, name="rapier"):
     """The same in Rapier; `RAPIER_FOLDER` is where `npm install @dimforge/rapier2d-compat` was said."""
     folder = Path(os.environ.get("RAPIER_FOLDER", Path.cwd()))
     if shutil.which("node") is None or not (folder / "node_modules/@dimforge/rapier2d-compat").is_dir():
-        pytest.skip("there is no node, or no @dimforge/rapier2d-compat in RAPIER_FOLDER")
+        skip_without("node with @dimforge/rapier2d-compat in RAPIER_FOLDER")
     numbers = engine_numbers(choose_body(world))[name]
     places = [
         (*map(float, place), float(mass) if inverse else 0.0)

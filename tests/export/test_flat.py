@@ -23,13 +23,14 @@ from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
 from sandbox.physics.step import step
 from sandbox.session.session import Session
+from tests.support.wants import needs
 
 ROOT = Path(__file__).resolve().parents[2]
 GOLDENS = Path(__file__).parent / "golden"
 READERS = ROOT / "examples" / "flat"
 # A soft body on a rope; muscles and rods on terrain; motors and marbles.
 KEPT = ("trampoline", "walker", "marble_mill")
-node = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node here")
+node = needs("node", shutil.which("node"))
 
 
 @pytest.fixture(scope="module")
@@ -160,7 +161,7 @@ def places_here(name, seconds):
 def reading(reader, tmp_path, levels, name, seconds):
     """What a reader says of a level after some time."""
     if reader == "pymunk":
-        pytest.importorskip("pymunk", reason="pymunk is not installed")
+        pytest.importorskip("pymunk", reason="needs pymunk")
         command = [sys.executable, READERS / "read_flat_pymunk.py"]
     else:
         command = ["node", READERS / "read_flat.js"]
@@ -186,7 +187,7 @@ def test_a_reader_lets_the_walker_walk_on_its_ground_by_its_muscles(reader, tmp_
 
 
 def test_a_reader_without_particles_that_it_is_asked_for_prints_those_that_it_is(tmp_path, levels):
-    pytest.importorskip("pymunk", reason="pymunk is not installed")
+    pytest.importorskip("pymunk", reason="needs pymunk")
     (tmp_path / "level.json").write_text(flat_text(levels["trampoline"]), encoding="utf-8")
     command = [sys.executable, READERS / "read_flat_pymunk.py", tmp_path / "level.json", 0.5, "heavy ball"]
     said = places_said(command, tmp_path)
@@ -195,7 +196,7 @@ def test_a_reader_without_particles_that_it_is_asked_for_prints_those_that_it_is
 
 
 def test_the_program_for_pymunk_is_of_one_file_and_does_what_the_reader_does(tmp_path, levels):
-    pytest.importorskip("pymunk", reason="pymunk is not installed")
+    pytest.importorskip("pymunk", reason="needs pymunk")
     program = tmp_path / "walker.py"
     program.write_text(pymunk_program(levels["walker"]), encoding="utf-8")
     alone = places_said([sys.executable, program, 1.0], tmp_path)

@@ -25,6 +25,7 @@ from sandbox.physics.world import World
 from sandbox.session.commands import SetCoefficients
 from sandbox.session.session import Session
 from tests.support.springs_elsewhere import lattice, level_of_springs, weight
+from tests.support.wants import needs
 from tests.support.wobbles import firm_level, height, measured_wobble, standing_box
 
 JELLY = {"shape": {"box": [1, 1]}, "spacing": 0.25}
@@ -185,7 +186,7 @@ def test_the_python_loop_prints_the_ten_ticks(trial, tmp_path, capsys):
     np.testing.assert_allclose(numbers(capsys.readouterr().out), numbers("\n".join(expected(trial))), atol=1e-9)
 
 
-@pytest.mark.skipif(shutil.which("node") is None, reason="there is no node here")
+@needs("node", shutil.which("node"))
 def test_the_javascript_loop_prints_the_ten_ticks(trial, tmp_path):
     (tmp_path / "loop.js").write_text(listing(trial, "javascript"))
     run = subprocess.run(["node", tmp_path / "loop.js"], capture_output=True, text=True, check=True)
@@ -195,7 +196,7 @@ def test_the_javascript_loop_prints_the_ten_ticks(trial, tmp_path):
 COMPILER = shutil.which("c++") or shutil.which("g++")
 
 
-@pytest.mark.skipif(COMPILER is None, reason="there is no C++ compiler here")
+@needs("a C++ compiler", COMPILER)
 def test_the_cpp_loop_is_compiled_without_a_warning_and_prints_the_ten_ticks(trial, tmp_path):
     (tmp_path / "loop.cpp").write_text(listing(trial, "cpp"))
     command = [COMPILER, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-o", tmp_path / "loop", tmp_path / "loop.cpp"]

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.page.browser import Browser, browser_path
+from tests.support.wants import skip_without
 
 
 @pytest.fixture(scope="session")
@@ -12,7 +13,7 @@ def browser() -> Iterator[Browser]:
     """A browser that runs as long as the tests of this process do."""
     path = browser_path()
     if path is None:
-        pytest.skip("no Chromium is installed")
+        skip_without("Chromium")
     made = Browser(path)
     yield made
     made.close()

@@ -5,9 +5,8 @@ import json
 import shutil
 import subprocess
 
-import pytest
-
 from sandbox.page.page import WEB
+from tests.support.wants import skip_without
 
 _SIZES = (0, 1, 127, 128, 129, 256, 1000)
 _FLOATS = (0.0, -0.0, 1.0, -9.81, 0.1, 1e300, 1e-310)
@@ -22,7 +21,7 @@ console.log(JSON.stringify([sizes.map((size) => blake2b(bytes(size), 16)), float
 def test_hashes_and_the_digits_of_floats_are_those_of_python() -> None:
     node = shutil.which("node")
     if node is None:
-        pytest.skip("node is not installed")
+        skip_without("node")
     program = _PROGRAM % (WEB / "hash.js").as_uri()
     arguments = [node, "--input-type=module", "--eval", program, json.dumps([_SIZES, _FLOATS])]
     said = json.loads(subprocess.run(arguments, capture_output=True, text=True, check=True).stdout)

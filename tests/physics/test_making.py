@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-pytest.importorskip("llvmlite")
-pytest.importorskip("numba")
+pytest.importorskip("llvmlite", reason="needs numba")
+pytest.importorskip("numba", reason="needs numba")
 
 import llvmlite.binding as llvm
 

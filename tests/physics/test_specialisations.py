@@ -6,11 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from sandbox.physics.jit.library import read_manifest
+from tests.support.wants import needs
 
-pytestmark = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="nothing is compiled here")
+pytestmark = needs("numba", importlib.util.find_spec("numba"))
 ROOT = Path(__file__).resolve().parents[2]
 
 STEPS = """

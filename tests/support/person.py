@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 import pygame
-import pytest
 
 from sandbox.app.base.display import WINDOW_SIZE
+from tests.support.wants import needs
 
 # How long something that must happen may take before it counts as not happening [s].
 DEADLINE = 90.0
@@ -29,9 +29,7 @@ WINDOW = ("search", "--onlyvisible", "--class", "spring-sandbox")
 # So long a drag is held on to where it ends.
 HELD_TICKS = 20
 
-needs_a_screen = pytest.mark.skipif(
-    not (shutil.which("Xvfb") and shutil.which("xdotool")), reason="needs Xvfb and xdotool (apt install xvfb xdotool)"
-)
+needs_a_screen = needs("Xvfb and xdotool", shutil.which("Xvfb") and shutil.which("xdotool"))
 
 
 def looks(patience: float, pause: float) -> Iterator[None]:

@@ -165,7 +165,7 @@ def check(task: Task, jobs: int, tally: Tally) -> None:
                 tally.say(task.seeds, f"{way} {number + 1}")
         except Missing as fault:
             clear_line()
-            print(f"{way}: left out, {fault}", flush=True)
+            print(f"{way}: left out for want of {fault}", flush=True)
         except RuntimeError as error:
             tally.add(Result(way, 0, 0, failure(task.first, way, task.ticks, error)))
 
@@ -192,10 +192,10 @@ def _installed(ways: tuple[str, ...]) -> tuple[str, ...]:
         return ways
     try:
         if jit.way() != "library":
-            raise Missing("it makes the calls of the library, which is not used here")
+            raise Missing("the library, which is not used here")
         WEB.command()
     except Missing as fault:
-        print(f"web: left out, {fault}", flush=True)
+        print(f"web: left out for want of {fault}", flush=True)
         return tuple(way for way in ways if way != "web")
     return ways
 

@@ -48,7 +48,7 @@ def run_there(way: str, folder: Path, ticks_of: dict[int, int], plant: str = "")
     Raises Missing where the way is not installed, RuntimeError where the process ends before its time.
     """
     if way == "numba" and importlib.util.find_spec("numba") is None:
-        raise Missing("numba is not installed")
+        raise Missing("numba")
     wanted = [f"{seed}:{ticks}" for seed, ticks in ticks_of.items()]
     command = [sys.executable, "-m", f"{__package__}.child", str(folder), plant, *wanted]
     environment = os.environ | {"SANDBOX_KERNELS": way}
