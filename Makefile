@@ -1,5 +1,8 @@
-# make play: install into .venv and run the app.    make test: install into .venv and run every test.
-# make quick: run the tests of what differs from main, without slow ones; about a minute.
+# make play: install into .venv and run the app.
+# make test: install into .venv and run every test but whole-world ones, which take many seconds each and tell of kernels
+# and formats alone. make test-all: those too; minutes more. make whole-world: those alone, if kernels or formats differ
+# from main, or from the commit that SINCE names.
+# make quick: run the tests of what differs from main, without slow and whole-world ones; about a minute.
 # make goldens: run the kept recordings whole, bit for bit; minutes. make goldens-record: record them again, after a
 # change of a tick's arithmetic or of a shipped level; never to make a failing test pass. make goldens-everywhere: run
 # them in WebAssembly and on an emulated arm64 too, where node and qemu-user with libc6-arm64-cross are installed, and
@@ -33,17 +36,27 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test quick lint bounds goldens goldens-everywhere goldens-record seeds libraries pictures site bench abuse soak clean
+.PHONY: play install test test-all whole-world quick lint bounds goldens goldens-everywhere goldens-record seeds libraries pictures site bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
 
 install: $(VENV)/installed-dev
 
+PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+
+test: $(VENV)/collected
+	$(PYTEST) -m "not whole_world"
+
+test-all: $(VENV)/collected
+	$(PYTEST)
+
+whole-world: $(VENV)/collected
+	$(BIN)/python -m tests.whole_world -n $(WORKERS) --dist worksteal
+
 # Tests are collected once before: byte code of theirs is made then. The run itself reports broken tests.
-test: $(VENV)/installed-dev
-	-$(BIN)/python -m pytest --collect-only --quiet > $(VENV)/collected
-	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+$(VENV)/collected: $(VENV)/installed-dev
+	-$(BIN)/python -m pytest --collect-only --quiet > $@
 
 quick: $(VENV)/installed-dev
 	$(BIN)/python -m tests.quick -n $(WORKERS)
@@ -57,10 +70,10 @@ lint: $(VENV)/installed-dev
 bounds: export NUMBA_BOUNDSCHECK := 1
 bounds: export SANDBOX_KERNELS := numba
 bounds: export NUMBA_CACHE_DIR := $(CURDIR)/$(VENV)/bounds
-bounds: test
+bounds: test-all
 
 goldens: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal tests/determinism/goldens
+	$(PYTEST) tests/determinism/goldens
 
 goldens-everywhere: $(VENV)/installed-dev
 	$(BIN)/python -m tests.determinism.elsewhere

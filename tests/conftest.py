@@ -15,6 +15,8 @@ from tests.support.compiling_once import compile_before_tests
 with suppress(ImportError):
     import resource
 
+# The marks of tests that are begun first.
+LONG_ONES = ("whole_world", "slow")
 TOPOLOGY = [column.name for column in COLUMNS if column.topology]
 # Looks at one world that are made one after another, and ticks between two of them after that.
 FIRST_LOOKS, LATER = 10, 16
@@ -65,8 +67,8 @@ def pytest_runtest_logfinish():
 def pytest_collection_modifyitems(config, items):
     """Deal slow tests first, some to each worker: or one is left with them where the others have nothing more to do."""
     workers = getattr(config, "workerinput", {}).get("workercount", 1)
-    slow = [item for item in items if item.get_closest_marker("slow")]
-    others = [item for item in items if not item.get_closest_marker("slow")]
+    slow = [item for item in items if any(map(item.get_closest_marker, LONG_ONES))]
+    others = [item for item in items if not any(map(item.get_closest_marker, LONG_ONES))]
     left = len(items)
     items.clear()
     for worker in range(workers):

@@ -1,11 +1,15 @@
 """`make libraries` and its check: what they say of libraries that are not those of the sources."""
 
+import importlib.util
 import json
+import subprocess
+import sys
 
 import pytest
 
 from sandbox.app.kernels import libraries
 from sandbox.physics.jit.library import read_manifest
+from tests.support.wants import needs
 
 
 @pytest.fixture
@@ -54,3 +58,11 @@ def test_a_check_names_files_whose_bytes_are_others_and_entries_that_are(monkeyp
 
 def test_libraries_that_are_current_are_not_made_again(makers):
     assert libraries._are_current()
+
+
+@pytest.mark.whole_world
+@needs("numba and zig", importlib.util.find_spec("numba") and importlib.util.find_spec("ziglang"))
+def test_the_library_of_this_platform_made_again_has_the_same_bytes():
+    command = [sys.executable, "-m", "sandbox.app.kernels.libraries", "--check", "--here"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stdout + ended.stderr

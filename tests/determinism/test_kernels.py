@@ -48,7 +48,7 @@ def test_a_fresh_process_repeats_every_bit(solver):
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("way", [pytest.param("numba", marks=needs_numba), "interpreted"])
+@pytest.mark.parametrize("way", [pytest.param("numba", marks=[needs_numba, pytest.mark.whole_world]), "interpreted"])
 def test_the_library_gives_the_bits_of_other_ways(solver, way):
     library, other = runs(solver), runs(solver, way=way)
     for substeps in SUBSTEPS:
@@ -64,6 +64,7 @@ def test_physics_runs_interpreted_where_numba_is_asked_for_and_cannot_be_importe
 
 
 @needs_numba
+@pytest.mark.whole_world
 def test_kernels_compile_uncached_where_no_cache_can_be_written():
     uncached = runs("single_pass", "--without-cache", way="numba")[1]
     assert (uncached[0], len(uncached)) == ("numba", 1 + TICKS)

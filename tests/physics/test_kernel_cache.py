@@ -15,7 +15,7 @@ import pytest
 
 from sandbox.physics import jit
 
-pytestmark = pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled here")
+pytestmark = [pytest.mark.whole_world, pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled here")]
 ROOT = Path(__file__).resolve().parents[2]
 
 CALLEE = """from sandbox.physics.jit import inner_kernel
@@ -62,7 +62,6 @@ def outcome(folder, cache, *options):
     return float(value), int(loaded), int(compiled), ended.stderr
 
 
-@pytest.mark.slow
 def test_a_change_in_what_a_kernel_calls_reaches_its_machine_code_and_the_way_back_is_kept(tmp_path):
     seen = []
     for factor in (3.0, 5.0, 3.0):

@@ -12,7 +12,7 @@ import pytest
 
 from sandbox.physics import jit
 
-pytestmark = pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled here")
+pytestmark = [pytest.mark.whole_world, pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled here")]
 ROOT = Path(__file__).resolve().parents[2]
 
 # Parts of numba that a module of ours imports by name, or reads when it is imported.

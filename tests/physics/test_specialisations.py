@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from sandbox.physics.jit.library import read_manifest
 from tests.support.wants import needs
 
@@ -50,6 +52,7 @@ def printed(script):
     return ended.stdout.splitlines()
 
 
+@pytest.mark.whole_world
 def test_calling_every_kernel_leaves_nothing_to_compile_and_each_entry_is_compiled_for_one_signature():
     numbers = dict(line.split() for line in printed(CALLS))
     assert len(numbers) > 10
