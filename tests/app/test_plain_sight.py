@@ -46,7 +46,7 @@ def test_every_page_shows_every_ready_part_and_all_of_its_materials(edit, name):
         assert page.chosen == material
 
 
-@pytest.mark.parametrize("name", LEVELS[::4])
+@pytest.mark.parametrize("name", LEVELS[::6])
 def test_every_page_shows_every_level(edit, name):
     walk(edit(load_level(name)))
 

@@ -1,6 +1,7 @@
 """Every shipped level, played for a while by a scripted person, verifies everywhere with the same bits.
 
-From the level's beginning in a fresh process, from the middle in the one that made it, and interpreted.
+From the level's beginning in a fresh process, from the middle in the one that made it, and interpreted. A cycle of all
+acts takes two seconds; the whole while is played by whole-world tests.
 """
 
 import os
@@ -29,13 +30,20 @@ WORK = 600_000
 INTERPRETED_TICKS = 120
 INTERPRETED_WORK = 24_000
 INTERPRETED_TOUCHES = 2_000
+# Of those ticks so many have to do beside one cycle.
+INTERPRETED_PART = 5
 # Levels that share a fresh process, which takes seconds to start.
 SHARING = 3
 SHARES = [shipped_levels()[first::SHARING] for first in range(SHARING)]
 
 
-def _lengths(level) -> tuple[int, int]:
+def _lengths(level, is_whole: bool) -> tuple[int, int]:
     """For how many ticks a level is played with compiled kernels, and with interpreted ones."""
+    many, few = _whole_lengths(level)
+    return (many, few) if is_whole else (CYCLE, -(-few // INTERPRETED_PART))
+
+
+def _whole_lengths(level) -> tuple[int, int]:
     world, rate = Session(level).world, level.settings.tick_rate
     if level.has_contacts:
         return TOUCHING_SECONDS * rate, min(INTERPRETED_TICKS, INTERPRETED_TOUCHES // world.particle_count)
@@ -46,12 +54,13 @@ def _lengths(level) -> tuple[int, int]:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("is_whole", [False, pytest.param(True, marks=pytest.mark.whole_world)])
 @pytest.mark.parametrize("paths", SHARES, ids=lambda paths: "+".join(path.stem for path in paths))
-def test_played_levels_verify_in_every_way(paths, tmp_path):
+def test_played_levels_verify_in_every_way(paths, is_whole, tmp_path):
     recordings, short_ones = [], []
     for path in paths:
         level = read_level(path)
-        many, few = _lengths(level)
+        many, few = _lengths(level, is_whole)
         ticks = many if COMPILED else few
         long, short = tmp_path / f"{path.stem}.replay.gz", tmp_path / f"{path.stem}.short.replay.gz"
         for name, length in ((long, ticks), (short, few)):

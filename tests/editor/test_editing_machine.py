@@ -29,9 +29,10 @@ from sandbox.level.kinds.rope import RopeDef
 from sandbox.level.kinds.wheel import WheelDef
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.step import step
+from tests.support.wholes import part_and_whole
 from tests.support.zoo import zoo
 
-# How many random makers and how long each stays; HYPOTHESIS_PROFILE=nightly is the long run.
+# How many random makers whole-world tests have and how long each stays; HYPOTHESIS_PROFILE=nightly is the long run.
 NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
 EXAMPLES, EDITS = (2_000, 50) if NIGHTLY else (100, 20)
 # Levels that edits make larger than this are not worked on: the physics of large levels is tested elsewhere.
@@ -418,11 +419,12 @@ class EditingMachine(RuleBasedStateMachine):
 
 
 @pytest.mark.slow
-def test_any_edits_can_be_undone_and_redone_and_leave_a_level_that_can_be_saved():
+@pytest.mark.parametrize("examples", part_and_whole(30, EXAMPLES))
+def test_any_edits_can_be_undone_and_redone_and_leave_a_level_that_can_be_saved(examples):
     run_state_machine_as_test(
         EditingMachine,
         settings=settings(
-            max_examples=EXAMPLES,
+            max_examples=examples,
             stateful_step_count=EDITS,
             deadline=None,
             suppress_health_check=list(HealthCheck),

@@ -62,8 +62,16 @@ def refuse_enormous(kind: str) -> None:
             raise AssertionError(name) from error
 
 
+# Of those kinds one level or several take seconds to be refused.
+LARGEST = ("of_many_parts", "of_many_springs", "of_many_keys", "of_long_words")
+KINDS = [
+    pytest.param(name, marks=pytest.mark.whole_world if name in LARGEST else ())
+    for name in (each.__name__ for each in ENORMOUS)
+]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [each.__name__ for each in ENORMOUS])
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_enormous_malformed_level_is_refused_in_clear_lines(kind):
     # Some hundred MB that this process would not give back.
     looked = f"from tests.level.test_malformed_levels import refuse_enormous; refuse_enormous({kind!r})"

@@ -144,8 +144,8 @@ def _recorded(folder: Path, run: str) -> Replay:
 def test_a_recording_is_verified_scrubbed_and_taken_over(browser: Browser, tmp_path: Path, run: str) -> None:
     replay = _recorded(tmp_path, run)
     tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
-    assert tab.evaluate(VERDICT) == f"Verified: every bit of {TICKS} ticks is that of the recording."
     tab.evaluate("page.toy.pause()")
+    assert tab.evaluate(VERDICT) == f"Verified: every bit of {TICKS} ticks is that of the recording."
     # What was undone is no part of what a page plays: until then it goes another way.
     for tick in SOUGHT if run != "cut and undone" else (TICKS, 19, 120):
         hashed = tab.evaluate(f"page.toy.seek({tick}); page.toy.world.hash().whole")
@@ -167,8 +167,9 @@ def test_whatever_is_added_moved_and_removed_is_verified(
     replay = _record(tmp_path, session, lambda tick: player.act(), 240)
     assert {line.record["type"] for line in replay.script} >= {"add_body", "undo", "shake"}
     tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
+    tab.evaluate("page.toy.pause()")
     assert tab.evaluate(VERDICT) == "Verified: every bit of 240 ticks is that of the recording."
-    tab.evaluate("page.toy.pause(); [240, 100, 170, 10, 200].forEach((tick) => page.toy.seek(tick))")
+    tab.evaluate("[240, 100, 170, 10, 200].forEach((tick) => page.toy.seek(tick))")
     tab.evaluate("page.toy.command({ type: 'set_gravity', gravity: [0, -3] })")
     tab.evaluate("for (let k = 0; k < 30; k++) page.toy.tick()")
     taken = read_replay(saved(tab, tmp_path))

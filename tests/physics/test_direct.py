@@ -19,6 +19,7 @@ from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
 from tests.support.physics_scenes import run
+from tests.support.wholes import part_and_whole
 
 
 def single_springs(generator: np.random.Generator, count: int, damping_range, steps: int):
@@ -77,19 +78,21 @@ def test_one_spring_along_its_line_moves_as_the_article_says(damping_range):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("size", part_and_whole((10, 500), (20, 2000)), ids="{0[0]} graphs".format)
 @pytest.mark.parametrize("kind", energy_gate.BOUNDS)
 @pytest.mark.parametrize("span", energy_gate.MASS_SPANS)
-def test_energy_of_violent_random_graphs_stays_bounded(kind, span):
-    count, steps = (20, 2000) if COMPILED else (2, 20)
+def test_energy_of_violent_random_graphs_stays_bounded(kind, span, size):
+    count, steps = size if COMPILED else (2, 20)
     graphs = energy_gate.random_graphs(kind, span, count, seed=7)
     assert energy_gate.highest_energies(graphs, count, steps).max() <= energy_gate.BOUNDS[kind]
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("size", part_and_whole((3, 150), (10, 300)), ids="{0[0]} graphs".format)
 @pytest.mark.parametrize("kind", energy_gate.BOUNDS)
 @pytest.mark.parametrize("substeps", [1, AUTO])
-def test_energy_of_violent_random_graphs_with_areas_and_bends_stays_bounded(kind, substeps):
-    count, steps = (10, 300) if COMPILED else (2, 5)
+def test_energy_of_violent_random_graphs_with_areas_and_bends_stays_bounded(kind, substeps, size):
+    count, steps = size if COMPILED else (2, 5)
     graphs = energy_gate.random_graphs(kind, 1e6, count, seed=8, substeps=substeps, elements=True)
     assert energy_gate.highest_energies(graphs, count, steps).max() <= energy_gate.BOUNDS[kind]
 

@@ -66,7 +66,9 @@ def test_the_lowest_mode_depends_on_neither_size_nor_mass():
 
 @SLOW
 @pytest.mark.parametrize("substeps", [1, 8])
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.whole_world if name == "fine box" else ()) for name in BODIES]
+)
 def test_a_body_wobbles_at_the_frequency_and_damping_ratio_that_it_says(name, substeps):
     for hz, ratio in ((1.5, 0.1), (3.0, 0.3)):
         world = firm_world({"hz": hz, "ratio": ratio}, {"substeps": substeps}, **BODIES[name])

@@ -16,6 +16,7 @@ from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
 from tests.support.physics_scenes import run
+from tests.support.wholes import part_and_whole
 
 
 def by_fronts(world: World) -> bool:
@@ -144,7 +145,7 @@ def test_a_run_of_a_large_body_continues_from_a_snapshot_with_the_same_bits():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("interpreted", ["0", "1"])
+@pytest.mark.parametrize("interpreted", part_and_whole("0", "1"))
 def test_a_fresh_process_computes_the_same_bits_of_a_large_body(interpreted):
     code = "from tests.physics.test_large import *; print(state_hash(play(mesh(8), 8)))"
     environment = {**os.environ, "NUMBA_DISABLE_JIT": interpreted, "PYTHONPATH": os.pathsep.join(sys.path)}
@@ -179,13 +180,14 @@ def test_a_large_lattice_that_is_dragged_about_keeps_its_shape():
     assert np.sqrt(np.mean(scenes.square_strains(world))) <= 1e-4
 
 
+@pytest.mark.parametrize("size", part_and_whole((5, 300), (10, 1000)), ids="{0[0]} graphs".format)
 @pytest.mark.parametrize("kind", energy_gate.BOUNDS)
-def test_energy_of_violent_random_graphs_stays_bounded_under_fronts(kind, monkeypatch):
+def test_energy_of_violent_random_graphs_stays_bounded_under_fronts(kind, size, monkeypatch):
     monkeypatch.setattr(dissection, "SMALLEST_BODY", 1)
     monkeypatch.setattr(dissection, "NARROWEST_BORDER", 0.0)
     monkeypatch.setattr(parallel, "WORTH_HALVING", 1)
     monkeypatch.setattr(parallel, "_processor_count", lambda: 1)
-    count, steps = (10, 1000) if COMPILED else (2, 20)
+    count, steps = size if COMPILED else (2, 20)
     for span in energy_gate.MASS_SPANS:
         graphs = energy_gate.random_graphs(kind, span, count, seed=17)
         assert by_fronts(graphs.world)

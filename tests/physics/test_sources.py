@@ -2,7 +2,7 @@
 
 import pytest
 
-from sandbox.physics.jit.sources import edited, kernel_digest, names_taken, sources_now
+from sandbox.physics.jit.sources import edited, kernel_digest, sources_now
 
 SOURCE = '''"""A file."""
 
@@ -101,14 +101,17 @@ def test_a_file_without_kernels_has_no_digest():
     assert kernel_digest(NAME, b"LIMIT = 1.0\n") == ""
 
 
-def test_the_constants_that_kernels_take_from_other_files_are_known():
-    taken = names_taken()
-    assert "HIGHEST_COEFFICIENT" in taken["physics/equation.py"]
-    assert taken["physics/step.py"] == []
+@pytest.fixture(scope="module")
+def now():
+    return sources_now()
 
 
-def test_only_files_whose_kernels_differ_are_edited():
-    now = sources_now()
+def test_the_constants_that_kernels_take_from_other_files_are_known(now):
+    assert "HIGHEST_COEFFICIENT" in now["physics/equation.py"]["taken"]
+    assert now["physics/step.py"]["taken"] == []
+
+
+def test_only_files_whose_kernels_differ_are_edited(now):
     assert edited(now) == []
     with_kernels, without = "physics/integrate.py", "physics/step.py"
     stale = now | {name: now[name] | {"text": "other"} for name in (with_kernels, without)}

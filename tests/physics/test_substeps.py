@@ -17,6 +17,7 @@ from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
 from tests.physics.test_direct import run, single_springs
 from tests.support.tick_parts import parts_of_next_tick, parts_taken, set_parts
+from tests.support.wholes import part_and_whole
 
 DIRECTIONS = 20.0 * np.array([(-1, 0), (1, 0), (0, 1), (0, -1)])
 
@@ -94,11 +95,12 @@ def test_a_rigid_spring_has_its_length_after_one_tick_and_rests_after_two_whatev
         assert energy.spring_lengths(world)[0] == pytest.approx(0.9, abs=1e-5)
 
 
+@pytest.mark.parametrize("size", part_and_whole((5, 200), (20, 400)), ids="{0[0]} graphs".format)
 @pytest.mark.parametrize("kind", energy_gate.BOUNDS)
 @pytest.mark.parametrize("span", energy_gate.MASS_SPANS)
-def test_energy_of_violent_random_graphs_stays_bounded_however_the_parts_change(kind, span, monkeypatch):
+def test_energy_of_violent_random_graphs_stays_bounded_however_the_parts_change(kind, span, size, monkeypatch):
     vary_parts(monkeypatch, 3)
-    count, steps = (20, 400) if COMPILED else (2, 10)
+    count, steps = size if COMPILED else (2, 10)
     graphs = energy_gate.random_graphs(kind, span, count, seed=8, substeps=AUTO)
     assert energy_gate.highest_energies(graphs, count, steps).max() <= energy_gate.BOUNDS[kind]
 

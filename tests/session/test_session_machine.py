@@ -47,6 +47,7 @@ from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
 from sandbox.session.transaction import Interrupted
 from tests.support.rope_level import rope_level
+from tests.support.wholes import part_and_whole
 
 EMPTY = parse_level(
     json.dumps(
@@ -55,7 +56,7 @@ EMPTY = parse_level(
     "test",
 )
 
-# How many random sessions; more of them by hand: SESSION_EXAMPLES=3000.
+# How many random sessions whole-world tests make; more of them by hand: SESSION_EXAMPLES=3000.
 EXAMPLES = int(os.environ.get("SESSION_EXAMPLES", "150"))
 
 # Few slots, hands and places, so that commands meet each other; some of each are none that exist.
@@ -359,7 +360,8 @@ def short_intervals(monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_session_does_what_its_model_does():
+@pytest.mark.parametrize("examples", part_and_whole(50, EXAMPLES))
+def test_a_session_does_what_its_model_does(examples):
     run_state_machine_as_test(
-        SessionMachine, settings=settings(max_examples=EXAMPLES, stateful_step_count=30, deadline=None)
+        SessionMachine, settings=settings(max_examples=examples, stateful_step_count=30, deadline=None)
     )
