@@ -142,6 +142,12 @@ class Driver:
         self.post(pygame.KEYUP, key=key, mod=mod, unicode="", scancode=0)
         self.frames(2)
 
+    def tap(self, key):
+        """Press and release a key within a frame, which nobody looks at."""
+        for kind in (pygame.KEYDOWN, pygame.KEYUP):
+            self.post(kind, key=key, mod=0, unicode="", scancode=0)
+        self.pass_unseen()
+
     def type(self, text):
         for letter in text:
             self.post(pygame.TEXTINPUT, text=letter)

@@ -13,8 +13,8 @@ LEVELS = [path.stem for path in shipped_levels()]
 PAGES = ("properties", "objects", "materials", "parts", "level", "checks", "history", "findings")
 
 
-def walk(driver):
-    """Show each page, with each of some things selected, turn the wheel over it and go through it by Tab."""
+def walk(driver, pages_by_keys=PAGES):
+    """Show each page, with each of some things selected, turn the wheel over it, and go through some of them by Tab."""
     items = list(items_of(driver.editor.document.level))
     for page in PAGES:
         driver.editor.side.choose(page)
@@ -24,10 +24,11 @@ def walk(driver):
         driver.move(driver.editor.side.back.rect.center)
         for notches in (-3, 3):
             driver.post(pygame.MOUSEWHEEL, x=0, y=notches, precise_x=0.0, precise_y=float(notches))
-        for _ in range(12):
-            driver.key(pygame.K_TAB)
-            driver.key(pygame.K_DOWN)
         driver.frames(1)
+        for _ in range(12 if page in pages_by_keys else 0):
+            driver.tap(pygame.K_TAB)
+            driver.tap(pygame.K_DOWN)
+            driver.frames(1)
     driver.app.ui.blur()
 
 
@@ -35,7 +36,8 @@ def walk(driver):
 @pytest.mark.parametrize("name", PARTS)
 def test_every_page_shows_every_ready_part_and_all_of_its_materials(edit, name):
     driver = edit(PARTS[name])
-    walk(driver)
+    # A part's own are the fields of its bodies and of its materials: the others are gone through in levels.
+    walk(driver, ("properties", "materials"))
     driver.editor.side.choose("materials")
     page = driver.editor.side.page
     for material in list(driver.editor.document.level.materials):
