@@ -1,4 +1,4 @@
-"""The editor in a real window, by mouse: three levels from an empty sheet, saved, reopened, played, recorded, verified.
+"""The editor in a real window, by mouse: three levels from an empty sheet, saved; the last reopened, played, verified.
 
 Only names of files are typed. SANDBOX_PICTURES names a folder that keeps a picture of each stage.
 """
@@ -119,11 +119,14 @@ class Maker:
         self.twin.choose("Save")
         self.person.wait_for(f"{name} - Level editor", without="dialog")
 
-    def reopen(self, name):
-        """Begin a new level, and open the saved one among the person's own."""
+    def begin(self):
+        """Begin a new level."""
         self.press("new")
         self.twin.app.act("new")
         self.twin.frames(2)
+
+    def reopen(self, name):
+        """Open a saved level among the person's own."""
         self.press("open")
         self.person.wait_for("Levels")
         self.twin.app.act("open")
@@ -239,7 +242,7 @@ def maker(screen, tmp_path, edit):
 
 
 @pytest.mark.slow
-def test_three_levels_are_built_by_mouse_saved_reopened_played_and_their_recordings_verify(maker):
+def test_three_levels_are_built_by_mouse_and_saved_and_one_is_reopened_and_played_and_its_recording_verifies(maker):
     documents = maker.folder.parent / "documents" / "Spring Sandbox"
     # What was drawn in the plain way until then changes once, which is no answer to the person.
     maker.person.wait_for("Untitled - Level editor")
@@ -252,18 +255,16 @@ def test_three_levels_are_built_by_mouse_saved_reopened_played_and_their_recordi
         maker.save(name)
         drawn = maker.twin.editor.document.level
         assert read_level(documents / f"{name}.json") == drawn
-        maker.reopen(name)
-        maker.record(name, particle)
-        replay = read_replay(documents / f"{name}.replay.jsonl")
-        assert replay.level == drawn
-        assert {line.record["type"] for line in replay.script} >= {"grab", "release"}
-        maker.press("new")
-        maker.twin.app.act("new")
-        maker.twin.frames(2)
+        maker.begin()
+    maker.reopen(name)
+    maker.record(name, particle)
+    recording = documents / f"{name}.replay.jsonl"
+    replay = read_replay(recording)
+    assert replay.level == drawn
+    assert {line.record["type"] for line in replay.script} >= {"grab", "release"}
     maker.person.do("key", "ctrl+q")
     assert maker.person.app.wait(DEADLINE) == 0
 
-    recordings = sorted(documents.glob("*.replay.jsonl"))
-    command = [sys.executable, "-m", "sandbox", "replay", *map(str, recordings)]
+    command = [sys.executable, "-m", "sandbox", "replay", str(recording)]
     verified = subprocess.run(command, env=maker.person.environment, capture_output=True, text=True)
-    assert verified.returncode == 0 and len(recordings) == len(BUILDS), verified.stderr
+    assert verified.returncode == 0, verified.stderr
