@@ -50,7 +50,7 @@ from dataclasses import dataclass
 
 from sandbox.level.format.quantities import Velocity
 from sandbox.physics.world import World
-from sandbox.session.commands.command import Subcommand, CommandError
+from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot, particle_of
 
 
@@ -124,7 +124,7 @@ LIFT = '''
 """LiftTool: a click throws what it hits up."""
 
 from sandbox.physics.snapshot import Snapshot
-from sandbox.session.commands import Subcommand, Push
+from sandbox.session.commands import Command, Push
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.tool import NOTHING, PlacedTool, PointerEvent, Response, Submission
 

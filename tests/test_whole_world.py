@@ -1,5 +1,6 @@
 """`make whole-world` runs what takes long where kernels or formats changed, and says why."""
 
+import os
 import subprocess
 from types import SimpleNamespace
 
@@ -16,29 +17,29 @@ def clone(tmp_path, monkeypatch):
     monkeypatch.setattr(quick, "ROOT", tmp_path)
     monkeypatch.delenv("SINCE", raising=False)
 
-    def git(*arguments):
+    def git(*arguments, time=2 * whole_world.LAST):
         identity = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "init.defaultBranch=main"]
+        environment = {**os.environ, "GIT_COMMITTER_DATE": f"{1_600_000_000 + time} +0000"}
         return subprocess.run(
-            ["git", *identity, *arguments], cwd=tmp_path, check=True, capture_output=True, text=True
+            ["git", *identity, *arguments], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True
         ).stdout.strip()
 
-    def commit(*paths):
+    def commit(*paths, **when):
         for path in paths:
             file = tmp_path / path
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(file.read_text() + "more\n" if file.exists() else "")
         git("add", ".")
-        git("commit", "-m", "Change")
+        git("commit", "-m", "Change", **when)
 
     git("init")
-    commit(KERNEL, PAGE)
+    commit(KERNEL, PAGE, time=0)
     return SimpleNamespace(git=git, commit=commit)
 
 
 def test_on_a_branch_what_differs_from_where_it_left_main_counts(clone):
     clone.git("checkout", "-b", "work")
-    for _ in range(whole_world.LAST + 1):
-        clone.commit(PAGE)
+    clone.commit(PAGE)
     assert whole_world.why()[0] is False
     clone.commit(KERNEL)
     clone.commit(PAGE)
@@ -52,14 +53,13 @@ def test_a_kernel_that_is_not_committed_counts(clone, tmp_path):
     assert whole_world.why()[0]
 
 
-def test_on_main_the_last_commits_count(clone):
-    clone.commit(KERNEL)
-    for _ in range(whole_world.LAST - 1):
-        clone.commit(PAGE)
+def test_on_main_the_commits_of_half_a_day_count(clone):
+    clone.commit(KERNEL, time=10)
+    clone.commit(PAGE, time=9 + whole_world.LAST)
     assert whole_world.why()[0]
-    clone.commit(PAGE)
+    clone.commit(PAGE, time=11 + whole_world.LAST)
     is_due, sentence = whole_world.why()
-    assert not is_due and sentence.endswith(f", {whole_world.LAST} commits ago")
+    assert not is_due and sentence.endswith("the last commit of half a day before")
 
 
 def test_since_names_the_commit_and_one_that_is_not_there_is_passed_over(clone, monkeypatch):

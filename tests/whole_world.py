@@ -2,7 +2,7 @@
 
 They take many seconds each and tell of kernels and formats alone, so other changes leave them out. What was changed is
 what differs, in commits or in the working tree, from a base: from the commit that SINCE names; or where that is none,
-from where this branch left main; or on main itself, from its first parent some commits ago. Without a base all are run.
+from where this branch left main; or on main itself, from what it was half a day before. Without a base all are run.
 """
 
 import os
@@ -19,8 +19,8 @@ WATCHED = (
 )  # fmt: skip
 # What a file of tests says in which there are such tests.
 MARKS = re.compile(r"mark\.whole_world|part_and_whole")
-# Commits of main that are looked at where nobody says since when.
-LAST = 5
+# So much of main's time is looked at where nobody says since when [s]: what somebody pushes at once is made in hours.
+LAST = 12 * 3600
 
 
 def base() -> tuple[str, str]:
@@ -31,10 +31,9 @@ def base() -> tuple[str, str]:
     for left in filter(None, map(left_branch, ("main", "origin/main"))):
         if left != commit("HEAD"):
             return left, f"{left[:8]}, where this branch left main"
-    for back in range(LAST, 0, -1):
-        if found := commit(f"HEAD~{back}"):
-            return found, f"{found[:8]}, {back} commits ago"
-    return "", ""
+    made = "".join(git("show", "--no-patch", "--format=%ct", "HEAD"))
+    found = made and "".join(git("rev-list", "-1", "--first-parent", f"--before={int(made) - LAST}", "HEAD"))
+    return found, f"{found[:8]}, the last commit of half a day before"
 
 
 def commit(name: str) -> str:
