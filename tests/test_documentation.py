@@ -373,7 +373,7 @@ def test_a_search_for_a_word_of_the_glossary_leads_to_its_file(term, file):
 
 def test_the_changelog_says_in_short_entries_under_known_headings_what_was_changed_and_what_recordings_must_expect():
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    known = {"Recordings and levels made before", "Added", "Changed", "Fixed"}
+    known = {"Recordings and levels made before", "Added", "Changed", "Fixed", "Size"}
     for release in re.split(r"^## ", text, flags=re.MULTILINE)[1:]:
         headings = re.findall(r"^### (.*)$", release, re.MULTILINE)
         assert headings and set(headings) <= known

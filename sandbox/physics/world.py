@@ -388,7 +388,8 @@ class World(StateArrays):
         """Append constraints of one kind, AREA or BEND, with k corners each, and return the first slot.
 
         corners: particle slots (t, k), of an area in the order of its outline. form [m] (t, k, 2): their places at
-        rest, None = as they stand. inflation: area wanted as a multiple of the form's. The others (t,) or one for all.
+        rest, None = as they stand. inflation: area wanted as a multiple of the form's, below 0 turned over. The others
+        (t,) or one for all.
         Raises IndexError for a slot that does not exist, and ValueError for one that comes twice, a bend with no three
         corners or with a link of no length, an area with fewer than three corners, and numbers that are not finite.
         """
@@ -399,7 +400,7 @@ class World(StateArrays):
         if np.any(np.diff(np.sort(slots, axis=1), axis=1) == 0):
             raise ValueError("the corners of a constraint are different particles")
         places = self.position[slots] if form is None else arguments.floats("form", form, (count, size, 2))
-        wanted = arguments.floats("inflation", inflation, (count,), 0.0)
+        wanted = arguments.floats("inflation", inflation, (count,))
         rest, weight = rest_of_area(places, wanted) if kind == AREA else rest_of_bend(places)
         first = self.constraint_count
         given: dict[str, ArrayLike] = dict(

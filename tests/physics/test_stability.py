@@ -220,6 +220,7 @@ def test_the_marks_are_for_the_chosen_material():
 
 def test_the_marks_leave_room_for_what_harder_springs_take_at_the_same_particle_and_hands_take_none():
     world = grid_with_diagonals(stiffness=0.05, damping=0.05)
+    world.material_names = ("default", "tie")
     alone = coefficient_limits(world).damping
     # Eight springs at one particle: 8 (Cs + 2 Cd) < 4.
     assert alone == pytest.approx((4.0 / 8.0 - 0.05) / 2.0)

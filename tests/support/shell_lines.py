@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -88,9 +89,10 @@ class Reader:
         return f"exit code {run.returncode}\n{run.stdout[-500:]}{run.stderr[-2000:]}"
 
     def _visit(self, text: str) -> str | None:
-        """Open a window, click into it, close it; what was wrong."""
+        """Open a window in a home of its own, click into it, close it; what was wrong."""
         assert self._screen is not None
-        visitor = Visitor(self._screen, f"exec {text}", self.folder, self.environment)
+        environment = {**self.environment, "HOME": tempfile.mkdtemp(dir=self.home)}
+        visitor = Visitor(self._screen, f"exec {text}", self.folder, environment)
         try:
             visitor.wait_for(" - Spring Sandbox")
             visitor.click_inside()

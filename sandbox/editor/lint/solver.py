@@ -38,7 +38,7 @@ def springs_past_limits(level: Level, scene: Scene) -> Rule:
 def _network(level: Level, scene: Scene) -> World:
     """The springs and masses of a scene as a world, as far as limits depend on them."""
     # Without names: to register those of 100,000 springs takes longer than all the rest.
-    world = World(WorldSettings(**dict(level.settings)))
+    world = World(WorldSettings(**dict(level.settings)), scene.materials)
     first, count = scene.first_of_weld, len(scene.mass)
     mass = np.bincount(first, scene.mass, count).astype(np.float64)
     world.mass = mass
