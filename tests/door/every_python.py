@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 from tests.door.front_door import ROOT, stranger_environment
@@ -80,12 +81,21 @@ def carried_out(command: list[str], folder: Path, environment: dict[str, str]) -
 
 def installed(trial: Trial, wheel: Path, folder: Path) -> Path:
     """The folder of programs of a fresh environment that holds the wheel. Raises Failed."""
-    environment = dict(os.environ)
-    carried_out([trial.python, "-m", "venv", str(folder / "venv")], folder, environment)
+    environment, place = dict(os.environ), str(folder / "venv")
     programs = folder / "venv" / ("Scripts" if os.name == "nt" else "bin")
-    if trial.constraints:
-        environment |= {"PIP_CONSTRAINT": str(trial.constraints)}
-    carried_out([str(programs / "python"), "-m", "pip", "install", "--quiet", str(wheel)], folder, environment)
+    python = str(programs / "python")
+    if find_spec("uv"):
+        # In a tenth of pip's time, and also for a Python that came without pip.
+        uv = [sys.executable, "-m", "uv"]
+        create, install = (
+            [*uv, "venv", "-q", "--python", trial.python, place],
+            [*uv, "pip", "install", "-q", "--python", python],
+        )
+    else:
+        create, install = [trial.python, "-m", "venv", place], [python, "-m", "pip", "install", "-q"]
+    carried_out(create, folder, environment)
+    constraints = ["--constraint", str(trial.constraints)] if trial.constraints else []
+    carried_out([*install, *constraints, str(wheel)], folder, environment)
     return programs
 
 
