@@ -100,7 +100,8 @@ def work_of_forces(span: Span, rows: Rows, underdamped: bool) -> float:
 
 @inner_kernel
 def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorkspace, driven: bool, h: float) -> float:
-    # What forces and joints do at the velocities of the ends of a step beyond what they do at those of its chords [J].
+    # What forces and joints do beyond what they do at the velocities of chords [J]: forces at those of the ends of a
+    # step, joints at those right before and right after their impulses.
     rows, bodies, push = system.rows, system.bodies, workspace.delassus.joints.push
     rate0, rate = bodies.spin[body, INWARD], bodies.spin[body, END_INWARD]
     spared = bodies.spared[body]
@@ -120,8 +121,9 @@ def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorksp
             total += rows.mass[r] * (rows.v_star[r, 0] - rows.start[r, 0]) * (vx - ux)
             total += rows.mass[r] * (rows.v_star[r, 1] - rows.start[r, 1]) * (vy - uy)
         if driven:
+            # Their impulses act where the step begins, and what turns has the velocity of its arc there.
             p = rows.particle[r]
-            total += push[p, 0] * (ux + vx) + push[p, 1] * (uy + vy)
+            total += push[p, 0] * (ux + rate * dx - turned * dy) + push[p, 1] * (uy + rate * dy + turned * dx)
     return 0.5 * total
 
 
