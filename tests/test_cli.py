@@ -40,11 +40,15 @@ def test_run_prints_every_figure_as_json(rope, capsys):
     assert list(figures) == [
         "level", "ticks", "simulated_seconds", "particles", "springs", "solver", "substeps", "max_strain", "rms_strain",
         "kinetic_energy", "potential_energy", "spring_energy", "gravity_energy", "dissipated_energy",
-        "max_speed", "non_finite", "broken_springs", "hash",
+        "energy_tests", "max_speed", "non_finite", "broken_springs", "hash",
         "milliseconds_per_tick",
     ]  # fmt: skip
     assert (figures["ticks"], figures["particles"], figures["springs"]) == (120, 5, 4)
     assert figures["max_strain"] >= figures["rms_strain"] > 0.0
+    # The rope's own solver has no energy test.
+    assert figures["energy_tests"] == {
+        "passed": 0, "solved_on": 0, "gave_way": 0, "minimised": 0, "slowed_down": 0
+    }  # fmt: skip
 
 
 def test_run_gives_the_same_hash_every_time_and_another_for_other_settings(rope, capsys):

@@ -7,7 +7,7 @@ from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.world import World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
-PHYSICS_VERSION = 9
+PHYSICS_VERSION = 10
 
 
 def precompute(world: World) -> None:

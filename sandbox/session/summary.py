@@ -8,6 +8,7 @@ from statistics import median
 import numpy as np
 
 from sandbox.physics.analysis.energy import Dissipation, gravity_energy, kinetic_energy, spring_energy
+from sandbox.physics.analysis.energy_tests import EnergyTests, energy_tests, forget_energy_tests
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.settings import Substeps
 from sandbox.physics.snapshot import state_hash
@@ -23,8 +24,8 @@ class Summary:
     """Figures of a run. Strain: |l - L| / L at every tick's end of the last 2 s; all else at the end of the run.
 
     Energies [J], gravity's zero at y = 0: potential is springs and gravity, dissipated is what Dissipation says;
-    max_speed [m/s] of any particle; non_finite: particles without a finite position and velocity;
-    milliseconds_per_tick: median wall time of the step alone.
+    energy_tests: those of this run; max_speed [m/s] of any particle; non_finite: particles without a finite position
+    and velocity; milliseconds_per_tick: median wall time of the step alone.
     """
 
     ticks: int
@@ -40,6 +41,7 @@ class Summary:
     spring_energy: float
     gravity_energy: float
     dissipated_energy: float
+    energy_tests: EnergyTests
     max_speed: float
     non_finite: int
     broken_springs: int
@@ -54,6 +56,7 @@ class Summary:
             f"  strain        {self.max_strain:.3%} at most, {self.rms_strain:.3%} RMS (last 2 s)\n"
             f"  energy        {self.kinetic_energy:.6g} J kinetic, {self.spring_energy:.6g} J in springs, "
             f"{self.gravity_energy:.6g} J of gravity, {self.dissipated_energy:.6g} J dissipated\n"
+            f"  energy test   {self.energy_tests}\n"
             f"  fastest       {self.max_speed:.6g} m/s\n"
             f"  non-finite    {self.non_finite} particles, broken {self.broken_springs} springs\n"
             f"  a tick took   {self.milliseconds_per_tick:.4f} ms\n"
@@ -68,6 +71,7 @@ def run(session: Session, ticks: int, on_tick: Callable[[World], None] | None = 
     window: list[tuple[float, float, int]] = []
     times: list[float] = []
     dissipation = Dissipation()
+    forget_energy_tests(world)
     with np.errstate(over="ignore", invalid="ignore"):
         for done in range(ticks):
             changed = session.apply_pending()
@@ -114,6 +118,7 @@ def _summary(
         spring_energy=springs_hold,
         gravity_energy=gravity_holds,
         dissipated_energy=dissipated,
+        energy_tests=energy_tests(world),
         max_speed=float(speed.max()) if len(speed) else 0.0,
         non_finite=int(np.count_nonzero(~finite)),
         broken_springs=real - active,

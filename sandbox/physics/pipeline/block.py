@@ -41,7 +41,7 @@ class WorldBlock(NamedTuple):
 
     Given: state, good: its arrays; numbers, choices: its settings, see settings.py; drives, wheels, limits; tuning, see
     elimination.py. plan, progress: see above. wanted: the most of each that a step has asked for, see derive.py; counts
-    of the collisions: what there is in the present step.
+    of the collisions: what there is in the present step; ways of the workspace: see energy_bank.py.
 
     Derived, see derive.py: start [m/s] (n, 2): velocities before anything acted in a substep; start_length [m] (m,):
     rest lengths before drives; shortest (GRAB_COUNT,): scratch; body_label (n,): see hands.py. All else is of one phase

@@ -27,6 +27,8 @@ from sandbox.physics.pipeline.block import (
 from sandbox.physics.pipeline.collide import BOUND, KEPT, Collisions
 from sandbox.physics.pipeline.derive import WANTED, derive_hands, derive_topology, make_room
 from sandbox.physics.settings import WorldSettings
+from sandbox.physics.solvers.direct.energy_bank import WAYS
+from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.tuning import tuning
 from sandbox.physics.solvers.linear.parallel import Helper, start_helper
 from sandbox.physics.state import good_of, state_of
@@ -59,6 +61,7 @@ class Block:
             progress=np.zeros(PROGRESS, np.int64),
             wanted=np.zeros(WANTED, np.int64),
             collisions=with_empty(Collisions, counts=np.zeros(BOUND + 1, np.int64)),
+            workspace=with_empty(IslandWorkspace, ways=np.zeros(WAYS, np.int64)),
         )
         self._constant: tuple[Any, ...] = ()
         self._follow_topology(world)

@@ -20,6 +20,10 @@ ENERGY_ROUNDING = 1e-12
 LARGEST_RESERVE = 10.0
 # Halvings of the velocities before a body is stopped.
 LAST_HALVINGS = 60
+# The ways through the test. The last one that a substep of a body alone or of an island needed is counted, which no
+# tick reads. The first linear solve passed; one more did; one for a lower target did; one whose contacts only hold, or
+# the minimum of f; velocities were reduced until they passed.
+PASSED, SOLVED_ON, GAVE_WAY, MINIMISED, SLOWED_DOWN, WAYS = range(6)
 
 
 @inner_kernel

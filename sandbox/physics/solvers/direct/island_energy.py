@@ -7,7 +7,7 @@ is stored, up to a limit, in the energy banks of bodies and particles; to push a
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
@@ -206,11 +206,17 @@ def _draw(k: int, wanted: float, workspace: IslandWorkspace, system: System, sta
 
 
 @inner_kernel
+def is_deep(c: int, contacts: Contacts, state: State) -> bool:
+    """Whether what touches at a contact overlaps deeply."""
+    return contacts.gap[c] < -DEEP * state.radius[contacts.particle[c]]
+
+
+@inner_kernel
 def draw_on_reserves(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State) -> None:
     """Where two bodies overlap deeply, pay for pushing them apart from their parting reserves."""
     islands = workspace.islands
     for c in range(contacts.particle.shape[0]):
-        if not contacts.gap[c] < -DEEP * state.radius[contacts.particle[c]]:
+        if not is_deep(c, contacts, state):
             continue
         one = -1
         other = -1
@@ -227,8 +233,33 @@ def draw_on_reserves(contacts: Contacts, workspace: IslandWorkspace, system: Sys
 
 
 @inner_kernel
-def check_energies(workspace: IslandWorkspace, mass: Floats, start: Floats) -> bool:
+def any_fails(islands: BodyIslands) -> bool:
+    """Whether any island failed its last energy test."""
+    found = False
+    for island in range(islands.counts[ISLANDS]):
+        found = found or islands.fails[island]
+    return found
+
+
+@inner_kernel
+def note_way(way: int, islands: BodyIslands) -> None:
+    """Note that the islands which fail go on this way, see PASSED."""
+    for island in range(islands.counts[ISLANDS]):
+        if islands.fails[island]:
+            islands.way[island] = way
+
+
+@inner_kernel
+def count_ways(islands: BodyIslands, ways: Slots) -> None:
+    """Count the last way of each island; ways (WAYS,)."""
+    for island in range(islands.counts[ISLANDS]):
+        ways[islands.way[island]] += 1
+
+
+@inner_kernel
+def check_energies(workspace: IslandWorkspace, state: State, start: Floats) -> bool:
     """Check the energy of every island; whether any fails."""
+    # Where a free particle gave way, `given` is below what forces left it.
     islands, surface, push = workspace.islands, workspace.terms.surface, workspace.delassus.joints.push
     bodies = islands.counts[BODIES]
     for island in range(islands.counts[ISLANDS]):
@@ -236,22 +267,20 @@ def check_energies(workspace: IslandWorkspace, mass: Floats, start: Floats) -> b
         islands.allowed[island] = 0.0
     for i in range(islands.counts[MEMBERS] - bodies):
         p = islands.free[i]
-        ux, uy = islands.given[p, 0], islands.given[p, 1]
-        vx, vy = ux + islands.delta_v[p, 0], uy + islands.delta_v[p, 1]
-        work = (ux - start[p, 0]) * islands.delta_v[p, 0] + (uy - start[p, 1]) * islands.delta_v[p, 1]
+        ux, uy = state.velocity[p, 0], state.velocity[p, 1]
+        vx, vy = islands.given[p, 0] + islands.delta_v[p, 0], islands.given[p, 1] + islands.delta_v[p, 1]
+        work = (ux - start[p, 0]) * (vx - ux) + (uy - start[p, 1]) * (vy - uy)
         turning = surface[p] * surface[p] / SURFACE_WEIGHT
-        islands.energy[bodies + i] = 0.5 * mass[p] * (vx * vx + vy * vy + turning - work)
+        islands.energy[bodies + i] = 0.5 * state.mass[p] * (vx * vx + vy * vy + turning - work)
         if push.shape[0] > 0:
             given = push[p, 0] * (start[p, 0] + vx) + push[p, 1] * (start[p, 1] + vy)
             islands.energy[bodies + i] -= 0.5 * given
     for k in range(islands.counts[MEMBERS]):
         islands.total[islands.island[k]] += islands.energy[k]
         islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.bank[k]
-    failing = False
     for island in range(islands.counts[ISLANDS]):
         islands.fails[island] = not islands.total[island] <= islands.allowed[island]
-        failing = failing or islands.fails[island]
-    return failing
+    return any_fails(islands)
 
 
 @inner_kernel
@@ -354,7 +383,7 @@ def damp_islands(workspace: IslandWorkspace, system: System, state: State, start
                     v = islands.given[p, axis] + islands.delta_v[p, axis]
                     islands.delta_v[p, axis] = factor * v - islands.given[p, axis]
                 surface[p] *= factor
-        if not check_energies(workspace, state.mass, start):
+        if not check_energies(workspace, state, start):
             break
     for k in range(bodies):
         if islands.due[k]:

@@ -23,7 +23,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     mark_calm,
     solve_contacts,
 )
-from sandbox.physics.solvers.direct.energy_bank import is_new
+from sandbox.physics.solvers.direct.energy_bank import MINIMISED, SLOWED_DOWN, SOLVED_ON, is_new
 from sandbox.physics.solvers.direct.factor import respond, solve_linear
 from sandbox.physics.solvers.direct.families import (
     find_tension,
@@ -32,15 +32,19 @@ from sandbox.physics.solvers.direct.families import (
     potential,
     update,
 )
+from sandbox.physics.solvers.direct.giving_way import begin_giving_way, give_way, note_excess, take_back
 from sandbox.physics.solvers.direct.island_energy import (
+    any_fails,
     check_energies,
     clamp_free,
     clamp_rows,
+    count_ways,
     credit_penetration,
     damp_islands,
     draw_on_reserves,
     drop_biases,
     measure_body,
+    note_way,
     open_free,
     store_energies,
     weigh_body,
@@ -86,6 +90,8 @@ SOLVES_WITHOUT_BIAS = 2
 # Linear solves more, while an island with a joint fails its energy test: wheels turn fast. With none of them a cart of
 # 120 kg fails in 9 to 61 of 240 steps, is slowed down, and drives at a fifth of its speed.
 DRIVEN_SOLVES = 5
+# And of islands that solve on or give way, at most. With none a pendulum under a cart loses half of its energy at once.
+MORE_SOLVES = 12
 
 
 @inner_kernel
@@ -271,56 +277,113 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
 
 
 @inner_kernel
+def _push_and_test(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: Floats, affordable: int,
+    accelerate: bool, begins: bool, h: float,
+) -> int:  # fmt: skip
+    # Push what was linearised through its contacts and joints, and test it; how many sweeps the step may still have.
+    islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
+    prepare_joints(workspace)
+    sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
+    most = max(sweeps, min(CALM_SWEEPS, affordable))
+    done = _push_all(contacts, islands, terms, delassus, state, sweeps, most, accelerate, begins, h)
+    if begins:
+        credit_penetration(contacts, workspace, state.inverse_mass, h)
+        draw_on_reserves(contacts, workspace, system, state)
+    _answer(workspace, system, state, h)
+    check_energies(workspace, state, start)
+    return affordable - done
+
+
+@inner_kernel
+def _find_due(islands: BodyIslands, misses: bool, h: float) -> bool:
+    # Bodies are due whose islands fail, and if it matters those whose springs miss the lengths predicted; whether
+    # anything fails or misses.
+    found = any_fails(islands)
+    for k in range(islands.counts[BODIES]):
+        missed = misses and islands.misfit[k] > MISFIT_RATE * h * h
+        islands.due[k] = missed or islands.fails[islands.island[k]]
+        found = found or missed
+    return found
+
+
+@inner_kernel
+def _solve_linearly(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: Floats, affordable: int,
+    h: float,
+) -> int:  # fmt: skip
+    # Linear solves while springs miss the lengths predicted or the test fails; the sweeps left.
+    islands = workspace.islands
+    most = LINEAR_SOLVES + (DRIVEN_SOLVES if any_on(workspace.delassus.joints.rows) else 0)
+    for solve in range(most):
+        if solve >= LINEAR_SOLVES and not fails_driven(workspace):
+            break
+        note_excess(islands)
+        _solve_due(workspace, system, h, AHEAD, AHEAD)
+        affordable = _push_and_test(contacts, workspace, system, state, start, affordable, True, solve == 0, h)
+        if solve == 0:
+            note_way(SOLVED_ON, islands)
+        if not _find_due(islands, solve < LINEAR_SOLVES - 1 and affordable > 0, h) or affordable <= 0:
+            break
+    return affordable
+
+
+@inner_kernel
+def _solve_lower(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: Floats, affordable: int,
+    h: float,
+) -> int:  # fmt: skip
+    # More of them, for targets that give way; the sweeps left.
+    begin_giving_way(contacts, workspace, system, state)
+    for _solve in range(MORE_SOLVES):
+        if affordable <= 0 or not give_way(workspace, system, state):
+            break
+        _solve_due(workspace, system, h, AHEAD, AHEAD)
+        affordable = _push_and_test(contacts, workspace, system, state, start, affordable, True, False, h)
+        if not _find_due(workspace.islands, False, h):
+            break
+    return affordable
+
+
+@inner_kernel
+def _solve_without_bias(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: Floats, affordable: int,
+    h: float,
+) -> None:  # fmt: skip
+    # Contacts only hold, at Newton steps on f from v* and from rest: the last one takes energy if it is made short
+    # enough.
+    islands = workspace.islands
+    for solve in range(0 if affordable > 0 else SOLVES_WITHOUT_BIAS - 1, SOLVES_WITHOUT_BIAS):
+        note_way(MINIMISED, islands)
+        take_back(workspace, system, state)
+        drop_biases(contacts, workspace, state.inverse_mass, solve == 0, h)
+        release_joints(workspace)
+        _begin_again(islands, system, 1.0 if solve == 0 else 0.0)
+        _solve_due(workspace, system, h, 1.0, 0.0)
+        affordable = _push_and_test(contacts, workspace, system, state, start, affordable, False, False, h)
+        if not _find_due(islands, False, h):
+            break
+
+
+@inner_kernel
 def solve_islands(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, inputs: Inputs, auto_substeps: int,
     h: float,
 ) -> None:  # fmt: skip
     """Bring what contacts touch or joints act on to the end of a step of h [s]; rows are loaded, islands found."""
-    islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
-    load_biases(contacts, terms, h)
+    islands, start = workspace.islands, inputs.start
+    load_biases(contacts, workspace.terms, h)
     _open(workspace, system, state, inputs, auto_substeps, h)
     open_joints(workspace, state.inverse_mass)
-    affordable = int(WORK * h) // max(1, _cost_of(contacts, delassus))
-    driven_solves = DRIVEN_SOLVES if any_on(delassus.joints.rows) else 0
-    failing = False
-    # Linear solves while springs miss the lengths predicted, a second where the test fails; then contacts only hold, at
-    # Newton steps on f from v* and from rest: the last one takes energy if it is made short enough.
-    stage = 0
-    while stage < LINEAR_SOLVES + SOLVES_WITHOUT_BIAS:
-        if stage < LINEAR_SOLVES:
-            _solve_due(workspace, system, h, AHEAD, AHEAD)
-        else:
-            drop_biases(contacts, workspace, state.inverse_mass, stage == LINEAR_SOLVES, h)
-            release_joints(workspace)
-            _begin_again(islands, system, 1.0 if stage == LINEAR_SOLVES else 0.0)
-            _solve_due(workspace, system, h, 1.0, 0.0)
-        prepare_joints(workspace)
-        sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
-        most = max(sweeps, min(CALM_SWEEPS, affordable))
-        affordable -= _push_all(
-            contacts, islands, terms, delassus, state, sweeps, most, stage < LINEAR_SOLVES, stage == 0, h
-        )  # fmt: skip
-        if stage == 0:
-            credit_penetration(contacts, workspace, state.inverse_mass, h)
-            draw_on_reserves(contacts, workspace, system, state)
-        _answer(workspace, system, state, h)
-        failing = check_energies(workspace, state.mass, inputs.start)
-        inexact = False
-        for k in range(islands.counts[BODIES]):
-            missed = stage < LINEAR_SOLVES - 1 and affordable > 0 and islands.misfit[k] > MISFIT_RATE * h * h
-            inexact = inexact or missed
-            islands.due[k] = missed or islands.fails[islands.island[k]]
-        if not (inexact or failing):
-            break
-        stage += 1
-        if failing and affordable <= 0:
-            stage = max(stage, LINEAR_SOLVES + SOLVES_WITHOUT_BIAS - 1)
-        elif failing and not inexact and stage > 1:
-            stage = max(stage, LINEAR_SOLVES)
-        if stage == LINEAR_SOLVES and driven_solves > 0 and fails_driven(workspace):
-            stage -= 1
-            driven_solves -= 1
-    if failing:
-        damp_islands(workspace, system, state, inputs.start, h)
+    affordable = int(WORK * h) // max(1, _cost_of(contacts, workspace.delassus))
+    affordable = _solve_linearly(contacts, workspace, system, state, start, affordable, h)
+    if any_fails(islands):
+        affordable = _solve_lower(contacts, workspace, system, state, start, affordable, h)
+    if any_fails(islands):
+        _solve_without_bias(contacts, workspace, system, state, start, affordable, h)
+    if any_fails(islands):
+        note_way(SLOWED_DOWN, islands)
+        damp_islands(workspace, system, state, start, h)
+    count_ways(islands, workspace.ways)
     store_energies(contacts, workspace, system, state, h)
-    _finish(islands, terms.surface, system, state)
+    _finish(islands, workspace.terms.surface, system, state)

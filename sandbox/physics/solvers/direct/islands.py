@@ -9,6 +9,7 @@ from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel, put
 from sandbox.physics.joints.joint_sweep import Joints
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
+from sandbox.physics.solvers.direct.energy_bank import PASSED
 from sandbox.physics.solvers.direct.system import System
 
 # Places in `counts`: bodies that contacts touch, members (those and free particles), islands, and the room that the
@@ -25,6 +26,8 @@ class BodyIslands(NamedTuple):
     delta_v [m/s]: velocities without contacts, and what those add. By touched body: misfit; due: to be solved again;
     rigid: all its springs are; driven: a joint acts on it. By body: number among the touched. By island: total, allowed
     [J], fails. By row: unpushed [m/s] = velocities without contacts, pushed [m/s] = what contacts and joints add.
+    held: something outside holds it; parts: something in it overlaps deeply; excess [J]: what it had too much, see
+    giving_way.py; way: see energy_bank.py.
     label, marked: scratch.
     """
 
@@ -48,6 +51,10 @@ class BodyIslands(NamedTuple):
     total: Floats
     allowed: Floats
     fails: Flags
+    held: Flags
+    parts: Flags
+    excess: Floats
+    way: Slots
     unpushed: FloatRows
     pushed: FloatRows
     given: FloatRows
@@ -57,8 +64,9 @@ class BodyIslands(NamedTuple):
 
 
 class IslandWorkspace(NamedTuple):
-    """Islands of bodies with what solves their contacts, as kernels take them."""
+    """Islands of bodies with what solves their contacts, as kernels take them; ways: counts, see energy_bank.py."""
 
+    ways: Slots
     islands: BodyIslands
     delassus: Delassus
     terms: ContactConstraints
@@ -75,7 +83,8 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
         new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_floats(arena, members),
         new_flags(arena, members), new_floats(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
         new_flags(arena, bodies), new_slots(arena, bodies), new_floats(arena, members), new_floats(arena, members),
-        new_flags(arena, members), new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2),
+        new_flags(arena, members), new_flags(arena, members), new_flags(arena, members), new_floats(arena, members),
+        new_slots(arena, members), new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2),
         new_float_rows(arena, particles, 2), new_float_rows(arena, particles, 2), new_slots(arena, members),
         new_flags(arena, particles),
     )  # fmt: skip
@@ -230,6 +239,7 @@ def _number_islands(contacts: Contacts, inverse_mass: Floats, workspace: IslandW
             islands.label[label] = count + 1
             count += 1
         islands.island[k] = islands.label[label] - 1
+        islands.way[islands.island[k]] = PASSED
     islands.counts[ISLANDS] = count
 
 

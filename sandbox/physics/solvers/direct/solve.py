@@ -31,4 +31,4 @@ def solve(
     load_rows(system, state, given, h)
     if has_islands:
         solve_islands(contacts, workspace, system, state, given, auto_substeps, h)
-    step_bodies(system, state, given, has_islands, auto_substeps, h)
+    step_bodies(system, state, given, workspace.ways, has_islands, auto_substeps, h)

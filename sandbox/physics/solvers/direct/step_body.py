@@ -7,12 +7,16 @@ what it had plus what its bank holds of earlier losses; else f itself is minimis
 
 import math
 
+from sandbox.physics.arrays import Slots
 from sandbox.physics.geometry.rigid import RigidMotion
 from sandbox.physics.integrate import follow
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.energy_bank import (
     ENERGY_ROUNDING,
     LAST_HALVINGS,
+    MINIMISED,
+    PASSED,
+    SLOWED_DOWN,
     bank_limit,
     body_energy,
     open_bank,
@@ -127,15 +131,17 @@ def _solve_within(body: int, span: Span, system: System, spin: RigidMotion, allo
 
 
 @inner_kernel
-def step_body(body: int, span: Span, system: System, state: State, h: float) -> None:
-    """Bring a body that was opened to the end of a step of h [s], in `v`, and its bank."""
+def step_body(body: int, span: Span, system: System, state: State, h: float) -> int:
+    """Bring a body that was opened to the end of a step of h [s], in `v`, and its bank; its way, see energy_bank.py."""
     bodies, rows = system.bodies, system.rows
     energy0 = bodies.energy0[body]
     bank = bodies.bank[body]
     allowed = energy0 * (1.0 + ENERGY_ROUNDING) + bank
     spin = spin_of_body(body, system)
     after = _solve_within(body, span, system, spin, allowed, h)
+    way = PASSED
     if not after <= allowed:
+        way = MINIMISED
         copy(span, rows.v_star, rows.v_star_matched)
         minimise(span, system, h)
         hold_spin(span, rows, spin, bodies.pivot[body] >= 0, False, spin.momentum, h)
@@ -143,6 +149,7 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
         hold_triangles(span, system, h)
         after = body_energy(body, span, system, h)
         if not after <= allowed:
+            way = SLOWED_DOWN
             after = _damp(body, span, system, spin, allowed, h)
     limit = bank_limit(body, system)
     saved = bank + energy0 - after
@@ -151,6 +158,7 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
         reserve(body, span, system, state, saved - limit)
         saved = limit
     state.energy_bank[bodies.lowest[body]] = saved if saved > 0.0 else 0.0
+    return way
 
 
 @inner_kernel
@@ -194,10 +202,12 @@ def _damp(body: int, span: Span, system: System, spin: RigidMotion, allowed: flo
 
 
 @inner_kernel
-def step_bodies(system: System, state: State, inputs: Inputs, touched: bool, auto_substeps: int, h: float) -> None:
+def step_bodies(
+    system: System, state: State, inputs: Inputs, ways: Slots, touched: bool, auto_substeps: int, h: float
+) -> None:
     """Bring what nothing touches to the end of a step of h [s], and s += 0.3 (v' - s) of all; rows are loaded.
 
-    touched: some bodies are, and at that end already.
+    ways: counts, see energy_bank.py; touched: some bodies are, and at that end already.
     """
     bodies, rows, springs = system.bodies, system.rows, system.springs
     for body in range(bodies.lowest.shape[0]):
@@ -205,7 +215,7 @@ def step_bodies(system: System, state: State, inputs: Inputs, touched: bool, aut
             continue
         span = span_of(system, body)
         open_body(body, span, system, state, inputs, 1.0, auto_substeps, h)
-        step_body(body, span, system, state, h)
+        ways[step_body(body, span, system, state, h)] += 1
         for r in range(span.first_row, span.last_row):
             state.velocity[rows.particle[r], 0] = rows.v[r, 0]
             state.velocity[rows.particle[r], 1] = rows.v[r, 1]

@@ -15,9 +15,10 @@ from sandbox.physics.untangling.triangle_clamp import ClampedTriangles
 
 # Columns of `Bodies.spin`: the place [m] that a body turns about, the velocity [m/s] of that, inertia [kg m^2] and
 # angular momentum [kg m^2/s] about it; whether its angle, not the sine of that, follows from those; the rates [1/s] at
-# which chords lead inwards where the step begins, and where it ends; inertia and place there.
+# which chords lead inwards where the step begins, and where it ends; inertia and place there. STAR_MOMENTUM: angular
+# momentum of v*, where the body gives way (giving_way.py).
 SPIN_X, SPIN_Y, SPIN_VX, SPIN_VY, INERTIA, MOMENTUM, BY_ARC, INWARD, END_INWARD, END_INERTIA, END_X, END_Y = range(12)
-SPIN_NUMBERS = 12
+STAR_MOMENTUM, SPIN_NUMBERS = 12, 13
 
 
 class Bodies(NamedTuple):

@@ -1,0 +1,220 @@
+"""Giving way: an island that gains by a hair is solved again, for a target that is lower by just that.
+
+What a step gains is taken off the motion of its island: v* of all that is in it loses a share s of what it is beside
+the motion that has to stay,
+
+    v* -= s (v* - V),      s = MARGIN (H' - H* - B) / (2 T),      T = 1/2 |v' - V|^2_M
+
+V is rest where something outside holds the island, else the rigid motion of its momenta. Springs, contacts, joints and
+friction are solved for that target, so no length and no contact is missed, and only what was gained is given up. The
+test stays as it is: it knows v* as forces left it.
+"""
+
+import math
+
+from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.geometry.rigid import (
+    RigidMotion,
+    WeightedSums,
+    centre_of,
+    turn_rate,
+    velocity_at,
+    with_point,
+    with_turn,
+)
+from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.solvers.direct.energy_bank import GAVE_WAY
+from sandbox.physics.solvers.direct.island_energy import is_deep
+from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, IslandWorkspace
+from sandbox.physics.solvers.direct.joint_response import island_of_joint
+from sandbox.physics.solvers.direct.rigid_turn import spin_of_body
+from sandbox.physics.solvers.direct.system import MOMENTUM, STAR_MOMENTUM, System
+from sandbox.physics.state import State
+
+# An island solves on while a solve leaves at most this share of what is too much: lengths still come right.
+FALLING = 0.5
+# So much of what is too much is given up at once: with 1 a step would fail again by what is of second order.
+MARGIN = 1.25
+# What is too much is at most this share of T; more is no error of a step, but a push or a bounce, which is to be left
+# out. With 0.3 stacks of jellies do not come to rest, with 0.03 chains stop at a corner.
+LARGEST_SHARE = 0.1
+# A joint whose gradient sums up to less than this share of its size acts within what it moves, as a motor does.
+WITHIN = 1e-9
+
+
+@inner_kernel
+def _mark_by_contacts(contacts: Contacts, islands: BodyIslands, state: State) -> None:
+    # Mark the islands that touch terrain or something pinned, and those in which something overlaps deeply.
+    for c in range(contacts.particle.shape[0]):
+        inside = -1
+        outside = contacts.end_a[c] < 0 and contacts.end_b[c] < 0
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0 and state.inverse_mass[p] > 0.0:
+                inside = islands.island[islands.member[p]]
+            elif p >= 0:
+                outside = True
+        if inside >= 0:
+            islands.held[inside] = islands.held[inside] or outside
+            islands.parts[inside] = islands.parts[inside] or is_deep(c, contacts, state)
+
+
+@inner_kernel
+def _hold_by_joints(workspace: IslandWorkspace) -> None:
+    # Mark the islands that hands and other joints push from outside.
+    rows = workspace.delassus.joints.rows
+    for k in range(rows.limit.shape[0]):
+        if not rows.limit[k] > 0.0:
+            continue
+        x = 0.0
+        y = 0.0
+        size = 0.0
+        for e in range(rows.first[k], rows.first[k + 1]):
+            x += rows.gradient[e, 0]
+            y += rows.gradient[e, 1]
+            size += abs(rows.gradient[e, 0]) + abs(rows.gradient[e, 1])
+        if abs(x) + abs(y) > WITHIN * size:
+            workspace.islands.held[island_of_joint(k, workspace)] = True
+
+
+@inner_kernel
+def begin_giving_way(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State) -> None:
+    """Find which islands something outside holds, or have something to part, and keep the spin of their targets."""
+    islands, bodies = workspace.islands, system.bodies
+    for island in range(islands.counts[ISLANDS]):
+        islands.held[island] = False
+        islands.parts[island] = False
+    for k in range(islands.counts[BODIES]):
+        body = islands.body[k]
+        bodies.spin[body, STAR_MOMENTUM] = bodies.spin[body, MOMENTUM]
+        if bodies.pivot[body] != -1:
+            islands.held[islands.island[k]] = True
+    _mark_by_contacts(contacts, islands, state)
+    _hold_by_joints(workspace)
+
+
+@inlined_kernel
+def _points_of(k: int, islands: BodyIslands, system: System) -> tuple[int, int]:
+    # The points of a member: rows of a body, or its own place among the free particles.
+    bodies = islands.counts[BODIES]
+    if k < bodies:
+        return system.bodies.row_start[islands.body[k]], system.bodies.row_start[islands.body[k] + 1]
+    return k - bodies, k - bodies + 1
+
+
+@inlined_kernel
+def _particle_of(k: int, i: int, islands: BodyIslands, system: System) -> int:
+    return system.rows.particle[i] if k < islands.counts[BODIES] else islands.free[i]
+
+
+@inner_kernel
+def _motion_to_keep(island: int, islands: BodyIslands, system: System, state: State) -> RigidMotion:
+    # V: rest, or the rigid motion that has the momenta of v*, which chords have too.
+    x, v = state.position, state.velocity
+    if islands.held[island]:
+        return RigidMotion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
+    for k in range(islands.counts[MEMBERS]):
+        if islands.island[k] == island:
+            first, last = _points_of(k, islands, system)
+            for i in range(first, last):
+                p = _particle_of(k, i, islands, system)
+                sums = with_point(sums, state.mass[p], x[p, 0], x[p, 1], v[p, 0], v[p, 1])
+    motion = centre_of(sums)
+    for k in range(islands.counts[MEMBERS]):
+        if islands.island[k] == island:
+            first, last = _points_of(k, islands, system)
+            for i in range(first, last):
+                p = _particle_of(k, i, islands, system)
+                motion = with_turn(motion, state.mass[p], x[p, 0], x[p, 1], v[p, 0], v[p, 1])
+    return motion
+
+
+@inner_kernel
+def _energy_beside(island: int, motion: RigidMotion, islands: BodyIslands, system: System, state: State) -> float:
+    # T of an island: the kinetic energy [J] of what it moves beside V.
+    total = 0.0
+    for k in range(islands.counts[MEMBERS]):
+        if islands.island[k] == island:
+            first, last = _points_of(k, islands, system)
+            for i in range(first, last):
+                p = _particle_of(k, i, islands, system)
+                u, v = velocity_at(motion, state.position[p, 0], state.position[p, 1])
+                if k < islands.counts[BODIES]:
+                    u = system.rows.v[i, 0] - u
+                    v = system.rows.v[i, 1] - v
+                else:
+                    u = islands.given[p, 0] + islands.delta_v[p, 0] - u
+                    v = islands.given[p, 1] + islands.delta_v[p, 1] - v
+                total += 0.5 * state.mass[p] * (u * u + v * v)
+    return total
+
+
+@inner_kernel
+def _lower(island: int, share: float, motion: RigidMotion, islands: BodyIslands, system: System, state: State) -> None:
+    # v* -= share (v* - V), and the spin that bodies are to keep with it.
+    target, spins = system.rows.v_star_matched, system.bodies.spin
+    for k in range(islands.counts[MEMBERS]):
+        if islands.island[k] != island:
+            continue
+        first, last = _points_of(k, islands, system)
+        for i in range(first, last):
+            p = _particle_of(k, i, islands, system)
+            u, v = velocity_at(motion, state.position[p, 0], state.position[p, 1])
+            if k < islands.counts[BODIES]:
+                target[i, 0] -= share * (target[i, 0] - u)
+                target[i, 1] -= share * (target[i, 1] - v)
+            else:
+                islands.given[p, 0] -= share * (islands.given[p, 0] - u)
+                islands.given[p, 1] -= share * (islands.given[p, 1] - v)
+        if k < islands.counts[BODIES]:
+            spin = spin_of_body(islands.body[k], system)
+            spins[islands.body[k], MOMENTUM] -= share * (spin.momentum - turn_rate(motion) * spin.inertia)
+
+
+@inner_kernel
+def note_excess(islands: BodyIslands) -> None:
+    """Note what each island has too much [J], for the next solve to be compared with."""
+    for island in range(islands.counts[ISLANDS]):
+        islands.excess[island] = islands.total[island] - islands.allowed[island]
+
+
+@inner_kernel
+def give_way(workspace: IslandWorkspace, system: System, state: State) -> bool:
+    """Let islands that fail solve on, or give way by what they gain; whether any of them can."""
+    islands = workspace.islands
+    goes_on = False
+    for island in range(islands.counts[ISLANDS]):
+        if not islands.fails[island]:
+            continue
+        excess = islands.total[island] - islands.allowed[island]
+        if excess < FALLING * islands.excess[island]:
+            islands.excess[island] = excess
+            goes_on = True
+            continue
+        motion = _motion_to_keep(island, islands, system, state)
+        moves = _energy_beside(island, motion, islands, system, state)
+        # What is pushed apart has to pay for that, and stays where it is if its motion does.
+        if MARGIN * excess < LARGEST_SHARE * moves and not islands.parts[island]:
+            _lower(island, 0.5 * MARGIN * excess / moves, motion, islands, system, state)
+            islands.excess[island] = math.inf
+            islands.way[island] = GAVE_WAY
+            goes_on = True
+    return goes_on
+
+
+@inner_kernel
+def take_back(workspace: IslandWorkspace, system: System, state: State) -> None:
+    """Raise the targets of islands that fail to what they were."""
+    islands = workspace.islands
+    bodies = islands.counts[BODIES]
+    for k in range(islands.counts[MEMBERS]):
+        if not islands.fails[islands.island[k]]:
+            continue
+        if k < bodies:
+            body = islands.body[k]
+            system.bodies.spin[body, MOMENTUM] = system.bodies.spin[body, STAR_MOMENTUM]
+        else:
+            p = islands.free[k - bodies]
+            islands.given[p, 0] = state.velocity[p, 0]
+            islands.given[p, 1] = state.velocity[p, 1]
