@@ -84,9 +84,7 @@ def test_two_taps_beside_everything_or_a_key_show_the_whole_level_again(browser:
         tab.touch("touchEnd")
         assert tab.evaluate(view) != whole
         if again == "taps":
-            for _ in range(2):
-                tab.touch("touchStart", (60, 600))
-                tab.touch("touchEnd")
+            tab.tap_twice((60, 600))
         else:
             tab.key("f")
         assert tab.evaluate(view) == whole
