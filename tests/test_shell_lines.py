@@ -8,7 +8,7 @@ import shutil
 import pytest
 
 from sandbox.cli import main
-from tests.support.person import VirtualScreen, needs_a_screen
+from tests.support.person import HAS_A_SCREEN, VirtualScreen, needs_a_screen
 from tests.support.shell_lines import ROOT, Reader, ShellLine, lines_of, pages
 
 # Lines that are not run here, and why.
@@ -73,9 +73,8 @@ def put_samples(folder):
 def reader(tmp_path_factory):
     """A person who comes new, before a screen where there is one."""
     folder = tmp_path_factory.mktemp("reader")
-    has_screen = bool(shutil.which("Xvfb") and shutil.which("xdotool"))
     (folder / "screen").mkdir()
-    screen = VirtualScreen(folder / "screen") if has_screen else None
+    screen = VirtualScreen(folder / "screen") if HAS_A_SCREEN else None
     person = Reader(folder, screen)
     put_samples(person.folder)
     yield person

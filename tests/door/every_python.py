@@ -17,7 +17,8 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from tests.door.front_door import ROOT, stranger_environment
+from tests.door.front_door import ROOT
+from tests.support.person import stranger_environment
 
 OLDEST_PYTHON = (3, 11)
 CONSTRAINTS = ROOT / ".ci" / "oldest.txt"

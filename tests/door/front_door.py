@@ -4,40 +4,25 @@ The window stands, takes both, moves, and closes with exit code 0 and nothing on
 xdotool is missing, one line says so.
 """
 
-import os
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-from tests.support.person import DEADLINE, VirtualScreen, Visitor, looks
+from tests.support.person import DEADLINE, HAS_A_SCREEN, VirtualScreen, Visitor, looks, stranger_environment
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMAND = "make play"
-# Of the person who runs this, and no stranger's.
-OWN = ("XDG_", "SANDBOX_", "PYTEST", "VIRTUAL_ENV", "PYTHONPATH", "MAKE", "MFLAGS")
 # A drag, as shares of the window: from the middle of the scene up and aside.
 WAY = ((0.5, 0.55), (0.55, 0.45), (0.6, 0.35), (0.4, 0.3))
 # How long the first command may take to install everything [s].
 INSTALLING = 300.0
 
 
-def stranger_environment(home: Path) -> dict[str, str]:
-    """The variables of somebody who has never been here."""
-    home.mkdir(exist_ok=True)
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(OWN)}
-    return {**kept, "HOME": str(home)}
-
-
 def visit(visitor: Visitor) -> None:
     """Click a card of the gallery, drag in the level that opens, and leave. Raises AssertionError."""
-    for _ in looks(INSTALLING, 1.0):
-        if "Levels - Spring Sandbox" in visitor.title():
-            break
-        assert visitor.app.poll() is None, b"\n".join(visitor.app.communicate()).decode()
-    visitor.wait_for("Levels - Spring Sandbox")
+    visitor.wait_for("Levels - Spring Sandbox", patience=INSTALLING)
     visitor.click_inside()
     visitor.wait_for(" - Spring Sandbox", without="Levels")
     width, height = visitor.size()
@@ -49,7 +34,7 @@ def visit(visitor: Visitor) -> None:
 
 def main() -> int:
     """Try the front door; the exit code."""
-    if not (shutil.which("Xvfb") and shutil.which("xdotool")):
+    if not HAS_A_SCREEN:
         print(f"no Xvfb and xdotool here: the window of `{COMMAND}` is not tried")
         return 0
     began = time.monotonic()

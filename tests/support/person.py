@@ -29,7 +29,17 @@ WINDOW = ("search", "--onlyvisible", "--class", "spring-sandbox")
 # So long a drag is held on to where it ends.
 HELD_TICKS = 20
 
-needs_a_screen = needs("Xvfb and xdotool", shutil.which("Xvfb") and shutil.which("xdotool"))
+HAS_A_SCREEN = bool(shutil.which("Xvfb") and shutil.which("xdotool"))
+needs_a_screen = needs("Xvfb and xdotool", HAS_A_SCREEN)
+# Variables of the person who runs this, and no stranger's.
+OWN = ("XDG_", "SANDBOX_", "PYTEST", "VIRTUAL_ENV", "PYTHONPATH", "MAKE", "MFLAGS")
+
+
+def stranger_environment(home: Path) -> dict[str, str]:
+    """The variables of somebody who has never been here; home: a folder that is made."""
+    home.mkdir(exist_ok=True)
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(OWN)}
+    return {**kept, "HOME": str(home)}
 
 
 def looks(patience: float, pause: float) -> Iterator[None]:
@@ -122,10 +132,10 @@ class Visitor:
             os.killpg(self.app.pid, signal.SIGKILL)
         self.app.wait()
 
-    def wait_for(self, *words: str, without: str = "\0") -> None:
-        """Poll the title until it has the words."""
+    def wait_for(self, *words: str, without: str = "\0", patience: float = DEADLINE) -> None:
+        """Poll the title until it has the words, for so long [s]. Raises AssertionError."""
         title = ""
-        for _ in looks(DEADLINE, GLANCE):
+        for _ in looks(patience, GLANCE):
             title = self.title()
             if all(word in title for word in words) and without not in title:
                 return

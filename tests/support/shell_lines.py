@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.support.person import DEADLINE, VirtualScreen, Visitor
+from tests.support.person import DEADLINE, VirtualScreen, Visitor, stranger_environment
 
 ROOT = Path(__file__).resolve().parents[2]
 # A fenced block, also one inside a program's comment.
@@ -61,18 +61,14 @@ class Reader:
 
     def __init__(self, folder: Path, screen: VirtualScreen | None) -> None:
         self.folder, self.home, self._screen = folder / "project", folder / "home", screen
-        self.home.mkdir()
         self.folder.mkdir()
         for name in ("docs", "levels", "examples", "assets"):
             shutil.copytree(ROOT / name, self.folder / name, ignore=shutil.ignore_patterns("__pycache__"))
         for path in (*ROOT.glob("*.md"), ROOT / "LICENSE"):
             shutil.copy(path, self.folder)
         (self.folder / ".venv").symlink_to(sys.prefix, target_is_directory=True)
-        kept = {
-            name: value for name, value in os.environ.items() if not name.startswith(("XDG_", "SANDBOX_", "PYTEST"))
-        }
         programs = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-        self.environment = {**kept, "HOME": str(self.home), "PATH": programs}
+        self.environment = {**stranger_environment(self.home), "PATH": programs}
 
     def fault(self, line: ShellLine) -> str | None:
         """Carry a line out; what was wrong with it."""

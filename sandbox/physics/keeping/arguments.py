@@ -119,9 +119,7 @@ def point(argument: str, value: Any) -> tuple[float, float]:
 
 def floats(argument: str, values: ArrayLike, shape: tuple[int, ...], least: float = -math.inf) -> Floats:
     """Finite numbers of at least `least`, spread over a shape."""
-    given = _plain(argument, values)
-    if given.dtype.kind not in "fiu":
-        raise ValueError(f"{argument} {shown(values)}: numbers are needed")
+    given = _numbers(argument, values)
     if not np.isfinite(given).all() or (given < least).any():
         bad = given[~np.isfinite(given) | (given < least)].flat[0]
         raise ValueError(f"{argument} {shown(float(bad))}: {_range_of(least, math.inf)} is needed")
@@ -130,9 +128,7 @@ def floats(argument: str, values: ArrayLike, shape: tuple[int, ...], least: floa
 
 def floats_or(argument: str, values: ArrayLike, usual: Floats, least: float = -math.inf) -> Floats:
     """Finite numbers of at least `least`, with `usual` in place of each NaN."""
-    given = _plain(argument, values)
-    if given.dtype.kind not in "fiu":
-        raise ValueError(f"{argument} {shown(values)}: numbers are needed")
+    given = _numbers(argument, values)
     is_left_out = np.isnan(given)
     found = floats(argument, np.where(is_left_out, max(least, 0.0), given), usual.shape, least)
     return np.where(is_left_out, usual, found)
@@ -189,6 +185,13 @@ def _plain(argument: str, values: Any) -> NDArray[Any]:
         return np.asarray(values)
     except (ValueError, TypeError):
         raise ValueError(f"{argument} {shown(values)}: rows of one length are needed") from None
+
+
+def _numbers(argument: str, values: ArrayLike) -> NDArray[Any]:
+    given = _plain(argument, values)
+    if given.dtype.kind not in "fiu":
+        raise ValueError(f"{argument} {shown(values)}: numbers are needed")
+    return given
 
 
 def _range_of(least: float, most: float) -> str:
