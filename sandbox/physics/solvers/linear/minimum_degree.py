@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Int32s, Slots
+from sandbox.physics.components import join, root_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import list_neighbours
 
@@ -39,6 +40,13 @@ class Marks(NamedTuple):
     mark: Slots
     outside: Slots
     counted: Slots
+
+
+class Parts(NamedTuple):
+    """Nodes (n,) that hang together: the lowest of them by node, and how many are left by that lowest one."""
+
+    label: Slots
+    left: Slots
 
 
 class Heap(NamedTuple):
@@ -141,9 +149,12 @@ def _prune(step: int, graph: QuotientGraph, columns: Columns, marks: Marks) -> N
 
 
 @inner_kernel
-def _bound_degrees(step: int, left: int, graph: QuotientGraph, columns: Columns, marks: Marks, queue: Heap) -> None:
+def _bound_degrees(
+    step: int, size: int, left: int, graph: QuotientGraph, columns: Columns, marks: Marks, queue: Heap
+) -> None:
     # Neighbours outside every element, in the new element, and in each older one beyond it: at least the degree, which
-    # cannot exceed what was left before nor the nodes left. An older element inside the new one says nothing more.
+    # cannot exceed what was left before nor the nodes left of its part. An older element inside the new one says
+    # nothing more.
     start, element, column_start, degree = graph.start, graph.element, columns.start, queue.degree
     members = column_start[step + 1] - column_start[step] - 1
     for at in range(column_start[step], column_start[step + 1]):
@@ -163,14 +174,16 @@ def _bound_degrees(step: int, left: int, graph: QuotientGraph, columns: Columns,
         if degree[node] < before:
             _sift_up(queue, queue.place[node])
         elif degree[node] > before:
-            _sift_down(queue, queue.place[node], left)
+            _sift_down(queue, queue.place[node], size)
 
 
 @inner_kernel
 def minimum_degree(
-    size: int, graph: QuotientGraph, order: Slots, columns: Columns, marks: Marks, queue: Heap
+    size: int, graph: QuotientGraph, order: Slots, columns: Columns, marks: Marks, parts: Parts, queue: Heap
 ) -> bool:  # fmt: skip
     """Order `size` nodes by approximate minimum degree, ties by lowest index; False where columns are too short.
+
+    The order within a part is that in which it would be alone.
 
     graph: of n nodes, without elements; it is changed on the way. order (n,): nodes as they are eliminated; columns:
     for each of them, the nodes still present that it is joined to by then. mark and counted hold -1.
@@ -192,18 +205,34 @@ def minimum_degree(
             return False
         columns.start[step + 1] = top
         _prune(step, graph, columns, marks)
-        _bound_degrees(step, size, graph, columns, marks, queue)
+        lowest = parts.label[pivot]
+        parts.left[lowest] -= 1
+        _bound_degrees(step, size, parts.left[lowest], graph, columns, marks, queue)
     return True
 
 
 class Ordering(NamedTuple):
-    """Room for ordering a graph of up to n nodes: see the parts; order (n,)."""
+    """Room for ordering a graph of up to n nodes: see what it is made of; order (n,)."""
 
     graph: QuotientGraph
     order: Slots
     columns: Columns
     marks: Marks
+    parts: Parts
     queue: Heap
+
+
+@inner_kernel
+def _find_parts(size: int, graph: QuotientGraph, parts: Parts) -> None:
+    for node in range(size):
+        parts.label[node] = node
+        parts.left[node] = 0
+    for node in range(size):
+        for at in range(graph.start[node], graph.start[node + 1]):
+            join(parts.label, node, graph.near[at])
+    for node in range(size):
+        parts.label[node] = root_of(parts.label, node)
+        parts.left[parts.label[node]] += 1
 
 
 @inner_kernel
@@ -231,7 +260,8 @@ def order_graph(start: Slots, near: Slots, number: Slots, made: Ordering) -> boo
         count += 1
         graph.start[count] = top
     made.columns.start[0] = 0
-    return minimum_degree(count, graph, made.order, made.columns, made.marks, made.queue)
+    _find_parts(count, graph, made.parts)
+    return minimum_degree(count, graph, made.order, made.columns, made.marks, made.parts, made.queue)
 
 
 @inner_kernel
@@ -244,6 +274,7 @@ def new_ordering(nodes: int, links: int, blocks: int, arena: Arena) -> Ordering:
         ),
         new_slots(arena, nodes), Columns(new_slots(arena, nodes + 1), new_slots(arena, blocks)),
         Marks(new_flags(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes)),
+        Parts(new_slots(arena, nodes), new_slots(arena, nodes)),
         Heap(new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes)),
     )  # fmt: skip
 
