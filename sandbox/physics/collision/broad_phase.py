@@ -1,7 +1,8 @@
 """Broad phase: which boxes overlap, by a uniform grid whose cells are kept in a table by their hash.
 
 Everything that can be hit, a disc or an edge, lies in the cells that its box covers; a box that covers too many is
-looked at by everybody. Buckets hold objects in ascending order, so the order of pairs is one of positions alone.
+looked at by everybody. The size of cells follows from all boxes of a world, so pairs are put into the order of slots:
+what is far away changes nothing.
 """
 
 import math
@@ -11,6 +12,7 @@ from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slot_row
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.topology.sorting import sort_ascending
 
 # Cell in units of the mean box: smaller puts an object into many cells, larger many objects into a cell.
 CELL_SIZE = 1.0
@@ -241,6 +243,7 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
                         if count < capacity:
                             other[count] = k
                         count += 1
+        sort_ascending(other, min(pairs.start[p], capacity), min(count, capacity))
     pairs.start[particles] = count
     return count
 

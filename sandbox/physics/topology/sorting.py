@@ -141,6 +141,23 @@ def _merge(value: Any, order: Slots, first: int, middle: int, last: int, spare: 
 
 
 @inner_kernel
+def sort_ascending(listed: Slots, begin: int, end: int) -> None:
+    """Sort listed[begin:end] in place, without scratch. Source: Shell 1959, by Knuth's steps."""
+    gap = 1
+    while 3 * gap < end - begin:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for at in range(begin + gap, end):
+            value = listed[at]
+            to = at
+            while to - gap >= begin and listed[to - gap] > value:
+                listed[to] = listed[to - gap]
+                to -= gap
+            listed[to] = value
+        gap //= 3
+
+
+@inner_kernel
 def place_among(value: int, ascending: Slots, begin: int, end: int) -> int:
     """Where in ascending[begin:end] a value is, or would be put before what is larger."""
     while begin < end:

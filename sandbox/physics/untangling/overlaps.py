@@ -107,6 +107,20 @@ def _compare(
 
 
 @inner_kernel
+def _sort_crossings(first: int, last: int, found: Overlaps) -> None:
+    # Put the crossings of one edge into the order of the others' slots: that in which cells list them follows from the
+    # size of all boxes of the world.
+    edge, share = found.edge, found.share
+    for at in range(first + 1, last):
+        to = at
+        while to > first and edge[to - 1, 0] + edge[to - 1, 1] > edge[to, 0] + edge[to, 1]:
+            for side in range(2):
+                edge[to, side], edge[to - 1, side] = edge[to - 1, side], edge[to, side]
+                share[to, side], share[to - 1, side] = share[to - 1, side], share[to, side]
+            to -= 1
+
+
+@inner_kernel
 def find_crossings(
     boxes: Boxes,
     grid: Grid,
@@ -124,7 +138,10 @@ def find_crossings(
     particles = boxes.filter.shape[0]
     buckets = grid.start.shape[0] - 1
     find_crossing_candidates(colliders, outline, shape_bounds)
+    first = 0
     for e in range(outline.dynamic[0]):
+        _sort_crossings(first, min(count, found.edge.shape[0]), found)
+        first = count
         k = particles + e
         if not (boxes.is_target[k] and is_crossing_candidate(e, colliders, shape_bounds)):
             continue
@@ -151,6 +168,7 @@ def find_crossings(
                         break
                     if f >= 0 and entry & seen == seen and grid.cell[at] == here:
                         count = _compare(e, f, particles, boxes, colliders, outline, found, count)
+    _sort_crossings(first, min(count, found.edge.shape[0]), found)
     found.counts[CROSSINGS] = count
     return count
 
