@@ -8,7 +8,7 @@ import pytest
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
-from sandbox.level.format.limits import MOTOR_LIMIT
+from sandbox.level.format.limits import LIMITED_LIMIT, MOTOR_LIMIT
 from sandbox.level.plan.actuators import actuators, driving_keys
 from sandbox.level.reading.parse import parse_level
 from sandbox.level.reading.salvage import salvage
@@ -159,8 +159,8 @@ FAULTS = [
         'springs.0.hydraulic.force: "10 N" is text, not a number',
     ),
     (
-        {"bodies": [{**ROPE, "segments": 101, "drive": {"amplitude": 0.2, "period": 9, "force": 5}}]},
-        "bodies.0.drive.force: brings the level above 100 springs of limited force; take some out",
+        {"bodies": [{**ROPE, "segments": LIMITED_LIMIT + 1, "drive": {"amplitude": 0.2, "period": 9, "force": 5}}]},
+        f"bodies.0.drive.force: brings the level above {LIMITED_LIMIT:,} springs of limited force; take some out",
     ),
 ]  # fmt: skip
 

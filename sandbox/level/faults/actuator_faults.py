@@ -58,5 +58,5 @@ def _limited(level: Level) -> Iterator[Fault]:
     for path, count in drives:
         total += count
         if total > LIMITED_LIMIT:
-            yield f"{path}.force", f"brings the level above {LIMITED_LIMIT} springs of limited force; take some out"
+            yield f"{path}.force", f"brings the level above {LIMITED_LIMIT:,} springs of limited force; take some out"
             return
