@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sandbox.physics.actuators import Actuators, Muscles
 from sandbox.physics.every_kernel import call_every_kernel
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -52,6 +53,27 @@ def more_blocks() -> float:
     return median_ratio(lambda: step(many), lambda: [step(one) for _ in range(BATCH)], pairs=PAIRS // 10)
 
 
+def driven_pairs(count: int) -> World:
+    """Separate pairs, each with a muscle of limited force."""
+    world = World()
+    left = np.column_stack([3.0 * np.arange(count), np.zeros(count)])
+    world.add_particles([f"a{k}" for k in range(count)], left)
+    world.add_particles([f"b{k}" for k in range(count)], left + np.array([1.0, 0.2]))
+    first = np.arange(count)
+    world.add_springs([f"s{k}" for k in range(count)], first, first + count)
+    muscles = Muscles(
+        first, np.full(count, 0.2), np.full(count, 40), np.zeros(count), force=np.full(count, 5.0)
+    )  # fmt: skip
+    world.fit(Actuators((), muscles), [])
+    return world
+
+
+def more_driven_pairs() -> float:
+    """A tick of 800 separate pairs with a muscle of limited force, in ticks of 100."""
+    many, few = driven_pairs(800), driven_pairs(100)
+    return median_ratio(lambda: step(many), lambda: step(few))
+
+
 def cut() -> float:
     """Cutting one spring of a 32x32 lattice, with the tick after it, in ticks without."""
     world = settled(scenes.lattice(32))
@@ -68,7 +90,7 @@ def main() -> None:
     """Print the ratios."""
     call_every_kernel()
     print("| cost | ratio | limit |\n|---|---|---|")
-    for measure, limit in ((longer_rope, 12.0), (more_blocks, 1.5), (cut, 5.0)):
+    for measure, limit in ((longer_rope, 12.0), (more_blocks, 1.5), (more_driven_pairs, 9.0), (cut, 5.0)):
         print(f"| {measure.__doc__} | {measure():.2f} | {limit:g} |", flush=True)
 
 

@@ -121,6 +121,18 @@ def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
 
 
 @inner_kernel
+def contacts_between(contacts: Contacts, first: int, last: int) -> Contacts:
+    """Some of the contacts."""
+    b = contacts
+    return Contacts(
+        b.particle[first:last], b.feature[first:last], b.end_a[first:last], b.end_b[first:last], b.share[first:last],
+        b.normal[first:last], b.gap[first:last], b.friction[first:last], b.restitution[first:last],
+        b.bounce[first:last], b.impulse[first:last], b.turning[first:last], b.arm[first:last], b.ratio[first:last],
+        b.rolling[first:last], b.couple[first:last], b.impact[first:last],
+    )  # fmt: skip
+
+
+@inner_kernel
 def new_contacts(arena: Arena, count: int) -> Contacts:
     """Contacts to be filled in."""
     return Contacts(

@@ -14,7 +14,7 @@ from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.restitution import find_bounces
 from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terrain, clamp_at_tips
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
-from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near
+from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near, contacts_between
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch
@@ -37,9 +37,9 @@ TIP_ROUNDS = 4
 class Collisions(NamedTuple):
     """What topology decides of a world's collisions, and arrays that a step fills in.
 
-    bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver. kept: those of the last step, the
-    first counts[KEPT] of which are the world's own. By particle (n,): attached to springs, constraints or hands; moved:
-    scratch.
+    bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver; source: which they are. kept: those
+    of the last step, the first counts[KEPT] of which are the world's own. By particle (n,): attached to springs,
+    constraints or hands; moved: scratch.
     """
 
     outline: Outline
@@ -52,6 +52,7 @@ class Collisions(NamedTuple):
     near: Near
     contacts: Contacts
     bound: Contacts
+    source: Slots
     kept: KeptContacts
     islands: Islands
     work: FreeContactScratch
@@ -154,28 +155,36 @@ def detect(state: State, collisions: Collisions, grab_spring: int, tick: int, h:
     counts[BOUND] = find_islands(
         collisions.contacts, count, state.inverse_mass, collisions.attached, collisions.islands
     )  # fmt: skip
-    _copy_bound(collisions.contacts, count, collisions.islands.bound, collisions.bound)
+    _list_bound(count, collisions.islands.bound, collisions.source)
     return True
 
 
 @inner_kernel
-def _copy_bound(contacts: Contacts, count: int, bound: Flags, to: Contacts) -> None:
-    # The contacts that are bound, in their order, but for what `prepare_contacts` finds.
+def _list_bound(count: int, bound: Flags, source: Slots) -> None:
     k = 0
     for c in range(count):
         if bound[c]:
-            to.particle[k] = contacts.particle[c]
-            to.feature[k] = contacts.feature[c]
-            to.end_a[k] = contacts.end_a[c]
-            to.end_b[k] = contacts.end_b[c]
-            to.share[k] = contacts.share[c]
-            to.gap[k] = contacts.gap[c]
-            to.friction[k] = contacts.friction[c]
-            to.restitution[k] = contacts.restitution[c]
-            to.rolling[k] = contacts.rolling[c]
-            for axis in range(2):
-                to.normal[k, axis] = contacts.normal[c, axis]
+            source[k] = c
             k += 1
+
+
+@inner_kernel
+def copy_bound(collisions: Collisions) -> None:
+    """Copy the contacts that are left to a solver, but for what `prepare_contacts` finds."""
+    contacts, to = collisions.contacts, collisions.bound
+    for k in range(collisions.counts[BOUND]):
+        c = collisions.source[k]
+        to.particle[k] = contacts.particle[c]
+        to.feature[k] = contacts.feature[c]
+        to.end_a[k] = contacts.end_a[c]
+        to.end_b[k] = contacts.end_b[c]
+        to.share[k] = contacts.share[c]
+        to.gap[k] = contacts.gap[c]
+        to.friction[k] = contacts.friction[c]
+        to.restitution[k] = contacts.restitution[c]
+        to.rolling[k] = contacts.rolling[c]
+        for axis in range(2):
+            to.normal[k, axis] = contacts.normal[c, axis]
 
 
 @inner_kernel
@@ -196,14 +205,12 @@ def prepare_contacts(state: State, start: Floats, collisions: Collisions, h: flo
     contacts, counts, bound = collisions.contacts, collisions.counts, collisions.bound
     find_bounces(contacts, counts[CONTACTS], start, state.velocity, collisions.attached, h, h / small_steps(h))
     carry_over(contacts, counts[CONTACTS], collisions.kept, counts[KEPT])
-    k = 0
-    for c in range(counts[CONTACTS]):
-        if collisions.islands.bound[c]:
-            bound.bounce[k] = contacts.bounce[c]
-            bound.impulse[k, 0], bound.impulse[k, 1] = contacts.impulse[c, 0], contacts.impulse[c, 1]
-            k += 1
-    if k > 0:
-        load_arms(bound, k, collisions.colliders)
+    for k in range(counts[BOUND]):
+        c = collisions.source[k]
+        bound.bounce[k] = contacts.bounce[c]
+        bound.impulse[k, 0], bound.impulse[k, 1] = contacts.impulse[c, 0], contacts.impulse[c, 1]
+    if counts[BOUND] > 0:
+        load_arms(bound, counts[BOUND], collisions.colliders)
 
 
 @inner_kernel
@@ -222,44 +229,43 @@ def solve_free(state: State, start: Floats, collisions: Collisions, h: float) ->
 @inner_kernel
 def bound_contacts(collisions: Collisions) -> Contacts:
     """The contacts that are left to a solver."""
-    count, b = collisions.counts[BOUND], collisions.bound
-    return Contacts(
-        b.particle[:count], b.feature[:count], b.end_a[:count], b.end_b[:count], b.share[:count], b.normal[:count],
-        b.gap[:count], b.friction[:count], b.restitution[:count], b.bounce[:count], b.impulse[:count],
-        b.turning[:count], b.arm[:count], b.ratio[:count], b.rolling[:count], b.couple[:count], b.impact[:count],
-    )  # fmt: skip
+    return contacts_between(collisions.bound, 0, collisions.counts[BOUND])
 
 
 @inner_kernel
 def mark_pushed(collisions: Collisions, label: Slots, marks: Flags) -> None:
     """Mark the labels of the particles that contacts of the present step push."""
-    contacts, k = collisions.contacts, 0
+    contacts, bound = collisions.contacts, collisions.bound
     for c in range(collisions.counts[CONTACTS]):
-        impulse = contacts.impulse[c, 0]
-        if collisions.islands.bound[c]:
-            impulse = collisions.bound.impulse[k, 0]
-            k += 1
-        if impulse > 0.0:
-            marks[label[contacts.particle[c]]] = True
-            if contacts.end_a[c] >= 0:
-                marks[label[contacts.end_a[c]]] = True
-            if contacts.end_b[c] >= 0:
-                marks[label[contacts.end_b[c]]] = True
+        if not collisions.islands.bound[c] and contacts.impulse[c, 0] > 0.0:
+            _mark_ends(contacts, c, label, marks)
+    for k in range(collisions.counts[BOUND]):
+        if bound.impulse[k, 0] > 0.0:
+            _mark_ends(bound, k, label, marks)
+
+
+@inner_kernel
+def _mark_ends(contacts: Contacts, c: int, label: Slots, marks: Flags) -> None:
+    marks[label[contacts.particle[c]]] = True
+    if contacts.end_a[c] >= 0:
+        marks[label[contacts.end_a[c]]] = True
+    if contacts.end_b[c] >= 0:
+        marks[label[contacts.end_b[c]]] = True
 
 
 @inner_kernel
 def store_impulses(collisions: Collisions) -> None:
     """Keep a step's contacts with their impulses for the next."""
-    contacts, bound, kept, k = collisions.contacts, collisions.bound, collisions.kept, 0
+    contacts, bound, kept = collisions.contacts, collisions.bound, collisions.kept
     count = collisions.counts[CONTACTS]
+    for k in range(collisions.counts[BOUND]):
+        c = collisions.source[k]
+        contacts.impulse[c, 0], contacts.impulse[c, 1] = bound.impulse[k, 0], bound.impulse[k, 1]
+        if bound.bounce[k] >= 0.0:
+            # The impulse of an impact is no guess of what the next step needs.
+            contacts.impact[c] += bound.impulse[k, 0]
+            contacts.impulse[c, 0], contacts.impulse[c, 1] = 0.0, 0.0
     for c in range(count):
-        if collisions.islands.bound[c]:
-            contacts.impulse[c, 0], contacts.impulse[c, 1] = bound.impulse[k, 0], bound.impulse[k, 1]
-            if bound.bounce[k] >= 0.0:
-                # The impulse of an impact is no guess of what the next step needs.
-                contacts.impact[c] += bound.impulse[k, 0]
-                contacts.impulse[c, 0], contacts.impulse[c, 1] = 0.0, 0.0
-            k += 1
         kept.particle[c] = contacts.particle[c]
         kept.feature[c] = contacts.feature[c]
         kept.impulse[c, 0] = contacts.impulse[c, 0]

@@ -23,8 +23,8 @@ from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new
 from sandbox.physics.flight import new_flight
 from sandbox.physics.jit import contents, inner_kernel, kernel, put
 from sandbox.physics.joints.hands import label_bodies, new_grips
+from sandbox.physics.joints.joint_answers import joints_by_mass, new_joints
 from sandbox.physics.joints.joint_set import lay_out_joints
-from sandbox.physics.joints.joint_sweep import joints_by_mass, new_joints
 from sandbox.physics.joints.limited_springs import new_spring_forces
 from sandbox.physics.joints.motors import new_motor_sides
 from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
@@ -50,6 +50,7 @@ from sandbox.physics.pipeline.collide import (
     bound_terrain,
 )
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER
+from sandbox.physics.solvers.contact.contact_order import new_contact_order
 from sandbox.physics.solvers.contact.free_constraints import new_work
 from sandbox.physics.solvers.contact.free_islands import new_islands as new_free_islands
 from sandbox.physics.solvers.contact.gauss_seidel import new_contact_constraints
@@ -134,6 +135,8 @@ def make_room(lent: Any, arena: Arena) -> None:
     put(world.collisions, "kept", new_kept_contacts(arena, contacts))
     bound = contacts if world.plan[HAS_CONTACTS] != 0 else 0
     put(world.workspace, "terms", new_contact_constraints(bound, particles, arena))
+    members = particles + world.system.bodies.lowest.shape[0]
+    put(world.workspace, "order", new_contact_order(bound, max(bound, members), arena))
     if bound > 0:
         _lay_out_collisions(world, contacts, arena)
         if not is_full(arena):
@@ -227,6 +230,7 @@ def _lay_out_collisions(world: WorldBlock, contacts: int, arena: Arena) -> None:
     put(collisions, "near", new_near(arena))
     put(collisions, "contacts", new_contacts(arena, contacts))
     put(collisions, "bound", new_contacts(arena, contacts))
+    put(collisions, "source", new_slots(arena, contacts))
     put(collisions, "islands", new_free_islands(particles, contacts, arena))
     put(collisions, "work", new_work(particles, contacts, arena))
     put(collisions, "inversions", new_inversions(jellies, arena))

@@ -29,6 +29,7 @@ from sandbox.physics.pipeline.collide import (
     KEPT,
     bound_contacts,
     clamp,
+    copy_bound,
     detect,
     mark_pushed,
     prepare_contacts,
@@ -50,6 +51,7 @@ from sandbox.physics.settings import (
     WARM_START,
 )
 from sandbox.physics.solvers import HIGHEST_ITERATED
+from sandbox.physics.solvers.contact.contact_order import order_by_label
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.solvers.direct.islands import find_body_islands
 from sandbox.physics.solvers.direct.rigid_turn import end_turns
@@ -216,9 +218,13 @@ def _find_contacts(world: WorldBlock, touches: bool, has_joints: bool, h: float)
     collisions, state = world.collisions, world.state
     if touches and not detect(state, collisions, world.plan[GRAB_SPRING], world.progress[TICK], h):
         return False
-    if world.choices[SOLVER] == DIRECT and (has_joints or collisions.counts[BOUND] > 0):
-        return find_body_islands(bound_contacts(collisions), state.inverse_mass, world.system, world.workspace)
-    return True
+    source, workspace, has_room = collisions.source[: collisions.counts[BOUND]], world.workspace, True
+    if world.choices[SOLVER] != DIRECT:
+        order_by_label(source, collisions.islands.contact_label, workspace.order, collisions.islands.at)
+    elif has_joints or collisions.counts[BOUND] > 0:
+        has_room = find_body_islands(collisions.contacts, source, state.inverse_mass, world.system, workspace)
+    copy_bound(collisions)
+    return has_room
 
 
 @inner_kernel
@@ -235,16 +241,17 @@ def _solve(world: WorldBlock, given: Inputs, has_joints: bool, h: float) -> None
     contacts = bound_contacts(world.collisions)
     if solver == SINGLE_PASS:
         solve_single_pass(
-            state, world.explicit, given, contacts, workspace.terms, workspace.delassus, choices[ITERATIONS], h
-        )
+            state, world.explicit, given, contacts, workspace.terms, workspace.order, workspace.delassus,
+            choices[ITERATIONS], h,
+        )  # fmt: skip
         return
     if world.plan[HAS_HOOKE] != 0:
         apply_explicit(state, given, world.explicit, False, h)
     count = world.progress[COUNT]
     if solver == ITERATIVE:
         solve_iterative(
-            state, world.iteration, given, contacts, workspace.terms, workspace.delassus, choices[ITERATIONS],
-            world.numbers[WARM_START], count > 1, h,
+            state, world.iteration, given, contacts, workspace.terms, workspace.order, workspace.delassus,
+            choices[ITERATIONS], world.numbers[WARM_START], count > 1, h,
         )  # fmt: skip
     else:
         has_islands = has_joints or contacts.particle.shape[0] > 0

@@ -24,7 +24,8 @@ from sandbox.physics.equation import direction, explicit_spring_constant, reduce
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_sweep import iterate_joints, warm_start_joints
 from sandbox.physics.marks import LAW_NISSEN
-from sandbox.physics.solvers.contact.body_impacts import pass_on
+from sandbox.physics.solvers.contact.body_impacts import pass_on_all
+from sandbox.physics.solvers.contact.contact_order import ContactOrder
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
     Delassus,
@@ -204,8 +205,8 @@ def _iterate_springs(count: int, state: State, pulling: Pulling, backwards: bool
 
 @inner_kernel
 def solve(
-    state: State, step: Iteration, given: Inputs, contacts: Contacts, terms: ContactConstraints, delassus: Delassus,
-    iterations: int, warm_start: float, alternates: bool, h: float,
+    state: State, step: Iteration, given: Inputs, contacts: Contacts, terms: ContactConstraints, order: ContactOrder,
+    delassus: Delassus, iterations: int, warm_start: float, alternates: bool, h: float,
 ) -> None:  # fmt: skip
     """Bring the velocities to the end of a substep of h [s]; the springs' impulses are kept for the next warm start.
 
@@ -220,11 +221,11 @@ def solve(
         change[p, 0] = 0.0
         change[p, 1] = 0.0
     load_surfaces(terms, state.spin, state.radius)
-    order = step.listed if alternates else step.heavy_first
+    springs = step.listed if alternates else step.heavy_first
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
-    pass_on(contacts, terms, velocity, change, inverse_mass, delassus, h)
-    count = _prepare_springs(state, order, given, warm_start, h, step.pulling)
+    pass_on_all(contacts, terms, order, velocity, change, inverse_mass, delassus, h)
+    count = _prepare_springs(state, springs, given, warm_start, h, step.pulling)
     constraints = constraints_of(state)
     _prepare_constraints(state, constraints, given, h, step.wanted)
     warm_start_contacts(contacts, terms, change, inverse_mass, delassus)

@@ -13,10 +13,12 @@ from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import constraint_rate, constraints_of, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import inner_kernel, put
-from sandbox.physics.joints.joint_sweep import Joints, couple_masses, iterate_joint
+from sandbox.physics.joints.joint_answers import Joints, couple_masses, own_response
+from sandbox.physics.joints.joint_sweep import iterate_joint
 from sandbox.physics.joints.rows import PAIR, SCALAR, clamped, row_velocity
 from sandbox.physics.marks import LAW_HOOKE, LAW_NISSEN
 from sandbox.physics.solvers.contact.body_impacts import sweep_masses
+from sandbox.physics.solvers.contact.contact_order import ContactOrder
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
@@ -147,7 +149,7 @@ def _find_joint_impulses(joints: Joints, state: State, step: ExplicitPass) -> No
     rows = joints.rows
     couple_masses(joints, state.inverse_mass)
     for k in range(rows.limit.shape[0]):
-        response = joints.response[k, k]
+        response = own_response(joints, k)
         step.mass[k] = 1.0 / response if response > 0.0 and rows.pair[k] == SCALAR else 0.0
         lag = rows.impulse[k] if rows.pair[k] == SCALAR else 0.0
         u = row_velocity(rows, k, state.velocity, step.still)
@@ -186,8 +188,8 @@ spring_constant = explicit_spring_constant
 
 @inner_kernel
 def solve(
-    state: State, step: ExplicitPass, given: Inputs, contacts: Contacts, terms: ContactConstraints, delassus: Delassus,
-    sweeps: int, h: float,
+    state: State, step: ExplicitPass, given: Inputs, contacts: Contacts, terms: ContactConstraints, order: ContactOrder,
+    delassus: Delassus, sweeps: int, h: float,
 ) -> None:  # fmt: skip
     """Bring the velocities to the end of a substep of h [s]; contacts are swept after springs, constraints and joints.
 
@@ -197,5 +199,5 @@ def solve(
     apply_explicit(state, given, step, True, h)
     _give_joint_impulses(step.joints, state, step)
     if contacts.particle.shape[0] > 0:
-        sweep_masses(contacts, terms, state, step.change, delassus, sweeps, h)
+        sweep_masses(contacts, terms, order, state, step.change, delassus, sweeps, h)
     _let_joints_follow(step.joints, state, step)

@@ -11,8 +11,9 @@ import math
 
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.restitution import SLOWEST_PASSED
-from sandbox.physics.collision.types import Contacts
+from sandbox.physics.collision.types import Contacts, contacts_between, weight_of
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.contact.contact_order import ContactOrder
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
     Delassus,
@@ -24,6 +25,7 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     push_contact,
     solve_contacts,
     store_spins,
+    terms_between,
 )
 from sandbox.physics.state import State
 
@@ -149,15 +151,38 @@ def pass_on(
             if contacts.restitution[c] > 0.0:
                 contacts.bounce[c] = max(0.0, approach_of(contacts, c, velocity, delta_v))
                 terms.bias[c] = -contacts.bounce[c]
-    for p in range(delta_v.shape[0]):
-        delta_v[p, 0] = 0.0
-        delta_v[p, 1] = 0.0
+    for c in range(count):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0:
+                # That is all: a body answers where contacts touch it.
+                delta_v[p, 0] = 0.0
+                delta_v[p, 1] = 0.0
+
+
+@inner_kernel
+def pass_on_all(
+    contacts: Contacts, terms: ContactConstraints, order: ContactOrder, velocity: Floats, delta_v: Floats,
+    inverse_mass: Floats, delassus: Delassus, h: float,
+) -> None:  # fmt: skip
+    """The same of every island by itself."""
+    for i in range(order.islands[0]):
+        of_island, its_terms = _of_island(i, contacts, terms, order)
+        pass_on(of_island, its_terms, velocity, delta_v, inverse_mass, delassus, h)
+
+
+@inner_kernel
+def _of_island(
+    i: int, contacts: Contacts, terms: ContactConstraints, order: ContactOrder
+) -> tuple[Contacts, ContactConstraints]:
+    first, last = order.first[i], order.first[i + 1]
+    return contacts_between(contacts, first, last), terms_between(terms, first, last)
 
 
 @inner_kernel
 def sweep_masses(
-    contacts: Contacts, terms: ContactConstraints, state: State, delta_v: Floats, delassus: Delassus, sweeps: int,
-    h: float,
+    contacts: Contacts, terms: ContactConstraints, order: ContactOrder, state: State, delta_v: Floats,
+    delassus: Delassus, sweeps: int, h: float,
 ) -> None:  # fmt: skip
     """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step.
 
@@ -169,7 +194,11 @@ def sweep_masses(
     load_surfaces(terms, state.spin, state.radius)
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, state.inverse_mass, delassus)
-    pass_on(contacts, terms, state.velocity, delta_v, state.inverse_mass, delassus, h)
-    solve_contacts(contacts, terms, state.velocity, delta_v, state.inverse_mass, delassus, sweeps, sweeps, True)
+    for i in range(order.islands[0]):
+        of_island, its_terms = _of_island(i, contacts, terms, order)
+        pass_on(of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, h)
+        solve_contacts(
+            of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, sweeps, sweeps, True
+        )  # fmt: skip
     add_change(state.velocity, delta_v, state.inverse_mass)
     store_spins(terms, state.spin, state.radius)

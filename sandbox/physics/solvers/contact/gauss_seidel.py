@@ -15,14 +15,8 @@ from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.joint_sweep import (
-    Joints,
-    go_on_with_joints,
-    push_at,
-    start_joints,
-    sweep_joints,
-    swept_by,
-)
+from sandbox.physics.joints.joint_answers import Joints, push_at
+from sandbox.physics.joints.joint_sweep import go_on_with_joints, start_joints, sweep_joints, swept_by
 
 # Cs / Cd of a contact that penetrates: the part of the penetration that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
@@ -89,6 +83,16 @@ def new_contact_constraints(count: int, particles: int, arena: Arena) -> Contact
         new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
         new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_floats(arena, count),
         new_floats(arena, particles), new_floats(arena, count),
+    )  # fmt: skip
+
+
+@inner_kernel
+def terms_between(terms: ContactConstraints, first: int, last: int) -> ContactConstraints:
+    """The terms of some contacts."""
+    return ContactConstraints(
+        terms.bias[first:last], terms.normal[first:last], terms.coupling[first:last], terms.tangent[first:last],
+        terms.last_impulse[first:last], terms.search_direction[first:last], terms.resisted[first:last], terms.surface,
+        terms.calm[first:last],
     )  # fmt: skip
 
 

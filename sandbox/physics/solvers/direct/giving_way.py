@@ -26,7 +26,6 @@ from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.direct.energy_bank import GAVE_WAY
 from sandbox.physics.solvers.direct.island_energy import is_deep
 from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, IslandWorkspace
-from sandbox.physics.solvers.direct.joint_response import island_of_joint
 from sandbox.physics.solvers.direct.rigid_turn import spin_of_body
 from sandbox.physics.solvers.direct.system import MOMENTUM, STAR_MOMENTUM, System
 from sandbox.physics.state import State
@@ -61,11 +60,10 @@ def _mark_by_contacts(contacts: Contacts, islands: BodyIslands, state: State) ->
 
 @inner_kernel
 def _hold_by_joints(workspace: IslandWorkspace) -> None:
-    # Mark the islands that hands and other joints push from outside.
-    rows = workspace.delassus.joints.rows
-    for k in range(rows.limit.shape[0]):
-        if not rows.limit[k] > 0.0:
-            continue
+    # Mark the island if hands or other joints push it from outside.
+    joints, rows = workspace.delassus.joints, workspace.delassus.joints.rows
+    for i in range(joints.listed.shape[0]):
+        k = joints.listed[i]
         x = 0.0
         y = 0.0
         size = 0.0
@@ -74,7 +72,7 @@ def _hold_by_joints(workspace: IslandWorkspace) -> None:
             y += rows.gradient[e, 1]
             size += abs(rows.gradient[e, 0]) + abs(rows.gradient[e, 1])
         if abs(x) + abs(y) > WITHIN * size:
-            workspace.islands.held[island_of_joint(k, workspace)] = True
+            workspace.islands.held[0] = True
 
 
 @inner_kernel

@@ -10,11 +10,10 @@ from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.joint_answers import Joints, couple_joints
 from sandbox.physics.joints.joint_sweep import gather_push
-from sandbox.physics.joints.rows import any_on
 from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
-    ContactConstraints,
     Delassus,
     couple_of,
     load_biases,
@@ -51,15 +50,17 @@ from sandbox.physics.solvers.direct.island_energy import (
 )
 from sandbox.physics.solvers.direct.islands import (
     BODIES,
+    ISLANDS,
     MEMBERS,
     BodyIslands,
     IslandWorkspace,
+    alone,
+    contacts_of,
 )
 from sandbox.physics.solvers.direct.joint_response import (
-    fails_driven,
     load_answers,
+    load_velocities,
     open_joints,
-    prepare_joints,
     release_joints,
 )
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
@@ -75,9 +76,9 @@ from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS
 
 # Sweeps over the contacts for each linear solve. More costs time, fewer leaves piles soft and restless.
 SWEEPS = 20
-# What all sweeps of a step of h [s] may cost: h WORK pushes of an impulse at a particle, some 10 ms of a tick at 60 Hz.
-# Where it is spent the step ends, in its energy test; a solve has this many sweeps in any case. Less leaves crowds
-# soft, more makes piles of inverted bodies slow.
+# What all sweeps of an island in a step of h [s] may cost: h WORK pushes of an impulse at a particle, some 10 ms of a
+# tick at 60 Hz. Where it is spent the step ends, in its energy test; a solve has this many sweeps in any case. Less
+# leaves crowds soft, more makes piles of inverted bodies slow.
 WORK = 7.2e7
 FEWEST_SWEEPS = 4
 # And of what is calm, but has not settled, at most: a tower of 10 boxes needs as many in its first ticks, 14 later.
@@ -107,12 +108,8 @@ def _is_rigid(body: int, system: System, inputs: Inputs) -> bool:
 def _open(
     workspace: IslandWorkspace, system: System, state: State, inputs: Inputs, auto_substeps: int, h: float
 ) -> None:
-    # Load the families and energies of every body that is touched, and the free particles; no contact has acted.
+    # Load the families and energies of an island's bodies, and its free particles; no contact has acted.
     islands, bodies = workspace.islands, system.bodies
-    for p in range(state.velocity.shape[0]):
-        for axis in range(2):
-            islands.given[p, axis] = state.velocity[p, axis]
-            islands.delta_v[p, axis] = 0.0
     for k in range(islands.counts[BODIES]):
         body = islands.body[k]
         span = span_of(system, body)
@@ -140,7 +137,7 @@ def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: floa
         _leave_unpushed(span, system.rows, islands.unpushed)
         load_block(k, span, system, delassus, islands.row, islands.pushed)
         if islands.driven[k]:
-            load_answers(body, span, system, delassus.joints, islands.row, islands.pushed)
+            load_answers(span, system, delassus.joints, islands.row, islands.pushed)
         for i in range(delassus.start[k], delassus.start[k + 1]):
             p = delassus.point[i]
             islands.given[p, 0] = islands.unpushed[islands.row[p], 0]
@@ -156,10 +153,17 @@ def _leave_unpushed(span: Span, rows: Rows, unpushed: Floats) -> None:
 
 
 @inner_kernel
-def _clear(vector: Floats) -> None:
-    for r in range(vector.shape[0]):
-        vector[r, 0] = 0.0
-        vector[r, 1] = 0.0
+def _clear(islands: BodyIslands, system: System, surface: Floats, state: State) -> None:
+    # Nothing has changed an island's velocities or pushed its bodies, and surfaces move as their particles turn.
+    for k in range(islands.counts[BODIES]):
+        span = span_of(system, islands.body[k])
+        for r in range(span.first_row, span.last_row):
+            for axis in range(2):
+                islands.pushed[r, axis] = islands.delta_v[system.rows.particle[r], axis] = 0.0
+    for i in range(islands.counts[MEMBERS] - islands.counts[BODIES]):
+        p = islands.free[i]
+        islands.delta_v[p, 0] = islands.delta_v[p, 1] = 0.0
+        surface[p] = state.spin[p] * state.radius[p]
 
 
 @inner_kernel
@@ -172,37 +176,47 @@ def _cost_of(contacts: Contacts, delassus: Delassus) -> int:
             if p >= 0:
                 k = delassus.block[p]
                 cost += 1 if k < 0 else delassus.start[k + 1] - delassus.start[k]
-    rows = delassus.joints.rows
-    for k in range(rows.limit.shape[0]):
-        if rows.limit[k] > 0.0:
-            cost += delassus.joints.answer_first[k + 1] - delassus.joints.answer_first[k]
+    joints = delassus.joints
+    for i in range(joints.listed.shape[0]):
+        k = joints.listed[i]
+        cost += joints.actions.answers[joints.actions.first[k + 1]] - joints.actions.answers[joints.actions.first[k]]
     return cost
 
 
 @inner_kernel
+def _load_push(islands: BodyIslands, joints: Joints) -> None:
+    # What joints give the bodies of an island.
+    gather_push(joints)
+    for i in range(joints.listed.shape[0]):
+        k = joints.listed[i]
+        for e in range(joints.rows.first[k], joints.rows.first[k + 1]):
+            p = joints.rows.particle[e]
+            if islands.row[p] >= 0:
+                islands.pushed[islands.row[p], 0] = joints.push[p, 0]
+                islands.pushed[islands.row[p], 1] = joints.push[p, 1]
+
+
+@inner_kernel
 def _push_all(
-    contacts: Contacts, islands: BodyIslands, terms: ContactConstraints, delassus: Delassus, state: State,
-    sweeps: int, most: int, accelerate: bool, begins: bool, h: float,
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, sweeps: int, most: int,
+    accelerate: bool, begins: bool, h: float,
 ) -> int:  # fmt: skip
-    # Sweep all contacts and joints, and look for impacts before where the step begins; how many sweeps. The impulses
-    # J^T lambda of bodies are left in `pushed`.
+    # Sweep an island's contacts and joints, and look for impacts before where the step begins; how many sweeps. The
+    # impulses J^T lambda of bodies are left in `pushed`.
+    islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
     inverse_mass = state.inverse_mass
     load_responses(contacts, terms, inverse_mass, delassus)
-    _clear(islands.delta_v)
-    load_surfaces(terms, state.spin, state.radius)
+    couple_joints(delassus.joints)
+    _clear(islands, system, terms.surface, state)
     if begins:
         mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid)
         pass_on(contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, h)
+    # Passes only look ahead, but push joints as well.
+    load_velocities(islands, delassus.joints)
     done = solve_contacts(
         contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, accelerate
     )  # fmt: skip
-    _clear(islands.pushed)
-    push = delassus.joints.push
-    gather_push(delassus.joints)
-    for p in range(push.shape[0]):
-        if islands.row[p] >= 0:
-            islands.pushed[islands.row[p], 0] = push[p, 0]
-            islands.pushed[islands.row[p], 1] = push[p, 1]
+    _load_push(islands, delassus.joints)
     for c in range(contacts.particle.shape[0]):
         jn = contacts.impulse[c, 0]
         jt = contacts.impulse[c, 1]
@@ -282,11 +296,9 @@ def _push_and_test(
     accelerate: bool, begins: bool, h: float,
 ) -> int:  # fmt: skip
     # Push what was linearised through its contacts and joints, and test it; how many sweeps the step may still have.
-    islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
-    prepare_joints(workspace)
     sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
     most = max(sweeps, min(CALM_SWEEPS, affordable))
-    done = _push_all(contacts, islands, terms, delassus, state, sweeps, most, accelerate, begins, h)
+    done = _push_all(contacts, workspace, system, state, sweeps, most, accelerate, begins, h)
     if begins:
         credit_penetration(contacts, workspace, state.inverse_mass, h)
         draw_on_reserves(contacts, workspace, system, state)
@@ -314,9 +326,9 @@ def _solve_linearly(
 ) -> int:  # fmt: skip
     # Linear solves while springs miss the lengths predicted or the test fails; the sweeps left.
     islands = workspace.islands
-    most = LINEAR_SOLVES + (DRIVEN_SOLVES if any_on(workspace.delassus.joints.rows) else 0)
+    most = LINEAR_SOLVES + (DRIVEN_SOLVES if workspace.delassus.joints.listed.shape[0] > 0 else 0)
     for solve in range(most):
-        if solve >= LINEAR_SOLVES and not fails_driven(workspace):
+        if solve >= LINEAR_SOLVES and not any_fails(islands):
             break
         note_excess(islands)
         _solve_due(workspace, system, h, AHEAD, AHEAD)
@@ -357,7 +369,7 @@ def _solve_without_bias(
         note_way(MINIMISED, islands)
         take_back(workspace, system, state)
         drop_biases(contacts, workspace, state.inverse_mass, solve == 0, h)
-        release_joints(workspace)
+        release_joints(workspace.delassus.joints)
         _begin_again(islands, system, 1.0 if solve == 0 else 0.0)
         _solve_due(workspace, system, h, 1.0, 0.0)
         affordable = _push_and_test(contacts, workspace, system, state, start, affordable, False, False, h)
@@ -371,10 +383,30 @@ def solve_islands(
     h: float,
 ) -> None:  # fmt: skip
     """Bring what contacts touch or joints act on to the end of a step of h [s]; rows are loaded, islands found."""
+    islands, joints = workspace.islands, workspace.delassus.joints
+    for p in range(state.velocity.shape[0]):
+        for axis in range(2):
+            islands.given[p, axis] = state.velocity[p, axis]
+            islands.delta_v[p, axis] = 0.0
+    for p in range(joints.push.shape[0]):
+        joints.push[p, 0] = joints.push[p, 1] = 0.0
+    open_joints(joints, islands.row, state.inverse_mass)
+    load_surfaces(workspace.terms, state.spin, state.radius)
+    for i in range(islands.counts[ISLANDS]):
+        _solve_island(
+            contacts_of(i, contacts, workspace), alone(i, workspace), system, state, inputs, auto_substeps, h
+        )  # fmt: skip
+
+
+@inner_kernel
+def _solve_island(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, inputs: Inputs, auto_substeps: int,
+    h: float,
+) -> None:  # fmt: skip
+    # Bring one island to the end of a step: nothing here looks beyond it, so what does not touch changes nothing.
     islands, start = workspace.islands, inputs.start
     load_biases(contacts, workspace.terms, h)
     _open(workspace, system, state, inputs, auto_substeps, h)
-    open_joints(workspace, state.inverse_mass)
     affordable = int(WORK * h) // max(1, _cost_of(contacts, workspace.delassus))
     affordable = _solve_linearly(contacts, workspace, system, state, start, affordable, h)
     if any_fails(islands):

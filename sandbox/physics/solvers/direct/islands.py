@@ -1,16 +1,22 @@
-"""Contact islands: which bodies and free particles contacts touch or joints act on, and which of them hang together."""
+"""Contact islands: which bodies and free particles contacts touch or joints act on, and which of them hang together.
+
+Each island is solved as if it were alone in the world: what does not touch, changes nothing. So its members, contacts
+and joints lie one behind another, and are numbered within the island.
+"""
 
 from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows, new_floats, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import Contacts, contacts_between, weight_of
 from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel, put
-from sandbox.physics.joints.joint_sweep import Joints
-from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
+from sandbox.physics.joints.joint_answers import Actions, Joints
+from sandbox.physics.solvers.contact.contact_order import ContactOrder, put_in_order
+from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus, terms_between
 from sandbox.physics.solvers.direct.energy_bank import PASSED
 from sandbox.physics.solvers.direct.system import System
+from sandbox.physics.topology.sorting import list_by_key, place_among
 
 # Places in `counts`: bodies that contacts touch, members (those and free particles), islands, and the room that the
 # Delassus blocks of the bodies want: for their numbers, and for the columns of the largest.
@@ -24,11 +30,13 @@ class BodyIslands(NamedTuple):
     particles. By member: island, mass [kg], bank, energies where the step begins (energy0) and ends (energy), limit
     [J]; fresh: its bank is begun for all of it. By particle (n,): member, -1: none, row in the matrix, -1: none; given,
     delta_v [m/s]: velocities without contacts, and what those add. By touched body: misfit; due: to be solved again;
-    rigid: all its springs are; driven: a joint acts on it. By body: number among the touched. By island: total, allowed
-    [J], fails. By row: unpushed [m/s] = velocities without contacts, pushed [m/s] = what contacts and joints add.
-    held: something outside holds it; parts: something in it overlaps deeply; excess [J]: what it had too much, see
-    giving_way.py; way: see energy_bank.py.
-    label, marked: scratch.
+    rigid: all its springs are; driven: a joint acts on it. By island: total, allowed [J], fails; held: something
+    outside holds it; parts: something in it overlaps deeply; excess [J]: what it had too much, see giving_way.py; way:
+    see energy_bank.py. By row: unpushed [m/s] = velocities without contacts, pushed [m/s] = what contacts and joints
+    add. label, root, marked: scratch.
+
+    Of all islands together bodies and free particles lie island by island; `alone` is one of them, its members numbered
+    by themselves as those of the only island there is: so are `member` and the blocks of bodies.
     """
 
     counts: Slots
@@ -47,7 +55,6 @@ class BodyIslands(NamedTuple):
     due: Flags
     rigid: Flags
     driven: Flags
-    number: Slots
     total: Floats
     allowed: Floats
     fails: Flags
@@ -60,7 +67,17 @@ class BodyIslands(NamedTuple):
     given: FloatRows
     delta_v: FloatRows
     label: Slots
+    root: Slots
     marked: Flags
+
+
+class IslandLists(NamedTuple):
+    """Where the bodies, free particles and joints of each island begin, (i + 1,) each; counts (5 i,): as in `alone`."""
+
+    body: Slots
+    free: Slots
+    joint: Slots
+    counts: Slots
 
 
 class IslandWorkspace(NamedTuple):
@@ -68,8 +85,10 @@ class IslandWorkspace(NamedTuple):
 
     ways: Slots
     islands: BodyIslands
+    lists: IslandLists
     delassus: Delassus
     terms: ContactConstraints
+    order: ContactOrder
 
 
 @inner_kernel
@@ -82,13 +101,17 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
         new_slots(arena, particles), new_slots(arena, particles), new_floats(arena, members),
         new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_floats(arena, members),
         new_flags(arena, members), new_floats(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
-        new_flags(arena, bodies), new_slots(arena, bodies), new_floats(arena, members), new_floats(arena, members),
-        new_flags(arena, members), new_flags(arena, members), new_flags(arena, members), new_floats(arena, members),
-        new_slots(arena, members), new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2),
-        new_float_rows(arena, particles, 2), new_float_rows(arena, particles, 2), new_slots(arena, members),
+        new_flags(arena, bodies), new_floats(arena, members), new_floats(arena, members), new_flags(arena, members),
+        new_flags(arena, members), new_flags(arena, members), new_floats(arena, members), new_slots(arena, members),
+        new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2), new_float_rows(arena, particles, 2),
+        new_float_rows(arena, particles, 2), new_slots(arena, members), new_slots(arena, members),
         new_flags(arena, particles),
     )  # fmt: skip
     put(out, "islands", islands)
+    put(out, "lists", IslandLists(
+        new_slots(arena, members + 1), new_slots(arena, members + 1), new_slots(arena, members + 1),
+        new_slots(arena, COUNTED * members),
+    ))  # fmt: skip
     place, point, block = new_slots(arena, particles), new_slots(arena, free_rows), new_slots(arena, particles)
     delassus = out.delassus
     put(delassus, "block", block)
@@ -116,131 +139,143 @@ def lay_out_no_blocks(particles: int, arena: Arena, out: Delassus) -> None:
 
 
 @inner_kernel
-def _join_nodes(contacts: Contacts, block: Slots, inverse_mass: Floats, label: Slots, nodes: int) -> None:
-    # Label the nodes that touch each other alike: particles (n,), then blocks; what cannot move joins nothing.
-    count = block.shape[0]
-    for c in range(contacts.particle.shape[0]):
-        first = -1
-        for end in range(3):
-            p, _ = weight_of(contacts, c, end)
-            if p < 0 or inverse_mass[p] == 0.0:
-                continue
-            node = root_of(label, p if block[p] < 0 else count + block[p])
-            first = united(label, first, node)
-    for node in range(nodes):
-        label[node] = root_of(label, node)
+def _node_of(p: int, row: Slots, row_start: Slots) -> int:
+    # Nodes are particles (n,), then bodies: a particle of a body stands for that.
+    return p if row[p] < 0 else row.shape[0] + place_among(row[p] + 1, row_start, 0, row_start.shape[0]) - 1
 
 
 @inner_kernel
-def _mark_driven(joints: Joints, islands: BodyIslands, touched: Flags) -> None:
-    # The bodies, and the particles of none, that joints act on.
+def _node_acted_on(q: int, actions: Actions, particles: int) -> int:
+    body = actions.body[q]
+    return particles + body if body >= 0 else actions.particle[actions.start[q]]
+
+
+@inner_kernel
+def _join_touching(
+    contacts: Contacts, source: Slots, inverse_mass: Floats, system: System, islands: BodyIslands
+) -> None:  # fmt: skip
+    # Label the nodes alike that touch each other, and mark them; what cannot move joins nothing.
+    particles = islands.row.shape[0]
+    for k in range(source.shape[0]):
+        first = -1
+        for end in range(3):
+            p, _ = weight_of(contacts, source[k], end)
+            if p < 0 or inverse_mass[p] == 0.0:
+                continue
+            islands.marked[p] = True
+            node = _node_of(p, islands.row, system.bodies.row_start)
+            if node >= particles:
+                system.bodies.touched[node - particles] = True
+            first = united(islands.label, first, root_of(islands.label, node))
+
+
+@inner_kernel
+def _join_driven(joints: Joints, system: System, islands: BodyIslands) -> None:
+    # Label the nodes alike that one joint acts on, and mark them.
+    particles, actions = islands.row.shape[0], joints.actions
     for k in range(joints.rows.limit.shape[0]):
         if not joints.rows.limit[k] > 0.0:
             continue
-        for b in range(joints.body_first[k], joints.body_first[k + 1]):
-            touched[joints.body[b]] = True
-        for e in range(joints.rows.first[k], joints.rows.first[k + 1]):
-            p = joints.rows.particle[e]
-            if islands.row[p] < 0:
-                islands.marked[p] = True
-
-
-@inner_kernel
-def _take_in(body: int, count: int, points: int, islands: BodyIslands, delassus: Delassus) -> int:
-    # Number a body among the touched, whose points begin here; how many there are then.
-    islands.body[count] = body
-    islands.number[body] = count
-    delassus.start[count] = points
-    return count + 1
-
-
-@inner_kernel
-def _join_driven(joints: Joints, islands: BodyIslands, label: Slots) -> None:
-    # Label the nodes alike that one joint acts on.
-    particles = islands.member.shape[0]
-    rows = joints.rows
-    for k in range(rows.limit.shape[0]):
-        if not rows.limit[k] > 0.0:
-            continue
         first = -1
-        for b in range(joints.body_first[k], joints.body_first[k + 1]):
-            first = united(label, first, root_of(label, particles + islands.number[joints.body[b]]))
-        for e in range(rows.first[k], rows.first[k + 1]):
-            if islands.row[rows.particle[e]] < 0:
-                first = united(label, first, root_of(label, rows.particle[e]))
+        for a in range(actions.first[k], actions.first[k + 1]):
+            node = _node_acted_on(actions.on[a], actions, particles)
+            if node >= particles:
+                system.bodies.touched[node - particles] = True
+            else:
+                islands.marked[node] = True
+            first = united(islands.label, first, root_of(islands.label, node))
 
 
 @inner_kernel
-def _find_members(contacts: Contacts, system: System, inverse_mass: Floats, workspace: IslandWorkspace) -> None:
-    # The bodies that contacts touch, with their points by row, and the free particles by slot.
-    islands, delassus, bodies, rows = workspace.islands, workspace.delassus, system.bodies, system.rows
-    for p in range(islands.member.shape[0]):
-        islands.marked[p] = False
-        islands.member[p] = -1
-        delassus.block[p] = -1
-        delassus.place[p] = -1
-    for body in range(bodies.touched.shape[0]):
-        bodies.touched[body] = False
-    _mark_driven(delassus.joints, islands, bodies.touched)
-    for c in range(contacts.particle.shape[0]):
+def _number_islands(touched: Flags, islands: BodyIslands) -> int:
+    # The island of each node in `label`, in the order of their first members, -1: in none; how many islands there are.
+    particles, nodes = islands.row.shape[0], islands.label.shape[0]
+    for node in range(nodes):
+        islands.root[node] = root_of(islands.label, node)
+        islands.label[node] = islands.root[node]
+    for node in range(nodes):
+        islands.label[node] = -1
+    count = 0
+    for i in range(nodes):
+        # Bodies first.
+        node = particles + i if i < nodes - particles else i - (nodes - particles)
+        if touched[i] if node >= particles else islands.marked[node] and islands.row[node] < 0:
+            root = islands.root[node]
+            if islands.label[root] < 0:
+                islands.label[root] = count
+                count += 1
+    for node in range(nodes):
+        islands.label[node] = islands.label[islands.root[node]]
+    return count
+
+
+@inner_kernel
+def _is_driven(body: int, joints: Joints, system: System) -> bool:
+    actions = joints.actions
+    if actions.node.shape[0] == 0:
+        return False
+    q = actions.node[system.rows.particle[system.bodies.row_start[body]]]
+    if q >= 0:
+        for i in range(actions.at_first[q], actions.at_first[q + 1]):
+            if joints.rows.limit[actions.row[actions.at[i]]] > 0.0:
+                return True
+    return False
+
+
+@inner_kernel
+def _list_joints(count: int, islands: BodyIslands, joints: Joints, first: Slots) -> None:
+    # List the rows that are on, by island.
+    particles, actions, key = islands.row.shape[0], joints.actions, joints.couplings.slot
+    for k in range(key.shape[0]):
+        key[k] = -1
+        if joints.rows.limit[k] > 0.0 and actions.first[k] < actions.first[k + 1]:
+            key[k] = islands.label[_node_acted_on(actions.on[actions.first[k]], actions, particles)]
+    list_by_key(key, key.shape[0], count, first, joints.listed)
+
+
+@inner_kernel
+def _list_contacts(
+    contacts: Contacts, source: Slots, inverse_mass: Floats, count: int, system: System, workspace: IslandWorkspace
+) -> None:  # fmt: skip
+    # Put the contacts of each island behind one another, in their order.
+    islands, order = workspace.islands, workspace.order
+    for k in range(source.shape[0]):
+        order.island[k] = -1
         for end in range(3):
-            p, _ = weight_of(contacts, c, end)
+            p, _ = weight_of(contacts, source[k], end)
             if p >= 0 and inverse_mass[p] > 0.0:
-                islands.marked[p] = True
-    count = 0
-    points = 0
-    for body in range(bodies.touched.shape[0]):
-        driven = bodies.touched[body]
-        if driven:
-            count = _take_in(body, count, points, islands, delassus)
-        for r in range(bodies.row_start[body], bodies.row_start[body + 1]):
-            p = rows.particle[r]
-            if not islands.marked[p]:
-                continue
-            if not bodies.touched[body]:
-                bodies.touched[body] = True
-                count = _take_in(body, count, points, islands, delassus)
-            delassus.block[p] = count - 1
-            delassus.place[p] = points - delassus.start[count - 1]
-            delassus.point[points] = p
-            islands.member[p] = count - 1
-            points += 1
-        if bodies.touched[body]:
-            islands.driven[count - 1] = driven
-    delassus.start[count] = points
-    islands.counts[BODIES] = count
-    members = count
-    for p in range(islands.member.shape[0]):
-        if islands.marked[p] and islands.row[p] < 0:
-            islands.free[members - count] = p
-            islands.member[p] = members
-            members += 1
-    islands.counts[MEMBERS] = members
+                order.island[k] = islands.label[_node_of(p, islands.row, system.bodies.row_start)]
+    put_in_order(source, order, count)
 
 
 @inner_kernel
-def _number_islands(contacts: Contacts, inverse_mass: Floats, workspace: IslandWorkspace) -> None:
-    # The island of each member, in the order of their first ones.
-    islands, delassus = workspace.islands, workspace.delassus
-    particles = islands.member.shape[0]
-    bodies = islands.counts[BODIES]
-    for node in range(particles + bodies):
-        islands.label[node] = node
-    _join_driven(delassus.joints, islands, islands.label)
-    _join_nodes(contacts, delassus.block, inverse_mass, islands.label, particles + bodies)
-    count = 0
-    for k in range(islands.counts[MEMBERS]):
-        islands.island[k] = islands.label[particles + k if k < bodies else islands.free[k - bodies]]
-    for node in range(particles + bodies):
-        islands.label[node] = 0
-    for k in range(islands.counts[MEMBERS]):
-        label = islands.island[k]
-        if islands.label[label] == 0:
-            islands.label[label] = count + 1
-            count += 1
-        islands.island[k] = islands.label[label] - 1
-        islands.way[islands.island[k]] = PASSED
-    islands.counts[ISLANDS] = count
+def _number_members(count: int, system: System, workspace: IslandWorkspace) -> None:
+    # Number the members of each island, and list the points of its bodies by row.
+    islands, lists, delassus = workspace.islands, workspace.lists, workspace.delassus
+    for p in range(islands.member.shape[0]):
+        islands.member[p] = delassus.block[p] = delassus.place[p] = -1
+    points = 0
+    for i in range(count):
+        bodies = lists.body[i + 1] - lists.body[i]
+        for number in range(bodies):
+            k = lists.body[i] + number
+            body = islands.body[k]
+            islands.driven[k] = _is_driven(body, delassus.joints, system)
+            delassus.start[k] = points
+            for r in range(system.bodies.row_start[body], system.bodies.row_start[body + 1]):
+                p = system.rows.particle[r]
+                if islands.marked[p]:
+                    delassus.block[p] = islands.member[p] = number
+                    delassus.place[p] = points - delassus.start[k]
+                    delassus.point[points] = p
+                    points += 1
+        for at in range(lists.free[i], lists.free[i + 1]):
+            islands.member[islands.free[at]] = bodies + at - lists.free[i]
+        lists.counts[COUNTED * i + BODIES] = bodies
+        lists.counts[COUNTED * i + MEMBERS] = bodies + lists.free[i + 1] - lists.free[i]
+        lists.counts[COUNTED * i + ISLANDS] = 1
+        islands.way[i] = PASSED
+    delassus.start[lists.body[count]] = points
 
 
 @inner_kernel
@@ -262,10 +297,66 @@ def _find_room(system: System, workspace: IslandWorkspace) -> None:
 
 
 @inner_kernel
-def find_body_islands(contacts: Contacts, inverse_mass: Floats, system: System, workspace: IslandWorkspace) -> bool:
-    """Find the bodies and free particles that contacts touch, and their islands; whether there is room for them."""
-    _find_members(contacts, system, inverse_mass, workspace)
-    _number_islands(contacts, inverse_mass, workspace)
+def find_body_islands(
+    contacts: Contacts, source: Slots, inverse_mass: Floats, system: System, workspace: IslandWorkspace
+) -> bool:  # fmt: skip
+    """Find the bodies and free particles that some contacts touch, and their islands; whether there is room for them.
+
+    source: which contacts; they are put into the order of their islands.
+    """
+    islands, lists, joints = workspace.islands, workspace.lists, workspace.delassus.joints
+    particles, bodies = islands.row.shape[0], system.bodies.touched.shape[0]
+    for node in range(particles + bodies):
+        islands.label[node] = node
+    for p in range(particles):
+        islands.marked[p] = False
+    for body in range(bodies):
+        system.bodies.touched[body] = False
+    _join_driven(joints, system, islands)
+    _join_touching(contacts, source, inverse_mass, system, islands)
+    count = _number_islands(system.bodies.touched, islands)
+    list_by_key(islands.label[particles:], bodies, count, lists.body, islands.body)
+    list_by_key(islands.label, particles, count, lists.free, islands.free)
+    _list_joints(count, islands, joints, lists.joint)
+    _list_contacts(contacts, source, inverse_mass, count, system, workspace)
+    _number_members(count, system, workspace)
+    islands.counts[BODIES] = lists.body[count]
+    islands.counts[MEMBERS] = lists.body[count] + lists.free[count]
+    islands.counts[ISLANDS] = count
     _find_room(system, workspace)
-    counts, delassus = workspace.islands.counts, workspace.delassus
+    counts, delassus = islands.counts, workspace.delassus
     return counts[NUMBERS] <= delassus.numbers.shape[0] and counts[COLUMNS] <= delassus.columns.shape[0]
+
+
+@inner_kernel
+def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
+    """One island, as if there were no other."""
+    w, lists, delassus, order = workspace.islands, workspace.lists, workspace.delassus, workspace.order
+    b, c, f, g = lists.body[i], lists.body[i + 1], lists.free[i], lists.free[i + 1]
+    k, m = b + f, c + g
+    joints = delassus.joints
+    islands = BodyIslands(
+        lists.counts[COUNTED * i : COUNTED * (i + 1)], w.body[b:c], w.free[f:g], w.island[k:m], w.member, w.row,
+        w.mass[k:m], w.energy0[k:m], w.bank[k:m], w.energy[k:m], w.limit[k:m], w.fresh[k:m], w.misfit[b:c], w.due[b:c],
+        w.rigid[b:c], w.driven[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.fails[i : i + 1],
+        w.held[i : i + 1], w.parts[i : i + 1], w.excess[i : i + 1], w.way[i : i + 1], w.unpushed, w.pushed, w.given,
+        w.delta_v, w.label, w.root, w.marked,
+    )  # fmt: skip
+    return IslandWorkspace(
+        workspace.ways, islands, lists,
+        Delassus(
+            delassus.block, delassus.place, delassus.start[b : c + 1], delassus.point, delassus.base[b : c + 1],
+            delassus.numbers, delassus.columns,
+            Joints(
+                joints.rows, joints.actions, joints.couplings, joints.listed[lists.joint[i] : lists.joint[i + 1]],
+                joints.answer, joints.velocity, joints.last_impulse, joints.search_direction, joints.push,
+            ),
+        ),
+        terms_between(workspace.terms, order.first[i], order.first[i + 1]), order,
+    )  # fmt: skip
+
+
+@inner_kernel
+def contacts_of(i: int, contacts: Contacts, workspace: IslandWorkspace) -> Contacts:
+    """The contacts of one island."""
+    return contacts_between(contacts, workspace.order.first[i], workspace.order.first[i + 1])

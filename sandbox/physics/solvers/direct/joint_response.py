@@ -2,57 +2,54 @@
 
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.joint_sweep import Joints, couple_joints
+from sandbox.physics.joints.joint_answers import Joints
 from sandbox.physics.solvers.direct.factor import respond
-from sandbox.physics.solvers.direct.islands import IslandWorkspace
+from sandbox.physics.solvers.direct.islands import BodyIslands
 from sandbox.physics.solvers.direct.system import Rows, Span, System
 
 
 @inner_kernel
-def open_joints(workspace: IslandWorkspace, inverse_mass: Floats) -> None:
-    """The answers of particles that are in no body, which are their own mass's."""
-    joints, rows = workspace.delassus.joints, workspace.delassus.joints.rows
-    for k in range(rows.limit.shape[0]):
-        a = joints.answer_first[k + 1]
-        for e in range(rows.first[k + 1] - 1, rows.first[k] - 1, -1):
-            p = rows.particle[e]
-            if workspace.islands.row[p] < 0:
-                a -= 1
-                joints.answer[a, 0] = rows.gradient[e, 0] * inverse_mass[p]
-                joints.answer[a, 1] = rows.gradient[e, 1] * inverse_mass[p]
+def open_joints(joints: Joints, row: Slots, inverse_mass: Floats) -> None:
+    """The answers of particles that are in no body, which are their own mass's; row (n,): of each particle."""
+    rows, actions = joints.rows, joints.actions
+    for e in range(rows.particle.shape[0]):
+        p = rows.particle[e]
+        if row[p] < 0:
+            a = actions.answers[actions.entry[e]]
+            joints.answer[a, 0] = rows.gradient[e, 0] * inverse_mass[p]
+            joints.answer[a, 1] = rows.gradient[e, 1] * inverse_mass[p]
 
 
 @inner_kernel
-def load_answers(body: int, span: Span, system: System, joints: Joints, row: Slots, vector: Floats) -> None:
+def load_answers(span: Span, system: System, joints: Joints, row: Slots, vector: Floats) -> None:
     """Z = A^-1 g of a body that has been factored, for every joint that acts on it; row (n,): of each particle."""
-    rows = joints.rows
-    for k in range(rows.limit.shape[0]):
+    rows, actions = joints.rows, joints.actions
+    q = actions.node[system.rows.particle[span.first_row]]
+    for i in range(actions.at_first[q], actions.at_first[q + 1]):
+        action = actions.at[i]
+        k = actions.row[action]
         if not rows.limit[k] > 0.0:
             continue
-        for b in range(joints.body_first[k], joints.body_first[k + 1]):
-            if joints.body[b] != body:
-                continue
-            for r in range(span.first_row, span.last_row):
-                vector[r, 0] = 0.0
-                vector[r, 1] = 0.0
-            for e in range(rows.first[k], rows.first[k + 1]):
-                r = row[rows.particle[e]]
-                if span.first_row <= r < span.last_row:
-                    vector[r, 0] = rows.gradient[e, 0]
-                    vector[r, 1] = rows.gradient[e, 1]
-            respond(span, system, vector)
-            for r in range(span.first_row, span.last_row):
-                a = joints.body_answer[b] + r - span.first_row
-                joints.answer[a, 0] = vector[r, 0]
-                joints.answer[a, 1] = vector[r, 1]
+        for r in range(span.first_row, span.last_row):
+            vector[r, 0] = 0.0
+            vector[r, 1] = 0.0
+        for e in range(rows.first[k], rows.first[k + 1]):
+            if actions.entry[e] == action:
+                vector[row[rows.particle[e]], 0] = rows.gradient[e, 0]
+                vector[row[rows.particle[e]], 1] = rows.gradient[e, 1]
+        respond(span, system, vector)
+        for r in range(span.first_row, span.last_row):
+            a = actions.answers[action] + r - span.first_row
+            joints.answer[a, 0] = vector[r, 0]
+            joints.answer[a, 1] = vector[r, 1]
 
 
 @inner_kernel
-def prepare_joints(workspace: IslandWorkspace) -> None:
-    """Responses of joints, and their velocities without them and without contacts."""
-    islands, joints, rows = workspace.islands, workspace.delassus.joints, workspace.delassus.joints.rows
-    couple_joints(joints)
-    for k in range(rows.limit.shape[0]):
+def load_velocities(islands: BodyIslands, joints: Joints) -> None:
+    """The velocities of an island's joints without them and without contacts."""
+    rows = joints.rows
+    for i in range(joints.listed.shape[0]):
+        k = joints.listed[i]
         u = 0.0
         for e in range(rows.first[k], rows.first[k + 1]):
             p = rows.particle[e]
@@ -65,31 +62,10 @@ def prepare_joints(workspace: IslandWorkspace) -> None:
 
 
 @inner_kernel
-def island_of_joint(k: int, workspace: IslandWorkspace) -> int:
-    """The island that a joint acts in."""
-    islands, joints = workspace.islands, workspace.delassus.joints
-    if joints.body_first[k] < joints.body_first[k + 1]:
-        return islands.island[islands.number[joints.body[joints.body_first[k]]]]
-    return islands.island[islands.member[joints.rows.particle[joints.rows.first[k]]]]
-
-
-@inner_kernel
-def fails_driven(workspace: IslandWorkspace) -> bool:
-    """Whether an island fails the energy test in which a joint acts."""
-    limit = workspace.delassus.joints.rows.limit
-    found = False
-    for k in range(limit.shape[0]):
-        found = found or (limit[k] > 0.0 and workspace.islands.fails[island_of_joint(k, workspace)])
-    return found
-
-
-@inner_kernel
-def release_joints(workspace: IslandWorkspace) -> None:
-    """Let joints of islands that fail begin with no impulse."""
-    rows = workspace.delassus.joints.rows
-    for k in range(rows.limit.shape[0]):
-        if rows.limit[k] > 0.0 and workspace.islands.fails[island_of_joint(k, workspace)]:
-            rows.impulse[k] = 0.0
+def release_joints(joints: Joints) -> None:
+    """Let the joints of an island that fails begin with no impulse."""
+    for i in range(joints.listed.shape[0]):
+        joints.rows.impulse[joints.listed[i]] = 0.0
 
 
 @inner_kernel
