@@ -286,7 +286,7 @@ The program refuses a file beyond one of these limits before it builds anything.
 | velocities, the sum of a mesh's and its body's too | {limits.SPEED_LIMIT:,.0f} m/s each way |
 | text, in `extras` too | {limits.TEXT_LIMIT} characters |
 | motors | {limits.MOTOR_LIMIT} |
-| springs of limited force | {limits.LIMITED_LIMIT:,} |
+| springs of limited force | {limits.LIMITED_LIMIT:,}, times particles {limits.LIMITED_WORK_LIMIT:,} |
 | numbers | finite: no NaN, Infinity, 1e999; true and "1" are no numbers, 1.0 is no whole number |
 | keys | no key twice in one object |
 """

@@ -162,6 +162,15 @@ FAULTS = [
         {"bodies": [{**ROPE, "segments": LIMITED_LIMIT + 1, "drive": {"amplitude": 0.2, "period": 9, "force": 5}}]},
         f"bodies.0.drive.force: brings the level above {LIMITED_LIMIT:,} springs of limited force; take some out",
     ),
+    (
+        {
+            "bodies": [
+                {**ROPE, "segments": 1500, "drive": {"amplitude": 0.2, "period": 9, "force": 5}},
+                {**ROPE, "id": "long", "segments": 18_498},
+            ]
+        },
+        "bodies.0.drive.force: brings the level above 1,000 springs of limited force; take some out",
+    ),
 ]  # fmt: skip
 
 

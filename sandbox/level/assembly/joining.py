@@ -18,12 +18,12 @@ from sandbox.level.format.limits import (
     DEFAULT_MATERIAL,
     DEFINITION_LIMIT,
     FORMAT,
-    LIMITED_LIMIT,
     MATERIAL_LIMIT,
     MOTOR_LIMIT,
     PARTICLE_LIMIT,
     SPRING_LIMIT,
     VERSION,
+    most_limited,
 )
 from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.axles import free_wheels
@@ -136,11 +136,12 @@ class Joiners:
         )
         motors = len(world.actuators.motors.hub) + len(self.built.actuators.motors.hub)
         materials = {*world.material_names, *self.built.material_names}
+        particles = world.particle_count + self.particles
         for count, limit, noun in (
-            (world.particle_count + self.particles, PARTICLE_LIMIT, "particles"),
+            (particles, PARTICLE_LIMIT, "particles"),
             (world.spring_count + self.springs, SPRING_LIMIT, "springs"),
             (motors, MOTOR_LIMIT, "motors"),
-            (limited, LIMITED_LIMIT, "springs of limited force"),
+            (limited, most_limited(particles), "springs of limited force"),
             (len(materials) - 1, MATERIAL_LIMIT, "materials"),
         ):
             if count > limit:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sandbox.level.document.model import Level, SpringDef
 from sandbox.level.format.actuator_defs import HydraulicDef
 from sandbox.level.format.level_error import Fault, shown
-from sandbox.level.format.limits import LIMITED_LIMIT, MOTOR_LIMIT
+from sandbox.level.format.limits import MOTOR_LIMIT, most_limited
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.plan.actuators import actuators
 
@@ -54,9 +54,12 @@ def _limited(level: Level) -> Iterator[Fault]:
             if drive is not None and drive.force is not None
         ]
         drives += [(f"springs.{index}.{name}", 1) for name in limited]
+    if not drives:
+        return
+    most = most_limited(len(level.particles) + sum(expansion(body).form_count[0] for body in level.bodies))
     total = 0
     for path, count in drives:
         total += count
-        if total > LIMITED_LIMIT:
-            yield f"{path}.force", f"brings the level above {LIMITED_LIMIT:,} springs of limited force; take some out"
+        if total > most:
+            yield f"{path}.force", f"brings the level above {most:,} springs of limited force; take some out"
             return

@@ -45,6 +45,7 @@ RATE_LIMIT = 1e6  # [m/s] of a hydraulic
 FORCE_LIMIT = 1e15  # [N] of a muscle or hydraulic
 MOTOR_LIMIT = 100  # motors of a level; what each does to every other is found in every step
 LIMITED_LIMIT = 2000  # springs of limited force; what each does to others of its body is found in every step
+LIMITED_WORK_LIMIT = 20_000_000  # those, times particles: 320 MB, where all are of one body
 HOOKE_LIMIT = 1e15  # [N/m], [N s/m]
 SAG_LIMIT = 0.4  # of a body's height; beyond it a jelly lies on its folded triangles
 FREQUENCY_RANGE = (0.01, 1_000.0)  # [Hz] of a body's slowest wobble
@@ -57,3 +58,8 @@ FORMAT: Final = "spring-sandbox/level"
 VERSION = 2
 DEFAULT_MATERIAL = "default"
 BODY_RADIUS = 0.05  # [m] of the drawn disc of a body's particles
+
+
+def most_limited(particles: int) -> int:
+    """How many springs of limited force a level of so many particles may have."""
+    return min(LIMITED_LIMIT, LIMITED_WORK_LIMIT // max(1, particles))
