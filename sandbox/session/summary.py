@@ -8,7 +8,7 @@ from statistics import median
 import numpy as np
 
 from sandbox.physics.analysis.energy import Dissipation, gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.analysis.energy_tests import EnergyTests, energy_tests, forget_energy_tests
+from sandbox.physics.analysis.energy_tests import EnergyTests, energy_tests, forget_energy_tests, steps_by_mass
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.settings import Substeps
 from sandbox.physics.snapshot import state_hash
@@ -24,8 +24,9 @@ class Summary:
     """Figures of a run. Strain: |l - L| / L at every tick's end of the last 2 s; all else at the end of the run.
 
     Energies [J], gravity's zero at y = 0: potential is springs and gravity, dissipated is what Dissipation says;
-    energy_tests: those of this run; max_speed [m/s] of any particle; non_finite: particles without a finite position
-    and velocity; milliseconds_per_tick: median wall time of the step alone.
+    energy_tests: those of this run; steps_by_mass: of bodies on too many contacts to answer exactly (docs/physics.md,
+    section 10); max_speed [m/s] of any particle; non_finite: particles without a finite position and velocity;
+    milliseconds_per_tick: median wall time of the step alone.
     """
 
     ticks: int
@@ -42,6 +43,7 @@ class Summary:
     gravity_energy: float
     dissipated_energy: float
     energy_tests: EnergyTests
+    steps_by_mass: int
     max_speed: float
     non_finite: int
     broken_springs: int
@@ -57,6 +59,7 @@ class Summary:
             f"  energy        {self.kinetic_energy:.6g} J kinetic, {self.spring_energy:.6g} J in springs, "
             f"{self.gravity_energy:.6g} J of gravity, {self.dissipated_energy:.6g} J dissipated\n"
             f"  energy test   {self.energy_tests}\n"
+            f"  by mass       {self.steps_by_mass:,} steps of bodies on too many contacts\n"
             f"  fastest       {self.max_speed:.6g} m/s\n"
             f"  non-finite    {self.non_finite} particles, broken {self.broken_springs} springs\n"
             f"  a tick took   {self.milliseconds_per_tick:.4f} ms\n"
@@ -119,6 +122,7 @@ def _summary(
         gravity_energy=gravity_holds,
         dissipated_energy=dissipated,
         energy_tests=energy_tests(world),
+        steps_by_mass=steps_by_mass(world),
         max_speed=float(speed.max()) if len(speed) else 0.0,
         non_finite=int(np.count_nonzero(~finite)),
         broken_springs=real - active,

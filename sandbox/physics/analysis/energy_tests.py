@@ -1,8 +1,9 @@
-"""How steps of the direct solver passed its energy test, to be shown; no tick depends on it."""
+"""How steps of the direct solver passed its energy test, and were cut short, to be shown; no tick depends on it."""
 
 from dataclasses import dataclass
 
 from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.solvers.direct.energy_bank import BY_MASS
 from sandbox.physics.world import World
 
 
@@ -29,7 +30,12 @@ class EnergyTests:
 
 def energy_tests(world: World) -> EnergyTests:
     """The counts of a world since they were forgotten; all 0 in solvers without the test."""
-    return EnergyTests(*block_of(world).given.workspace.ways.tolist())
+    return EnergyTests(*block_of(world).given.workspace.ways[:BY_MASS].tolist())
+
+
+def steps_by_mass(world: World) -> int:
+    """How often a body had no time for its exact answer to contacts, and took that of its particles' masses."""
+    return int(block_of(world).given.workspace.ways[BY_MASS])
 
 
 def forget_energy_tests(world: World) -> None:

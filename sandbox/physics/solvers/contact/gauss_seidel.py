@@ -418,19 +418,12 @@ def solve_contacts(
     accelerate: each goes on in the direction of those before it. Joints are swept before contacts.
     """
     # Nonlinear conjugate gradients on the sweep as a fixed point (Silcowitz-Poulsen and others 2010).
-    joints = delassus.joints
-    start_joints(joints, delta_v)
-    warm_start_contacts(contacts, terms, delta_v, inverse_mass, delassus)
+    start_sweeps(contacts, terms, delta_v, inverse_mass, delassus)
     previous = 0.0
     done = 0
     checked = math.inf
     while True:
-        for c in range(contacts.particle.shape[0]):
-            terms.last_impulse[c, 0] = contacts.impulse[c, 0]
-            terms.last_impulse[c, 1] = contacts.impulse[c, 1]
-        largest = sweep_joints(joints, delta_v)
-        swept, calm = sweep(contacts, terms, velocity, delta_v, inverse_mass, delassus)
-        largest = max(largest, swept)
+        largest, calm = sweep_all(contacts, terms, velocity, delta_v, inverse_mass, delassus)
         done += 1
         if largest < SETTLED or done >= most or (done >= sweeps and calm < CALM_SETTLED):
             return done
@@ -438,27 +431,54 @@ def solve_contacts(
             if calm < STALLS_BELOW and calm > STALLED * checked:
                 return done
             checked = calm
-        squared = swept_by(joints)
-        for c in range(contacts.particle.shape[0]):
-            jn = contacts.impulse[c, 0] - terms.last_impulse[c, 0]
-            jt = contacts.impulse[c, 1] - terms.last_impulse[c, 1]
-            squared += terms.normal[c] * jn * jn + terms.tangent[c] * jt * jt
+        squared = change_of_sweep(contacts, terms, delassus.joints)
         ratio = squared / previous if accelerate and previous > 0.0 else 0.0
-        go_on_with_joints(joints, delta_v, ratio if ratio < 1.0 else 0.0)
-        _go_on(contacts, terms, delta_v, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
+        go_on(contacts, terms, delta_v, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
         previous = squared
 
 
 @inner_kernel
-def _go_on(
-    contacts: Contacts,
-    terms: ContactConstraints,
-    delta_v: Floats,
-    inverse_mass: Floats,
-    delassus: Delassus,
-    ratio: float,
+def start_sweeps(
+    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus
 ) -> None:
+    """Apply the impulses that joints and contacts bring along."""
+    start_joints(delassus.joints, delta_v)
+    warm_start_contacts(contacts, terms, delta_v, inverse_mass, delassus)
+
+
+@inner_kernel
+def sweep_all(
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
+    delassus: Delassus,
+) -> tuple[float, float]:  # fmt: skip
+    """One sweep over joints and then contacts; the largest change of a velocity [m/s], and that of calm contacts."""
+    for c in range(contacts.particle.shape[0]):
+        terms.last_impulse[c, 0] = contacts.impulse[c, 0]
+        terms.last_impulse[c, 1] = contacts.impulse[c, 1]
+    largest = sweep_joints(delassus.joints, delta_v)
+    swept, calm = sweep(contacts, terms, velocity, delta_v, inverse_mass, delassus)
+    return max(largest, swept), calm
+
+
+@inner_kernel
+def change_of_sweep(contacts: Contacts, terms: ContactConstraints, joints: Joints) -> float:
+    """The squared change of impulses in the last sweep, in the metric of the responses."""
+    squared = swept_by(joints)
+    for c in range(contacts.particle.shape[0]):
+        jn = contacts.impulse[c, 0] - terms.last_impulse[c, 0]
+        jt = contacts.impulse[c, 1] - terms.last_impulse[c, 1]
+        squared += terms.normal[c] * jn * jn + terms.tangent[c] * jt * jt
+    return squared
+
+
+@inner_kernel
+def go_on(
+    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus,
+    ratio: float,
+) -> None:  # fmt: skip
+    """Go on in the direction of the sweeps before: by so much of it, then the change of the last one is added to it."""
     # J += ratio p, clamped;  p = ratio p + what the sweep has changed.
+    go_on_with_joints(delassus.joints, delta_v, ratio)
     for c in range(contacts.particle.shape[0]):
         old_n = contacts.impulse[c, 0]
         old_t = contacts.impulse[c, 1]

@@ -14,13 +14,17 @@ from sandbox.physics.joints.joint_answers import Joints, couple_joints
 from sandbox.physics.joints.joint_sweep import gather_push
 from sandbox.physics.solvers.contact.body_impacts import pass_on
 from sandbox.physics.solvers.contact.gauss_seidel import (
-    Delassus,
+    SETTLED,
+    change_of_sweep,
     couple_of,
+    go_on,
     load_biases,
     load_responses,
     load_surfaces,
     mark_calm,
     solve_contacts,
+    start_sweeps,
+    sweep_all,
 )
 from sandbox.physics.solvers.direct.energy_bank import MINIMISED, SLOWED_DOWN, SOLVED_ON, is_new
 from sandbox.physics.solvers.direct.factor import respond, solve_linear
@@ -56,6 +60,8 @@ from sandbox.physics.solvers.direct.islands import (
     IslandWorkspace,
     alone,
     contacts_of,
+    cost_of_answer,
+    has_coarse,
 )
 from sandbox.physics.solvers.direct.joint_response import (
     load_answers,
@@ -81,6 +87,8 @@ SWEEPS = 20
 # leaves crowds soft, more makes piles of inverted bodies slow.
 WORK = 7.2e7
 FEWEST_SWEEPS = 4
+# What such a push costs, in units of DEAREST_BLOCK.
+PUSH_COST = 8
 # And of what is calm, but has not settled, at most: a tower of 10 boxes needs as many in its first ticks, 14 later.
 CALM_SWEEPS = 200
 # Bodies all of whose springs have such Cs and Cd are rigid. Softer ones settle by their springs, over many ticks; with
@@ -135,7 +143,8 @@ def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: floa
         linearise(span, system, h, ahead, behind)
         solve_linear(span, system)
         _leave_unpushed(span, system.rows, islands.unpushed)
-        load_block(k, span, system, delassus, islands.row, islands.pushed)
+        if not islands.by_mass[k]:
+            load_block(k, span, system, delassus, islands.row, islands.pushed)
         if islands.driven[k]:
             load_answers(span, system, delassus.joints, islands.row, islands.pushed)
         for i in range(delassus.start[k], delassus.start[k + 1]):
@@ -167,9 +176,13 @@ def _clear(islands: BodyIslands, system: System, surface: Floats, state: State) 
 
 
 @inner_kernel
-def _cost_of(contacts: Contacts, delassus: Delassus) -> int:
+def _cost_of(contacts: Contacts, workspace: IslandWorkspace, system: System) -> int:
     # What one sweep costs: the particles that answer to every impulse.
+    islands, delassus = workspace.islands, workspace.delassus
     cost = 0
+    for k in range(islands.counts[BODIES]):
+        if islands.by_mass[k]:
+            cost += cost_of_answer(span_of(system, islands.body[k]), system) // PUSH_COST
     for c in range(contacts.particle.shape[0]):
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
@@ -213,10 +226,20 @@ def _push_all(
         pass_on(contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, h)
     # Passes only look ahead, but push joints as well.
     load_velocities(islands, delassus.joints)
-    done = solve_contacts(
-        contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, accelerate
-    )  # fmt: skip
+    if has_coarse(islands):
+        done = _sweep_by_mass(contacts, workspace, system, state, sweeps)
+    else:
+        done = solve_contacts(
+            contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, accelerate
+        )  # fmt: skip
     _load_push(islands, delassus.joints)
+    _add_push(contacts, islands)
+    return done
+
+
+@inner_kernel
+def _add_push(contacts: Contacts, islands: BodyIslands) -> None:
+    # Add what contacts give the bodies of an island.
     for c in range(contacts.particle.shape[0]):
         jn = contacts.impulse[c, 0]
         jt = contacts.impulse[c, 1]
@@ -228,7 +251,49 @@ def _push_all(
                 cx, cy = couple_of(contacts, c, end)
                 islands.pushed[islands.row[p], 0] += weight * jx + jt * cx
                 islands.pushed[islands.row[p], 1] += weight * jy + jt * cy
-    return done
+
+
+@inner_kernel
+def _sweep_by_mass(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, sweeps: int
+) -> int:  # fmt: skip
+    # Sweeps of an island with bodies that have no block; how many. Between them all is as the springs answer to it.
+    islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
+    previous = 0.0
+    for done in range(1, sweeps + 1):
+        start_sweeps(contacts, terms, islands.delta_v, state.inverse_mass, delassus)
+        largest, _ = sweep_all(contacts, terms, islands.given, islands.delta_v, state.inverse_mass, delassus)
+        if largest < SETTLED or done == sweeps:
+            return done
+        squared = change_of_sweep(contacts, terms, delassus.joints)
+        ratio = squared / previous if squared < previous else 0.0
+        go_on(contacts, terms, islands.delta_v, state.inverse_mass, delassus, ratio)
+        previous = squared
+        _clear(islands, system, terms.surface, state)
+        _add_push(contacts, islands)
+        _answer_between(workspace, system, state.inverse_mass)
+        _clear(islands, system, terms.surface, state)
+        load_velocities(islands, delassus.joints)
+    return sweeps
+
+
+@inner_kernel
+def _answer_between(workspace: IslandWorkspace, system: System, inverse_mass: Floats) -> None:
+    # Set what bodies without a block are given so that with the answers of their masses it is that of their springs.
+    islands, delassus = workspace.islands, workspace.delassus
+    for k in range(islands.counts[BODIES]):
+        if not islands.by_mass[k]:
+            continue
+        for i in range(delassus.start[k], delassus.start[k + 1]):
+            p = delassus.point[i]
+            for axis in range(2):
+                r = islands.row[p]
+                islands.given[p, axis] = islands.unpushed[r, axis] - inverse_mass[p] * islands.pushed[r, axis]
+        respond(span_of(system, islands.body[k]), system, islands.pushed)
+        for i in range(delassus.start[k], delassus.start[k + 1]):
+            p = delassus.point[i]
+            for axis in range(2):
+                islands.given[p, axis] += islands.pushed[islands.row[p], axis]
 
 
 @inner_kernel
@@ -407,7 +472,7 @@ def _solve_island(
     islands, start = workspace.islands, inputs.start
     load_biases(contacts, workspace.terms, h)
     _open(workspace, system, state, inputs, auto_substeps, h)
-    affordable = int(WORK * h) // max(1, _cost_of(contacts, workspace.delassus))
+    affordable = int(WORK * h) // max(1, _cost_of(contacts, workspace, system))
     affordable = _solve_linearly(contacts, workspace, system, state, start, affordable, h)
     if any_fails(islands):
         affordable = _solve_lower(contacts, workspace, system, state, start, affordable, h)

@@ -14,13 +14,17 @@ from sandbox.physics.jit import inner_kernel, put
 from sandbox.physics.joints.joint_answers import Actions, Joints
 from sandbox.physics.solvers.contact.contact_order import ContactOrder, put_in_order
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus, terms_between
-from sandbox.physics.solvers.direct.energy_bank import PASSED
-from sandbox.physics.solvers.direct.system import System
+from sandbox.physics.solvers.direct.energy_bank import BY_MASS, PASSED
+from sandbox.physics.solvers.direct.system import Span, System, span_of
 from sandbox.physics.topology.sorting import list_by_key, place_among
 
 # Places in `counts`: bodies that contacts touch, members (those and free particles), islands, and the room that the
 # Delassus blocks of the bodies want: for their numbers, and for the columns of the largest.
 BODIES, MEMBERS, ISLANDS, NUMBERS, COLUMNS, COUNTED = range(6)
+# What a Delassus block may cost at most in a linear solve, in units of four multiplications, about 1 ns each. A body
+# that wants more, because much of it lies on something, has none: in the sweeps its particles answer by their own
+# masses, and between them by its springs. Less leaves what is large soft where it lands.
+DEAREST_BLOCK = 4_000_000
 
 
 class BodyIslands(NamedTuple):
@@ -30,10 +34,10 @@ class BodyIslands(NamedTuple):
     particles. By member: island, mass [kg], bank, energies where the step begins (energy0) and ends (energy), limit
     [J]; fresh: its bank is begun for all of it. By particle (n,): member, -1: none, row in the matrix, -1: none; given,
     delta_v [m/s]: velocities without contacts, and what those add. By touched body: misfit; due: to be solved again;
-    rigid: all its springs are; driven: a joint acts on it. By island: total, allowed [J], fails; held: something
-    outside holds it; parts: something in it overlaps deeply; excess [J]: what it had too much, see giving_way.py; way:
-    see energy_bank.py. By row: unpushed [m/s] = velocities without contacts, pushed [m/s] = what contacts and joints
-    add. label, root, marked: scratch.
+    rigid: all its springs are; driven: a joint acts on it; by_mass: it has no block, see DEAREST_BLOCK. By island:
+    total, allowed [J], fails; held: something outside holds it; parts: something in it overlaps deeply; excess [J]:
+    what it had too much, see giving_way.py; way: see energy_bank.py. By row: unpushed [m/s] = velocities without
+    contacts, pushed [m/s] = what contacts and joints add. label, root, marked: scratch.
 
     Of all islands together bodies and free particles lie island by island; `alone` is one of them, its members numbered
     by themselves as those of the only island there is: so are `member` and the blocks of bodies.
@@ -55,6 +59,7 @@ class BodyIslands(NamedTuple):
     due: Flags
     rigid: Flags
     driven: Flags
+    by_mass: Flags
     total: Floats
     allowed: Floats
     fails: Flags
@@ -101,8 +106,9 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
         new_slots(arena, particles), new_slots(arena, particles), new_floats(arena, members),
         new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_floats(arena, members),
         new_flags(arena, members), new_floats(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
-        new_flags(arena, bodies), new_floats(arena, members), new_floats(arena, members), new_flags(arena, members),
-        new_flags(arena, members), new_flags(arena, members), new_floats(arena, members), new_slots(arena, members),
+        new_flags(arena, bodies), new_flags(arena, bodies), new_floats(arena, members), new_floats(arena, members),
+        new_flags(arena, members), new_flags(arena, members), new_flags(arena, members), new_floats(arena, members),
+        new_slots(arena, members),
         new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2), new_float_rows(arena, particles, 2),
         new_float_rows(arena, particles, 2), new_slots(arena, members), new_slots(arena, members),
         new_flags(arena, particles),
@@ -279,18 +285,44 @@ def _number_members(count: int, system: System, workspace: IslandWorkspace) -> N
 
 
 @inner_kernel
+def cost_of_answer(span: Span, system: System) -> int:
+    """What one substitution costs that brings impulses to a whole body, in units of DEAREST_BLOCK."""
+    fronts, column_start = system.fronts, system.matrix.column_start
+    if fronts.of_row[span.first_row] < 0:
+        return 2 * (column_start[span.last_row] - column_start[span.first_row])
+    last = fronts.of_row[span.last_row - 1]
+    rows = 2 * (fronts.last[last] - fronts.first[last])
+    return (fronts.base[last] + rows * fronts.width[last] - fronts.base[fronts.of_row[span.first_row]]) // 2
+
+
+@inner_kernel
+def _cost_of_block(points: int, span: Span, system: System) -> int:
+    # A substitution for each column, and for a small body that is not in fronts the sum over its rows.
+    cost = 2 * points * cost_of_answer(span, system)
+    if system.fronts.of_row[span.first_row] < 0:
+        cost = cost // 4 + points * points * (span.last_row - span.first_row)
+    return cost
+
+
+@inner_kernel
 def _find_room(system: System, workspace: IslandWorkspace) -> None:
     # Where the Delassus blocks of the bodies begin, and what room they want.
-    islands, delassus, bodies = workspace.islands, workspace.delassus, system.bodies
+    islands, delassus = workspace.islands, workspace.delassus
     base = 0
     columns = 0
     for k in range(islands.counts[BODIES]):
         points = delassus.start[k + 1] - delassus.start[k]
-        first_row = bodies.row_start[islands.body[k]]
+        span = span_of(system, islands.body[k])
         delassus.base[k] = base
+        islands.by_mass[k] = _cost_of_block(points, span, system) > DEAREST_BLOCK
+        if islands.by_mass[k]:
+            workspace.ways[BY_MASS] += 1
+            for i in range(delassus.start[k], delassus.start[k + 1]):
+                delassus.block[delassus.point[i]] = -1
+            continue
         base += 4 * points * points
-        if system.fronts.of_row[first_row] < 0:
-            columns = max(columns, 4 * points * (bodies.row_start[islands.body[k] + 1] - first_row))
+        if system.fronts.of_row[span.first_row] < 0:
+            columns = max(columns, 4 * points * (span.last_row - span.first_row))
     delassus.base[islands.counts[BODIES]] = base
     islands.counts[NUMBERS] = base
     islands.counts[COLUMNS] = columns
@@ -329,6 +361,15 @@ def find_body_islands(
 
 
 @inner_kernel
+def has_coarse(islands: BodyIslands) -> bool:
+    """Whether a body of an island has no Delassus block."""
+    found = False
+    for k in range(islands.counts[BODIES]):
+        found = found or islands.by_mass[k]
+    return found
+
+
+@inner_kernel
 def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
     """One island, as if there were no other."""
     w, lists, delassus, order = workspace.islands, workspace.lists, workspace.delassus, workspace.order
@@ -338,7 +379,7 @@ def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
     islands = BodyIslands(
         lists.counts[COUNTED * i : COUNTED * (i + 1)], w.body[b:c], w.free[f:g], w.island[k:m], w.member, w.row,
         w.mass[k:m], w.energy0[k:m], w.bank[k:m], w.energy[k:m], w.limit[k:m], w.fresh[k:m], w.misfit[b:c], w.due[b:c],
-        w.rigid[b:c], w.driven[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.fails[i : i + 1],
+        w.rigid[b:c], w.driven[b:c], w.by_mass[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.fails[i : i + 1],
         w.held[i : i + 1], w.parts[i : i + 1], w.excess[i : i + 1], w.way[i : i + 1], w.unpushed, w.pushed, w.given,
         w.delta_v, w.label, w.root, w.marked,
     )  # fmt: skip
