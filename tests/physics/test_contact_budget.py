@@ -1,4 +1,4 @@
-"""A body on too many contacts for its exact answer takes a cheaper one: it lands softer, and is never out of control."""
+"""A body on too many contacts for its exact answer takes a cheaper one: it lands softer, and gains nothing."""
 
 import json
 
@@ -33,7 +33,7 @@ def net(lines):
 
 def block(size, angle=0.0, name="block", height=0.3):
     return {
-        "type": "jelly", "id": name, "shape": {"box": [size, size]}, "position": [0.0, size / 2 + height],
+        "type": "jelly", "id": name, "shape": {"box": [size, size]}, "position": [0.0, size / 2 * (np.cos(angle) + np.sin(angle)) + height],
         "spacing": 0.1, "material": "m", "particle_radius": RADIUS, "angle": angle,
     }  # fmt: skip
 
