@@ -40,14 +40,17 @@ class Setting:
         return alike and self.substeps >= other.substeps and self.iterations >= other.iterations
 
 
-def sandbox_setting(substeps: int, solver: str = "direct") -> Setting:
-    """This project; coefficients 1, which substeps leave as they are."""
+def sandbox_setting(
+    substeps: int, solver: str = "direct", *, stiffness: float = 1.0, damping: float = 1.0
+) -> Setting:  # fmt: skip
+    """This project; coefficients of 1 are not changed by substeps."""
 
     def build(scene: Scene) -> Running:
-        world = scene.world(substeps=substeps, solver=solver)
+        world = scene.world(substeps=substeps, solver=solver, stiffness=stiffness, damping=damping)
         return Running(lambda: step(world), lambda: (world.position, world.velocity))
 
-    return Setting("Spring Sandbox", f"{solver}, substeps {substeps}", build, solver, substeps)
+    softer = "" if stiffness == damping == 1.0 else f", Cs {stiffness:g}, Cd {damping:g}"
+    return Setting("Spring Sandbox", f"{solver}, substeps {substeps}{softer}", build, solver, substeps)
 
 
 def pymunk_setting(substeps: int, iterations: int, spring: float | None = None) -> Setting:

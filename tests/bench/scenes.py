@@ -76,6 +76,15 @@ def lattice(side: int, *, hung: bool = True) -> Scene:
     return _scene(f"lattice {side}x{side}", position, links, [side * (side - 1)] if hung else [])
 
 
+def joint_grid(side: int = 100) -> Scene:
+    """A net that hangs by seven pins in the middle of its top row: Box2D's benchmark scene."""
+    position = [(LINK * x, -LINK * y) for y in range(side) for x in range(side)]
+    right = [(y * side + x, y * side + x + 1) for y in range(side) for x in range(side - 1)]
+    down = [(y * side + x, y * side + x + side) for y in range(side - 1) for x in range(side)]
+    pins = range(side // 2 - 3, side // 2 + 4)
+    return _scene(f"joint grid {side}x{side}", position, right + down, list(pins))
+
+
 def blocks(count: int = 500, side: int = 4) -> Scene:
     """Separate small lattices in a row, in free fall."""
     one = lattice(side, hung=False)

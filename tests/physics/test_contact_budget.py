@@ -31,10 +31,11 @@ def net(lines):
     }
 
 
-def block(size, angle=0.0, name="block", height=0.3):
+def block(size, angle=0.0):
+    """A jelly whose lowest corner is 0.3 m above the ground."""
     return {
-        "type": "jelly", "id": name, "shape": {"box": [size, size]}, "position": [0.0, size / 2 * (np.cos(angle) + np.sin(angle)) + height],
-        "spacing": 0.1, "material": "m", "particle_radius": RADIUS, "angle": angle,
+        "type": "jelly", "id": "block", "shape": {"box": [size, size]}, "spacing": 0.1, "material": "m", "angle": angle,
+        "position": [0.0, 0.3 + size / 2 * (np.cos(angle) + np.sin(angle))], "particle_radius": RADIUS,
     }  # fmt: skip
 
 
