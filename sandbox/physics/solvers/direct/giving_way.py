@@ -37,8 +37,16 @@ MARGIN = 1.25
 # What is too much is at most this share of T; more is no error of a step, but a push or a bounce, which is to be left
 # out. With 0.3 stacks of jellies do not come to rest, with 0.03 chains stop at a corner.
 LARGEST_SHARE = 0.1
+# Solves of what solves on or gives way, at most. With none a pendulum under a cart loses half of its energy at once.
+MORE_SOLVES = 12
 # A joint whose gradient sums up to less than this share of its size acts within what it moves, as a motor does.
 WITHIN = 1e-9
+
+
+@inlined_kernel
+def share_to_give(excess: float, moves: float) -> float:
+    """What share of its motion, of the energy `moves` [J], is to be given up for what is too much [J]; 0: it cannot."""
+    return 0.5 * MARGIN * excess / moves if MARGIN * excess < LARGEST_SHARE * moves else 0.0
 
 
 @inner_kernel
@@ -191,10 +199,10 @@ def give_way(workspace: IslandWorkspace, system: System, state: State) -> bool:
             goes_on = True
             continue
         motion = _motion_to_keep(island, islands, system, state)
-        moves = _energy_beside(island, motion, islands, system, state)
+        share = share_to_give(excess, _energy_beside(island, motion, islands, system, state))
         # What is pushed apart has to pay for that, and stays where it is if its motion does.
-        if MARGIN * excess < LARGEST_SHARE * moves and not islands.parts[island]:
-            _lower(island, 0.5 * MARGIN * excess / moves, motion, islands, system, state)
+        if share > 0.0 and not islands.parts[island]:
+            _lower(island, share, motion, islands, system, state)
             islands.excess[island] = math.inf
             islands.way[island] = GAVE_WAY
             goes_on = True

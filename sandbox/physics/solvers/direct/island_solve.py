@@ -35,7 +35,7 @@ from sandbox.physics.solvers.direct.families import (
     potential,
     update,
 )
-from sandbox.physics.solvers.direct.giving_way import begin_giving_way, give_way, note_excess, take_back
+from sandbox.physics.solvers.direct.giving_way import MORE_SOLVES, begin_giving_way, give_way, note_excess, take_back
 from sandbox.physics.solvers.direct.island_energy import (
     any_fails,
     check_energies,
@@ -101,8 +101,6 @@ SOLVES_WITHOUT_BIAS = 2
 # Linear solves more, while an island with a joint fails its energy test: wheels turn fast. With none of them a cart of
 # 120 kg fails in 9 to 61 of 240 steps, is slowed down, and drives at a fifth of its speed.
 DRIVEN_SOLVES = 5
-# And of islands that solve on or give way, at most. With none a pendulum under a cart loses half of its energy at once.
-MORE_SOLVES = 12
 
 
 @inner_kernel

@@ -2,17 +2,18 @@
 
 A step is one linear solve with the springs' directions taken ahead of the present ones, less the slow part of the
 velocity: that damps fast vibration and leaves slow turning alone. It is taken only if the body's energy stays within
-what it had plus what its bank holds of earlier losses; else f itself is minimised.
+what it had plus what its bank holds of earlier losses; else it gives way, and at last f itself is minimised.
 """
 
 import math
 
 from sandbox.physics.arrays import Slots
-from sandbox.physics.geometry.rigid import RigidMotion
+from sandbox.physics.geometry.rigid import RigidMotion, velocity_at
 from sandbox.physics.integrate import follow
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.energy_bank import (
     ENERGY_ROUNDING,
+    GAVE_WAY,
     LAST_HALVINGS,
     MINIMISED,
     PASSED,
@@ -24,6 +25,7 @@ from sandbox.physics.solvers.direct.energy_bank import (
 )
 from sandbox.physics.solvers.direct.factor import refine, solve_linear
 from sandbox.physics.solvers.direct.families import find_tension, keep_tension, linearise, load, potential, update
+from sandbox.physics.solvers.direct.giving_way import FALLING, MORE_SOLVES, share_to_give
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.newton import minimise
 from sandbox.physics.solvers.direct.rigid_turn import (
@@ -131,6 +133,39 @@ def _solve_within(body: int, span: Span, system: System, spin: RigidMotion, allo
 
 
 @inner_kernel
+def _give_way(
+    body: int, span: Span, system: System, spin: RigidMotion, after: float, allowed: float, h: float
+) -> float:  # fmt: skip
+    # Solve on while each solve leaves less of what is too much, or for a target that is lower by just that: see
+    # giving_way.py; the energy in the end. What stays is the motion of the body as a whole, or rest where pins hold it.
+    rows = system.rows
+    excess = math.inf
+    for _solve in range(MORE_SOLVES):
+        left = after - allowed
+        if left < FALLING * excess:
+            excess = left
+        else:
+            moves = 0.0
+            for r in range(span.first_row, span.last_row):
+                u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
+                u = rows.v[r, 0] - u
+                v = rows.v[r, 1] - v
+                moves += 0.5 * rows.mass[r] * (u * u + v * v)
+            share = share_to_give(left, moves)
+            if not share > 0.0:
+                break
+            for r in range(span.first_row, span.last_row):
+                u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
+                rows.v_star_matched[r, 0] -= share * (rows.v_star_matched[r, 0] - u)
+                rows.v_star_matched[r, 1] -= share * (rows.v_star_matched[r, 1] - v)
+            excess = math.inf
+        after, _ = _take_candidate(body, span, system, spin, h)
+        if after <= allowed:
+            break
+    return after
+
+
+@inner_kernel
 def step_body(body: int, span: Span, system: System, state: State, h: float) -> int:
     """Bring a body that was opened to the end of a step of h [s], in `v`, and its bank; its way, see energy_bank.py."""
     bodies, rows = system.bodies, system.rows
@@ -140,6 +175,9 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
     spin = spin_of_body(body, system)
     after = _solve_within(body, span, system, spin, allowed, h)
     way = PASSED
+    if not after <= allowed and after < math.inf:
+        way = GAVE_WAY
+        after = _give_way(body, span, system, spin, after, allowed, h)
     if not after <= allowed:
         way = MINIMISED
         copy(span, rows.v_star, rows.v_star_matched)
