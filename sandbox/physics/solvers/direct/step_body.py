@@ -18,6 +18,7 @@ from sandbox.physics.solvers.direct.energy_bank import (
     MINIMISED,
     PASSED,
     SLOWED_DOWN,
+    SOLVED_ON,
     bank_limit,
     body_energy,
     open_bank,
@@ -37,7 +38,7 @@ from sandbox.physics.solvers.direct.rigid_turn import (
 )
 from sandbox.physics.solvers.direct.shape_matching import find_inverted, match_shape, release_shape
 from sandbox.physics.solvers.direct.slow_motion import AHEAD
-from sandbox.physics.solvers.direct.system import Span, System, span_of
+from sandbox.physics.solvers.direct.system import Rows, Span, System, span_of
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
 from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, JOINED
@@ -104,14 +105,17 @@ def _take_candidate(body: int, span: Span, system: System, spin: RigidMotion, h:
 
 
 @inner_kernel
-def _solve_within(body: int, span: Span, system: System, spin: RigidMotion, allowed: float, h: float) -> float:
-    # Linear solves until one fits and has no more energy than is allowed; the energy of the last that is taken.
+def _solve_within(
+    body: int, span: Span, system: System, spin: RigidMotion, allowed: float, h: float
+) -> tuple[float, float]:  # fmt: skip
+    # Linear solves until one fits and has no more energy than is allowed, or they get no nearer to that; the energy of
+    # the last that is taken, and of the one before it.
     bodies, rows = system.bodies, system.rows
-    after = 0.0
+    before = after = math.inf
     solves = 0
     while solves < LINEAR_SOLVES:
-        once = after
-        within = solves > 0 and once <= allowed
+        before = after
+        within = solves > 0 and before <= allowed
         if within:
             copy(span, rows.v, rows.v_best)
         after, misfit = _take_candidate(body, span, system, spin, h)
@@ -119,50 +123,61 @@ def _solve_within(body: int, span: Span, system: System, spin: RigidMotion, allo
         if within and not after <= allowed:
             copy(span, rows.v_best, rows.v)
             find_tension(span, system, h)
-            after = once
+            after = before
             break
         if after <= allowed and not misfit > MISFIT_RATE * h * h:
             break
-        if bodies.matched[body] and solves == LINEAR_SOLVES and not after <= allowed:
+        failing = not after <= allowed
+        if failing and bodies.matched[body] and solves == LINEAR_SOLVES:
             # Without its target, from the start.
             bodies.matched[body] = False
             solves = 0
             release_shape(span, rows)
             copy(span, rows.v_star, rows.v)
-    return after
+        elif failing and not bodies.matched[body] and not after - allowed < FALLING * (before - allowed):
+            break
+    return after, before
 
 
 @inner_kernel
 def _give_way(
-    body: int, span: Span, system: System, spin: RigidMotion, after: float, allowed: float, h: float
-) -> float:  # fmt: skip
+    body: int, span: Span, system: System, spin: RigidMotion, energies: tuple[float, float], allowed: float, h: float
+) -> tuple[float, int]:  # fmt: skip
     # Solve on while each solve leaves less of what is too much, or for a target that is lower by just that: see
-    # giving_way.py; the energy in the end. What stays is the motion of the body as a whole, or rest where pins hold it.
-    rows = system.rows
-    excess = math.inf
+    # giving_way.py; the energy in the end, and the way. energies: of the last solve, and of the one before.
+    after, before = energies
+    way = SOLVED_ON
     for _solve in range(MORE_SOLVES):
-        left = after - allowed
-        if left < FALLING * excess:
-            excess = left
-        else:
-            moves = 0.0
-            for r in range(span.first_row, span.last_row):
-                u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
-                u = rows.v[r, 0] - u
-                v = rows.v[r, 1] - v
-                moves += 0.5 * rows.mass[r] * (u * u + v * v)
-            share = share_to_give(left, moves)
-            if not share > 0.0:
+        if not after - allowed < FALLING * (before - allowed):
+            if not _lower_target(span, system.rows, spin, after - allowed):
                 break
-            for r in range(span.first_row, span.last_row):
-                u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
-                rows.v_star_matched[r, 0] -= share * (rows.v_star_matched[r, 0] - u)
-                rows.v_star_matched[r, 1] -= share * (rows.v_star_matched[r, 1] - v)
-            excess = math.inf
+            after = math.inf
+            way = GAVE_WAY
+        before = after
         after, _ = _take_candidate(body, span, system, spin, h)
         if after <= allowed:
             break
-    return after
+    return after, way
+
+
+@inner_kernel
+def _lower_target(span: Span, rows: Rows, spin: RigidMotion, excess: float) -> bool:
+    # Lower what a body aims at by what it has too much [J], or not. What stays is its motion as a whole, or rest where
+    # pins hold it.
+    moves = 0.0
+    for r in range(span.first_row, span.last_row):
+        u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
+        u = rows.v[r, 0] - u
+        v = rows.v[r, 1] - v
+        moves += 0.5 * rows.mass[r] * (u * u + v * v)
+    share = share_to_give(excess, moves)
+    if not share > 0.0:
+        return False
+    for r in range(span.first_row, span.last_row):
+        u, v = velocity_at(spin, rows.position[r, 0], rows.position[r, 1])
+        rows.v_star_matched[r, 0] -= share * (rows.v_star_matched[r, 0] - u)
+        rows.v_star_matched[r, 1] -= share * (rows.v_star_matched[r, 1] - v)
+    return True
 
 
 @inner_kernel
@@ -173,11 +188,11 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
     bank = bodies.bank[body]
     allowed = energy0 * (1.0 + ENERGY_ROUNDING) + bank
     spin = spin_of_body(body, system)
-    after = _solve_within(body, span, system, spin, allowed, h)
+    energies = _solve_within(body, span, system, spin, allowed, h)
+    after = energies[0]
     way = PASSED
-    if not after <= allowed and after < math.inf:
-        way = GAVE_WAY
-        after = _give_way(body, span, system, spin, after, allowed, h)
+    if not after <= allowed:
+        after, way = _give_way(body, span, system, spin, energies, allowed, h)
     if not after <= allowed:
         way = MINIMISED
         copy(span, rows.v_star, rows.v_star_matched)
