@@ -443,3 +443,45 @@ def test_bodies_that_cross_are_pushed_apart_where_they_touch_each_other():
     apart = tuple(replaced(body, collides=()) for body in level.bodies)
     (finding,) = found(replaced(level, contacts=ContactsDef(), bodies=apart))
     assert "pass through" in finding.text
+
+
+def column(height, stiffness, damping, width=1.0, **fields):
+    box = JellyDef(
+        type="jelly", id="tower", shape=BoxShape(box=(width, height)), spacing=width / 4, position=(0.0, height / 2),
+        **fields,
+    )  # fmt: skip
+    return level_of(bodies=(box,), materials={"default": NissenMaterial(stiffness=stiffness, damping=damping)})
+
+
+def buckling(level):
+    return [text for text in texts(level) if "buckles" in text]
+
+
+def test_a_column_of_jelly_that_is_taller_than_it_can_stand_is_found():
+    # 3.7 m by hand, from the sag of a column of this mesh: E A = 2 sag / (q H^2), q H^3 = 7.84 E A w^2 / 12.
+    (text,) = buckling(column(6.0, 0.5, 0.9))
+    assert text == (
+        '"tower" is 6 m tall, and a column of this jelly buckles above 3.8 m; make it firmer, wider or lower'
+    )
+    assert not buckling(column(3.5, 0.5, 0.9))
+    assert not buckling(column(6.0, 0.9, 0.99))
+    # As high as the cube root of the stiffness, and of the width squared and the width's masses.
+    assert not buckling(column(6.0, 0.5, 0.9, width=2.5))
+    assert not buckling(column(6.0, 1.0, 1.0))
+    assert not buckling(column(6.0, 0.5, 0.9, pinned=(0,)))
+
+
+def test_a_column_of_jelly_boxes_that_lie_on_one_another_is_found_as_one():
+    boxes = [cube(f"box {k}", 0.05 * (k % 2), 0.5 + 1.02 * k) for k in range(6)]
+    materials = {"default": NissenMaterial(stiffness=0.5, damping=0.9)}
+    touching = {"bodies": (*boxes, cube("aside", 4.0, 0.5)), "materials": materials, "contacts": ContactsDef()}
+    (text,) = buckling(level_of(**touching))
+    assert text == (
+        'the column of 6 bodies on "box 0" is 6 m tall, and a column of this jelly buckles above 3.6 m; '
+        "make them firmer or wider, or take some off"
+    )
+    assert not buckling(level_of(bodies=tuple(boxes[:3]), materials=materials, contacts=ContactsDef()))
+    # They fall through one another.
+    assert not buckling(level_of(bodies=tuple(boxes), materials=materials))
+    apart = tuple(cube(f"box {k}", 0.0, 0.5 + 2.5 * k) for k in range(6))
+    assert not buckling(level_of(bodies=apart, materials=materials, contacts=ContactsDef()))

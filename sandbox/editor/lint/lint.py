@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from sandbox.editor.lint.checks import checks_without_hands, hopeless_checks
+from sandbox.editor.lint.columns import buckling_columns
 from sandbox.editor.lint.contacts import buried_particles, overlapping_discs, turning_in_vain
 from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
 from sandbox.editor.lint.looks import unknown_looks
@@ -37,6 +38,7 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         buried_particles(level, scene),
         overlapping_discs(level, scene),
         turning_in_vain(level, scene),
+        buckling_columns(level, scene),
     )
     return itertools.chain.from_iterable(listed(rule) for rule in rules)
 

@@ -118,9 +118,7 @@ def precompile_modes() -> None:
 
 def _find(form: StiffForm) -> float:
     points, mass, count = form.points, form.mass, len(form.points)
-    world = World()
-    world.add_particles([str(k) for k in range(count)], points, mass=mass)
-    rows = _rows(world, form.pairs, form.areas, form.bends)
+    rows = rows_of(form)
     # Each pair of corners of a row, once: the one and the other, first by the corners' places in their row.
     sizes = np.diff(rows.first)
     one, other, owner = [], [], []
@@ -151,10 +149,12 @@ class _CornerPairs(NamedTuple):
     owner: Slots
 
 
-def _rows(world: World, pairs: Slots, areas: Slots, bends: Slots) -> ConstraintRows:
-    """What holds the particles of a world, at their places."""
+def rows_of(form: StiffForm) -> ConstraintRows:
+    """What holds the particles of a form, at their places."""
+    world, pairs = World(), form.pairs
+    world.add_particles([str(k) for k in range(len(form.points))], form.points, mass=form.mass)
     world.add_springs([str(k) for k in range(len(pairs))], pairs[:, 0], pairs[:, 1])
-    for kind, corners in ((AREA, areas), (BEND, bends)):
+    for kind, corners in ((AREA, form.areas), (BEND, form.bends)):
         if len(corners):
             world.add_constraints(kind, corners)
     apart = world.position[pairs[:, 1]] - world.position[pairs[:, 0]]
