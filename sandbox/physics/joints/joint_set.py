@@ -66,22 +66,20 @@ def lay_out_joints(
 
 
 @inner_kernel
-def prepare_joints(
-    joints: JointSet, state: State, stiffness: Floats, damping: Floats, solver: int, h: float
-) -> bool:  # fmt: skip
+def prepare_joints(joints: JointSet, state: State, stiffness: Floats, damping: Floats, h: float) -> bool:
     """Fill in the rows of joints for a substep of h [s], from where particles are at its start; whether any is on.
 
-    stiffness, damping (m,): Cs and Cd of springs in the substep. solver: see settings.py.
+    stiffness, damping (m,): Cs and Cd of springs in the substep.
     """
     load_motors(joints.rows, joints.motors, state, h)
-    load_limited(joints.rows, joints.limited, state, stiffness, damping, solver, h)
+    load_limited(joints.rows, joints.limited, state, stiffness, damping, h)
     load_hands(joints.rows, joints.hands, state, h)
     return any_on(joints.rows)
 
 
 @inner_kernel
-def store_joint_impulses(joints: JointSet, state: State, solver: int, h: float) -> None:
+def store_joint_impulses(joints: JointSet, state: State, h: float) -> None:
     """Store the joints' impulses in the state of the world, for the next substep."""
     store_motors(joints.rows, joints.motors, state)
-    store_limited(joints.rows, joints.limited, state, solver)
+    store_limited(joints.rows, joints.limited, state)
     store_hands(joints.rows, joints.hands, state, h)

@@ -25,8 +25,9 @@ def _push(joints: Joints, k: int, impulse: float, delta_v: Floats) -> None:
 
 
 @inner_kernel
-def _of_two(joints: Joints, k: int, u: float, v: float) -> tuple[float, float]:
-    # Impulses of two rows that are clamped together, from their velocities: (W + 1/K) dP = -(u - target + P/K).
+def answer_of_two(joints: Joints, k: int, u: float, v: float) -> tuple[float, float]:
+    """The impulses of two rows that are clamped together, from their velocities; clamped by nothing yet."""
+    # (W + 1/K) dP = -(u - target + P/K)
     rows = joints.rows
     first, second = rows.impulse[k], rows.impulse[k + 1]
     couplings = joints.couplings
@@ -41,7 +42,13 @@ def _of_two(joints: Joints, k: int, u: float, v: float) -> tuple[float, float]:
     s = -(v - rows.target[k + 1] + rows.softness[k + 1] * second)
     first += (d * r - b * s) / determinant
     second += (a * s - c * r) / determinant
-    share = shortened(first, second, rows.limit[k])
+    return first, second
+
+
+@inner_kernel
+def _of_two(joints: Joints, k: int, u: float, v: float) -> tuple[float, float]:
+    first, second = answer_of_two(joints, k, u, v)
+    share = shortened(first, second, joints.rows.limit[k])
     return first * share, second * share
 
 
@@ -145,7 +152,8 @@ def gather_push(joints: Joints) -> None:
 
 
 @inner_kernel
-def _give(rows: JointRows, k: int, impulse: float, delta_v: Floats, inverse_mass: Floats) -> None:
+def give_impulse(rows: JointRows, k: int, impulse: float, delta_v: Floats, inverse_mass: Floats) -> None:
+    """Apply an impulse of a row to particles that answer by their own mass."""
     for e in range(rows.first[k], rows.first[k + 1]):
         p = rows.particle[e]
         delta_v[p, 0] += rows.gradient[e, 0] * impulse * inverse_mass[p]
@@ -158,7 +166,7 @@ def warm_start_joints(joints: Joints, delta_v: Floats, inverse_mass: Floats) -> 
     couple_masses(joints, inverse_mass)
     for k in range(joints.rows.limit.shape[0]):
         if joints.rows.impulse[k] != 0.0:
-            _give(joints.rows, k, joints.rows.impulse[k], delta_v, inverse_mass)
+            give_impulse(joints.rows, k, joints.rows.impulse[k], delta_v, inverse_mass)
 
 
 @inner_kernel
@@ -170,11 +178,11 @@ def iterate_joint(joints: Joints, k: int, velocity: Floats, delta_v: Floats, inv
     u = row_velocity(rows, k, velocity, delta_v)
     if rows.pair[k] == PAIR:
         first, second = _of_two(joints, k, u, row_velocity(rows, k + 1, velocity, delta_v))
-        _give(rows, k + 1, second - rows.impulse[k + 1], delta_v, inverse_mass)
+        give_impulse(rows, k + 1, second - rows.impulse[k + 1], delta_v, inverse_mass)
         rows.impulse[k + 1] = second
     else:
         first = _alone(joints, k, u)
-    _give(rows, k, first - rows.impulse[k], delta_v, inverse_mass)
+    give_impulse(rows, k, first - rows.impulse[k], delta_v, inverse_mass)
     rows.impulse[k] = first
 
 

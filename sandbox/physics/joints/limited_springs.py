@@ -1,11 +1,8 @@
-"""Springs of limited force: muscles and hydraulics that give way. Each is a row along its direction, out of the matrix.
+"""Springs of limited force: muscles and hydraulics that give way.
 
-Clamped is what the equation gives, |J| <= force h, in the form of the solver that it stands in:
-
-    direct      J = -K (u' + beta x / h)          softness 1/K, target -beta x / h
-    iterative   u' = u - (Cs x / h + Cd u)        softness 0, target u'
-
-The single pass clamps the spring itself.
+Clamped is what the equation gives, |J| <= force h. In the direct solver each is a row along its direction, out of the
+matrix, J = -K (u' + beta x / h): softness 1/K, target -beta x / h. The other solvers clamp the spring itself, where it
+stands among all springs: with a row apart a light particle between it and a heavy one would swing ever wider.
 """
 
 import math
@@ -19,7 +16,6 @@ from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, clamped
 from sandbox.physics.marks import LAW_NISSEN
-from sandbox.physics.settings import DIRECT, SINGLE_PASS
 from sandbox.physics.state import State
 
 # K at least, as a share of the reduced mass: of a spring without damping it would be 0, and 1/K infinite.
@@ -35,9 +31,9 @@ class LimitedRows(NamedTuple):
 
 
 class SpringForces(NamedTuple):
-    """Limits of force: limit [N] (m,), infinite: none; limited (k,): slots of the springs that solvers take as rows.
+    """Limits of force: limit [N] (m,), infinite: none; limited (k,): slots of the springs that can be rows.
 
-    Those are active, of the article's law, with an end that moves. unlimited (m,): which are active and no rows.
+    Those are active, of the article's law, with an end that moves. unlimited (m,): which are active and can be none.
     """
 
     limit: Floats
@@ -86,9 +82,9 @@ def list_limited(state: State, forces: SpringForces, first_row: int, rows: Joint
 
 @inner_kernel
 def load_limited(
-    rows: JointRows, limited: LimitedRows, state: State, stiffness: Floats, damping: Floats, solver: int, h: float
+    rows: JointRows, limited: LimitedRows, state: State, stiffness: Floats, damping: Floats, h: float
 ) -> None:
-    """Fill in the rows for a substep of h [s], in which springs have these Cs and Cd; solver: see settings.py.
+    """Fill in the rows for a substep of h [s], in which springs have these Cs and Cd.
 
     The impulse of a spring keeps J as the iterative solver keeps that of its springs.
     """
@@ -104,26 +100,20 @@ def load_limited(
             rows.gradient[e, 1] = sign * ny
         x = length - state.rest_length[s]
         m = reduced_mass(inverse_mass[a], inverse_mass[b])
-        if solver == DIRECT:
-            stiff, restoring = implicit_masses(stiffness[s], damping[s], m)
-            stiff = max(stiff, LEAST_SHARE * m)
-            rows.softness[k] = 1.0 / stiff
-            rows.target[k] = -restoring / stiff * x / h
-        else:
-            u = nx * du + ny * dv
-            rows.softness[k] = 0.0
-            rows.target[k] = u - (stiffness[s] * x / h + damping[s] * u)
-        rows.limit[k] = limited.force[i] * h if solver != SINGLE_PASS else 0.0
+        stiff, restoring = implicit_masses(stiffness[s], damping[s], m)
+        stiff = max(stiff, LEAST_SHARE * m)
+        rows.softness[k] = 1.0 / stiff
+        rows.target[k] = -restoring / stiff * x / h
+        rows.limit[k] = limited.force[i] * h
         rows.impulse[k] = clamped(nx * state.impulse[s, 0] + ny * state.impulse[s, 1], rows.limit[k])
 
 
 @inner_kernel
-def store_limited(rows: JointRows, limited: LimitedRows, state: State, solver: int) -> None:
-    """Keep the impulses for the next substep, where rows are on; those along each spring's first entry's direction."""
+def store_limited(rows: JointRows, limited: LimitedRows, state: State) -> None:
+    """Keep the impulses for the next substep; those along each spring's first entry's direction."""
     for i in range(limited.spring.shape[0]):
         s, k = limited.spring[i], limited.first[0] + i
         e = rows.first[k]
-        if solver != SINGLE_PASS:
-            sign = 1.0 if rows.particle[e] == state.particle_b[s] else -1.0
-            state.impulse[s, 0] = sign * rows.gradient[e, 0] * rows.impulse[k]
-            state.impulse[s, 1] = sign * rows.gradient[e, 1] * rows.impulse[k]
+        sign = 1.0 if rows.particle[e] == state.particle_b[s] else -1.0
+        state.impulse[s, 0] = sign * rows.gradient[e, 0] * rows.impulse[k]
+        state.impulse[s, 1] = sign * rows.gradient[e, 1] * rows.impulse[k]

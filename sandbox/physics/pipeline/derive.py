@@ -25,7 +25,7 @@ from sandbox.physics.jit import contents, inner_kernel, kernel, put
 from sandbox.physics.joints.hands import label_bodies, new_grips
 from sandbox.physics.joints.joint_answers import joints_by_mass, new_joints
 from sandbox.physics.joints.joint_set import lay_out_joints
-from sandbox.physics.joints.limited_springs import new_spring_forces
+from sandbox.physics.joints.limited_springs import SpringForces, new_spring_forces
 from sandbox.physics.joints.motors import new_motor_sides
 from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
 from sandbox.physics.pipeline.block import (
@@ -56,6 +56,7 @@ from sandbox.physics.solvers.contact.free_islands import new_islands as new_free
 from sandbox.physics.solvers.contact.gauss_seidel import new_contact_constraints
 from sandbox.physics.solvers.direct.islands import COLUMNS, NUMBERS, lay_out_islands, lay_out_no_blocks
 from sandbox.physics.solvers.direct.layout import lay_out_system
+from sandbox.physics.solvers.held_springs import new_held_springs
 from sandbox.physics.solvers.iterative import new_iteration
 from sandbox.physics.solvers.single_pass import lay_out_explicit_pass
 from sandbox.physics.untangling.crossing_candidates import new_shape_bounds
@@ -97,8 +98,14 @@ def derive_hands(lent: Any, arena: Arena) -> None:
     begin(arena)
     state, solver = world.state, world.choices[SOLVER]
     grips = new_grips(state, world.body_label, world.plan[GRAB_PARTICLE], world.plan[GRAB_SPRING], arena)
+    # The direct solver alone has springs of limited force as rows; others clamp them where all springs are.
+    forces = world.forces
+    limited = forces.limited if solver == DIRECT else forces.limited[:0]
     if not is_full(arena):
-        lay_out_joints(state, world.wheels, world.sides, world.forces, grips, arena, world.joints)
+        lay_out_joints(
+            state, world.wheels, world.sides, SpringForces(forces.limit, limited, forces.unlimited), grips, arena,
+            world.joints,
+        )  # fmt: skip
     if is_full(arena):
         return
     rows = world.joints.rows
@@ -114,6 +121,7 @@ def derive_hands(lent: Any, arena: Arena) -> None:
         put(world.workspace.delassus, "joints", joints)
     else:
         put(world.workspace.delassus, "joints", joints_by_mass(rows, arena))
+        put(world.iteration, "held", new_held_springs(rows, state, world.iteration.listed.shape[0], arena))
 
 
 @kernel
@@ -205,7 +213,7 @@ def _lay_out_solver(world: WorldBlock, arena: Arena) -> None:
     else:
         lay_out_no_blocks(particles, arena, world.workspace.delassus)
     if solver == ITERATIVE:
-        put(world, "iteration", new_iteration(state, forces.unlimited, arena))
+        put(world, "iteration", new_iteration(state, forces.limit, arena))
     # These take springs of Hooke's law apart, all others take all springs so.
     takes_apart = solver in (DIRECT, ITERATIVE)
     if not takes_apart or world.plan[HAS_HOOKE] != 0:

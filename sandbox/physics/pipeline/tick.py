@@ -90,7 +90,7 @@ def tick(lent: Any) -> int:
     while progress[DONE] < progress[COUNT]:
         integrate_velocities(state, world.numbers, start, h)
         given = _inputs(world)
-        has_joints = prepare_joints(joints, state, given.stiffness, given.damping, solver, h)
+        has_joints = prepare_joints(joints, state, given.stiffness, given.damping, h)
         if not _find_contacts(world, touches, has_joints, h):
             _take_back_forces(world)
             return NO_ROOM
@@ -100,7 +100,7 @@ def tick(lent: Any) -> int:
             solve_free(state, start, collisions, h)
         _solve(world, given, has_joints, h)
         _begin_flight(world, touches, h)
-        store_joint_impulses(joints, state, solver, h)
+        store_joint_impulses(joints, state, h)
         if touches:
             store_impulses(collisions)
             clamp(state, collisions, h)

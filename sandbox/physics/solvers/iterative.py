@@ -1,14 +1,15 @@
 """Iterative, warm-started: springs and constraints in order, N times, on a velocity change.
 
-No proven limit. Only springs are warm-started. Hooke springs are no constraints: they act once, explicitly, before the
-iterations. Source: Nissen's demo programs after the article.
+No proven limit. Only springs are warm-started. Of a spring of limited force the sum of its impulses is clamped. Hooke
+springs are no constraints: they act once, explicitly, before the iterations. Source: Nissen's demo programs after the
+article.
 """
 
 import math
 from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, give_back, is_full, mark, new_float_rows, new_floats, new_slots
-from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import (
     AREA,
@@ -22,6 +23,7 @@ from sandbox.physics.constraints import (
 )
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.joint_answers import Joints
 from sandbox.physics.joints.joint_sweep import iterate_joints, warm_start_joints
 from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.solvers.contact.body_impacts import pass_on_all
@@ -36,6 +38,14 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     store_spins,
     sweep,
     warm_start_contacts,
+)
+from sandbox.physics.solvers.held_springs import (
+    HeldSprings,
+    begin_with_hands,
+    end_with_hands,
+    load_held_springs,
+    no_held_springs,
+    pull_held,
 )
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
@@ -67,23 +77,30 @@ class Wanted(NamedTuple):
 class Pulling(NamedTuple):
     """Scratch of the springs that do something, count of them by slot: wanted [m/s] = r, mass [kg], normal (m, 2).
 
-    By particle: change [m/s] (n, 2).
+    Of those of limited force, limit [N s], given [N s] = the sum of their impulses. By particle: change [m/s] (n, 2).
     """
 
     slot: Slots
     normal: FloatRows
     wanted: Floats
     mass: Floats
+    limit: Floats
+    given: Floats
     change: FloatRows
 
 
 class Iteration(NamedTuple):
-    """Slots of the springs that are iterated, as they are listed and those of heavy particles first; and scratch."""
+    """Slots of the springs that are iterated, as they are listed and those of heavy particles first; and scratch.
+
+    limit [N] (m,): the force that each spring of the world gives at most. held: follows from what hands hold.
+    """
 
     listed: Slots
     heavy_first: Slots
+    limit: Floats
     pulling: Pulling
     wanted: Wanted
+    held: HeldSprings
 
 
 @inner_kernel
@@ -140,7 +157,7 @@ def _iterate_constraints(inverse_mass: Floats, constraints: ConstraintArrays, wa
 
 @inner_kernel
 def _prepare_springs(
-    state: State, order: Slots, given: Inputs, warm_start: float, h: float, pulling: Pulling
+    state: State, order: Slots, limit: Floats, given: Inputs, warm_start: float, h: float, pulling: Pulling
 ) -> int:  # fmt: skip
     # r = -(Cs x / h + Cd u), the wanted change of relative velocity; how many springs want one.
     position, velocity, inverse_mass = state.position, state.velocity, state.inverse_mass
@@ -168,20 +185,24 @@ def _prepare_springs(
         pulling.wanted[count] = spring_impulse(
             given.stiffness[s], given.damping[s], length - state.rest_length[s], nx * du + ny * dv, 1.0, h
         )  # fmt: skip
-        count += 1
+        pulling.limit[count] = limit[s] * h
+        pulling.given[count] = 0.0
         p = nx * warm_x + ny * warm_y
         if p < 0.0:
-            j = warm_start * p
+            j = max(warm_start * p, -pulling.limit[count])
+            pulling.given[count] = j
             change[a, 0] -= j * nx * inverse_mass[a]
             change[a, 1] -= j * ny * inverse_mass[a]
             change[b, 0] += j * nx * inverse_mass[b]
             change[b, 1] += j * ny * inverse_mass[b]
+        count += 1
     return count
 
 
 @inner_kernel
-def _iterate_springs(count: int, state: State, pulling: Pulling, backwards: bool) -> None:
+def _iterate_springs(count: int, state: State, step: Iteration, joints: Joints, backwards: bool) -> None:
     # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
+    pulling, held, holds = step.pulling, step.held, step.held.hand.shape[0] > 0
     change, accumulated, inverse_mass = pulling.change, state.impulse, state.inverse_mass
     for i in range(count):
         c = count - 1 - i if backwards else i
@@ -192,7 +213,13 @@ def _iterate_springs(count: int, state: State, pulling: Pulling, backwards: bool
         ny = pulling.normal[c, 1]
         du = change[b, 0] - change[a, 0]
         dv = change[b, 1] - change[a, 1]
-        j = -(nx * du + ny * dv - pulling.wanted[c]) * pulling.mass[c]
+        lacks = -(nx * du + ny * dv - pulling.wanted[c])
+        least, most = -pulling.limit[c] - pulling.given[c], pulling.limit[c] - pulling.given[c]
+        if holds and held.at[c, 0] >= 0:
+            j = pull_held(held, joints, c, lacks, pulling.mass[c], least, most)
+        else:
+            j = min(max(lacks * pulling.mass[c], least), most)
+        pulling.given[c] += j
         jx = j * nx
         jy = j * ny
         change[a, 0] -= jx * inverse_mass[a]
@@ -217,6 +244,7 @@ def solve(
     # ones: what a load asks for goes on to what bears it within an iteration, and a wheel of 0.2 kg a particle sinks
     # 3 cm under 60 kg in place of 9.
     velocity, inverse_mass, change = state.velocity, state.inverse_mass, step.pulling.change
+    joints, pulling = delassus.joints, step.pulling
     for p in range(change.shape[0]):
         change[p, 0] = 0.0
         change[p, 1] = 0.0
@@ -225,23 +253,27 @@ def solve(
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
     pass_on_all(contacts, terms, order, velocity, change, inverse_mass, delassus, h)
-    count = _prepare_springs(state, springs, given, warm_start, h, step.pulling)
+    count = _prepare_springs(state, springs, step.limit, given, warm_start, h, pulling)
     constraints = constraints_of(state)
     _prepare_constraints(state, constraints, given, h, step.wanted)
     warm_start_contacts(contacts, terms, change, inverse_mass, delassus)
-    warm_start_joints(delassus.joints, change, inverse_mass)
+    warm_start_joints(joints, change, inverse_mass)
+    if step.held.hand.shape[0] > 0:
+        load_held_springs(step.held, joints, state, pulling.slot, pulling.normal, pulling.mass, count)
     for k in range(iterations):
-        _iterate_springs(count, state, step.pulling, alternates and k % 2 == 1)
+        begin_with_hands(step.held, joints, velocity, change)
+        _iterate_springs(count, state, step, joints, alternates and k % 2 == 1)
+        end_with_hands(step.held, joints, change, inverse_mass)
         _iterate_constraints(inverse_mass, constraints, step.wanted, change)
-        iterate_joints(delassus.joints, velocity, change, inverse_mass)
+        iterate_joints(joints, velocity, change, inverse_mass)
         sweep(contacts, terms, velocity, change, inverse_mass, delassus)
     add_change(velocity, change, inverse_mass)
     store_spins(terms, state.spin, state.radius)
 
 
 @inner_kernel
-def new_iteration(state: State, unlimited: Flags, arena: Arena) -> Iteration:
-    """The springs of a world that are iterated, with scratch; unlimited (m,): active ones of no limited force."""
+def new_iteration(state: State, limit: Floats, arena: Arena) -> Iteration:
+    """The springs of a world that are iterated, with scratch; limit [N] (m,): the force that each gives at most."""
     springs, corners, constraints = state.law.shape[0], state.corner_particle.shape[0], state.constraint_kind.shape[0]
     listed, heavy_first = new_slots(arena, springs), new_slots(arena, springs)
     scratch = mark(arena)
@@ -249,7 +281,7 @@ def new_iteration(state: State, unlimited: Flags, arena: Arena) -> Iteration:
     count = 0
     if not is_full(arena):
         for s in range(springs):
-            if unlimited[s] and state.law[s] == LAW_NISSEN:
+            if state.spring_active[s] and state.law[s] == LAW_NISSEN:
                 listed[count] = s
                 order[count] = count
                 lightness[count] = min(_lightness(state, state.particle_a[s]), _lightness(state, state.particle_b[s]))
@@ -259,16 +291,18 @@ def new_iteration(state: State, unlimited: Flags, arena: Arena) -> Iteration:
             heavy_first[k] = listed[order[k]]
         give_back(arena, scratch)
     return Iteration(
-        listed[:count], heavy_first[:count],
+        listed[:count], heavy_first[:count], limit,
         Pulling(
             new_slots(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count),
-            new_floats(arena, count), new_float_rows(arena, state.owner.shape[0], 2),
+            new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
+            new_float_rows(arena, state.owner.shape[0], 2),
         ),
         Wanted(
             new_float_rows(arena, corners, 2), new_float_rows(arena, corners, 2), new_floats(arena, constraints),
             new_floats(arena, constraints), new_floats(arena, constraints), new_floats(arena, constraints),
             new_floats(arena, constraints),
         ),
+        no_held_springs(arena),
     )  # fmt: skip
 
 
