@@ -121,7 +121,8 @@ def derive_hands(lent: Any, arena: Arena) -> None:
         put(world.workspace.delassus, "joints", joints)
     else:
         put(world.workspace.delassus, "joints", joints_by_mass(rows, arena))
-        put(world.iteration, "held", new_held_springs(rows, state, world.iteration.listed.shape[0], arena))
+        springs = world.iteration.listed.shape[0]
+        put(world.iteration, "held", new_held_springs(world.joints.hands, state, springs, arena))
 
 
 @kernel

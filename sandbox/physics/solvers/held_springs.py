@@ -1,14 +1,15 @@
 """Springs at what a hand holds, in the iterative solver: each is solved with the hand, as one.
 
-A hand is as stiff as the whole body is heavy; what it holds may be light, and much may hang on that. As a row of its own
-it would bring in an iteration only what stops the light end, and swing what hangs there ever wider. So a spring is given
-what it asks for where the hand answers at once: the hand is eliminated from the two (a Schur complement).
+A hand is as stiff as the whole body is heavy; what it holds may be light, and much may hang on that. As a row of its
+own it would give in an iteration only what stops the light end, and swing what hangs there ever wider. So a spring is
+given what it asks for where the hand answers at once: the hand is eliminated from the two (a Schur complement).
 
-    y = G W n,      P(j) = the hand's impulse where the spring gives j, clamped,      w j + y . (P(j) - P) = r
+    y = G W n,    A = (G W G + 1/K)^-1,    P(j) = the hand's impulse where the spring gives j:  P0 - A y j, clamped
+    w j + y . (P(j) - P) = r
 
 G = the hand's rows, W = inverse masses, w = n W n, r = the change that the spring still asks for. Where the hand is not
-at its limit the spring's effective mass is 1 / (w - y (G W G + 1/K)^-1 y): that of a light end is nearly a pin's. The left
-side rises with j, so there is one j, and Newton's method finds it. P reaches the particles after all springs; until then
+at its limit, the spring's effective mass is 1 / (w - y A y): that of a light end is nearly a pin's. The left side rises
+with j, so there is one j; at the limit Newton's method finds it. P reaches the particles after all springs; until then
 y . P is what it does to a spring.
 """
 
@@ -17,12 +18,16 @@ from typing import NamedTuple
 from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slot_rows, new_slots
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.hands import Grips, HandRows
 from sandbox.physics.joints.joint_answers import Joints, own_response
 from sandbox.physics.joints.joint_sweep import answer_of_two, give_impulse
-from sandbox.physics.joints.rows import PAIR, JointRows, row_velocity, shortened
+from sandbox.physics.joints.rows import row_velocity, shortened
 from sandbox.physics.state import State
 
-# How often j is made better: where hands are clamped by no length once is enough, where along one line twice.
+# A hand is solved with springs where the body is this many times as heavy as what it moves of that at once. Others,
+# which hold a soft body all over, come to their impulse in few iterations, and have many springs.
+LIGHT = 3.0
+# How often j is made better where a hand is at its limit: along one line once is enough.
 ROUNDS = 4
 # The effective inverse mass of a spring with hands is at least this part of that without: what rounding leaves.
 LEAST_SHARE = 1e-12
@@ -33,7 +38,7 @@ class HeldSprings(NamedTuple):
 
     hand (g,): first row of each. By particle (n,): row = that of the hand that holds it, -1: none; entry = its place in
     the row. By spring that pulls (m,): at (m, 2) = the rows of hands at its ends, the first -1: none; answer (m, 4) = y
-    of each; mass [kg] = effective mass where no hand is at its limit.
+    of each; asked (m, 4) = A y; mass [kg] = effective mass where no hand is at its limit. free (2, 2): scratch, P0.
     """
 
     hand: Slots
@@ -41,14 +46,17 @@ class HeldSprings(NamedTuple):
     entry: Slots
     at: SlotRows
     answer: FloatRows
+    asked: FloatRows
     mass: Floats
+    free: FloatRows
 
 
 @inner_kernel
 def _room_for(hands: int, particles: int, springs: int, arena: Arena) -> HeldSprings:
     return HeldSprings(
         new_slots(arena, hands), new_slots(arena, particles), new_slots(arena, particles),
-        new_slot_rows(arena, springs, 2), new_float_rows(arena, springs, 4), new_floats(arena, springs),
+        new_slot_rows(arena, springs, 2), new_float_rows(arena, springs, 4), new_float_rows(arena, springs, 4),
+        new_floats(arena, springs), new_float_rows(arena, 2, 2),
     )  # fmt: skip
 
 
@@ -59,37 +67,40 @@ def no_held_springs(arena: Arena) -> HeldSprings:
 
 
 @inner_kernel
-def _is_free(rows: JointRows, k: int, row: Slots) -> bool:
-    # Whether no particle of a hand is held by one that was listed before.
-    found = True
-    for e in range(rows.first[k], rows.first[k + 1]):
-        found = found and row[rows.particle[e]] < 0
-    return found
+def _is_light(state: State, grips: Grips, i: int, row: Slots) -> bool:
+    # Whether what a hand grips is light, for the whole body, and no hand before it grips any of it.
+    moves = 0.0
+    for e in range(grips.start[i], grips.start[i + 1]):
+        p = grips.particle[e]
+        moves += grips.share[e] * grips.share[e] * state.inverse_mass[p]
+        if row[p] >= 0:
+            return False
+    return moves * grips.mass[i] > LIGHT
 
 
 @inner_kernel
-def new_held_springs(rows: JointRows, state: State, springs: int, arena: Arena) -> HeldSprings:
-    """The hands of a world of so many springs that share no particle with a hand before them."""
-    hands = 0
-    for k in range(rows.pair.shape[0]):
-        hands += 1 if rows.pair[k] == PAIR else 0
-    if hands == 0:
+def new_held_springs(hands: HandRows, state: State, springs: int, arena: Arena) -> HeldSprings:
+    """The hands of a world of so many springs that hold light ends, and no particle that one before them holds."""
+    grips = hands.grips
+    count, particles = grips.hand.shape[0], state.owner.shape[0]
+    if count == 0:
         return no_held_springs(arena)
-    particles = state.owner.shape[0]
-    made = _room_for(hands, particles, springs, arena)
+    made = _room_for(count, particles, springs, arena)
     if is_full(arena):
         return made
     for p in range(particles):
         made.row[p] = -1
-    count = 0
-    for k in range(rows.pair.shape[0]):
-        if rows.pair[k] == PAIR and _is_free(rows, k, made.row):
-            made.hand[count] = k
-            count += 1
-            for e in range(rows.first[k], rows.first[k + 1]):
-                made.row[rows.particle[e]] = k
-                made.entry[rows.particle[e]] = e - rows.first[k]
-    return HeldSprings(made.hand[:count], made.row, made.entry, made.at, made.answer, made.mass)
+    last = 0
+    for i in range(count):
+        if _is_light(state, grips, i, made.row):
+            made.hand[last] = hands.row[i]
+            last += 1
+            for e in range(grips.start[i], grips.start[i + 1]):
+                made.row[grips.particle[e]] = hands.row[i]
+                made.entry[grips.particle[e]] = e - grips.start[i]
+    return HeldSprings(
+        made.hand[:last], made.row, made.entry, made.at, made.answer, made.asked, made.mass, made.free
+    )  # fmt: skip
 
 
 @inner_kernel
@@ -138,6 +149,7 @@ def load_held_springs(
             if held.at[c, place] >= 0:
                 x, y = held.answer[c, 2 * place], held.answer[c, 2 * place + 1]
                 px, py = _asked(joints, held.at[c, place], x, y)
+                held.asked[c, 2 * place], held.asked[c, 2 * place + 1] = px, py
                 left -= x * px + y * py
         held.mass[c] = 1.0 / max(left, LEAST_SHARE * inverse)
 
@@ -161,18 +173,40 @@ def end_with_hands(held: HeldSprings, joints: Joints, change: FloatRows, inverse
 
 
 @inner_kernel
-def _hand_at(joints: Joints, k: int, x: float, y: float, j: float, clamps: bool) -> tuple[float, float, float]:
-    # P(j) - P of a hand, and by how much less of its velocity a spring gets for each unit that it gives more; x, y = y.
+def _along(held: HeldSprings, c: int, place: int, x: float, y: float) -> float:
+    return held.answer[c, 2 * place] * x + held.answer[c, 2 * place + 1] * y
+
+
+@inner_kernel
+def _hand_at(held: HeldSprings, c: int, place: int, j: float) -> tuple[float, float]:
+    # P0 - A y j
+    return held.free[place, 0] - held.asked[c, 2 * place] * j, held.free[place, 1] - held.asked[c, 2 * place + 1] * j
+
+
+@inner_kernel
+def _search(
+    held: HeldSprings, joints: Joints, c: int, wanted: float, mass: float, least: float, most: float, j: float
+) -> float:  # fmt: skip
+    # j where hands are at their limits, from that where they are not.
     rows = joints.rows
-    first, second = answer_of_two(joints, k, joints.velocity[k] + x * j, joints.velocity[k + 1] + y * j)
-    px, py = _asked(joints, k, x, y)
-    yields = x * px + y * py
-    share = shortened(first, second, rows.limit[k]) if clamps else 1.0
-    if share < 1.0:
-        # Along its direction it gives no more.
-        square = first * first + second * second
-        yields = share * (yields - (x * first + y * second) * (px * first + py * second) / square)
-    return share * first - rows.impulse[k], share * second - rows.impulse[k + 1], yields
+    for _ in range(ROUNDS):
+        left, slope = wanted - j / mass, 1.0 / mass
+        for place in range(2):
+            k = held.at[c, place]
+            if k < 0:
+                continue
+            first, second = _hand_at(held, c, place, j)
+            ax, ay = held.asked[c, 2 * place], held.asked[c, 2 * place + 1]
+            yields = _along(held, c, place, ax, ay)
+            share = shortened(first, second, rows.limit[k])
+            if share < 1.0:
+                # In its own direction a hand gives no more.
+                along = _along(held, c, place, first, second) * (ax * first + ay * second)
+                yields = share * (yields - along / (first * first + second * second))
+            left -= _along(held, c, place, share * first - rows.impulse[k], share * second - rows.impulse[k + 1])
+            slope -= yields
+        j = min(max(j + left / max(slope, LEAST_SHARE / mass), least), most)
+    return j
 
 
 @inner_kernel
@@ -189,31 +223,36 @@ def _give_with_hand(joints: Joints, k: int, dx: float, dy: float) -> None:
 def pull_held(
     held: HeldSprings, joints: Joints, c: int, wanted: float, mass: float, least: float, most: float
 ) -> float:  # fmt: skip
-    """The impulse of a spring with hands at its ends, between bounds, who answer it at once.
+    """The impulse of a spring with hands at its ends, between bounds, to which they answer at once.
 
-    wanted [m/s]: what its velocity lacks where particles have nothing yet of what hands have answered in the iteration.
+    wanted [m/s]: what its velocity lacks, where particles have nothing yet of what hands answered in the iteration.
     """
+    rows = joints.rows
+    left = 0.0
     for place in range(2):
         k = held.at[c, place]
         if k >= 0:
-            wanted -= held.answer[c, 2 * place] * (joints.rows.impulse[k] - joints.last_impulse[k])
-            wanted -= held.answer[c, 2 * place + 1] * (joints.rows.impulse[k + 1] - joints.last_impulse[k + 1])
-    j = 0.0
-    for turn in range(ROUNDS):
-        left, slope = wanted - j / mass, 1.0 / mass
-        for place in range(2):
-            if held.at[c, place] >= 0:
-                x, y = held.answer[c, 2 * place], held.answer[c, 2 * place + 1]
-                dx, dy, yields = _hand_at(joints, held.at[c, place], x, y, j, turn > 0)
-                left -= x * dx + y * dy
-                slope -= yields
-        j = min(max(j + left / max(slope, LEAST_SHARE / mass), least), most)
+            px, py = rows.impulse[k], rows.impulse[k + 1]
+            wanted -= _along(held, c, place, px - joints.last_impulse[k], py - joints.last_impulse[k + 1])
+            first, second = answer_of_two(joints, k, joints.velocity[k], joints.velocity[k + 1])
+            held.free[place, 0], held.free[place, 1] = first, second
+            left -= _along(held, c, place, first - px, second - py)
+    j = min(max((wanted + left) * held.mass[c], least), most)
+    clamps = False
     for place in range(2):
         if held.at[c, place] >= 0:
-            x, y = held.answer[c, 2 * place], held.answer[c, 2 * place + 1]
-            dx, dy, _ = _hand_at(joints, held.at[c, place], x, y, j, True)
-            _give_with_hand(joints, held.at[c, place], dx, dy)
-            wanted -= x * dx + y * dy
+            first, second = _hand_at(held, c, place, j)
+            clamps = clamps or shortened(first, second, rows.limit[held.at[c, place]]) < 1.0
+    if clamps:
+        j = _search(held, joints, c, wanted, mass, least, most, j)
+    for place in range(2):
+        k = held.at[c, place]
+        if k >= 0:
+            first, second = _hand_at(held, c, place, j)
+            share = shortened(first, second, rows.limit[k])
+            dx, dy = share * first - rows.impulse[k], share * second - rows.impulse[k + 1]
+            _give_with_hand(joints, k, dx, dy)
+            wanted -= _along(held, c, place, dx, dy)
     j = min(max(wanted * mass, least), most)
     for place in range(2):
         k = held.at[c, place]
