@@ -24,9 +24,9 @@ from sandbox.physics.joints.joint_sweep import answer_of_two, give_impulse
 from sandbox.physics.joints.rows import row_velocity, shortened
 from sandbox.physics.state import State
 
-# A hand is solved with springs where the body is this many times as heavy as what it moves of that at once. Others,
-# which hold a soft body all over, come to their impulse in few iterations, and have many springs.
-LIGHT = 3.0
+# A hand answers at once to a spring of whose impulse it takes more than this part. One that holds a soft body all over
+# takes next to nothing of that of any of many springs.
+LEAST_TAKEN = 0.2
 # How often j is made better where a hand is at its limit: along one line once is enough.
 ROUNDS = 4
 # The effective inverse mass of a spring with hands is at least this part of that without: what rounding leaves.
@@ -38,7 +38,8 @@ class HeldSprings(NamedTuple):
 
     hand (g,): first row of each. By particle (n,): row = that of the hand that holds it, -1: none; entry = its place in
     the row. By spring that pulls (m,): at (m, 2) = the rows of hands at its ends, the first -1: none; answer (m, 4) = y
-    of each; asked (m, 4) = A y; mass [kg] = effective mass where no hand is at its limit. free (2, 2): scratch, P0.
+    of each; asked (m, 4) = A y; mass [kg] = the effective mass where no hand that answers at once is at its limit. free
+    (2, 2): scratch, P0.
     """
 
     hand: Slots
@@ -67,20 +68,17 @@ def no_held_springs(arena: Arena) -> HeldSprings:
 
 
 @inner_kernel
-def _is_light(state: State, grips: Grips, i: int, row: Slots) -> bool:
-    # Whether what a hand grips is light, for the whole body, and no hand before it grips any of it.
-    moves = 0.0
+def _is_apart(grips: Grips, i: int, row: Slots) -> bool:
+    # Whether no hand before it holds anything of what a hand holds.
+    found = True
     for e in range(grips.start[i], grips.start[i + 1]):
-        p = grips.particle[e]
-        moves += grips.share[e] * grips.share[e] * state.inverse_mass[p]
-        if row[p] >= 0:
-            return False
-    return moves * grips.mass[i] > LIGHT
+        found = found and row[grips.particle[e]] < 0
+    return found
 
 
 @inner_kernel
 def new_held_springs(hands: HandRows, state: State, springs: int, arena: Arena) -> HeldSprings:
-    """The hands of a world of so many springs that hold light ends, and no particle that one before them holds."""
+    """The hands of a world of so many springs that hold no particle that one before them holds."""
     grips = hands.grips
     count, particles = grips.hand.shape[0], state.owner.shape[0]
     if count == 0:
@@ -92,7 +90,7 @@ def new_held_springs(hands: HandRows, state: State, springs: int, arena: Arena) 
         made.row[p] = -1
     last = 0
     for i in range(count):
-        if _is_light(state, grips, i, made.row):
+        if _is_apart(grips, i, made.row):
             made.hand[last] = hands.row[i]
             last += 1
             for e in range(grips.start[i], grips.start[i + 1]):
@@ -139,19 +137,30 @@ def _find_answers(held: HeldSprings, joints: Joints, state: State, s: int, c: in
 @inner_kernel
 def load_held_springs(
     held: HeldSprings, joints: Joints, state: State, slot: Slots, normal: FloatRows, mass: Floats, count: int
-) -> None:
-    """What hands answer to each spring that pulls; slot, normal, mass [kg]: of the first `count` of them."""
+) -> bool:
+    """What hands answer to each spring that pulls, and whether any answers at once.
+
+    slot, normal, mass [kg]: of the first `count` springs that pull.
+    """
+    found = False
     for c in range(count):
         _find_answers(held, joints, state, slot[c], c, normal[c, 0], normal[c, 1])
-        inverse = 1.0 / mass[c]
-        left = inverse
+        held.mass[c] = mass[c]
+        if held.at[c, 0] < 0:
+            continue
+        taken, less = 0.0, 0.0
         for place in range(2):
             if held.at[c, place] >= 0:
                 x, y = held.answer[c, 2 * place], held.answer[c, 2 * place + 1]
                 px, py = _asked(joints, held.at[c, place], x, y)
                 held.asked[c, 2 * place], held.asked[c, 2 * place + 1] = px, py
-                left -= x * px + y * py
-        held.mass[c] = 1.0 / max(left, LEAST_SHARE * inverse)
+                taken = max(taken, px * px + py * py)
+                less += x * px + y * py
+        if taken > LEAST_TAKEN * LEAST_TAKEN:
+            inverse = 1.0 / mass[c]
+            held.mass[c] = 1.0 / max(inverse - less, LEAST_SHARE * inverse)
+            found = True
+    return found
 
 
 @inner_kernel
@@ -220,25 +229,18 @@ def _give_with_hand(joints: Joints, k: int, dx: float, dy: float) -> None:
 
 
 @inner_kernel
-def pull_held(
+def _let_hands_answer(
     held: HeldSprings, joints: Joints, c: int, wanted: float, mass: float, least: float, most: float
 ) -> float:  # fmt: skip
-    """The impulse of a spring with hands at its ends, between bounds, to which they answer at once.
-
-    wanted [m/s]: what its velocity lacks, where particles have nothing yet of what hands answered in the iteration.
-    """
-    rows = joints.rows
-    left = 0.0
+    # Give the hands of a spring the impulses P(j); what its velocity lacks with those.
+    rows, left, clamps = joints.rows, wanted, False
     for place in range(2):
         k = held.at[c, place]
         if k >= 0:
-            px, py = rows.impulse[k], rows.impulse[k + 1]
-            wanted -= _along(held, c, place, px - joints.last_impulse[k], py - joints.last_impulse[k + 1])
             first, second = answer_of_two(joints, k, joints.velocity[k], joints.velocity[k + 1])
             held.free[place, 0], held.free[place, 1] = first, second
-            left -= _along(held, c, place, first - px, second - py)
-    j = min(max((wanted + left) * held.mass[c], least), most)
-    clamps = False
+            left -= _along(held, c, place, first - rows.impulse[k], second - rows.impulse[k + 1])
+    j = min(max(left * held.mass[c], least), most)
     for place in range(2):
         if held.at[c, place] >= 0:
             first, second = _hand_at(held, c, place, j)
@@ -253,6 +255,25 @@ def pull_held(
             dx, dy = share * first - rows.impulse[k], share * second - rows.impulse[k + 1]
             _give_with_hand(joints, k, dx, dy)
             wanted -= _along(held, c, place, dx, dy)
+    return wanted
+
+
+@inner_kernel
+def pull_held(
+    held: HeldSprings, joints: Joints, c: int, wanted: float, mass: float, least: float, most: float
+) -> float:  # fmt: skip
+    """The impulse of a spring with hands at its ends, between bounds, to which they answer at once.
+
+    wanted [m/s]: what its velocity lacks, where particles have nothing yet of what hands answered in the iteration.
+    """
+    rows = joints.rows
+    for place in range(2):
+        k = held.at[c, place]
+        if k >= 0:
+            dx, dy = rows.impulse[k] - joints.last_impulse[k], rows.impulse[k + 1] - joints.last_impulse[k + 1]
+            wanted -= _along(held, c, place, dx, dy)
+    if held.mass[c] > mass:
+        wanted = _let_hands_answer(held, joints, c, wanted, mass, least, most)
     j = min(max(wanted * mass, least), most)
     for place in range(2):
         k = held.at[c, place]

@@ -200,9 +200,11 @@ def _prepare_springs(
 
 
 @inner_kernel
-def _iterate_springs(count: int, state: State, step: Iteration, joints: Joints, backwards: bool) -> None:
+def _iterate_springs(
+    count: int, state: State, step: Iteration, joints: Joints, hands_answer: bool, backwards: bool
+) -> None:  # fmt: skip
     # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
-    pulling, held, holds = step.pulling, step.held, step.held.hand.shape[0] > 0
+    pulling, held = step.pulling, step.held
     change, accumulated, inverse_mass = pulling.change, state.impulse, state.inverse_mass
     for i in range(count):
         c = count - 1 - i if backwards else i
@@ -215,7 +217,7 @@ def _iterate_springs(count: int, state: State, step: Iteration, joints: Joints, 
         dv = change[b, 1] - change[a, 1]
         lacks = -(nx * du + ny * dv - pulling.wanted[c])
         least, most = -pulling.limit[c] - pulling.given[c], pulling.limit[c] - pulling.given[c]
-        if holds and held.at[c, 0] >= 0:
+        if hands_answer and held.at[c, 0] >= 0:
             j = pull_held(held, joints, c, lacks, pulling.mass[c], least, most)
         else:
             j = min(max(lacks * pulling.mass[c], least), most)
@@ -258,12 +260,16 @@ def solve(
     _prepare_constraints(state, constraints, given, h, step.wanted)
     warm_start_contacts(contacts, terms, change, inverse_mass, delassus)
     warm_start_joints(joints, change, inverse_mass)
-    if step.held.hand.shape[0] > 0:
-        load_held_springs(step.held, joints, state, pulling.slot, pulling.normal, pulling.mass, count)
+    hands_answer = step.held.hand.shape[0] > 0 and load_held_springs(
+        step.held, joints, state, pulling.slot, pulling.normal, pulling.mass, count
+    )
     for k in range(iterations):
-        begin_with_hands(step.held, joints, velocity, change)
-        _iterate_springs(count, state, step, joints, alternates and k % 2 == 1)
-        end_with_hands(step.held, joints, change, inverse_mass)
+        backwards = alternates and k % 2 == 1
+        if hands_answer:
+            begin_with_hands(step.held, joints, velocity, change)
+        _iterate_springs(count, state, step, joints, hands_answer, backwards)
+        if hands_answer:
+            end_with_hands(step.held, joints, change, inverse_mass)
         _iterate_constraints(inverse_mass, constraints, step.wanted, change)
         iterate_joints(joints, velocity, change, inverse_mass)
         sweep(contacts, terms, velocity, change, inverse_mass, delassus)
