@@ -52,6 +52,11 @@ SMALLEST_TURN = 1e-6
 # No step turns a body farther than by this angle [rad]. Beyond a right angle springs would turn over.
 LARGEST_ANGLE = 1.3
 LARGEST_SINE = 0.96
+# In place of `arc`: what has no form, since springs of rest length 0 alone join it, of little damping. Its particles go
+# on ellipses, which arcs would make circles; what damping has brought on circles keeps to those by arcs.
+FORMLESS = -1.0
+# So many times Cd is the Cs of springs of little damping, at least.
+LITTLE_DAMPED = 2.0
 # What has turned so far in a step that r . r' is less than this share of r . r is turned about where the step begins.
 LEAST_ACROSS = 0.2
 
@@ -71,8 +76,10 @@ def turned(momentum: float, inertia: float, arc: float, h: float) -> tuple[float
     """Sine and cosine of the angle by which a rigid body of this angular momentum turns in a step of h [s].
 
     arc: 1: that angle is h L / I; 0: its sine is, so that what moves on chords has the angular momentum of what turns,
-    as contacts and joints need it. It is at most LARGEST_ANGLE.
+    as contacts and joints need it. It is at most LARGEST_ANGLE. FORMLESS: it does not turn.
     """
+    if arc == FORMLESS:
+        return 0.0, 1.0
     angle = h * momentum / inertia if inertia > 0.0 else 0.0
     if arc > 0.0:
         sine = sine_of(min(max(angle, -LARGEST_ANGLE), LARGEST_ANGLE))
@@ -136,6 +143,15 @@ def _find_spin(body: int, span: Span, system: System) -> float:
 
 
 @inner_kernel
+def _is_formless(span: Span, system: System) -> bool:
+    springs = system.springs
+    found = span.last_constraint == span.first_constraint
+    for k in range(span.first_spring, span.last_spring):
+        found = found and springs.rest[k] == 0.0 and springs.K_beta[k] > LITTLE_DAMPED * springs.K[k]
+    return found
+
+
+@inner_kernel
 def begin_turn(body: int, span: Span, system: System, state: State, arc: float, h: float) -> None:
     """Bring a body's velocities, which are those at the end of a step, to the chords on which it goes in one.
 
@@ -146,6 +162,7 @@ def begin_turn(body: int, span: Span, system: System, state: State, arc: float, 
     rows, bodies = system.rows, system.bodies
     bodies.spared[body] = 0.0
     momentum0 = _find_spin(body, span, system)
+    arc = FORMLESS if _is_formless(span, system) else arc
     bodies.spin[body, BY_ARC] = arc
     spin = spin_of_body(body, system)
     rate = _inward(momentum0, spin.inertia, arc, h)

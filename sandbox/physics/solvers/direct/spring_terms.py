@@ -94,8 +94,10 @@ def linearise_springs(span: Span, system: System, h: float, ahead: float, behind
         px = dx + h * (ahead * ux - behind * (rows.slow[b, 0] - rows.slow[a, 0]))
         py = dy + h * (ahead * uy - behind * (rows.slow[b, 1] - rows.slow[a, 1]))
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
-        # A spring foreseen to turn over is taken as it lies: else it pushes where it would have to pull.
-        if behind > 0.0 and (dx * px + dy * py <= 0.0 or dx * (dx + h * ux) + dy * (dy + h * uy) <= 0.0):
+        # A spring foreseen to turn over is taken as it lies: else it pushes where it would have to pull. So is one of
+        # rest length 0, whose force is linear in where its ends are: taken ahead, an ellipse would become a circle.
+        turns_over = dx * px + dy * py <= 0.0 or dx * (dx + h * ux) + dy * (dy + h * uy) <= 0.0
+        if behind > 0.0 and (turns_over or springs.rest[k] == 0.0):
             px = dx
             py = dy
             if springs.length[k] > SHORTEST:
