@@ -178,5 +178,9 @@ Friction = Annotated[
 ]
 Restitution = Annotated[
     Share | None,
-    Field(description="Share of its speed that it keeps when it bounces.", json_schema_extra=empty("the level's")),
+    Field(
+        description="Share of its speed that it keeps when it bounces, but for what springs of a body damp, see "
+        "`contacts`.",
+        json_schema_extra=empty("the level's"),
+    ),
 ]
