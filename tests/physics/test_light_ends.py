@@ -122,7 +122,7 @@ def test_two_hands_share_the_weight_on_a_light_end(hands):
     run(world, 900)
     # Two that pull against each other with all their force leave it to drift between them.
     assert np.abs(world.velocity).max() < 0.05
-    assert np.sum(world.hand_force[:2], axis=0) == pytest.approx([0.0, weight(world)], abs=1e-3 * weight(world))
+    assert np.sum(world.hand_force[:2], axis=0) == pytest.approx([0.0, weight(world)], abs=1e-2 * weight(world))
 
 
 def crane(load, share, *, links=1, stiffness=1.0, damping=1.0, solver="iterative", **settings):

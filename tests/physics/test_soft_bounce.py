@@ -33,7 +33,7 @@ def part_of_height(stiffness, damping, *, size, cells, angle=0.0):
     heights = []
     for _ in range(110):
         step(world)
-        heights.append(float(world.position[:, 1].mean()))
+        heights.append(float(world.position[world.particle_active, 1].mean()))
     lowest = heights.index(min(heights[:60]))
     return (max(heights[lowest:]) - 0.5 * size - 0.05) / 2.0
 
