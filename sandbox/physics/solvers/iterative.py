@@ -92,7 +92,8 @@ class Pulling(NamedTuple):
 class Iteration(NamedTuple):
     """Slots of the springs that are iterated, as they are listed and those of heavy particles first; and scratch.
 
-    limit [N] (m,): the force that each spring of the world gives at most. held: follows from what hands hold.
+    limit [N] (m,): the force that each spring of the world gives at most, (0,) where none has a limit. held: follows
+    from what hands hold.
     """
 
     listed: Slots
@@ -185,12 +186,12 @@ def _prepare_springs(
         pulling.wanted[count] = spring_impulse(
             given.stiffness[s], given.damping[s], length - state.rest_length[s], nx * du + ny * dv, 1.0, h
         )  # fmt: skip
-        pulling.limit[count] = limit[s] * h
-        pulling.given[count] = 0.0
         p = nx * warm_x + ny * warm_y
+        if limit.shape[0] > 0:
+            pulling.limit[count] = limit[s] * h
+            pulling.given[count] = min(max(warm_start * p, -pulling.limit[count]), 0.0)
         if p < 0.0:
-            j = max(warm_start * p, -pulling.limit[count])
-            pulling.given[count] = j
+            j = pulling.given[count] if limit.shape[0] > 0 else warm_start * p
             change[a, 0] -= j * nx * inverse_mass[a]
             change[a, 1] -= j * ny * inverse_mass[a]
             change[b, 0] += j * nx * inverse_mass[b]
@@ -200,11 +201,35 @@ def _prepare_springs(
 
 
 @inner_kernel
-def _iterate_springs(
+def _iterate_springs(count: int, state: State, pulling: Pulling, backwards: bool) -> None:
+    # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
+    change, accumulated, inverse_mass = pulling.change, state.impulse, state.inverse_mass
+    for i in range(count):
+        c = count - 1 - i if backwards else i
+        s = pulling.slot[c]
+        a = state.particle_a[s]
+        b = state.particle_b[s]
+        nx = pulling.normal[c, 0]
+        ny = pulling.normal[c, 1]
+        du = change[b, 0] - change[a, 0]
+        dv = change[b, 1] - change[a, 1]
+        j = -(nx * du + ny * dv - pulling.wanted[c]) * pulling.mass[c]
+        jx = j * nx
+        jy = j * ny
+        change[a, 0] -= jx * inverse_mass[a]
+        change[a, 1] -= jy * inverse_mass[a]
+        change[b, 0] += jx * inverse_mass[b]
+        change[b, 1] += jy * inverse_mass[b]
+        accumulated[s, 0] += jx
+        accumulated[s, 1] += jy
+
+
+@inner_kernel
+def _iterate_bounded_springs(
     count: int, state: State, step: Iteration, joints: Joints, hands_answer: bool, backwards: bool
 ) -> None:  # fmt: skip
-    # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
-    pulling, held = step.pulling, step.held
+    # The same where hands answer at once, or some springs are of limited force.
+    pulling, held, limits = step.pulling, step.held, step.limit.shape[0] > 0
     change, accumulated, inverse_mass = pulling.change, state.impulse, state.inverse_mass
     for i in range(count):
         c = count - 1 - i if backwards else i
@@ -216,12 +241,15 @@ def _iterate_springs(
         du = change[b, 0] - change[a, 0]
         dv = change[b, 1] - change[a, 1]
         lacks = -(nx * du + ny * dv - pulling.wanted[c])
-        least, most = -pulling.limit[c] - pulling.given[c], pulling.limit[c] - pulling.given[c]
+        least, most = -math.inf, math.inf
+        if limits:
+            least, most = -pulling.limit[c] - pulling.given[c], pulling.limit[c] - pulling.given[c]
         if hands_answer and held.at[c, 0] >= 0:
             j = pull_held(held, joints, c, lacks, pulling.mass[c], least, most)
         else:
             j = min(max(lacks * pulling.mass[c], least), most)
-        pulling.given[c] += j
+        if limits:
+            pulling.given[c] += j
         jx = j * nx
         jy = j * ny
         change[a, 0] -= jx * inverse_mass[a]
@@ -267,7 +295,10 @@ def solve(
         backwards = alternates and k % 2 == 1
         if hands_answer:
             begin_with_hands(step.held, joints, velocity, change)
-        _iterate_springs(count, state, step, joints, hands_answer, backwards)
+        if hands_answer or step.limit.shape[0] > 0:
+            _iterate_bounded_springs(count, state, step, joints, hands_answer, backwards)
+        else:
+            _iterate_springs(count, state, pulling, backwards)
         if hands_answer:
             end_with_hands(step.held, joints, change, inverse_mass)
         _iterate_constraints(inverse_mass, constraints, step.wanted, change)
@@ -285,8 +316,10 @@ def new_iteration(state: State, limit: Floats, arena: Arena) -> Iteration:
     scratch = mark(arena)
     lightness, order, spare = new_floats(arena, springs), new_slots(arena, springs), new_slots(arena, springs)
     count = 0
+    limits = False
     if not is_full(arena):
         for s in range(springs):
+            limits = limits or limit[s] < math.inf
             if state.spring_active[s] and state.law[s] == LAW_NISSEN:
                 listed[count] = s
                 order[count] = count
@@ -297,7 +330,7 @@ def new_iteration(state: State, limit: Floats, arena: Arena) -> Iteration:
             heavy_first[k] = listed[order[k]]
         give_back(arena, scratch)
     return Iteration(
-        listed[:count], heavy_first[:count], limit,
+        listed[:count], heavy_first[:count], limit if limits else limit[:0],
         Pulling(
             new_slots(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count),
             new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
