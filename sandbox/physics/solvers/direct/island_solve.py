@@ -303,7 +303,7 @@ def _push_and_test(
         credit_penetration(contacts, workspace, state.inverse_mass, h)
         draw_on_reserves(contacts, workspace, system, state)
     _answer(workspace, system, state, h)
-    check_energies(workspace, state, start)
+    check_energies(workspace, system, state, start)
     return affordable - done
 
 
