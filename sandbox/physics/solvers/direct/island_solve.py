@@ -13,6 +13,7 @@ from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, couple_joints
 from sandbox.physics.joints.joint_sweep import gather_push
 from sandbox.physics.solvers.contact.body_impacts import pass_on
+from sandbox.physics.solvers.contact.contact_solve import solve_contacts
 from sandbox.physics.solvers.contact.gauss_seidel import (
     Delassus,
     couple_of,
@@ -20,7 +21,6 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     load_responses,
     load_surfaces,
     mark_calm,
-    solve_contacts,
 )
 from sandbox.physics.solvers.direct.energy_bank import MINIMISED, SLOWED_DOWN, SOLVED_ON, is_new
 from sandbox.physics.solvers.direct.factor import respond, solve_linear
@@ -199,10 +199,10 @@ def _load_push(islands: BodyIslands, joints: Joints) -> None:
 @inner_kernel
 def _push_all(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, sweeps: int, most: int,
-    accelerate: bool, begins: bool, h: float,
+    affordable: int, accelerate: bool, begins: bool, h: float,
 ) -> int:  # fmt: skip
-    # Sweep an island's contacts and joints, and look for impacts before where the step begins; how many sweeps. The
-    # impulses J^T lambda of bodies are left in `pushed`.
+    # Sweep an island's contacts and joints, and look for impacts before where the step begins; what it took, in sweeps.
+    # The impulses J^T lambda of bodies are left in `pushed`.
     islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
     inverse_mass = state.inverse_mass
     load_responses(contacts, terms, inverse_mass, delassus)
@@ -213,8 +213,11 @@ def _push_all(
         pass_on(contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, h)
     # Passes only look ahead, but push joints as well.
     load_velocities(islands, delassus.joints)
+    # Sweeps that are not hastened take energy, each of them.
+    exactly = float(affordable) if accelerate else 0.0
     done = solve_contacts(
-        contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, accelerate
+        contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, exactly,
+        float(_cost_of(contacts, delassus)), accelerate,
     )  # fmt: skip
     _load_push(islands, delassus.joints)
     for c in range(contacts.particle.shape[0]):
@@ -298,7 +301,7 @@ def _push_and_test(
     # Push what was linearised through its contacts and joints, and test it; how many sweeps the step may still have.
     sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
     most = max(sweeps, min(CALM_SWEEPS, affordable))
-    done = _push_all(contacts, workspace, system, state, sweeps, most, accelerate, begins, h)
+    done = _push_all(contacts, workspace, system, state, sweeps, most, affordable, accelerate, begins, h)
     if begins:
         credit_penetration(contacts, workspace, state.inverse_mass, h)
         draw_on_reserves(contacts, workspace, system, state)
