@@ -102,7 +102,9 @@ def test_a_column_of_unlike_masses_stands_in_any_order(across, order):
     set_up = _centres(w)
     run(w, 300)
     settled = _centres(w)
-    assert np.hypot(*(settled - set_up).T).max() < 5e-3
+    # Contacts of a light box that carries 300 times its weight give way by 3 mm each.
+    assert np.abs(settled[:, 0] - set_up[:, 0]).max() < 1e-3
+    assert np.abs(settled[:, 1] - set_up[:, 1]).max() < 0.02 * set_up[-1, 1]
     run(w, 600)
     assert np.hypot(*(_centres(w) - settled).T).max() < 1e-3
 

@@ -18,11 +18,11 @@ class ActiveSet(NamedTuple):
 
     Nodes are the blocks of the Delassus operator, then particles. By node: its contacts as a list: the place head, -1:
     none, of the first, from which following leads to the next; rank in a walk. A place is 3 contact + end. queue: nodes
-    by rank. By contact: slow: all that it touches is. order (k,): slow contacts along the walk. By contact: row (2 k,)
-    of its normal and tangent, -1: at its bound; state (k, 2) as in active_rows.py; u [m/s] (k, 2); bound, centre [N s]:
-    friction that it goes to, and that from which sticking is soft; best [N s] (k, 2): the impulses that miss least. By
-    row: of_row = 2 contact + axis, the matrix [1/kg] from start on, its first column, pivot, rhs. answer, turned [m/s]:
-    velocities by particle that an impulse of 1 gives, else 0.
+    by rank. By contact: slow: all that it touches is, and firm. order (k,): slow contacts along the walk. By contact:
+    row (2 k,) of its normal and tangent, -1: at its bound; state (k, 2) as in active_rows.py; u [m/s] (k, 2); bound,
+    centre [N s]: friction that it goes to, and that from which sticking is soft; best [N s] (k, 2): the impulses that
+    miss least. By row: of_row = 2 contact + axis, the matrix [1/kg] from start on, its first column, pivot, rhs.
+    answer, turned [m/s]: velocities by particle that an impulse of 1 gives, else 0.
     """
 
     head: Slots

@@ -396,15 +396,20 @@ def sweep(
 
 
 @inner_kernel
-def mark_calm(contacts: Contacts, terms: ContactConstraints, velocity: Floats, block: Slots, rigid: Flags) -> None:
-    """Which contacts are slow: all that they touch is; and which are calm: that is rigid, too."""
+def mark_calm(
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, block: Slots, rigid: Flags, firm: Flags
+) -> None:  # fmt: skip
+    """Which contacts are slow: all that they touch is, and firm; and which are calm: that is rigid, too."""
     for c in range(contacts.particle.shape[0]):
         terms.calm[c] = 1.0
         terms.active.slow[c] = True
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
-            if p >= 0 and block[p] >= 0 and not rigid[block[p]]:
-                terms.calm[c] = 0.0
+            if p >= 0 and block[p] >= 0:
+                if not rigid[block[p]]:
+                    terms.calm[c] = 0.0
+                if not firm[block[p]]:
+                    terms.active.slow[c] = False
             if p >= 0 and velocity[p, 0] * velocity[p, 0] + velocity[p, 1] * velocity[p, 1] > CALM * CALM:
                 terms.calm[c] = 0.0
                 terms.active.slow[c] = False

@@ -5,9 +5,9 @@ forces in the step is that of their impulses at the mean of the velocities v and
 is stored, up to a limit, in the energy banks of bodies and particles; to push apart what penetrates is paid from there.
 
 Springs and contacts act at v' alone. So where forces do work, an island may have less than it seems by what they do in
-half a step, 1/2 sum m (v* - v).v': what begins to sink on springs seems to gain that. It is lent to the island, and the
-parting reserves of its members are overdrawn by it until it is lost. What rises may bank the same, and has it where it
-is stopped.
+half a step, W = 1/2 sum m (v* - v).v': what begins to sink on springs seems to gain that, less its motion. W - KE(v')
+is lent to the island, and the parting reserves of its members are overdrawn by it until it is lost. What begins to rise
+may bank -W - KE(v'), and has it where it is stopped. What is faster than forces make it in a step is lent nothing.
 """
 
 import math
@@ -37,7 +37,7 @@ from sandbox.physics.solvers.direct.energy_bank import (
 from sandbox.physics.solvers.direct.families import find_tension
 from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, IslandWorkspace
 from sandbox.physics.solvers.direct.joint_response import work_of_joints
-from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
+from sandbox.physics.solvers.direct.motion import copy, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.rigid_turn import damp_within
 from sandbox.physics.solvers.direct.system import (
     END_INERTIA,
@@ -162,6 +162,7 @@ def measure_body(k: int, span: Span, system: System, workspace: IslandWorkspace,
     factor = 1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0
     islands.energy[k] -= work * factor
     islands.ahead[k] = _work_ahead(span, rows) * factor
+    islands.moves[k] = kinetic(span, rows.mass, rows.v) * factor
 
 
 @inner_kernel
@@ -306,6 +307,7 @@ def check_energies(workspace: IslandWorkspace, system: System, state: State, sta
         islands.energy[bodies + i] = 0.5 * state.mass[p] * (vx * vx + vy * vy + turning - work)
         ahead = (ux - start[p, 0]) * vx + (uy - start[p, 1]) * vy
         islands.ahead[bodies + i] = 0.5 * state.mass[p] * ahead
+        islands.moves[bodies + i] = 0.5 * state.mass[p] * (vx * vx + vy * vy)
         if push.shape[0] > 0:
             given = push[p, 0] * (start[p, 0] + vx) + push[p, 1] * (start[p, 1] + vy)
             islands.energy[bodies + i] -= 0.5 * given
@@ -313,7 +315,7 @@ def check_energies(workspace: IslandWorkspace, system: System, state: State, sta
         islands.total[islands.island[k]] += islands.energy[k]
         islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.bank[k]
         overdrawn = min(0.0, state.parting_reserve[_slot_of(k, islands, system)])
-        islands.lent[islands.island[k]] += islands.ahead[k] + overdrawn
+        islands.lent[islands.island[k]] += islands.ahead[k] - islands.moves[k] + overdrawn
     for island in range(islands.counts[ISLANDS]):
         islands.lent[island] = max(0.0, islands.lent[island])
         islands.allowed[island] += islands.lent[island]
@@ -443,21 +445,22 @@ def _held(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> fl
 
 @inner_kernel
 def _load_limits(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
-    # The most that each bank may hold: a share of the member's energy; or what contacts hold, of what it has itself
-    # lost: what a light body loses as it hits a heavy one would push that out of what it lies in. And of that what
-    # forces take from it as it rises.
+    # The most that each bank may hold: a share of the member's energy; or by its mass what contacts hold, of what it
+    # has itself lost: what a light body loses as it hits a heavy one would push that out of what it lies in. And of
+    # that what forces take from it as it slowly rises.
     islands, bodies = workspace.islands, workspace.islands.counts[BODIES]
-    for k in range(islands.counts[MEMBERS]):
-        islands.limit[k] = 0.0
+    held = 0.0
     for c in range(contacts.particle.shape[0]):
-        k = _member_of(c, contacts, islands, state.inverse_mass)
-        if k >= 0:
-            islands.limit[k] += _held(c, contacts, workspace.terms, h)
+        held += _held(c, contacts, workspace.terms, h)
+    mass = 0.0
+    for k in range(islands.counts[MEMBERS]):
+        mass += islands.mass[k]
     for k in range(islands.counts[MEMBERS]):
         share = bank_limit(islands.body[k], system) if k < bodies else BANK_SHARE * islands.energy0[k]
         lost = islands.bank[k] + islands.energy0[k] - islands.energy[k]
-        islands.limit[k] = max(share, min(islands.limit[k], 0.5 * islands.mass[k] * PAID_PUSH * PAID_PUSH, lost))
-        islands.limit[k] += max(0.0, min(-islands.ahead[k], lost))
+        least = min(held / mass, 0.5 * PAID_PUSH * PAID_PUSH) * islands.mass[k]
+        islands.limit[k] = max(share, min(least, lost))
+        islands.limit[k] += max(0.0, min(-islands.ahead[k] - islands.moves[k], lost))
 
 
 @inner_kernel
