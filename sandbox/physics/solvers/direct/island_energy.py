@@ -7,7 +7,8 @@ is stored, up to a limit, in the energy banks of bodies and particles; to push a
 Springs and contacts act at v' alone. So where forces do work, an island may have less than it seems by what they do in
 half a step, W = 1/2 sum m (v* - v).v': what begins to sink on springs seems to gain that, less its motion. W - KE(v')
 is lent to the island, and the parting reserves of its members are overdrawn by it until it is lost. What begins to rise
-may bank -W - KE(v'), and has it where it is stopped. What is faster than forces make it in a step is lent nothing.
+may bank -W - KE(v'); or that is lent, too, when it is stopped. What is faster than forces make it in a step is lent
+nothing.
 """
 
 import math
@@ -167,14 +168,17 @@ def measure_body(k: int, span: Span, system: System, workspace: IslandWorkspace,
 
 @inner_kernel
 def weigh_body(k: int, span: Span, rows: Rows, islands: BodyIslands) -> None:
-    """Note what one body weighs."""
+    """Note what one body weighs, and what it would seem to gain if it were stopped."""
     islands.mass[k] = 0.0
+    islands.rises[k] = 0.0
     for r in range(span.first_row, span.last_row):
         islands.mass[k] += rows.mass[r]
+        along = rows.start[r, 0] * rows.v_star[r, 0] + rows.start[r, 1] * rows.v_star[r, 1]
+        islands.rises[k] -= 0.5 * rows.mass[r] * along
 
 
 @inner_kernel
-def open_free(islands: BodyIslands, state: State) -> None:
+def open_free(islands: BodyIslands, state: State, start: Floats) -> None:
     """The energies of free particles before the step, and what their banks hold."""
     bodies = islands.counts[BODIES]
     for i in range(islands.counts[MEMBERS] - bodies):
@@ -182,6 +186,7 @@ def open_free(islands: BodyIslands, state: State) -> None:
         k = bodies + i
         islands.mass[k] = state.mass[p]
         ux, uy = islands.given[p, 0], islands.given[p, 1]
+        islands.rises[k] = -0.5 * state.mass[p] * (start[p, 0] * ux + start[p, 1] * uy)
         surface = state.spin[p] * state.radius[p]
         islands.energy0[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
         islands.bank[k] = max(0.0, state.energy_bank[p])
@@ -289,6 +294,20 @@ def _slot_of(k: int, islands: BodyIslands, system: System) -> int:
 
 
 @inner_kernel
+def _lendable(island: int, islands: BodyIslands, system: System, state: State) -> float:
+    # What may be lent to an island [J]: to what begins to sink, and to what is stopped as it begins to rise.
+    sinks = 0.0
+    rises = 0.0
+    owes = 0.0
+    for k in range(islands.counts[MEMBERS]):
+        if islands.island[k] == island:
+            sinks += islands.ahead[k] - islands.moves[k]
+            rises += islands.rises[k]
+            owes -= min(0.0, state.parting_reserve[_slot_of(k, islands, system)])
+    return max(0.0, max(0.0, sinks) + max(0.0, rises) - owes)
+
+
+@inner_kernel
 def check_energies(workspace: IslandWorkspace, system: System, state: State, start: Floats) -> bool:
     """Check the energy of every island; whether any fails."""
     # Where a free particle gave way, `given` is below what forces left it.
@@ -297,7 +316,6 @@ def check_energies(workspace: IslandWorkspace, system: System, state: State, sta
     for island in range(islands.counts[ISLANDS]):
         islands.total[island] = 0.0
         islands.allowed[island] = 0.0
-        islands.lent[island] = 0.0
     for i in range(islands.counts[MEMBERS] - bodies):
         p = islands.free[i]
         ux, uy = state.velocity[p, 0], state.velocity[p, 1]
@@ -314,10 +332,8 @@ def check_energies(workspace: IslandWorkspace, system: System, state: State, sta
     for k in range(islands.counts[MEMBERS]):
         islands.total[islands.island[k]] += islands.energy[k]
         islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.bank[k]
-        overdrawn = min(0.0, state.parting_reserve[_slot_of(k, islands, system)])
-        islands.lent[islands.island[k]] += islands.ahead[k] - islands.moves[k] + overdrawn
     for island in range(islands.counts[ISLANDS]):
-        islands.lent[island] = max(0.0, islands.lent[island])
+        islands.lent[island] = _lendable(island, islands, system, state)
         islands.allowed[island] += islands.lent[island]
         islands.fails[island] = not islands.total[island] <= islands.allowed[island]
     return any_fails(islands)

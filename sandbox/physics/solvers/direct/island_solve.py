@@ -171,7 +171,7 @@ def _open(
         islands.energy0[k] = bodies.energy0[body]
         islands.bank[k] = bodies.bank[body]
         islands.due[k] = True
-    open_free(islands, state)
+    open_free(islands, state, inputs.start)
 
 
 @inner_kernel
@@ -269,8 +269,8 @@ def _push_all(
         pass_on(contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, h)
     # Passes only look ahead, but push joints as well.
     load_velocities(islands, delassus.joints)
-    # Sweeps that are not hastened take energy, each of them.
-    exactly = float(affordable) if accelerate else 0.0
+    # Sweeps that are not hastened take energy, each of them; and joints change what an exact solve has found.
+    exactly = float(affordable) if accelerate and delassus.joints.listed.shape[0] == 0 else 0.0
     done = solve_contacts(
         contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, exactly,
         float(_cost_of(contacts, delassus)), accelerate,
