@@ -109,7 +109,7 @@ class StateArrays:
     owner = _array("owner", P, I32, "", "its body; negative: it is a body of its own", topology=True)
     group = _array("group", P, I64, "", "its collision group, one bit", topology=True)
     collides = _array("collides", P, I64, "", "bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 = nothing", topology=True)
-    parting_reserve = _array("parting_reserve", P, F64, "J", "energy that a body has lost and may spend on parting from others, at its free particle of lowest slot", sparse=True)
+    parting_reserve = _array("parting_reserve", P, F64, "J", "energy that a body has lost and may spend on parting from others, at its free particle of lowest slot; negative: what it was lent", sparse=True)
     angle = _array("angle", P, F64, "rad", "angle of its disc, -pi..pi; it is only shown", guarded=True, sparse=True)
     spin = _array("spin", P, F64, "rad/s", "turning rate of its disc; 0 while springs, constraints or a pin hold it", guarded=True, sparse=True)
     rolls = _array("rolls", P, BOOL, "", "whether its disc turns while nothing holds it", sparse=True, usual=True)

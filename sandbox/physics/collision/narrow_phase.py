@@ -107,6 +107,15 @@ def add_contact(
 
 
 @inlined_kernel
+def _closing(px: float, py: float, qx: float, qy: float, dx: float, dy: float, distance: float) -> float:
+    # How far two sides whose ways are p and q come nearer, p from the side that d points to, if something stops either
+    # of them within the step.
+    if not distance > 0.0:
+        return 0.0
+    return max(0.0, -(px * dx + py * dy), qx * dx + qy * dy) / distance
+
+
+@inlined_kernel
 def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Contacts, count: int) -> int:
     """Contact of two discs, if there is one; the number of contacts then."""
     if colliders.inverse_mass[p] + colliders.inverse_mass[q] == 0.0 or not may_collide(p, q, colliders):
@@ -114,8 +123,9 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
     if colliders.owner[p] == colliders.owner[q] or are_joined(p, q, colliders):
         return count
     dx, dy = difference(q, p, colliders.position)
-    wx = h * (colliders.velocity[p, 0] - colliders.velocity[q, 0])
-    wy = h * (colliders.velocity[p, 1] - colliders.velocity[q, 1])
+    px, py = h * colliders.velocity[p, 0], h * colliders.velocity[p, 1]
+    qx, qy = h * colliders.velocity[q, 0], h * colliders.velocity[q, 1]
+    wx, wy = px - qx, py - qy
     if _is_corner_before(p, dx, dy, colliders):
         return count
     reach = colliders.radius[p] + colliders.radius[q]
@@ -130,7 +140,7 @@ def collide_disc(p: int, q: int, h: float, colliders: Colliders, contacts: Conta
         ny = (dy + when * wy) / reach
         gap = -when * (wx * nx + wy * ny)
     else:
-        if gap > MARGIN * reach + travel:
+        if gap > MARGIN * reach + max(travel, _closing(px, py, qx, qy, dx, dy, distance)):
             return count
         nx, ny = unit(dx, dy)
     return add_contact(count, contacts, p, KINDS * q + DISC, q, -1, 0.0, nx, ny, gap, q, colliders)
@@ -434,7 +444,12 @@ def _collide_outside(
         travel = math.sqrt(wx * wx + wy * wy)
         gap = near.distance[j] - reach
         fast = travel > FAST * reach
-        if gap <= MARGIN * reach + (0.0 if fast else travel):
+        ahead = 0.0 if fast else travel
+        if not fast and e < dynamic and gap > MARGIN * reach + travel:
+            x = colliders.position[p, 0] - place_on(e, part, 0, colliders)
+            y = colliders.position[p, 1] - place_on(e, part, 1, colliders)
+            ahead = _closing(way_x, way_y, way_x - wx, way_y - wy, x, y, near.distance[j])
+        if gap <= MARGIN * reach + ahead:
             touches, nx, ny, gap = _touch_edge(p, j, gap, wx, wy, colliders, near, edges)
             if touches:
                 count = _add_edge(p, e, near.share[j], nx, ny, gap, colliders, dynamic, contacts, count)

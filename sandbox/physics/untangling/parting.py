@@ -187,7 +187,7 @@ def _saved(s: int, outline: Outline, particles: MovedParticles) -> tuple[float, 
     for i in range(outline.member_start[s], outline.member_start[s + 1]):
         p = outline.member[i]
         if particles.inverse_mass[p] > 0.0:
-            total += particles.parting_reserve[p]
+            total += max(0.0, particles.parting_reserve[p])
             fresh = fresh and particles.energy_bank[p] == BANK_UNOPENED
     return total, fresh
 
@@ -198,7 +198,7 @@ def _spend(s: int, cost: float, outline: Outline, particles: MovedParticles) -> 
     for i in range(outline.member_start[s], outline.member_start[s + 1]):
         p = outline.member[i]
         if cost > 0.0 and particles.inverse_mass[p] > 0.0:
-            paid = min(cost, particles.parting_reserve[p])
+            paid = min(cost, max(0.0, particles.parting_reserve[p]))
             particles.parting_reserve[p] -= paid
             cost -= paid
     return cost

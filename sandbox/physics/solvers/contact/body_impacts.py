@@ -14,6 +14,7 @@ from sandbox.physics.collision.restitution import SLOWEST_PASSED
 from sandbox.physics.collision.types import Contacts, contacts_between, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.contact_order import ContactOrder
+from sandbox.physics.solvers.contact.contact_solve import solve_contacts
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
     Delassus,
@@ -23,7 +24,6 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     load_responses,
     load_surfaces,
     push_contact,
-    solve_contacts,
     store_spins,
     terms_between,
 )
@@ -198,7 +198,7 @@ def sweep_masses(
         of_island, its_terms = _of_island(i, contacts, terms, order)
         pass_on(of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, h)
         solve_contacts(
-            of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, sweeps, sweeps, True
+            of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, sweeps, sweeps, 0.0, 1.0, True
         )  # fmt: skip
     add_change(state.velocity, delta_v, state.inverse_mass)
     store_spins(terms, state.spin, state.radius)

@@ -6,7 +6,6 @@ surfaces, whose impulse is at most friction times the push (Coulomb). Both act o
 start with the impulses of the last step, so a body at rest is at rest from the first sweep on.
 """
 
-import math
 from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, new_float_rows, new_floats
@@ -16,7 +15,7 @@ from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, push_at
-from sandbox.physics.joints.joint_sweep import go_on_with_joints, start_joints, sweep_joints, swept_by
+from sandbox.physics.solvers.contact.active_set import ActiveSet, new_active_set
 
 # Cs / Cd of a contact that penetrates: the part of the penetration that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
@@ -26,16 +25,10 @@ FASTEST_PUSH = 3.0
 # 1 - Cd of a contact. 0 would leave contacts that carry the same load without a definite share; a larger value lets
 # heaps sink into each other.
 CONTACT_SOFTNESS = 7e-4
-# Sweeps end where no contact changed its velocity by more [m/s].
-SETTLED = 1e-6
 # Contacts of what is slower [m/s] are calm: they are swept on until none of them changes its velocity by more [m/s].
 # A tower of boxes creeps and falls where that is ten times as much; a tenth costs sweeps for nothing that is seen.
 CALM = 0.5
 CALM_SETTLED = 1e-4
-# A round of sweeps that leaves more than this share of what the one before has left goes nowhere, once that is less
-# than so much [m/s]: no more rounds. Without that machines that carry a load take three times as long.
-STALLED = 0.8
-STALLS_BELOW = 1e-3
 
 
 class Delassus(NamedTuple):
@@ -62,7 +55,7 @@ class ContactConstraints(NamedTuple):
     last_impulse, search_direction [N s] (k, 2): its impulse before a sweep, and where the sweeps so far have led;
     resisted [N s]: that of its rolling resistance, at the smaller radius. There may be room for more contacts. By
     particle: surface [m/s] (n,) = its spin times its radius, which sweeps change. By contact again: calm = 1, or 0
-    where what it touches is fast or not rigid.
+    where what it touches is fast or not rigid. active: what active_solve.py needs.
     """
 
     bias: Floats
@@ -74,6 +67,7 @@ class ContactConstraints(NamedTuple):
     resisted: Floats
     surface: Floats
     calm: Floats
+    active: ActiveSet
 
 
 @inner_kernel
@@ -82,7 +76,7 @@ def new_contact_constraints(count: int, particles: int, arena: Arena) -> Contact
     return ContactConstraints(
         new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
         new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_floats(arena, count),
-        new_floats(arena, particles), new_floats(arena, count),
+        new_floats(arena, particles), new_floats(arena, count), new_active_set(count, particles, arena),
     )  # fmt: skip
 
 
@@ -92,7 +86,7 @@ def terms_between(terms: ContactConstraints, first: int, last: int) -> ContactCo
     return ContactConstraints(
         terms.bias[first:last], terms.normal[first:last], terms.coupling[first:last], terms.tangent[first:last],
         terms.last_impulse[first:last], terms.search_direction[first:last], terms.resisted[first:last], terms.surface,
-        terms.calm[first:last],
+        terms.calm[first:last], terms.active,
     )  # fmt: skip
 
 
@@ -134,8 +128,8 @@ def relative_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Flo
 
 
 @inner_kernel
-def _couple_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> float:
-    # How fast the surface of an edge moves against its middle, as that turns.
+def couple_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> float:
+    """How fast the surface of an edge moves against its middle, as that turns."""
     a = contacts.end_a[c]
     b = contacts.end_b[c]
     ux = velocity[a, 0] + delta_v[a, 0] - velocity[b, 0] - delta_v[b, 0]
@@ -145,8 +139,13 @@ def _couple_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Floa
 
 @inner_kernel
 def _push_particle(p: int, jx: float, jy: float, delta_v: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
-    # v += W J
     push_at(delassus.joints, p, jx, jy)
+    answer_push(p, jx, jy, delta_v, inverse_mass, delassus)
+
+
+@inner_kernel
+def answer_push(p: int, jx: float, jy: float, delta_v: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
+    """Add what an impulse at a particle does, joints aside: v += W J."""
     k = delassus.block[p]
     if k < 0:
         delta_v[p, 0] += jx * inverse_mass[p]
@@ -190,12 +189,12 @@ def push_contact(
         if b >= 0:
             _push_particle(b, -share * jx - cx, -share * jy - cy, delta_v, inverse_mass, delassus)
     if jt != 0.0:
-        _turn(contacts, c, -jt * contacts.arm[c, 0], -jt * contacts.arm[c, 1], surface)
+        turn_surfaces(contacts, c, -jt * contacts.arm[c, 0], -jt * contacts.arm[c, 1], surface)
 
 
 @inner_kernel
-def _turn(contacts: Contacts, c: int, jp: float, jq: float, surface: Floats) -> None:
-    # s += 2 / m J, of what rolls.
+def turn_surfaces(contacts: Contacts, c: int, jp: float, jq: float, surface: Floats) -> None:
+    """Push the surfaces of what rolls: s += 2 / m J."""
     if contacts.turning[c, 0] > 0.0:
         surface[contacts.particle[c]] += jp * contacts.turning[c, 0]
     if contacts.turning[c, 1] > 0.0:
@@ -203,8 +202,8 @@ def _turn(contacts: Contacts, c: int, jp: float, jq: float, surface: Floats) -> 
 
 
 @inner_kernel
-def _turns(contacts: Contacts, c: int, by: Floats, surface: Floats) -> tuple[float, float]:
-    # The speeds of both surfaces of a contact, times their arms or ratios; 0 of what does not roll.
+def surface_speeds(contacts: Contacts, c: int, by: Floats, surface: Floats) -> tuple[float, float]:
+    """The speeds of both surfaces of a contact, times their arms or ratios; 0 of what does not roll."""
     p = 0.0
     q = 0.0
     if contacts.turning[c, 0] > 0.0:
@@ -222,12 +221,12 @@ def _resist_rolling(contacts: Contacts, c: int, terms: ContactConstraints) -> No
         answer += contacts.ratio[c, end] * contacts.ratio[c, end] * contacts.turning[c, end]
     if not answer > 0.0:
         return
-    p, q = _turns(contacts, c, contacts.ratio, terms.surface)
+    p, q = surface_speeds(contacts, c, contacts.ratio, terms.surface)
     most = contacts.rolling[c] * contacts.impulse[c, 0]
     new = min(most, max(-most, terms.resisted[c] - (p - q) / answer))
     j = new - terms.resisted[c]
     terms.resisted[c] = new
-    _turn(contacts, c, j * contacts.ratio[c, 0], -j * contacts.ratio[c, 1], terms.surface)
+    turn_surfaces(contacts, c, j * contacts.ratio[c, 0], -j * contacts.ratio[c, 1], terms.surface)
 
 
 @inner_kernel
@@ -248,7 +247,8 @@ def _response(p: int, q: int, inverse_mass: Floats, delassus: Delassus) -> tuple
 
 
 @inner_kernel
-def _has_couple(contacts: Contacts, c: int) -> bool:
+def has_couple(contacts: Contacts, c: int) -> bool:
+    """Whether an impulse across an edge turns it."""
     return contacts.couple[c, 0] != 0.0 or contacts.couple[c, 1] != 0.0
 
 
@@ -304,7 +304,7 @@ def load_responses(contacts: Contacts, terms: ContactConstraints, inverse_mass: 
                 normal += nx * ax + ny * ay
                 coupling += nx * ay - ny * ax
                 tangent += both * (nx * (yy * nx - yx * ny) - ny * (xy * nx - xx * ny))
-        if _has_couple(contacts, c):
+        if has_couple(contacts, c):
             more_coupling, more_tangent = _couple_responses(contacts, c, inverse_mass, delassus)
             coupling += more_coupling
             tangent += more_tangent
@@ -377,10 +377,10 @@ def sweep(
         jt = 0.0
         if terms.tangent[c] > 0.0:
             slip = nx * uy - ny * ux + terms.coupling[c] * jn
-            turn_p, turn_q = _turns(contacts, c, contacts.arm, terms.surface)
+            turn_p, turn_q = surface_speeds(contacts, c, contacts.arm, terms.surface)
             slip -= turn_p + turn_q
-            if _has_couple(contacts, c):
-                slip += _couple_velocity(contacts, c, velocity, delta_v)
+            if has_couple(contacts, c):
+                slip += couple_velocity(contacts, c, velocity, delta_v)
             most = contacts.friction[c] * new
             last = contacts.impulse[c, 1]
             jt = min(most, max(-most, last - slip / terms.tangent[c])) - last
@@ -396,103 +396,23 @@ def sweep(
 
 
 @inner_kernel
-def mark_calm(contacts: Contacts, terms: ContactConstraints, velocity: Floats, block: Slots, rigid: Flags) -> None:
-    """Which contacts are calm: all that they touch is slow, and rigid."""
+def mark_calm(
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, block: Slots, rigid: Flags, firm: Flags
+) -> None:  # fmt: skip
+    """Which contacts are slow: all that they touch is, and firm; and which are calm: that is rigid, too."""
     for c in range(contacts.particle.shape[0]):
         terms.calm[c] = 1.0
+        terms.active.slow[c] = True
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
-            if p >= 0 and block[p] >= 0 and not rigid[block[p]]:
-                terms.calm[c] = 0.0
+            if p >= 0 and block[p] >= 0:
+                if not rigid[block[p]]:
+                    terms.calm[c] = 0.0
+                if not firm[block[p]]:
+                    terms.active.slow[c] = False
             if p >= 0 and velocity[p, 0] * velocity[p, 0] + velocity[p, 1] * velocity[p, 1] > CALM * CALM:
                 terms.calm[c] = 0.0
-
-
-@inner_kernel
-def solve_contacts(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
-    delassus: Delassus, sweeps: int, most: int, accelerate: bool,
-) -> int:  # fmt: skip
-    """Sweep until nothing changes, at most so many times, or `most` where what is calm changes still; how many it took.
-
-    accelerate: each goes on in the direction of those before it. Joints are swept before contacts.
-    """
-    # Nonlinear conjugate gradients on the sweep as a fixed point (Silcowitz-Poulsen and others 2010).
-    start_sweeps(contacts, terms, delta_v, inverse_mass, delassus)
-    previous = 0.0
-    done = 0
-    checked = math.inf
-    while True:
-        largest, calm = sweep_all(contacts, terms, velocity, delta_v, inverse_mass, delassus)
-        done += 1
-        if largest < SETTLED or done >= most or (done >= sweeps and calm < CALM_SETTLED):
-            return done
-        if done % sweeps == 0:
-            if calm < STALLS_BELOW and calm > STALLED * checked:
-                return done
-            checked = calm
-        squared = change_of_sweep(contacts, terms, delassus.joints)
-        ratio = squared / previous if accelerate and previous > 0.0 else 0.0
-        go_on(contacts, terms, delta_v, inverse_mass, delassus, ratio if ratio < 1.0 else 0.0)
-        previous = squared
-
-
-@inner_kernel
-def start_sweeps(
-    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus
-) -> None:
-    """Apply the impulses that joints and contacts bring along."""
-    start_joints(delassus.joints, delta_v)
-    warm_start_contacts(contacts, terms, delta_v, inverse_mass, delassus)
-
-
-@inner_kernel
-def sweep_all(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
-    delassus: Delassus,
-) -> tuple[float, float]:  # fmt: skip
-    """One sweep over joints and then contacts; the largest change of a velocity [m/s], and that of calm contacts."""
-    for c in range(contacts.particle.shape[0]):
-        terms.last_impulse[c, 0] = contacts.impulse[c, 0]
-        terms.last_impulse[c, 1] = contacts.impulse[c, 1]
-    largest = sweep_joints(delassus.joints, delta_v)
-    swept, calm = sweep(contacts, terms, velocity, delta_v, inverse_mass, delassus)
-    return max(largest, swept), calm
-
-
-@inner_kernel
-def change_of_sweep(contacts: Contacts, terms: ContactConstraints, joints: Joints) -> float:
-    """The squared change of impulses in the last sweep, in the metric of the responses."""
-    squared = swept_by(joints)
-    for c in range(contacts.particle.shape[0]):
-        jn = contacts.impulse[c, 0] - terms.last_impulse[c, 0]
-        jt = contacts.impulse[c, 1] - terms.last_impulse[c, 1]
-        squared += terms.normal[c] * jn * jn + terms.tangent[c] * jt * jt
-    return squared
-
-
-@inner_kernel
-def go_on(
-    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus,
-    ratio: float,
-) -> None:  # fmt: skip
-    """Go on in the direction of the sweeps before: by so much of it, then the change of the last one is added to it."""
-    # J += ratio p, clamped;  p = ratio p + what the sweep has changed.
-    go_on_with_joints(delassus.joints, delta_v, ratio)
-    for c in range(contacts.particle.shape[0]):
-        old_n = contacts.impulse[c, 0]
-        old_t = contacts.impulse[c, 1]
-        more_n = ratio * terms.search_direction[c, 0]
-        more_t = ratio * terms.search_direction[c, 1]
-        terms.search_direction[c, 0] = more_n + (old_n - terms.last_impulse[c, 0])
-        terms.search_direction[c, 1] = more_t + (old_t - terms.last_impulse[c, 1])
-        new_n = max(0.0, old_n + more_n)
-        most = contacts.friction[c] * new_n
-        new_t = min(most, max(-most, old_t + more_t))
-        if new_n != old_n or new_t != old_t:
-            contacts.impulse[c, 0] = new_n
-            contacts.impulse[c, 1] = new_t
-            push_contact(contacts, c, new_n - old_n, new_t - old_t, terms.surface, delta_v, inverse_mass, delassus)
+                terms.active.slow[c] = False
 
 
 @inner_kernel

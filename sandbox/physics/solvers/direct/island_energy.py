@@ -3,6 +3,12 @@
 The norm is H = KE(v') + PE(x + h v') of bodies and free particles, less 1/2 sum m (v* - v).(v' - v*): then the work of
 forces in the step is that of their impulses at the mean of the velocities v and v', as in free fall. What a step loses
 is stored, up to a limit, in the energy banks of bodies and particles; to push apart what penetrates is paid from there.
+
+Springs and contacts act at v' alone. So where forces do work, an island may have less than it seems by what they do in
+half a step, W = 1/2 sum m (v* - v).v': what begins to sink on springs seems to gain that, less its motion. W - KE(v')
+is lent to the island, and the parting reserves of its members are overdrawn by it until it is lost. What begins to rise
+may bank -W - KE(v'); or that is lent, too, when it is stopped. What is faster than forces make it in a step is lent
+nothing.
 """
 
 import math
@@ -12,9 +18,14 @@ from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
 from sandbox.physics.collision.types import Contacts, weight_of
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.marks import BANK_UNOPENED
-from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH, PENETRATION_SHARE, ContactConstraints
+from sandbox.physics.solvers.contact.gauss_seidel import (
+    CONTACT_SOFTNESS,
+    FASTEST_PUSH,
+    PENETRATION_SHARE,
+    ContactConstraints,
+)
 from sandbox.physics.solvers.direct.energy_bank import (
     BANK_SHARE,
     ENERGY_ROUNDING,
@@ -27,7 +38,7 @@ from sandbox.physics.solvers.direct.energy_bank import (
 from sandbox.physics.solvers.direct.families import find_tension
 from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, IslandWorkspace
 from sandbox.physics.solvers.direct.joint_response import work_of_joints
-from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
+from sandbox.physics.solvers.direct.motion import copy, hold_triangles, kinetic, scale
 from sandbox.physics.solvers.direct.rigid_turn import damp_within
 from sandbox.physics.solvers.direct.system import (
     END_INERTIA,
@@ -128,6 +139,18 @@ def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorksp
 
 
 @inner_kernel
+def _work_ahead(span: Span, rows: Rows) -> float:
+    # What forces do in half a step at v' [J].
+    total = 0.0
+    for r in range(span.first_row, span.last_row):
+        total += rows.mass[r] * (
+            (rows.v_star[r, 0] - rows.start[r, 0]) * rows.v[r, 0]
+            + (rows.v_star[r, 1] - rows.start[r, 1]) * rows.v[r, 1]
+        )
+    return 0.5 * total
+
+
+@inner_kernel
 def measure_body(k: int, span: Span, system: System, workspace: IslandWorkspace, energy: float, h: float) -> None:
     """Store the norm of one body after the step; its motion and springs then have this energy [J]."""
     islands, rows = workspace.islands, system.rows
@@ -137,19 +160,25 @@ def measure_body(k: int, span: Span, system: System, workspace: IslandWorkspace,
     if islands.driven[k]:
         work = work_of_joints(span, rows, workspace.delassus.joints.push)
     work += _work_at_ends(islands.body[k], span, system, workspace, islands.driven[k], h)
-    islands.energy[k] -= work * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
+    factor = 1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0
+    islands.energy[k] -= work * factor
+    islands.ahead[k] = _work_ahead(span, rows) * factor
+    islands.moves[k] = kinetic(span, rows.mass, rows.v) * factor
 
 
 @inner_kernel
 def weigh_body(k: int, span: Span, rows: Rows, islands: BodyIslands) -> None:
-    """Note what one body weighs."""
+    """Note what one body weighs, and what it would seem to gain if it were stopped."""
     islands.mass[k] = 0.0
+    islands.rises[k] = 0.0
     for r in range(span.first_row, span.last_row):
         islands.mass[k] += rows.mass[r]
+        along = rows.start[r, 0] * rows.v_star[r, 0] + rows.start[r, 1] * rows.v_star[r, 1]
+        islands.rises[k] -= 0.5 * rows.mass[r] * along
 
 
 @inner_kernel
-def open_free(islands: BodyIslands, state: State) -> None:
+def open_free(islands: BodyIslands, state: State, start: Floats) -> None:
     """The energies of free particles before the step, and what their banks hold."""
     bodies = islands.counts[BODIES]
     for i in range(islands.counts[MEMBERS] - bodies):
@@ -157,6 +186,7 @@ def open_free(islands: BodyIslands, state: State) -> None:
         k = bodies + i
         islands.mass[k] = state.mass[p]
         ux, uy = islands.given[p, 0], islands.given[p, 1]
+        islands.rises[k] = -0.5 * state.mass[p] * (start[p, 0] * ux + start[p, 1] * uy)
         surface = state.spin[p] * state.radius[p]
         islands.energy0[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
         islands.bank[k] = max(0.0, state.energy_bank[p])
@@ -199,7 +229,7 @@ def _draw(k: int, wanted: float, workspace: IslandWorkspace, system: System, sta
     if k >= islands.counts[BODIES] or not wanted > 0.0:
         return 0.0
     lowest = system.bodies.lowest[islands.body[k]]
-    drawn = min(wanted, state.parting_reserve[lowest])
+    drawn = min(wanted, max(0.0, state.parting_reserve[lowest]))
     state.parting_reserve[lowest] -= drawn
     islands.bank[k] += drawn
     return drawn
@@ -256,8 +286,29 @@ def count_ways(islands: BodyIslands, ways: Slots) -> None:
         ways[islands.way[island]] += 1
 
 
+@inlined_kernel
+def _slot_of(k: int, islands: BodyIslands, system: System) -> int:
+    # The particle that has the bank and the parting reserve of a member.
+    bodies = islands.counts[BODIES]
+    return system.bodies.lowest[islands.body[k]] if k < bodies else islands.free[k - bodies]
+
+
 @inner_kernel
-def check_energies(workspace: IslandWorkspace, state: State, start: Floats) -> bool:
+def _lendable(island: int, islands: BodyIslands, system: System, state: State) -> float:
+    # What may be lent to an island [J]: to what begins to sink, and to what is stopped as it begins to rise.
+    sinks = 0.0
+    rises = 0.0
+    owes = 0.0
+    for k in range(islands.counts[MEMBERS]):
+        if islands.island[k] == island:
+            sinks += islands.ahead[k] - islands.moves[k]
+            rises += islands.rises[k]
+            owes -= min(0.0, state.parting_reserve[_slot_of(k, islands, system)])
+    return max(0.0, max(0.0, sinks) + max(0.0, rises) - owes)
+
+
+@inner_kernel
+def check_energies(workspace: IslandWorkspace, system: System, state: State, start: Floats) -> bool:
     """Check the energy of every island; whether any fails."""
     # Where a free particle gave way, `given` is below what forces left it.
     islands, surface, push = workspace.islands, workspace.terms.surface, workspace.delassus.joints.push
@@ -272,6 +323,9 @@ def check_energies(workspace: IslandWorkspace, state: State, start: Floats) -> b
         work = (ux - start[p, 0]) * (vx - ux) + (uy - start[p, 1]) * (vy - uy)
         turning = surface[p] * surface[p] / SURFACE_WEIGHT
         islands.energy[bodies + i] = 0.5 * state.mass[p] * (vx * vx + vy * vy + turning - work)
+        ahead = (ux - start[p, 0]) * vx + (uy - start[p, 1]) * vy
+        islands.ahead[bodies + i] = 0.5 * state.mass[p] * ahead
+        islands.moves[bodies + i] = 0.5 * state.mass[p] * (vx * vx + vy * vy)
         if push.shape[0] > 0:
             given = push[p, 0] * (start[p, 0] + vx) + push[p, 1] * (start[p, 1] + vy)
             islands.energy[bodies + i] -= 0.5 * given
@@ -279,6 +333,8 @@ def check_energies(workspace: IslandWorkspace, state: State, start: Floats) -> b
         islands.total[islands.island[k]] += islands.energy[k]
         islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.bank[k]
     for island in range(islands.counts[ISLANDS]):
+        islands.lent[island] = _lendable(island, islands, system, state)
+        islands.allowed[island] += islands.lent[island]
         islands.fails[island] = not islands.total[island] <= islands.allowed[island]
     return any_fails(islands)
 
@@ -383,7 +439,7 @@ def damp_islands(workspace: IslandWorkspace, system: System, state: State, start
                     v = islands.given[p, axis] + islands.delta_v[p, axis]
                     islands.delta_v[p, axis] = factor * v - islands.given[p, axis]
                 surface[p] *= factor
-        if not check_energies(workspace, state, start):
+        if not check_energies(workspace, system, state, start):
             break
     for k in range(bodies):
         if islands.due[k]:
@@ -391,26 +447,65 @@ def damp_islands(workspace: IslandWorkspace, system: System, state: State, start
 
 
 @inner_kernel
+def _held(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> float:
+    # What the spring of a contact holds where the step ends [J]: 1/2 k x'^2, k = Cs / Cd K / h^2.
+    normal = terms.normal[c]
+    if not normal > 0.0 or not contacts.impulse[c, 0] > 0.0 or contacts.bounce[c] >= 0.0:
+        return 0.0
+    x = contacts.gap[c] - h * (terms.bias[c] + CONTACT_SOFTNESS * normal * contacts.impulse[c, 0])
+    if not x < 0.0:
+        return 0.0
+    rate = min(-x / h, FASTEST_PUSH / PENETRATION_SHARE)
+    return 0.5 * PENETRATION_SHARE / (CONTACT_SOFTNESS * normal) * rate * rate
+
+
+@inner_kernel
 def _load_limits(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
-    # The most that each bank may hold: a share of the member's energy; or what penetrations cost, of what it has itself
-    # lost: what a light body loses as it hits a heavy one would push that out of what it lies in.
+    # The most that each bank may hold: a share of the member's energy; or by its mass what contacts hold, of what it
+    # has itself lost: what a light body loses as it hits a heavy one would push that out of what it lies in. And of
+    # that what forces take from it as it slowly rises.
     islands, bodies = workspace.islands, workspace.islands.counts[BODIES]
-    for k in range(islands.counts[MEMBERS]):
-        islands.limit[k] = 0.0
+    held = 0.0
     for c in range(contacts.particle.shape[0]):
-        k = _member_of(c, contacts, islands, state.inverse_mass)
-        if k >= 0:
-            islands.limit[k] += _stored(c, contacts, workspace.terms, h)
+        held += _held(c, contacts, workspace.terms, h)
+    mass = 0.0
+    for k in range(islands.counts[MEMBERS]):
+        mass += islands.mass[k]
     for k in range(islands.counts[MEMBERS]):
         share = bank_limit(islands.body[k], system) if k < bodies else BANK_SHARE * islands.energy0[k]
         lost = islands.bank[k] + islands.energy0[k] - islands.energy[k]
-        islands.limit[k] = max(share, min(islands.limit[k], 0.5 * islands.mass[k] * PAID_PUSH * PAID_PUSH, lost))
+        least = min(held / mass, 0.5 * PAID_PUSH * PAID_PUSH) * islands.mass[k]
+        islands.limit[k] = max(share, min(least, lost))
+        islands.limit[k] += max(0.0, min(-islands.ahead[k] - islands.moves[k], lost))
+
+
+@inner_kernel
+def _settle_loans(workspace: IslandWorkspace, system: System, state: State) -> None:
+    # Overdraw reserves by what was lent and used, each by its mass; and pay back from what was lost.
+    islands, reserves = workspace.islands, state.parting_reserve
+    for island in range(islands.counts[ISLANDS]):
+        mass = 0.0
+        for k in range(islands.counts[MEMBERS]):
+            mass += islands.mass[k] if islands.island[k] == island else 0.0
+        islands.allowed[island] -= islands.lent[island]
+        used = min(islands.lent[island], islands.total[island] - islands.allowed[island])
+        for k in range(islands.counts[MEMBERS]):
+            if islands.island[k] != island:
+                continue
+            slot = _slot_of(k, islands, system)
+            if used > 0.0:
+                reserves[slot] -= used * islands.mass[k] / mass
+            else:
+                paid = max(0.0, min(-reserves[slot], islands.allowed[island] - islands.total[island]))
+                reserves[slot] += paid
+                islands.allowed[island] -= paid
 
 
 @inner_kernel
 def store_energies(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
     """Store the rest of each island's allowed energy, up to the limits of its banks."""
     islands, bodies = workspace.islands, system.bodies
+    _settle_loans(workspace, system, state)
     _load_limits(contacts, workspace, system, state, h)
     for k in range(islands.counts[MEMBERS]):
         island = islands.island[k]

@@ -6,6 +6,8 @@ and one more substitution brings the impulses to the whole body. The energy test
 together that touch each other, so that one may take what another gives.
 """
 
+import math
+
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import Contacts, weight_of
@@ -13,18 +15,21 @@ from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, couple_joints
 from sandbox.physics.joints.joint_sweep import gather_push
 from sandbox.physics.solvers.contact.body_impacts import pass_on
-from sandbox.physics.solvers.contact.gauss_seidel import (
-    CALM_SETTLED,
+from sandbox.physics.solvers.contact.contact_solve import (
     change_of_sweep,
-    couple_of,
     go_on,
+    solve_contacts,
+    start_sweeps,
+    sweep_all,
+)
+from sandbox.physics.solvers.contact.gauss_seidel import (
+    CALM,
+    CALM_SETTLED,
+    couple_of,
     load_biases,
     load_responses,
     load_surfaces,
     mark_calm,
-    solve_contacts,
-    start_sweeps,
-    sweep_all,
 )
 from sandbox.physics.solvers.direct.energy_bank import MINIMISED, SLOWED_DOWN, SOLVED_ON, is_new
 from sandbox.physics.solvers.direct.factor import respond, solve_linear
@@ -70,8 +75,15 @@ from sandbox.physics.solvers.direct.joint_response import (
     release_joints,
 )
 from sandbox.physics.solvers.direct.motion import copy, hold_triangles, scale
-from sandbox.physics.solvers.direct.response import load_block
-from sandbox.physics.solvers.direct.rigid_turn import hold_spin, kinetic_at_end, spin_of_body, torque_of
+from sandbox.physics.solvers.direct.response import hold_block, load_block
+from sandbox.physics.solvers.direct.rigid_turn import (
+    add_torque,
+    hold_spin,
+    kinetic_at_end,
+    spin_of_body,
+    torque_of,
+    turn_to,
+)
 from sandbox.physics.solvers.direct.shape_matching import release_shape
 from sandbox.physics.solvers.direct.slow_motion import AHEAD
 from sandbox.physics.solvers.direct.step_body import LINEAR_SOLVES, MISFIT_RATE, open_body
@@ -96,6 +108,11 @@ CALM_SWEEPS = 200
 # Bodies all of whose springs have such Cs and Cd are rigid. Softer ones settle by their springs, over many ticks; with
 # as many sweeps a tick machines take three times as long.
 RIGID = 0.9999
+# And with such they are firm: what they carry is solved exactly. Softer heaps would come to rest later.
+FIRM = 0.5
+# Contacts that press a body by so many times what forces do in a step turn it by as much as it turns, as directions
+# ahead have it: from 60 on it shakes.
+PRESSED = 20.0
 # Solves in which contacts only hold.
 SOLVES_WITHOUT_BIAS = 2
 # Linear solves more, while an island with a joint fails its energy test: wheels turn fast. With none of them a cart of
@@ -104,12 +121,46 @@ DRIVEN_SOLVES = 5
 
 
 @inner_kernel
-def _is_rigid(body: int, system: System, inputs: Inputs) -> bool:
+def _firmness(body: int, system: System, inputs: Inputs) -> float:
+    # The least Cs or Cd of its springs.
+    least = 1.0
     for i in range(system.bodies.spring_start[body], system.bodies.spring_start[body + 1]):
         slot = system.springs.slot[i]
-        if min(inputs.stiffness[slot], inputs.damping[slot]) < RIGID:
-            return False
-    return True
+        least = min(least, inputs.stiffness[slot], inputs.damping[slot])
+    return least
+
+
+@inner_kernel
+def _is_still(k: int, span: Span, system: System, islands: BodyIslands) -> bool:
+    # Whether a body that turns as a whole and is pressed is slow where it is linearised.
+    if not islands.pressed[k] or not spin_of_body(islands.body[k], system).inertia > 0.0:
+        return False
+    v = system.rows.v
+    fastest = 0.0
+    for r in range(span.first_row, span.last_row):
+        fastest = max(fastest, v[r, 0] * v[r, 0] + v[r, 1] * v[r, 1])
+    return fastest <= CALM * CALM
+
+
+@inner_kernel
+def _find_pressed(contacts: Contacts, system: System, islands: BodyIslands) -> None:
+    # Which bodies, on which no joint acts, contacts press by far more than forces do.
+    rows = system.rows
+    for k in range(islands.counts[BODIES]):
+        islands.misfit[k] = 0.0
+    for c in range(contacts.particle.shape[0]):
+        for end in range(3):
+            p, weight = weight_of(contacts, c, end)
+            if p >= 0 and islands.row[p] >= 0:
+                islands.misfit[islands.member[p]] += abs(weight) * contacts.impulse[c, 0]
+    for k in range(islands.counts[BODIES]):
+        span = span_of(system, islands.body[k])
+        own = 0.0
+        for r in range(span.first_row, span.last_row):
+            x = rows.v_star[r, 0] - rows.start[r, 0]
+            y = rows.v_star[r, 1] - rows.start[r, 1]
+            own += rows.mass[r] * math.sqrt(x * x + y * y)
+        islands.pressed[k] = islands.misfit[k] > PRESSED * own and not islands.driven[k]
 
 
 @inner_kernel
@@ -123,12 +174,14 @@ def _open(
         span = span_of(system, body)
         islands.fresh[k] = is_new(span, system, state.energy_bank)
         open_body(body, span, system, state, inputs, 0.0, auto_substeps, h)
-        islands.rigid[k] = _is_rigid(body, system, inputs)
+        firmness = _firmness(body, system, inputs)
+        islands.rigid[k] = firmness >= RIGID
+        islands.firm[k] = firmness >= FIRM
         weigh_body(k, span, system.rows, islands)
         islands.energy0[k] = bodies.energy0[body]
         islands.bank[k] = bodies.bank[body]
         islands.due[k] = True
-    open_free(islands, state)
+    open_free(islands, state, inputs.start)
 
 
 @inner_kernel
@@ -140,11 +193,16 @@ def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: floa
             continue
         body = islands.body[k]
         span = span_of(system, body)
+        islands.still[k] = not islands.by_mass[k] and _is_still(k, span, system, islands)
         linearise(span, system, h, ahead, behind)
         solve_linear(span, system)
         _leave_unpushed(span, system.rows, islands.unpushed)
         if not islands.by_mass[k]:
             load_block(k, span, system, delassus, islands.row, islands.pushed)
+        if islands.still[k]:
+            spin = spin_of_body(body, system)
+            turn_to(span, system.rows, spin, spin.momentum, islands.unpushed)
+            hold_block(k, span, system, spin, delassus, islands.row, islands.pushed)
         if islands.driven[k]:
             load_answers(span, system, delassus.joints, islands.row, islands.pushed)
         for i in range(delassus.start[k], delassus.start[k + 1]):
@@ -212,25 +270,28 @@ def _load_push(islands: BodyIslands, joints: Joints) -> None:
 @inner_kernel
 def _push_all(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, sweeps: int, most: int,
-    accelerate: bool, begins: bool, h: float,
+    affordable: int, accelerate: bool, begins: bool, h: float,
 ) -> int:  # fmt: skip
-    # Sweep an island's contacts and joints, and look for impacts before where the step begins; how many sweeps. The
-    # impulses J^T lambda of bodies are left in `pushed`.
+    # Sweep an island's contacts and joints, and look for impacts before where the step begins; what it took, in sweeps.
+    # The impulses J^T lambda of bodies are left in `pushed`.
     islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
     inverse_mass = state.inverse_mass
     load_responses(contacts, terms, inverse_mass, delassus)
     couple_joints(delassus.joints)
     _clear(islands, system, terms.surface, state)
     if begins:
-        mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid)
+        mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid, islands.firm)
         pass_on(contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, h)
     # Passes only look ahead, but push joints as well.
     load_velocities(islands, delassus.joints)
+    # Sweeps that are not hastened take energy, each of them; and joints change what an exact solve has found.
+    exactly = float(affordable) if accelerate and delassus.joints.listed.shape[0] == 0 else 0.0
     if has_coarse(islands):
         done = _sweep_by_mass(contacts, workspace, system, state, min(SWEEPS_BY_MASS, most))
     else:
         done = solve_contacts(
-            contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, accelerate
+            contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, exactly,
+            float(_cost_of(contacts, workspace, system)), accelerate,
         )  # fmt: skip
     _load_push(islands, delassus.joints)
     _add_push(contacts, islands)
@@ -262,8 +323,10 @@ def _sweep_by_mass(
     previous = 0.0
     for done in range(1, sweeps + 1):
         start_sweeps(contacts, terms, islands.delta_v, state.inverse_mass, delassus)
-        largest, _ = sweep_all(contacts, terms, islands.given, islands.delta_v, state.inverse_mass, delassus)
-        if largest < CALM_SETTLED or done == sweeps:
+        of_joints, swept, _ = sweep_all(
+            contacts, terms, islands.given, islands.delta_v, state.inverse_mass, delassus
+        )  # fmt: skip
+        if max(of_joints, swept) < CALM_SETTLED or done == sweeps:
             return done
         squared = change_of_sweep(contacts, terms, delassus.joints)
         ratio = squared / previous if squared < previous else 0.0
@@ -303,14 +366,19 @@ def _answer(workspace: IslandWorkspace, system: System, state: State, h: float) 
     for k in range(islands.counts[BODIES]):
         span = span_of(system, islands.body[k])
         spin = spin_of_body(islands.body[k], system)
-        momentum = spin.momentum + torque_of(span, rows, spin, islands.pushed)
+        torque = torque_of(span, rows, spin, islands.pushed)
+        still = islands.still[k]
+        if still:
+            add_torque(span, rows, spin, -torque, islands.pushed)
         respond(span, system, islands.pushed)
+        if still:
+            turn_to(span, rows, spin, 0.0, islands.pushed)
         for r in range(span.first_row, span.last_row):
             for axis in range(2):
                 v = islands.unpushed[r, axis] + islands.pushed[r, axis]
                 rows.delta_v[r, axis] = v - rows.v[r, axis]
                 rows.v[r, axis] = v
-        hold_spin(span, rows, spin, system.bodies.pivot[islands.body[k]] >= 0, True, momentum, h)
+        hold_spin(span, rows, spin, system.bodies.pivot[islands.body[k]] >= 0, not still, spin.momentum + torque, h)
         elastic, misfit, _ = update(span, system, h)
         keep_tension(span, system)
         clamped = clamp_rows(span, rows, state, h)
@@ -363,12 +431,12 @@ def _push_and_test(
     # Push what was linearised through its contacts and joints, and test it; how many sweeps the step may still have.
     sweeps = max(FEWEST_SWEEPS, min(SWEEPS, affordable))
     most = max(sweeps, min(CALM_SWEEPS, affordable))
-    done = _push_all(contacts, workspace, system, state, sweeps, most, accelerate, begins, h)
+    done = _push_all(contacts, workspace, system, state, sweeps, most, affordable, accelerate, begins, h)
     if begins:
         credit_penetration(contacts, workspace, state.inverse_mass, h)
         draw_on_reserves(contacts, workspace, system, state)
     _answer(workspace, system, state, h)
-    check_energies(workspace, state, start)
+    check_energies(workspace, system, state, start)
     return affordable - done
 
 
@@ -472,6 +540,7 @@ def _solve_island(
     islands, start = workspace.islands, inputs.start
     load_biases(contacts, workspace.terms, h)
     _open(workspace, system, state, inputs, auto_substeps, h)
+    _find_pressed(contacts, system, islands)
     affordable = int(WORK * h) // max(1, _cost_of(contacts, workspace, system))
     affordable = _solve_linearly(contacts, workspace, system, state, start, affordable, h)
     if any_fails(islands):

@@ -31,13 +31,15 @@ class BodyIslands(NamedTuple):
     """The bodies and free particles that contacts touch or joints act on, in this order the members of islands.
 
     There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
-    particles. By member: island, mass [kg], bank, energies where the step begins (energy0) and ends (energy), limit
+    particles. By member: island, mass [kg], bank, energies where the step begins (energy0) and ends (energy), limit,
+    ahead, moves: the work of forces in half a step at v', and KE(v'), rises: what it seems to gain if it is stopped
     [J]; fresh: its bank is begun for all of it. By particle (n,): member, -1: none, row in the matrix, -1: none; given,
     delta_v [m/s]: velocities without contacts, and what those add. By touched body: misfit; due: to be solved again;
-    rigid: all its springs are; driven: a joint acts on it; by_mass: it has no block, see DEAREST_BLOCK. By island:
-    total, allowed [J], fails; held: something outside holds it; parts: something in it overlaps deeply; excess [J]:
-    what it had too much, see giving_way.py; way: see energy_bank.py. By row: unpushed [m/s] = velocities without
-    contacts, pushed [m/s] = what contacts and joints add. label, root, marked: scratch.
+    rigid, firm: all its springs are; pressed: contacts press it by far more than forces do, and no joint acts on it;
+    still: pressed and slow; driven: a joint acts on it; by_mass: it has no block, see DEAREST_BLOCK. By island: total,
+    allowed, lent [J], see island_energy.py, fails; held: something outside holds it; parts: something in it overlaps
+    deeply; excess [J]: what it had too much, see giving_way.py; way: see energy_bank.py. By row: unpushed [m/s] =
+    velocities without contacts, pushed [m/s] = what contacts and joints add. label, root, marked: scratch.
 
     Of all islands together bodies and free particles lie island by island; `alone` is one of them, its members numbered
     by themselves as those of the only island there is: so are `member` and the blocks of bodies.
@@ -54,14 +56,21 @@ class BodyIslands(NamedTuple):
     bank: Floats
     energy: Floats
     limit: Floats
+    ahead: Floats
+    moves: Floats
+    rises: Floats
     fresh: Flags
     misfit: Floats
     due: Flags
     rigid: Flags
+    firm: Flags
+    pressed: Flags
+    still: Flags
     driven: Flags
     by_mass: Flags
     total: Floats
     allowed: Floats
+    lent: Floats
     fails: Flags
     held: Flags
     parts: Flags
@@ -105,10 +114,11 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
         new_slots(arena, COUNTED), new_slots(arena, bodies), new_slots(arena, particles), new_slots(arena, members),
         new_slots(arena, particles), new_slots(arena, particles), new_floats(arena, members),
         new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_floats(arena, members),
-        new_flags(arena, members), new_floats(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
-        new_flags(arena, bodies), new_flags(arena, bodies), new_floats(arena, members), new_floats(arena, members),
-        new_flags(arena, members), new_flags(arena, members), new_flags(arena, members), new_floats(arena, members),
-        new_slots(arena, members),
+        new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_flags(arena, members),
+        new_floats(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
+        new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies), new_flags(arena, bodies),
+        new_floats(arena, members), new_floats(arena, members), new_floats(arena, members), new_flags(arena, members),
+        new_flags(arena, members), new_flags(arena, members), new_floats(arena, members), new_slots(arena, members),
         new_float_rows(arena, free_rows, 2), new_float_rows(arena, free_rows, 2), new_float_rows(arena, particles, 2),
         new_float_rows(arena, particles, 2), new_slots(arena, members), new_slots(arena, members),
         new_flags(arena, particles),
@@ -378,8 +388,10 @@ def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
     joints = delassus.joints
     islands = BodyIslands(
         lists.counts[COUNTED * i : COUNTED * (i + 1)], w.body[b:c], w.free[f:g], w.island[k:m], w.member, w.row,
-        w.mass[k:m], w.energy0[k:m], w.bank[k:m], w.energy[k:m], w.limit[k:m], w.fresh[k:m], w.misfit[b:c], w.due[b:c],
-        w.rigid[b:c], w.driven[b:c], w.by_mass[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.fails[i : i + 1],
+        w.mass[k:m], w.energy0[k:m], w.bank[k:m], w.energy[k:m], w.limit[k:m], w.ahead[k:m], w.moves[k:m],
+        w.rises[k:m], w.fresh[k:m], w.misfit[b:c], w.due[b:c], w.rigid[b:c], w.firm[b:c], w.pressed[b:c], w.still[b:c],
+        w.driven[b:c], w.by_mass[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.lent[i : i + 1],
+        w.fails[i : i + 1],
         w.held[i : i + 1], w.parts[i : i + 1], w.excess[i : i + 1], w.way[i : i + 1], w.unpushed, w.pushed, w.given,
         w.delta_v, w.label, w.root, w.marked,
     )  # fmt: skip

@@ -4,9 +4,11 @@ It says how particles P that contacts touch answer to impulses.
 """
 
 from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.geometry.rigid import RigidMotion
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.solvers.contact.gauss_seidel import Delassus
 from sandbox.physics.solvers.direct.factor import respond
+from sandbox.physics.solvers.direct.rigid_turn import add_torque
 from sandbox.physics.solvers.direct.system import Constraints, Span, System
 from sandbox.physics.solvers.linear.fronts import ONE, TWO, ZERO, subtract_pair
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
@@ -32,6 +34,38 @@ def load_block(k: int, span: Span, system: System, delassus: Delassus, row: Slot
     _forward(k, span, matrix, delassus, row)
     _gather(k, span, matrix, delassus, row)
     _take_out_wide(k, span, system.constraints, delassus, row)
+
+
+@inner_kernel
+def hold_block(
+    k: int, span: Span, system: System, spin: RigidMotion, delassus: Delassus, row: Slots, vector: Floats
+) -> None:  # fmt: skip
+    """Let the block of a body answer with the spin that impulses give it.
+
+    Directions ahead turn what is pressed, so that A^-1 gives another; contacts would not hold once that is put right.
+    """
+    # W' = (1 - e e^T M / I) W (1 - M e e^T / I) + e e^T / I,  e the velocities of a turn at rate 1;  z = A^-1 M e
+    rows, numbers = system.rows, delassus.numbers
+    first, base = delassus.start[k], delassus.base[k]
+    points = delassus.start[k + 1] - first
+    for r in range(span.first_row, span.last_row):
+        vector[r, 0] = vector[r, 1] = 0.0
+    add_torque(span, rows, spin, spin.inertia, vector)
+    respond(span, system, vector)
+    given = 0.0
+    for r in range(span.first_row, span.last_row):
+        dx = rows.position[r, 0] - spin.x
+        dy = rows.position[r, 1] - spin.y
+        given += rows.mass[r] * (dx * vector[r, 1] - dy * vector[r, 0])
+    both = (1.0 + given / spin.inertia) / spin.inertia
+    for i in range(2 * points):
+        here = row[delassus.point[first + i // 2]]
+        e = rows.position[here, 0] - spin.x if i % 2 == 1 else spin.y - rows.position[here, 1]
+        z = vector[here, i % 2] / spin.inertia
+        for j in range(2 * points):
+            there = row[delassus.point[first + j // 2]]
+            f = rows.position[there, 0] - spin.x if j % 2 == 1 else spin.y - rows.position[there, 1]
+            numbers[base + 2 * points * i + j] += both * e * f - z * f - e * vector[there, j % 2] / spin.inertia
 
 
 @inner_kernel

@@ -303,6 +303,29 @@ def torque_of(span: Span, rows: Rows, spin: RigidMotion, impulse: Floats) -> flo
 
 
 @inner_kernel
+def turn_to(span: Span, rows: Rows, spin: RigidMotion, momentum: float, vector: Floats) -> None:
+    """Turn velocities (n, 2) [m/s] until they have this angular momentum; for what is slow."""
+    missing = momentum
+    for r in range(span.first_row, span.last_row):
+        dx = rows.position[r, 0] - spin.x
+        dy = rows.position[r, 1] - spin.y
+        missing -= rows.mass[r] * (dx * vector[r, 1] - dy * vector[r, 0])
+    turn = missing / spin.inertia
+    for r in range(span.first_row, span.last_row):
+        vector[r, 0] -= turn * (rows.position[r, 1] - spin.y)
+        vector[r, 1] += turn * (rows.position[r, 0] - spin.x)
+
+
+@inner_kernel
+def add_torque(span: Span, rows: Rows, spin: RigidMotion, torque: float, vector: Floats) -> None:
+    """Add the impulses (n, 2) [N s] to which what is rigid answers by turning alone."""
+    rate = torque / spin.inertia
+    for r in range(span.first_row, span.last_row):
+        vector[r, 0] -= rows.mass[r] * rate * (rows.position[r, 1] - spin.y)
+        vector[r, 1] += rows.mass[r] * rate * (rows.position[r, 0] - spin.x)
+
+
+@inner_kernel
 def hold_spin(span: Span, rows: Rows, spin: RigidMotion, pivots: bool, aims: bool, momentum: float, h: float) -> None:
     """Turn where `v` leads to, as a whole, until it has this angular momentum: nothing within a body turns it.
 

@@ -1,0 +1,114 @@
+"""Memory of the exact active set of contacts (active_solve.py), and L D L^T of its matrix within an envelope."""
+
+import math
+from typing import NamedTuple
+
+from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_slot_rows, new_slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.jit import inner_kernel
+
+# What one matrix may cost, for which there has to be room: the sum of the squares of the lengths of its rows.
+MOST_PRODUCTS = 4e6
+# A pivot below this share of its diagonal is none: that row follows from those before it.
+SMALLEST_PIVOT = 1e-12
+
+
+class ActiveSet(NamedTuple):
+    """Scratch of the exact solve of one island's contacts that carry and stick.
+
+    Nodes are the blocks of the Delassus operator, then particles. By node: its contacts as a list: the place head, -1:
+    none, of the first, from which following leads to the next; rank in a walk. A place is 3 contact + end. queue: nodes
+    by rank. By contact: slow: all that it touches is, and firm. order (k,): slow contacts along the walk. By contact:
+    row (2 k,) of its normal and tangent, -1: at its bound; state (k, 2) as in active_rows.py; u [m/s] (k, 2); bound,
+    centre [N s]: friction that it goes to, and that from which sticking is soft; best [N s] (k, 2): the impulses that
+    miss least. By row: of_row = 2 contact + axis, the matrix [1/kg] from start on, its first column, pivot, rhs.
+    answer, turned [m/s]: velocities by particle that an impulse of 1 gives, else 0.
+    """
+
+    head: Slots
+    following: Slots
+    rank: Slots
+    queue: Slots
+    slow: Flags
+    order: Slots
+    row: Slots
+    state: SlotRows
+    u: FloatRows
+    bound: Floats
+    centre: Floats
+    best: FloatRows
+    of_row: Slots
+    start: Slots
+    first: Slots
+    pivot: Floats
+    rhs: Floats
+    matrix: Floats
+    answer: FloatRows
+    turned: Floats
+
+
+@inner_kernel
+def new_active_set(count: int, particles: int, arena: Arena) -> ActiveSet:
+    """Room for so many contacts of so many particles."""
+    rows = 2 * count
+    touched = particles if count > 0 else 0
+    # (sum of lengths)^2 <= rows times the sum of their squares.
+    room = rows + int(math.sqrt(MOST_PRODUCTS * rows)) + 1 if count > 0 else 0
+    return ActiveSet(
+        new_slots(arena, 2 * touched), new_slots(arena, 3 * count), new_slots(arena, 2 * touched),
+        new_slots(arena, 2 * touched), new_flags(arena, count), new_slots(arena, count), new_slots(arena, rows),
+        new_slot_rows(arena, count, 2), new_float_rows(arena, count, 2), new_floats(arena, count),
+        new_floats(arena, count), new_float_rows(arena, count, 2), new_slots(arena, rows), new_slots(arena, rows + 1),
+        new_slots(arena, rows), new_floats(arena, rows), new_floats(arena, rows), new_floats(arena, room),
+        new_float_rows(arena, touched, 2), new_floats(arena, touched),
+    )  # fmt: skip
+
+
+@inner_kernel
+def factor_envelope(rows: int, at: ActiveSet) -> None:
+    """L D L^T in place: row i of L from first[i] on, D apart."""
+    m, first, start, pivot = at.matrix, at.first, at.start, at.pivot
+    for i in range(rows):
+        si = start[i] - first[i]
+        for j in range(first[i], i):
+            sj = start[j] - first[j]
+            k = max(first[i], first[j])
+            # Four sums, which do not wait for each other.
+            a = m[si + j]
+            b = 0.0
+            c = 0.0
+            d = 0.0
+            while k + 4 <= j:
+                a -= m[si + k] * m[sj + k]
+                b -= m[si + k + 1] * m[sj + k + 1]
+                c -= m[si + k + 2] * m[sj + k + 2]
+                d -= m[si + k + 3] * m[sj + k + 3]
+                k += 4
+            while k < j:
+                a -= m[si + k] * m[sj + k]
+                k += 1
+            # L_ij D_j for now.
+            m[si + j] = (a + b) + (c + d)
+        whole = m[si + i]
+        left = whole
+        for j in range(first[i], i):
+            held = m[si + j]
+            m[si + j] = held / pivot[j] if pivot[j] > 0.0 else 0.0
+            left -= held * m[si + j]
+        pivot[i] = left if left > SMALLEST_PIVOT * whole else 0.0
+
+
+@inner_kernel
+def solve_envelope(rows: int, at: ActiveSet) -> None:
+    """Solve for the right side, in place."""
+    m, first, start, pivot, x = at.matrix, at.first, at.start, at.pivot, at.rhs
+    for i in range(rows):
+        s = start[i] - first[i]
+        for j in range(first[i], i):
+            x[i] -= m[s + j] * x[j]
+    for i in range(rows):
+        x[i] = x[i] / pivot[i] if pivot[i] > 0.0 else 0.0
+    for i in range(rows - 1, -1, -1):
+        s = start[i] - first[i]
+        for j in range(first[i], i):
+            x[j] -= m[s + j] * x[i]
