@@ -18,6 +18,7 @@ from sandbox.physics.collision.edge_geometry import (
     place_on,
     time_to_circle,
 )
+from sandbox.physics.collision.hollows import go_on_ahead, is_loose, rises_ahead
 from sandbox.physics.collision.seams import is_seam, passes_beside
 from sandbox.physics.collision.types import MOST_NEAR, Colliders, Contacts, Near
 from sandbox.physics.equation import SHORTEST
@@ -99,6 +100,7 @@ def add_contact(
         contacts.normal[count, 0] = nx
         contacts.normal[count, 1] = ny
         contacts.gap[count] = gap
+        contacts.ahead[count] = False
         # Friction: the geometric mean, so that ice is slippery for all; restitution: the livelier of the two.
         contacts.friction[count] = math.sqrt(colliders.friction[p] * colliders.friction[surface])
         contacts.restitution[count] = max(colliders.restitution[p], colliders.restitution[surface])
@@ -161,7 +163,7 @@ def find_near(p: int, e: int, colliders: Colliders, near: Near, count: int) -> i
     """Note where the particle lies to an edge that it may touch; the number of edges noted then."""
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
-    if count >= MOST_NEAR or a == p or b == p or not may_collide(p, a, colliders):
+    if a == p or b == p or not may_collide(p, a, colliders):
         return count
     if colliders.inverse_mass[p] + colliders.inverse_mass[a] + colliders.inverse_mass[b] == 0.0:
         return count
@@ -176,13 +178,21 @@ def find_near(p: int, e: int, colliders: Colliders, near: Near, count: int) -> i
         _, distance, _, _ = closest_on_segment(p, a, b, colliders.origin)
         if distance <= reach:
             return count
-    near.edge[count] = e
     share, distance, signed, region = closest_on_segment(p, a, b, colliders.position)
-    near.share[count] = share
-    near.distance[count] = distance
-    near.signed[count] = signed
-    near.region[count] = region
-    return count + 1
+    at = count
+    if count == MOST_NEAR:
+        at = 0
+        for i in range(1, count):
+            if near.distance[i] > near.distance[at]:
+                at = i
+        if distance >= near.distance[at]:
+            return count
+    near.edge[at] = e
+    near.share[at] = share
+    near.distance[at] = distance
+    near.signed[at] = signed
+    near.region[at] = region
+    return min(MOST_NEAR, count + 1)
 
 
 @inner_kernel
@@ -431,6 +441,7 @@ def _collide_outside(
     met_x = 0.0
     met_y = 0.0
     met_gap = 0.0
+    begun = count
     for j in range(first, edges):
         e = near.edge[j]
         a = colliders.edge_a[e]
@@ -444,6 +455,7 @@ def _collide_outside(
         travel = math.sqrt(wx * wx + wy * wy)
         gap = near.distance[j] - reach
         fast = travel > FAST * reach
+        touches = False
         ahead = 0.0 if fast else travel
         if not fast and e < dynamic and gap > MARGIN * reach + travel:
             x = colliders.position[p, 0] - place_on(e, part, 0, colliders)
@@ -456,10 +468,33 @@ def _collide_outside(
         elif fast:
             x, y = colliders.position[p, 0], colliders.position[p, 1]
             when, share, nx, ny, gap = _sweep_edge(p, x, y, e, wx, wy, reach, near.signed[j], colliders, near, edges)
+            touches = when <= 1.0
             if when < soonest:
                 soonest, met, met_share, met_x, met_y, met_gap = when, e, share, nx, ny, gap
+        if not touches and near.region[j] != 0 and is_loose(p, colliders):
+            count = _collide_ahead(p, j, wx, wy, colliders, near, edges, dynamic, contacts, count)
+    if count > begun and is_loose(p, colliders):
+        go_on_ahead(way_x, way_y, begun, min(count, contacts.particle.shape[0]), contacts)
     if met >= 0:
         count = _add_edge(p, met, met_share, met_x, met_y, met_gap, colliders, dynamic, contacts, count)
+    return count
+
+
+@inner_kernel
+def _collide_ahead(
+    p: int, j: int, wx: float, wy: float, colliders: Colliders, near: Near, edges: int, dynamic: int,
+    contacts: Contacts, count: int,
+) -> int:  # fmt: skip
+    # The next edges of a hollow push where they begin; what meets another before them does not bounce off them.
+    rises, nx, ny, gap, is_met = rises_ahead(p, j, wx, wy, colliders, near, edges)
+    if not rises:
+        return count
+    added = count
+    count = _add_edge(p, near.edge[j], near.share[j], nx, ny, gap, colliders, dynamic, contacts, count)
+    if added < contacts.particle.shape[0]:
+        contacts.ahead[added] = True
+        if not is_met:
+            contacts.restitution[added] = 0.0
     return count
 
 

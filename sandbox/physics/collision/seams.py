@@ -3,6 +3,7 @@
 import math
 
 from sandbox.physics.collision.edge_geometry import is_covered
+from sandbox.physics.collision.hollows import is_hollow
 from sandbox.physics.collision.types import Colliders, Near
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.geometry.segment import segment_of
@@ -79,4 +80,5 @@ def passes_beside(
     v = a if share < 0.0 else b
     x = colliders.position[p, 0] + when * wx
     y = colliders.position[p, 1] + when * wy
-    return is_covered(e, v, x, y, colliders) or is_seam(p, e, v, x, y, colliders, near, edges)
+    goes_on = is_covered(e, v, x, y, colliders) or is_seam(p, e, v, x, y, colliders, near, edges)
+    return goes_on and not is_hollow(p, e, v, colliders, near, edges)

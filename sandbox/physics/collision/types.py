@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.arena import Arena, new_float_rows, new_floats, new_int32s, new_slots
+from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_int32s, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
 
@@ -74,6 +74,8 @@ class Contacts(NamedTuple):
     Of its particle and of the other disc (k, 2): turning [1/kg], arm = that of friction over the radius, ratio = the
     smaller radius over its own; and their rolling resistance. couple (k, 2): what an impulse across does to an edge as
     well, on whose surface it acts: that times the impulse is added to end_a and taken from end_b.
+
+    ahead: it is with an edge of a hollow that a disc comes to from others, on which it lies (seams.py).
     """
 
     particle: Slots
@@ -93,6 +95,7 @@ class Contacts(NamedTuple):
     rolling: Floats
     couple: FloatRows
     impact: Floats
+    ahead: Flags
 
 
 class KeptContacts(NamedTuple):
@@ -129,6 +132,7 @@ def contacts_between(contacts: Contacts, first: int, last: int) -> Contacts:
         b.normal[first:last], b.gap[first:last], b.friction[first:last], b.restitution[first:last],
         b.bounce[first:last], b.impulse[first:last], b.turning[first:last], b.arm[first:last], b.ratio[first:last],
         b.rolling[first:last], b.couple[first:last], b.impact[first:last],
+        b.ahead[first:last],
     )  # fmt: skip
 
 
@@ -141,6 +145,7 @@ def new_contacts(arena: Arena, count: int) -> Contacts:
         new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, count, 2),
         new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
         new_floats(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count),
+        new_flags(arena, count),
     )  # fmt: skip
 
 

@@ -26,9 +26,10 @@ ALONG_CENTRES = 1e-12
 
 # Columns of a contact constraint, a row that lies together. What every iteration reads of it: normal; gap [m] by now;
 # impulse [N s] of a small step along, bounce [m/s], and the way of its normal: FOLLOWS the centres of discs, is COMING
-# where they are followed along their way and have not met yet, STANDS where one of those is pinned, or is no disc.
+# where they are followed along their way and have not met yet, STANDS where one of those is pinned, or is no disc, and
+# RISES so where that is an edge of a hollow that the particle comes to within the step.
 NX, NY, GAP, ALONG, BOUNCE, WAY = range(6)
-FOLLOWS, COMING, STANDS = 0.0, 1.0, 2.0
+FOLLOWS, COMING, STANDS, RISES = 0.0, 1.0, 2.0, 3.0
 # And where it pushes: impulse across, friction, effective mass [kg] along and across, weight [1/kg] of its particles
 # and of their surfaces (0: it does not turn), the arm of friction as a share of the radii; rolling resistance, its
 # effective mass [kg], the smaller radius over each one's, and that times its TURN.
@@ -56,9 +57,10 @@ class FreeContactScratch(NamedTuple):
     level goes on. By island: begin (g + 1,) = its first place; steps, hardness (g,); alone (g,) = whether nothing is
     solved beside it; allowed [J] (g,) = the energy that it may end with; beside (g,) = the islands that are solved side
     by side. By place: particle, weight [1/kg], turning [1/kg] = the weight of its surface, motion (m, 8), see the
-    columns, gain [m/s] (m, 2) = what forces add to the velocity in the step, highest = level so far; what cannot move
-    has a place for each contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than
-    h v' each particle has gone in the step. There is room for more.
+    columns, gain [m/s] (m, 2) = what forces add to the velocity in the step, highest = level so far; turned [s]: when
+    in a small step it has met an edge that rises, 0: it has not; onto: that constraint; what cannot move has a place
+    for each contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than h v' each
+    particle has gone in the step. There is room for more.
 
     Of impacts (impacts.py), by place: added [m/s] (m, 2) = what has been added in this small step; stamp, since: the
     pass that it was hit in, and when [s]; first [s]: when its first hit of a pass is. By hit: hit = the constraint;
@@ -100,6 +102,8 @@ class FreeContactScratch(NamedTuple):
     last_across: Floats
     last: Floats
     first: Floats
+    turned: Floats
+    onto: Slots
 
 
 @inner_kernel
@@ -115,6 +119,7 @@ def _place_of(
     work.turning[count] = colliders.turning[p]
     work.highest[count] = 0
     work.stamp[count] = 0
+    work.turned[count] = 0.0
     for axis in range(2):
         work.added[count, axis] = 0.0
         work.motion[count, VX + axis] = start[p, axis]
@@ -137,6 +142,7 @@ def _place_of_edge(contacts: Contacts, c: int, start: Floats, work: FreeContactS
     work.turning[count] = 0.0
     work.highest[count] = 0
     work.stamp[count] = 0
+    work.turned[count] = 0.0
     work.added[count, 0] = 0.0
     work.added[count, 1] = 0.0
     for column in range(8):
@@ -159,7 +165,7 @@ def _way_of(contacts: Contacts, c: int, colliders: Colliders) -> float:
     # Discs that are followed along their way will meet with their centres along the normal, but do not lie so yet.
     p, q = contacts.particle[c], _disc_of(contacts, c)
     if q < 0:
-        return STANDS
+        return RISES if contacts.ahead[c] else STANDS
     dx, dy = difference(q, p, colliders.position)
     reach = colliders.radius[p] + colliders.radius[q]
     if not abs(contacts.normal[c, 0] * dy - contacts.normal[c, 1] * dx) > ALONG_CENTRES * reach:
@@ -337,5 +343,5 @@ def new_work(particles: int, contacts: int, arena: Arena) -> FreeContactScratch:
         new_slots(arena, places), new_floats(arena, places), new_slots(arena, contacts), new_floats(arena, contacts),
         new_floats(arena, contacts), new_floats(arena, contacts), new_floats(arena, contacts),
         new_floats(arena, contacts), new_floats(arena, contacts), new_floats(arena, contacts),
-        new_floats(arena, contacts), new_floats(arena, places),
+        new_floats(arena, contacts), new_floats(arena, places), new_floats(arena, places), new_slots(arena, places),
     )  # fmt: skip

@@ -30,6 +30,7 @@ from sandbox.physics.solvers.contact.free_constraints import (
     ARM,
     BOUNCE,
     COMING,
+    FOLLOWS,
     FRICTION,
     GAP,
     HARDNESS,
@@ -42,6 +43,7 @@ from sandbox.physics.solvers.contact.free_constraints import (
     PUSHED_SURFACE,
     PUSHED_X,
     PUSHED_Y,
+    RISES,
     SURFACE,
     TURN_P,
     TURN_Q,
@@ -109,6 +111,15 @@ def _begin(work: FreeContactScratch, count: int, scale: float) -> None:
 
 
 @inlined_kernel
+def _borne(work: FreeContactScratch, c: int, p: int, along: float, rate: float, pushes: bool) -> float:
+    # The share of its impulse that a contact keeps which a particle has left for an edge that rises; 0: it has not. It
+    # has borne the particle until then, and velocities stand half a step behind.
+    if not along > 0.0 or work.turned[p] == 0.0 or work.onto[p] == c or work.constraint[c, WAY] == FOLLOWS:
+        return 0.0
+    return 1.0 if pushes else min(1.0, work.turned[p] * rate + 0.5)
+
+
+@inlined_kernel
 def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, skips: bool) -> int:
     # One Gauss-Seidel iteration over contacts as they were looked at. pushes: what overlaps is pushed apart, softly;
     # with the impulses of the other iteration of a small step the next one starts. skips: what meets fast is an impact,
@@ -119,11 +130,11 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
     displaced = False
     hits = 0
     for c in range(count):
-        if displaced:
-            look(work, c, c + 1)
         i = unsigned(c)
         p = unsigned(end[i, 0])
         q = unsigned(end[i, 1])
+        if displaced or work.turned[p] + work.turned[q] > 0.0:
+            look(work, c, c + 1)
         ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
         late = 0.0
         if row[i, WAY] == COMING:
@@ -136,6 +147,12 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
         old = row[i, ALONG]
         bounce = row[i, BOUNCE]
         bias, hard = _bias(bounce, gap, rate, row[i, HARDNESS], pushes)
+        if row[i, WAY] == RISES and gap > 0.0 and old == 0.0 and along >= -SLOWEST_BOUNCE:
+            if not pushes or -small * along <= gap:
+                continue
+            late, bias = -gap / along, 0.0
+            work.turned[p] = late if work.turned[p] == 0.0 else min(late, work.turned[p])
+            work.onto[p] = c
         if old == 0.0 and along + bias >= 0.0:
             continue
         if skips and along < -SLOWEST_BOUNCE:
@@ -147,7 +164,8 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
                 continue
         arm = row[i, ARM]
         mass = row[i, MASS] * hard
-        new = max(0.0, (old * hard - bias * mass) - along * mass)
+        borne = _borne(work, c, p, along, rate, pushes)
+        new = max(old * borne, (old * hard - bias * mass) - along * mass)
         most = row[i, FRICTION] * new
         last = row[i, ACROSS]
         slip = nx * uy - ny * ux - arm * (motion[p, SURFACE] + motion[q, SURFACE])
@@ -155,7 +173,9 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
         row[i, ALONG] = new
         row[i, ACROSS] = across
         apply(work, i, nx, ny, new - old, across - last, arm, late, not pushes and new > 0.0)
-        if not pushes and new > 0.0:
+        if borne > 0.0 and not pushes:
+            row[i, ALONG], row[i, ACROSS] = 0.0, 0.0
+        elif not pushes and new > 0.0:
             _push(work, i, nx, ny, new, across, arm)
     return hits
 
@@ -246,6 +266,7 @@ def _begin_small_step(work: FreeContactScratch, begin: int, end: int, scale: flo
                 motion[k, PUSHED_X + axis] = 0.0
             motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
             motion[k, PUSHED_SURFACE] = 0.0
+            work.turned[k] = 0.0
 
 
 @inner_kernel
