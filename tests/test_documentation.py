@@ -274,7 +274,7 @@ def test_every_test_that_a_figure_is_held_by_exists():
     assert [test for test in named if f"def {test}(" not in sources] == []
 
 
-@pytest.mark.parametrize("constant", rows(PHYSICS, "## 13. Constants"), ids=lambda row: row[0])
+@pytest.mark.parametrize("constant", rows(PHYSICS, "## 14. Constants"), ids=lambda row: row[0])
 def test_every_constant_of_the_derivation_has_the_value_that_the_page_says(constant):
     name, value, file = constant
     assert re.search(rf"^{name} = {re.escape(value)}$", (ROOT / file).read_text(encoding="utf-8"), re.M)
