@@ -12,7 +12,7 @@ from sandbox.editor.items import Definition, Selection, changed, items_of, with_
 from sandbox.editor.scene import Mask, Scene, Slots, make_scene
 from sandbox.editor.tools.snap import PLACE_DECIMALS, SHOWN_DECIMALS
 from sandbox.level.document.model import NissenMaterial, ParticleDef, SpringDef
-from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
+from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import FirmnessDef
@@ -33,7 +33,7 @@ def keep_coefficients(document: Document, world: World) -> Document:
     document, is_firm = _keep_firmness(document, world)
     for number, name in enumerate(world.material_names):
         springs = np.flatnonzero((world.material == number) & ~is_firm)
-        material = document.level.materials.get(name, NissenMaterial() if name == DEFAULT_MATERIAL else None)
+        material = document.level.material(name)
         if not len(springs) or not isinstance(material, NissenMaterial):
             continue
         stiffness, damping = float(world.stiffness[springs[0]]), float(world.damping[springs[0]])

@@ -8,7 +8,6 @@ import numpy as np
 from sandbox.editor.lint.finding import Finding, Rule, called
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level, NissenMaterial
-from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.physics.analysis.column import critical_height
@@ -94,7 +93,7 @@ def _critical(level: Level, index: int) -> float:
     """The height [m] above which a column like a body buckles; inf where it is not known."""
     body, settings = level.bodies[index], level.settings
     made = expansion(body)
-    material = level.materials.get(body.material, NissenMaterial() if body.material == DEFAULT_MATERIAL else None)
+    material = level.material(body.material)
     if made.form_count[0] > LARGEST_READ or not isinstance(material, NissenMaterial):
         return float("inf")
     form = made.stiff_form

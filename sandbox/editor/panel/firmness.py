@@ -12,7 +12,7 @@ from sandbox.editor.panel.field_info import FieldInfo, fields_of
 from sandbox.editor.panel.property import Property, same
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.level.format.level_error import shown
-from sandbox.level.format.limits import DEFAULT_MATERIAL, FREQUENCY_RANGE, SAG_LIMIT
+from sandbox.level.format.limits import FREQUENCY_RANGE, SAG_LIMIT
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
@@ -70,11 +70,7 @@ def firmness_properties(level: Level, parts: Mapping[Item, Definition]) -> list[
 def _may_be_firm(level: Level, body: BodyDef) -> bool:
     if body.firmness is not None:
         return True
-    return isinstance(_material(level, body), NissenMaterial) and expansion(body).may_be_stiff
-
-
-def _material(level: Level, body: BodyDef) -> Any:
-    return level.materials.get(body.material, NissenMaterial() if body.material == DEFAULT_MATERIAL else None)
+    return isinstance(level.material(body.material), NissenMaterial) and expansion(body).may_be_stiff
 
 
 def _reach(level: Level, body: BodyDef) -> FirmnessRange:
@@ -90,7 +86,8 @@ def _reading(level: Level, body: BodyDef) -> tuple[Any, Any, Any]:
     if reach.lowest_mode == 0.0:
         return None, None, None
     if body.firmness is None:
-        material = _material(level, body)
+        material = level.material(body.material)
+        assert isinstance(material, NissenMaterial)
         pair = of_body(material.stiffness, material.damping, reach.lowest_mode)
     else:
         pair = reach.coefficients(body.firmness.asked)

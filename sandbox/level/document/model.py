@@ -323,6 +323,10 @@ class Level(Description):
         """Whether things in the level touch."""
         return self.contacts is not None or self.walls is not None or bool(self.terrain)
 
+    def material(self, name: str) -> "Material | None":
+        """The material of that name, the default one even where the level does not list it; None: there is none."""
+        return self.materials.get(name, NissenMaterial() if name == DEFAULT_MATERIAL else None)
+
     @field_validator("version")
     @classmethod
     def _known(cls, version: int) -> int:

@@ -21,7 +21,7 @@ GREENHILL = 7.837
 def critical_height(
     form: StiffForm, gravity: tuple[float, float], stiffness: float, damping: float, h: float
 ) -> float:  # fmt: skip
-    """The height [m] above which a column of a form that is a box along gravity [m/s^2] buckles; inf: none does.
+    """The height [m] above which a column of a form that is a box along gravity [m/s^2] buckles.
 
     stiffness, damping: Cs and Cd of its springs in ticks of h [s].
     """
