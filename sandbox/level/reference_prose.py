@@ -107,11 +107,11 @@ COLLISIONS = """\
 
 - Things touch if the level has `contacts`, `walls` or `terrain`. A contact pushes and never pulls. Every step finds the
   contacts along the way that each particle goes in it, so fast particles do not pass through walls.
-- A particle is a disc. The edge of a body is as thick as the particles at its ends. Particles of bodies do not turn:
-  they slide, and friction acts at their centres, not at their rims. A box whose particles have radius r tips over as
-  with r = 0, and a `wheel` rolls by its own radius, without that of its particles. A `wheel` or a jelly circle rolls as
-  a whole. Left to roll, it loses `g h/4` of its speed for each radian that it turns, beside what its corners take; h is
-  a substep. At 60 Hz that is 0.04 m/s, with 4 substeps 0.01 m/s.
+- A particle is a disc. The edge of a body is as thick as the particles at its ends. Particles of bodies turn with their
+  springs, and friction acts at their rims: a box of width w and height h whose particles have radius r tips over from
+  `tan(angle) = (w/2)/(h/2 + r)` on, and a `wheel` rolls by its own radius and that of its particles. A `wheel` or a
+  jelly circle rolls as a whole. Left to roll, it loses `g h/4` of its speed for each radian that it turns, beside what
+  its corners take; h is a substep. At 60 Hz that is 0.04 m/s, with 4 substeps 0.01 m/s.
 - A wheel with `"touches_mount": false` passes through its mount: all bodies that welds and loose springs join to its
   hub, directly or through other bodies, other wheels too. It takes up one of the 60 collision groups.
 - The friction between two surfaces is the geometric mean of the two values; the restitution is the larger one. Below

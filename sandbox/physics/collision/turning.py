@@ -8,8 +8,8 @@ holds it.
 import math
 
 from sandbox.physics.collision.narrow_phase import FAST, MARGIN
+from sandbox.physics.collision.rims import load_couple
 from sandbox.physics.collision.types import Colliders, Contacts
-from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 
 # r^2 / I of a disc, times its mass.
@@ -46,28 +46,16 @@ def load_arms(contacts: Contacts, count: int, colliders: Colliders) -> None:
         contacts.arm[c, 0] = 1.0
         contacts.arm[c, 1] = 0.0
         contacts.ratio[c, 0], contacts.ratio[c, 1] = rolling_ratios(p, disc, colliders)
-        contacts.couple[c, 0] = 0.0
-        contacts.couple[c, 1] = 0.0
-        if not contacts.turning[c, 0] + contacts.turning[c, 1] > 0.0 or a < 0:
-            continue
-        # So all that is turned is turned by both; but what is followed along its way is not there yet.
-        reach = colliders.radius[p] + colliders.radius[a]
-        arm = min(1.0 + MARGIN + FAST, _distance(contacts, c, colliders) / reach)
-        contacts.arm[c, 0] = arm
-        if disc >= 0:
-            contacts.arm[c, 1] = arm
-        else:
-            _load_couple(contacts, c, arm * colliders.radius[a], colliders)
-
-
-@inner_kernel
-def _load_couple(contacts: Contacts, c: int, arm: float, colliders: Colliders) -> None:
-    # An impulse on the surface of an edge, so far [m] from its middle, turns it: by a couple of its ends.
-    dx, dy = difference(contacts.end_a[c], contacts.end_b[c], colliders.position)
-    squared = dx * dx + dy * dy
-    if squared > arm * arm:
-        contacts.couple[c, 0] = -arm * dy / squared
-        contacts.couple[c, 1] = arm * dx / squared
+        arm = 1.0
+        if a >= 0:
+            # So all that is turned is turned by both; but what is followed along its way is not there yet.
+            reach = colliders.radius[p] + colliders.radius[a]
+            if reach > 0.0:
+                arm = min(1.0 + MARGIN + FAST, _distance(contacts, c, colliders) / reach)
+            contacts.arm[c, 0] = arm
+            contacts.arm[c, 1] = arm if disc >= 0 else 0.0
+        load_couple(contacts, c, 0, p, arm * colliders.radius[p], colliders)
+        load_couple(contacts, c, 1, a, arm * colliders.radius[a] if a >= 0 else 0.0, colliders)
 
 
 @inner_kernel

@@ -2,12 +2,15 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_int32s, new_slots
+from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_int32s, new_slot_rows, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
 
 # Edges near one particle, at most; further ones are not looked at.
 MOST_NEAR = 64
+# Ends of a contact: TOUCHING ones, its particle and what that touches, and their partners.
+TOUCHING = 3
+ENDS = 5
 
 
 class Colliders(NamedTuple):
@@ -72,8 +75,9 @@ class Contacts(NamedTuple):
     tick have given along the normal, which is no part of the impulse and starts no sweep.
 
     Of its particle and of the other disc (k, 2): turning [1/kg], arm = that of friction over the radius, ratio = the
-    smaller radius over its own; and their rolling resistance. couple (k, 2): what an impulse across does to an edge as
-    well, on whose surface it acts: that times the impulse is added to end_a and taken from end_b.
+    smaller radius over its own; and their rolling resistance. An impulse across acts at the surface of what does not
+    roll as well, and turns it by a couple: couple (k, 4), of the particle and of end_a, times the impulse is added to
+    these and taken from their partner (k, 2), -1: none; see rims.py.
 
     ahead: it is with an edge of a hollow that a disc comes to from others, on which it lies (seams.py).
     """
@@ -93,6 +97,7 @@ class Contacts(NamedTuple):
     arm: FloatRows
     ratio: FloatRows
     rolling: Floats
+    partner: SlotRows
     couple: FloatRows
     impact: Floats
     ahead: Flags
@@ -109,7 +114,13 @@ class KeptContacts(NamedTuple):
 
 @inner_kernel
 def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
-    """Particle of an end of a contact (-1: none) and the share of the impulse that it takes, with its sign."""
+    """Particle of an end of a contact (-1: none) and the share of the impulse that it takes, with its sign.
+
+    Partners take none; one that is end_b as well is left out.
+    """
+    if end >= TOUCHING:
+        q = contacts.partner[c, end - TOUCHING]
+        return -1 if q == contacts.end_b[c] else q, 0.0
     a = contacts.end_a[c]
     if a < 0 and contacts.end_b[c] >= 0:
         # An edge on a corner of terrain: both ends are pushed alike.
@@ -124,6 +135,21 @@ def weight_of(contacts: Contacts, c: int, end: int) -> tuple[int, float]:
 
 
 @inner_kernel
+def couple_of(contacts: Contacts, c: int, end: int) -> tuple[float, float]:
+    """What an impulse of 1 across adds to that of an end of a contact, beside its share along the tangent."""
+    if end < TOUCHING - 1:
+        return contacts.couple[c, 2 * end], contacts.couple[c, 2 * end + 1]
+    x = 0.0
+    y = 0.0
+    for of in range(2):
+        is_end_b = contacts.partner[c, of] == contacts.end_b[c]
+        if is_end_b if end == TOUCHING - 1 else of == end - TOUCHING and not is_end_b:
+            x -= contacts.couple[c, 2 * of]
+            y -= contacts.couple[c, 2 * of + 1]
+    return x, y
+
+
+@inner_kernel
 def contacts_between(contacts: Contacts, first: int, last: int) -> Contacts:
     """Some of the contacts."""
     b = contacts
@@ -131,8 +157,7 @@ def contacts_between(contacts: Contacts, first: int, last: int) -> Contacts:
         b.particle[first:last], b.feature[first:last], b.end_a[first:last], b.end_b[first:last], b.share[first:last],
         b.normal[first:last], b.gap[first:last], b.friction[first:last], b.restitution[first:last],
         b.bounce[first:last], b.impulse[first:last], b.turning[first:last], b.arm[first:last], b.ratio[first:last],
-        b.rolling[first:last], b.couple[first:last], b.impact[first:last],
-        b.ahead[first:last],
+        b.rolling[first:last], b.partner[first:last], b.couple[first:last], b.impact[first:last], b.ahead[first:last],
     )  # fmt: skip
 
 
@@ -144,8 +169,8 @@ def new_contacts(arena: Arena, count: int) -> Contacts:
         new_floats(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count), new_floats(arena, count),
         new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, count, 2),
         new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
-        new_floats(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count),
-        new_flags(arena, count),
+        new_floats(arena, count), new_slot_rows(arena, count, 2), new_float_rows(arena, count, 4),
+        new_floats(arena, count), new_flags(arena, count),
     )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_bo
 from sandbox.physics.collision.disc_stop import stop_discs
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.restitution import find_bounces
+from sandbox.physics.collision.rims import choose_partners
 from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terrain, clamp_at_tips
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
 from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near, contacts_between
@@ -152,6 +153,7 @@ def detect(state: State, collisions: Collisions, grab_spring: int, tick: int, h:
     counts[CONTACTS] = count
     if count > collisions.contacts.particle.shape[0]:
         return False
+    choose_partners(collisions.contacts, count, collisions.attached, colliders, collisions.moved)
     counts[BOUND] = find_islands(
         collisions.contacts, count, state.inverse_mass, collisions.attached, collisions.islands
     )  # fmt: skip
@@ -185,6 +187,7 @@ def copy_bound(collisions: Collisions) -> None:
         to.rolling[k] = contacts.rolling[c]
         for axis in range(2):
             to.normal[k, axis] = contacts.normal[c, axis]
+            to.partner[k, axis] = contacts.partner[c, axis]
 
 
 @inner_kernel

@@ -1,7 +1,7 @@
 """Rows of contacts that carry and stick: which they are, and the matrix (W + R) of their equations."""
 
 from sandbox.physics.arrays import Floats
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.active_set import MOST_PRODUCTS, ActiveSet
 from sandbox.physics.solvers.contact.contact_walk import node_at
@@ -10,7 +10,6 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
     Delassus,
     answer_push,
-    couple_of,
     couple_velocity,
     has_couple,
     relative_velocity,
@@ -99,11 +98,11 @@ def lay_out_envelope(
         if at.of_row[i] % 2 == 1:
             first = at.first[at.row[2 * c]]
         else:
-            for end in range(3):
+            for end in range(ENDS):
                 node = node_at(contacts, c, end, inverse_mass, delassus)
                 place = at.head[node] if node >= 0 else -1
                 while place >= 0:
-                    row = at.row[2 * (place // 3)]
+                    row = at.row[2 * (place // ENDS)]
                     if row >= 0:
                         first = min(first, row)
                     place = at.following[place]
@@ -125,7 +124,7 @@ def _answer_row(
     ny = contacts.normal[c, 1]
     jx = nx if axis == 0 else -ny
     jy = ny if axis == 0 else nx
-    for end in range(3):
+    for end in range(ENDS):
         p, weight = weight_of(contacts, c, end)
         if p >= 0 and inverse_mass[p] > 0.0:
             cx = 0.0
@@ -139,7 +138,7 @@ def _answer_row(
 
 @inner_kernel
 def _clear_answer(contacts: Contacts, c: int, at: ActiveSet, delassus: Delassus) -> None:
-    for end in range(3):
+    for end in range(ENDS):
         p, _ = weight_of(contacts, c, end)
         if p < 0:
             continue
@@ -160,11 +159,11 @@ def _clear_answer(contacts: Contacts, c: int, at: ActiveSet, delassus: Delassus)
 def _load_row(contacts: Contacts, c: int, i: int, at: ActiveSet, inverse_mass: Floats, delassus: Delassus) -> None:
     # What the answer gives the rows before row i of contact c, and itself.
     base = at.start[i] - at.first[i]
-    for end in range(3):
+    for end in range(ENDS):
         node = node_at(contacts, c, end, inverse_mass, delassus)
         place = at.head[node] if node >= 0 else -1
         while place >= 0:
-            other = place // 3
+            other = place // ENDS
             place = at.following[place]
             j = at.row[2 * other]
             if not 0 <= j <= i:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_slot_rows, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.collision.types import ENDS
 from sandbox.physics.jit import inner_kernel
 
 # What one matrix may cost, for which there has to be room: the sum of the squares of the lengths of its rows.
@@ -17,11 +18,11 @@ class ActiveSet(NamedTuple):
     """Scratch of the exact solve of one island's contacts that carry and stick.
 
     Nodes are the blocks of the Delassus operator, then particles. By node: its contacts as a list: the place head, -1:
-    none, of the first, from which following leads to the next; rank in a walk. A place is 3 contact + end. queue: nodes
-    by rank. By contact: slow: all that it touches is, and firm. order (k,): slow contacts along the walk. By contact:
-    row (2 k,) of its normal and tangent, -1: at its bound; state (k, 2) as in active_rows.py; u [m/s] (k, 2); bound,
-    centre [N s]: friction that it goes to, and that from which sticking is soft; best [N s] (k, 2): the impulses that
-    miss least. By row: of_row = 2 contact + axis, the matrix [1/kg] from start on, its first column, pivot, rhs.
+    none, of the first, from which following leads to the next; rank in a walk. A place is ENDS contact + end. queue:
+    nodes by rank. By contact: slow: all that it touches is, and firm. order (k,): slow contacts along the walk. By
+    contact: row (2 k,) of its normal and tangent, -1: at its bound; state (k, 2) as in active_rows.py; u [m/s] (k, 2);
+    bound, centre [N s]: friction that it goes to, and that from which sticking is soft; best [N s] (k, 2): the impulses
+    that miss least. By row: of_row = 2 contact + axis, the matrix [1/kg] from start on, its first column, pivot, rhs.
     answer, turned [m/s]: velocities by particle that an impulse of 1 gives, else 0.
     """
 
@@ -55,7 +56,7 @@ def new_active_set(count: int, particles: int, arena: Arena) -> ActiveSet:
     # (sum of lengths)^2 <= rows times the sum of their squares.
     room = rows + int(math.sqrt(MOST_PRODUCTS * rows)) + 1 if count > 0 else 0
     return ActiveSet(
-        new_slots(arena, 2 * touched), new_slots(arena, 3 * count), new_slots(arena, 2 * touched),
+        new_slots(arena, 2 * touched), new_slots(arena, ENDS * count), new_slots(arena, 2 * touched),
         new_slots(arena, 2 * touched), new_flags(arena, count), new_slots(arena, count), new_slots(arena, rows),
         new_slot_rows(arena, count, 2), new_float_rows(arena, count, 2), new_floats(arena, count),
         new_floats(arena, count), new_float_rows(arena, count, 2), new_slots(arena, rows), new_slots(arena, rows + 1),

@@ -11,7 +11,7 @@ import math
 
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.restitution import SLOWEST_PASSED
-from sandbox.physics.collision.types import Contacts, contacts_between, weight_of
+from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.contact_order import ContactOrder
 from sandbox.physics.solvers.contact.contact_solve import solve_contacts
@@ -152,7 +152,7 @@ def pass_on(
                 contacts.bounce[c] = max(0.0, approach_of(contacts, c, velocity, delta_v))
                 terms.bias[c] = -contacts.bounce[c]
     for c in range(count):
-        for end in range(3):
+        for end in range(ENDS):
             p, _ = weight_of(contacts, c, end)
             if p >= 0:
                 # That is all: a body answers where contacts touch it.

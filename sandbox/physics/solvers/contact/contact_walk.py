@@ -1,7 +1,7 @@
 """The contacts of an island in the order of a walk from one end of it to the other: rows of their matrix are short."""
 
 from sandbox.physics.arrays import Floats
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import ENDS, Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.active_set import ActiveSet
 from sandbox.physics.solvers.contact.gauss_seidel import Delassus
@@ -32,18 +32,18 @@ def _list_contacts(contacts: Contacts, at: ActiveSet, inverse_mass: Floats, dela
     # The slow contacts of each node, in their order.
     count = contacts.particle.shape[0]
     for c in range(count):
-        for end in range(3):
+        for end in range(ENDS):
             node = node_at(contacts, c, end, inverse_mass, delassus)
             if node >= 0:
                 at.head[node] = at.rank[node] = -1
     for c in range(count - 1, -1, -1):
         if not at.slow[c]:
             continue
-        for end in range(3):
+        for end in range(ENDS):
             node = node_at(contacts, c, end, inverse_mass, delassus)
             if node >= 0:
-                at.following[3 * c + end] = at.head[node]
-                at.head[node] = 3 * c + end
+                at.following[ENDS * c + end] = at.head[node]
+                at.head[node] = ENDS * c + end
 
 
 @inner_kernel
@@ -57,8 +57,8 @@ def _walk(contacts: Contacts, at: ActiveSet, inverse_mass: Floats, delassus: Del
         place = at.head[at.queue[begin]]
         begin += 1
         while place >= 0:
-            for side in range(3):
-                other = node_at(contacts, place // 3, side, inverse_mass, delassus)
+            for side in range(ENDS):
+                other = node_at(contacts, place // ENDS, side, inverse_mass, delassus)
                 if other >= 0 and at.rank[other] < 0:
                     at.rank[other] = end
                     at.queue[end] = other
@@ -74,7 +74,7 @@ def _rank_nodes(contacts: Contacts, at: ActiveSet, inverse_mass: Floats, delassu
     for c in range(contacts.particle.shape[0]):
         if not at.slow[c]:
             continue
-        for side in range(3):
+        for side in range(ENDS):
             node = node_at(contacts, c, side, inverse_mass, delassus)
             if node < 0 or at.rank[node] >= 0:
                 continue
@@ -99,12 +99,12 @@ def order_contacts(contacts: Contacts, at: ActiveSet, inverse_mass: Floats, dela
         place = at.head[at.queue[rank]]
         while place >= 0:
             latest = -1
-            for end in range(3):
-                other = node_at(contacts, place // 3, end, inverse_mass, delassus)
+            for end in range(ENDS):
+                other = node_at(contacts, place // ENDS, end, inverse_mass, delassus)
                 if other >= 0:
                     latest = max(latest, at.rank[other])
             if latest == rank:
-                at.order[placed] = place // 3
+                at.order[placed] = place // ENDS
                 placed += 1
             place = at.following[place]
     return placed

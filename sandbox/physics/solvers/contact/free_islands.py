@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import ENDS, Contacts, weight_of
 from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel
 
@@ -35,7 +35,7 @@ def _join(contacts: Contacts, count: int, inverse_mass: Floats, label: Slots) ->
         label[p] = p
     for c in range(count):
         first = -1
-        for end in range(3):
+        for end in range(ENDS):
             p, _ = weight_of(contacts, c, end)
             if p < 0 or inverse_mass[p] == 0.0:
                 continue

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from sandbox.physics.arena import Arena, new_float_rows, new_floats
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.turning import spin_of
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import ENDS, TOUCHING, Contacts, couple_of, weight_of
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, push_at
@@ -129,12 +129,16 @@ def relative_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Flo
 
 @inner_kernel
 def couple_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> float:
-    """How fast the surface of an edge moves against its middle, as that turns."""
-    a = contacts.end_a[c]
-    b = contacts.end_b[c]
-    ux = velocity[a, 0] + delta_v[a, 0] - velocity[b, 0] - delta_v[b, 0]
-    uy = velocity[a, 1] + delta_v[a, 1] - velocity[b, 1] - delta_v[b, 1]
-    return contacts.couple[c, 0] * ux + contacts.couple[c, 1] * uy
+    """How fast surfaces of what does not roll move against each other, as that turns with its partners."""
+    slip = 0.0
+    for of in range(2):
+        q = contacts.partner[c, of]
+        if q >= 0:
+            p = contacts.particle[c] if of == 0 else contacts.end_a[c]
+            ux = velocity[p, 0] + delta_v[p, 0] - velocity[q, 0] - delta_v[q, 0]
+            uy = velocity[p, 1] + delta_v[p, 1] - velocity[q, 1] - delta_v[q, 1]
+            slip += contacts.couple[c, 2 * of] * ux + contacts.couple[c, 2 * of + 1] * uy
+    return slip
 
 
 @inner_kernel
@@ -167,27 +171,17 @@ def push_contact(
     contacts: Contacts, c: int, jn: float, jt: float, surface: Floats, delta_v: Floats, inverse_mass: Floats,
     delassus: Delassus,
 ) -> None:  # fmt: skip
-    """Push both sides of a contact by impulses [N s] along normal and tangent, which turns what rolls."""
+    """Push both sides of a contact by impulses [N s] along normal and tangent, which turns them."""
     # v += W J
     nx = contacts.normal[c, 0]
     ny = contacts.normal[c, 1]
     jx = jn * nx - jt * ny
     jy = jn * ny + jt * nx
-    a = contacts.end_a[c]
-    if a < 0 and contacts.end_b[c] >= 0:
-        share = contacts.share[c]
-        _push_particle(contacts.particle[c], (1.0 - share) * jx, (1.0 - share) * jy, delta_v, inverse_mass, delassus)
-        _push_particle(contacts.end_b[c], share * jx, share * jy, delta_v, inverse_mass, delassus)
-        return
-    _push_particle(contacts.particle[c], jx, jy, delta_v, inverse_mass, delassus)
-    if a >= 0:
-        b = contacts.end_b[c]
-        share = contacts.share[c] if b >= 0 else 0.0
-        cx = jt * contacts.couple[c, 0]
-        cy = jt * contacts.couple[c, 1]
-        _push_particle(a, cx - (1.0 - share) * jx, cy - (1.0 - share) * jy, delta_v, inverse_mass, delassus)
-        if b >= 0:
-            _push_particle(b, -share * jx - cx, -share * jy - cy, delta_v, inverse_mass, delassus)
+    for end in range(ENDS if jt != 0.0 else TOUCHING):
+        p, weight = weight_of(contacts, c, end)
+        if p >= 0:
+            cx, cy = couple_of(contacts, c, end)
+            _push_particle(p, weight * jx + jt * cx, weight * jy + jt * cy, delta_v, inverse_mass, delassus)
     if jt != 0.0:
         turn_surfaces(contacts, c, -jt * contacts.arm[c, 0], -jt * contacts.arm[c, 1], surface)
 
@@ -248,40 +242,8 @@ def _response(p: int, q: int, inverse_mass: Floats, delassus: Delassus) -> tuple
 
 @inner_kernel
 def has_couple(contacts: Contacts, c: int) -> bool:
-    """Whether an impulse across an edge turns it."""
-    return contacts.couple[c, 0] != 0.0 or contacts.couple[c, 1] != 0.0
-
-
-@inner_kernel
-def couple_of(contacts: Contacts, c: int, end: int) -> tuple[float, float]:
-    """What an impulse of 1 across adds to that of an end of a contact, beside its share along the tangent."""
-    if end == 0:
-        return 0.0, 0.0
-    sign = 1.0 if end == 1 else -1.0
-    return sign * contacts.couple[c, 0], sign * contacts.couple[c, 1]
-
-
-@inner_kernel
-def _couple_responses(contacts: Contacts, c: int, inverse_mass: Floats, delassus: Delassus) -> tuple[float, float]:
-    # What the couple of an edge adds to J W J^T between normal and tangent, and along the tangent.
-    nx = contacts.normal[c, 0]
-    ny = contacts.normal[c, 1]
-    coupling = 0.0
-    tangent = 0.0
-    for end in range(3):
-        p, weight = weight_of(contacts, c, end)
-        px, py = couple_of(contacts, c, end)
-        for other in range(3):
-            q, share = weight_of(contacts, c, other)
-            qx, qy = couple_of(contacts, c, other)
-            xx, xy, yx, yy = _response(p, q, inverse_mass, delassus)
-            coupling += px * share * (xx * nx + xy * ny) + py * share * (yx * nx + yy * ny)
-            # Of the one the whole direction, of the other the couple; then the other way round, without that.
-            tx = px - weight * ny
-            ty = py + weight * nx
-            tangent += tx * (xx * qx + xy * qy) + ty * (yx * qx + yy * qy)
-            tangent += share * (px * (xy * nx - xx * ny) + py * (yy * nx - yx * ny))
-    return coupling, tangent
+    """Whether an impulse across turns what does not roll."""
+    return contacts.partner[c, 0] >= 0 or contacts.partner[c, 1] >= 0
 
 
 @inner_kernel
@@ -293,21 +255,24 @@ def load_responses(contacts: Contacts, terms: ContactConstraints, inverse_mass: 
         normal = 0.0
         coupling = 0.0
         tangent = 0.0
-        for end in range(3):
+        for end in range(ENDS):
             p, weight = weight_of(contacts, c, end)
-            for other in range(3):
+            if p < 0:
+                continue
+            cx, cy = couple_of(contacts, c, end)
+            for other in range(ENDS):
                 q, share = weight_of(contacts, c, other)
+                if q < 0:
+                    continue
+                dx, dy = couple_of(contacts, c, other)
                 xx, xy, yx, yy = _response(p, q, inverse_mass, delassus)
-                both = weight * share
-                ax = both * (xx * nx + xy * ny)
-                ay = both * (yx * nx + yy * ny)
-                normal += nx * ax + ny * ay
-                coupling += nx * ay - ny * ax
-                tangent += both * (nx * (yy * nx - yx * ny) - ny * (xy * nx - xx * ny))
-        if has_couple(contacts, c):
-            more_coupling, more_tangent = _couple_responses(contacts, c, inverse_mass, delassus)
-            coupling += more_coupling
-            tangent += more_tangent
+                ax = share * (xx * nx + xy * ny)
+                ay = share * (yx * nx + yy * ny)
+                bx = xx * (dx - share * ny) + xy * (dy + share * nx)
+                by = yx * (dx - share * ny) + yy * (dy + share * nx)
+                normal += weight * (nx * ax + ny * ay)
+                coupling += (cx - weight * ny) * ax + (cy + weight * nx) * ay
+                tangent += (cx - weight * ny) * bx + (cy + weight * nx) * by
         for end in range(2):
             tangent += contacts.arm[c, end] * contacts.arm[c, end] * contacts.turning[c, end]
         terms.normal[c] = normal

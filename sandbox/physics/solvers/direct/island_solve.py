@@ -10,7 +10,7 @@ import math
 
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.turning import spin_of
-from sandbox.physics.collision.types import Contacts, weight_of
+from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, couple_joints
 from sandbox.physics.joints.joint_sweep import gather_push
@@ -25,7 +25,6 @@ from sandbox.physics.solvers.contact.contact_solve import (
 from sandbox.physics.solvers.contact.gauss_seidel import (
     CALM,
     CALM_SETTLED,
-    couple_of,
     load_biases,
     load_responses,
     load_surfaces,
@@ -242,7 +241,7 @@ def _cost_of(contacts: Contacts, workspace: IslandWorkspace, system: System) -> 
         if islands.by_mass[k]:
             cost += cost_of_answer(span_of(system, islands.body[k]), system) // PUSH_COST
     for c in range(contacts.particle.shape[0]):
-        for end in range(3):
+        for end in range(ENDS):
             p, _ = weight_of(contacts, c, end)
             if p >= 0:
                 k = delassus.block[p]
@@ -306,7 +305,7 @@ def _add_push(contacts: Contacts, islands: BodyIslands) -> None:
         jt = contacts.impulse[c, 1]
         jx = jn * contacts.normal[c, 0] - jt * contacts.normal[c, 1]
         jy = jn * contacts.normal[c, 1] + jt * contacts.normal[c, 0]
-        for end in range(3):
+        for end in range(ENDS):
             p, weight = weight_of(contacts, c, end)
             if p >= 0 and islands.row[p] >= 0:
                 cx, cy = couple_of(contacts, c, end)

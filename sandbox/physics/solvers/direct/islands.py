@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows, new_floats, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
-from sandbox.physics.collision.types import Contacts, contacts_between, weight_of
+from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel, put
 from sandbox.physics.joints.joint_answers import Actions, Joints
@@ -174,7 +174,7 @@ def _join_touching(
     particles = islands.row.shape[0]
     for k in range(source.shape[0]):
         first = -1
-        for end in range(3):
+        for end in range(ENDS):
             p, _ = weight_of(contacts, source[k], end)
             if p < 0 or inverse_mass[p] == 0.0:
                 continue

@@ -1,0 +1,85 @@
+"""Rims: where friction acts on particles of bodies, and the couples by which it turns them.
+
+A particle of a body has no spin of its own: it turns with a spring that holds it. So an impulse J across a contact,
+which acts at its surface, so far [m], the arm, from the particle, gives it and its partner at the other end of that
+spring a couple as well: J arm/|d| across the spring. Slip is measured at the surface by the same couple, so W stays
+symmetric, and a body's angular momentum changes by what friction does at its rim.
+"""
+
+import math
+
+from sandbox.physics.arrays import Flags
+from sandbox.physics.collision.types import TOUCHING, Colliders, Contacts, weight_of
+from sandbox.physics.geometry.segment import difference
+from sandbox.physics.jit import inner_kernel
+
+
+@inner_kernel
+def choose_partners(contacts: Contacts, count: int, attached: Flags, colliders: Colliders, touched: Flags) -> None:
+    """Choose the partners of the first `count` contacts; see Contacts.
+
+    attached (n,): what springs hold; touched (n,): scratch.
+    """
+    for p in range(touched.shape[0]):
+        touched[p] = False
+    for c in range(count):
+        for end in range(TOUCHING):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0:
+                touched[p] = True
+    for c in range(count):
+        contacts.partner[c, 0] = -1
+        contacts.partner[c, 1] = -1
+        if not contacts.friction[c] > 0.0:
+            continue
+        p = contacts.particle[c]
+        a = contacts.end_a[c]
+        # The ends of an edge turn with each other.
+        of_particle = contacts.end_b[c] if a < 0 else -1
+        contacts.partner[c, 0] = _partner_of(p, of_particle, attached, colliders, touched)
+        if a >= 0:
+            contacts.partner[c, 1] = _partner_of(a, contacts.end_b[c], attached, colliders, touched)
+
+
+@inner_kernel
+def _partner_of(p: int, end_b: int, attached: Flags, colliders: Colliders, touched: Flags) -> int:
+    # Who turns with a particle: the other end of its edge, else what is touched itself, so that nothing more answers to
+    # contacts, else the farthest; but nobody within its radius, whom a couple would throw about. -1: none.
+    radius = colliders.radius[p]
+    if not radius > 0.0:
+        return -1
+    if end_b >= 0 and _distance(p, end_b, colliders) > radius:
+        return end_b
+    if not attached[p] or not colliders.inverse_mass[p] > 0.0:
+        return -1
+    partner = -1
+    farthest = radius
+    is_touched = False
+    for at in range(colliders.near_start[p], colliders.near_start[p + 1]):
+        q = colliders.near_of[at]
+        distance = _distance(p, q, colliders)
+        better = distance > farthest if touched[q] == is_touched else touched[q] and distance > radius
+        if better:
+            partner = q
+            farthest = distance
+            is_touched = touched[q]
+    return partner
+
+
+@inner_kernel
+def load_couple(contacts: Contacts, c: int, of: int, p: int, arm: float, colliders: Colliders) -> None:
+    """The couple of a contact's particle (of 0) or its end_a (of 1), which is p, for an arm [m]."""
+    contacts.couple[c, 2 * of] = 0.0
+    contacts.couple[c, 2 * of + 1] = 0.0
+    q = contacts.partner[c, of]
+    if q >= 0:
+        dx, dy = difference(p, q, colliders.position)
+        squared = dx * dx + dy * dy
+        contacts.couple[c, 2 * of] = -arm * dy / squared
+        contacts.couple[c, 2 * of + 1] = arm * dx / squared
+
+
+@inner_kernel
+def _distance(p: int, q: int, colliders: Colliders) -> float:
+    dx, dy = difference(p, q, colliders.position)
+    return math.sqrt(dx * dx + dy * dy)
