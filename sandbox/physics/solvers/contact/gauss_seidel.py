@@ -148,6 +148,41 @@ def _push_particle(p: int, jx: float, jy: float, delta_v: Floats, inverse_mass: 
 
 
 @inner_kernel
+def _push_two(
+    p: int, jx: float, jy: float, q: int, kx: float, ky: float, delta_v: Floats, inverse_mass: Floats,
+    delassus: Delassus,
+) -> None:  # fmt: skip
+    # Push two particles, -1: none; those of one body in one pass over its points.
+    if q < 0 or (kx == 0.0 and ky == 0.0):
+        _push_particle(p, jx, jy, delta_v, inverse_mass, delassus)
+        return
+    block = delassus.block[q]
+    if p < 0 or block < 0 or delassus.block[p] != block:
+        if p >= 0:
+            _push_particle(p, jx, jy, delta_v, inverse_mass, delassus)
+        _push_particle(q, kx, ky, delta_v, inverse_mass, delassus)
+        return
+    push_at(delassus.joints, p, jx, jy)
+    push_at(delassus.joints, q, kx, ky)
+    first = delassus.start[block]
+    points = delassus.start[block + 1] - first
+    of_p = delassus.base[block] + delassus.place[p] * 4 * points
+    of_q = delassus.base[block] + delassus.place[q] * 4 * points
+    numbers = delassus.numbers
+    for i in range(points):
+        r = delassus.point[first + i]
+        x = 2 * i
+        for axis in range(2):
+            delta_v[r, axis] += (
+                numbers[of_p + x] * jx
+                + numbers[of_p + 2 * points + x] * jy
+                + numbers[of_q + x] * kx
+                + numbers[of_q + 2 * points + x] * ky
+            )
+            x += 1
+
+
+@inner_kernel
 def answer_push(p: int, jx: float, jy: float, delta_v: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
     """Add what an impulse at a particle does, joints aside: v += W J."""
     k = delassus.block[p]
@@ -177,12 +212,24 @@ def push_contact(
     ny = contacts.normal[c, 1]
     jx = jn * nx - jt * ny
     jy = jn * ny + jt * nx
-    for end in range(ENDS if jt != 0.0 else TOUCHING):
-        p, weight = weight_of(contacts, c, end)
-        if p >= 0:
-            cx, cy = couple_of(contacts, c, end)
-            _push_particle(p, weight * jx + jt * cx, weight * jy + jt * cy, delta_v, inverse_mass, delassus)
+    for side in range(2):
+        # The particle and its partner, then both ends of an edge: two of one body, mostly.
+        other = TOUCHING if side == 0 else TOUCHING - 1
+        p, weight = weight_of(contacts, c, side)
+        q, share = weight_of(contacts, c, other)
+        if p < 0 and q < 0:
+            continue
+        px, py = couple_of(contacts, c, side)
+        qx, qy = couple_of(contacts, c, other)
+        _push_two(
+            p, weight * jx + jt * px, weight * jy + jt * py, q, share * jx + jt * qx, share * jy + jt * qy, delta_v,
+            inverse_mass, delassus,
+        )  # fmt: skip
     if jt != 0.0:
+        p, _ = weight_of(contacts, c, ENDS - 1)
+        if p >= 0:
+            px, py = couple_of(contacts, c, ENDS - 1)
+            _push_particle(p, jt * px, jt * py, delta_v, inverse_mass, delassus)
         turn_surfaces(contacts, c, -jt * contacts.arm[c, 0], -jt * contacts.arm[c, 1], surface)
 
 
