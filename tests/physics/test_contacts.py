@@ -219,7 +219,7 @@ def test_a_stack_of_jelly_cubes_stands():
 
 def test_a_jelly_falls_on_another_and_neither_enters_it():
     w = world(GROUND)
-    lower, upper = add_jelly(w, (0.0, 0.5)), add_jelly(w, (0.15, 1.8), angle=0.15)
+    lower, upper = add_jelly(w, (0.0, 0.5)), add_jelly(w, (0.05, 1.8), angle=0.15)
     run(w, scaled(180, 60))
     assert w.position[upper, 1].mean() > w.position[lower, 1].mean() + 0.7
     assert -last_contacts(w).gap.min() < 0.05 * 0.05

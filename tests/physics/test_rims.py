@@ -28,7 +28,7 @@ def add_box(
     to.add_particles(
         [f"box.{first + k}" for k in range(4)], np.asarray(centre) + arms,
         velocity=np.asarray(velocity) + spin * arms @ np.array([[0.0, 1.0], [-1.0, 0.0]]), radius=rim,
-        friction=friction, owner=first, group=BODIES, collides=ALL_GROUPS,
+        friction=friction, rolling=0.0, owner=first, group=BODIES, collides=ALL_GROUPS,
     )  # fmt: skip
     a, b = first + np.array([0, 1, 2, 3, 0, 1]), first + np.array([1, 2, 3, 0, 2, 3])
     names = [f"box:{first}.{k}" for k in range(6)]
