@@ -13,6 +13,10 @@ from sandbox.physics.collision.types import TOUCHING, Colliders, Contacts, weigh
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
 
+# A partner that is touched itself is taken if it is as far off as this share of the farthest. On a short spring of soft
+# or light particles a couple bends the body where it touches; a wheel's turns with its spokes instead.
+FAR_ENOUGH = 0.5
+
 
 @inner_kernel
 def choose_partners(contacts: Contacts, count: int, attached: Flags, colliders: Colliders, touched: Flags) -> None:
@@ -43,8 +47,9 @@ def choose_partners(contacts: Contacts, count: int, attached: Flags, colliders: 
 
 @inner_kernel
 def _partner_of(p: int, end_b: int, attached: Flags, colliders: Colliders, touched: Flags) -> int:
-    # Who turns with a particle: the other end of its edge, else what is touched itself, so that nothing more answers to
-    # contacts, else the farthest; but nobody within its radius, whom a couple would throw about. -1: none.
+    # Who turns with a particle: the other end of its edge, else the farthest that a spring joins to it, or one that is
+    # near to as far and touched itself, so that nothing more answers to contacts; but nobody within its radius, whom a
+    # couple would throw about. -1: none.
     radius = colliders.radius[p]
     if not radius > 0.0:
         return -1
@@ -52,17 +57,21 @@ def _partner_of(p: int, end_b: int, attached: Flags, colliders: Colliders, touch
         return end_b
     if not attached[p] or not colliders.inverse_mass[p] > 0.0:
         return -1
-    partner = -1
+    first, last = colliders.near_start[p], colliders.near_start[p + 1]
     farthest = radius
-    is_touched = False
-    for at in range(colliders.near_start[p], colliders.near_start[p + 1]):
+    for at in range(first, last):
+        farthest = max(farthest, _distance(p, colliders.near_of[at], colliders))
+    partner = -1
+    longest = 0.0
+    for at in range(first, last):
         q = colliders.near_of[at]
         distance = _distance(p, q, colliders)
-        better = distance > farthest if touched[q] == is_touched else touched[q] and distance > radius
-        if better:
+        if not distance > radius:
+            continue
+        preferred = distance + farthest if touched[q] and distance > FAR_ENOUGH * farthest else distance
+        if preferred > longest:
             partner = q
-            farthest = distance
-            is_touched = touched[q]
+            longest = preferred
     return partner
 
 
