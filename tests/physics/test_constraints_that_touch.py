@@ -62,7 +62,7 @@ def test_jellies_and_rings_with_areas_come_to_rest_on_the_ground(substeps):
     add_filled_jelly(w, (0.1, 1.7), angle=0.1)
     ring = add_ring(w, (2.0, 0.7), inflation=1.1)
     form = area(w.position[ring])
-    run(w, scaled(400, 5))
+    run(w, scaled(500, 5))
     assert np.all(w.position[w.particle_active, 1] > 0.0)
     if scaled(1, 0):
         assert np.abs(w.velocity).max() < 0.05

@@ -110,7 +110,7 @@ def test_a_motor_lifts_a_weight_exactly_where_its_torque_exceeds_the_weights(sol
 
 
 @pytest.mark.parametrize("solver", CARRYING)
-@pytest.mark.parametrize("torque", [60.0, 300.0])
+@pytest.mark.parametrize("torque", [60.0, 200.0])
 def test_a_wheel_drives_off_with_a_load_that_hangs_below_its_hub(solver, torque):
     world = unicycle(torque, solver=solver, **RIGID)
     run(world, scaled(360, 20))
@@ -177,7 +177,7 @@ def test_a_light_wheel_bears_a_heavy_load_in_one_step_a_tick_of_the_iterative_so
     hub = world.particle_slot("w0.hub")
     for _ in range(scaled(60, 2)):
         step(world)
-        assert world.position[hub, 1] > 0.647 - 0.05
+        assert world.position[hub, 1] > 0.647 - 0.08
 
 
 def test_a_motor_that_is_switched_off_lets_its_wheel_run_on():

@@ -89,8 +89,11 @@ def test_a_rope_that_is_drawn_out_of_a_box_goes_through_that_nowhere_else():
     for _ in range(scaled(30, 6)):
         step(w)
         assert overlaps(w).lines <= 1
-        # To a fifth of its own radius: the top of the box is not even under it.
-        assert w.position[rope[5:], 1].min() > w.position[: rope[0], 1].max() - 0.005
+        # To a fifth of its own radius; beside the box it hangs down.
+        loop = w.position[rope[5:]]
+        above = np.abs(loop[:, 0]) < 0.45
+        assert above.sum() >= 6
+        assert loop[above, 1].min() > w.position[: rope[0], 1].max() - 0.005
     assert overlaps(w).lines <= scaled(0, 1)
 
 
