@@ -8,7 +8,7 @@ symmetric, and a body's angular momentum changes by what friction does at its ri
 
 import math
 
-from sandbox.physics.arrays import Flags
+from sandbox.physics.arrays import Flags, Floats
 from sandbox.physics.collision.types import TOUCHING, Colliders, Contacts, weight_of
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
@@ -16,6 +16,9 @@ from sandbox.physics.jit import inner_kernel
 # A partner that is touched itself is taken if it is as far off as this share of the farthest. On a short spring of soft
 # or light particles a couple bends the body where it touches; a wheel's turns with its spokes instead.
 FAR_ENOUGH = 0.5
+# A spring shorter than so many arms, on which two discs overlap, takes a part of the couple: what is crushed would be
+# thrown about.
+SHORT = 2.0
 
 
 @inner_kernel
@@ -47,27 +50,25 @@ def choose_partners(contacts: Contacts, count: int, attached: Flags, colliders: 
 
 @inner_kernel
 def _partner_of(p: int, end_b: int, attached: Flags, colliders: Colliders, touched: Flags) -> int:
-    # Who turns with a particle: the other end of its edge, else the farthest that a spring joins to it, or one that is
-    # near to as far and touched itself, so that nothing more answers to contacts; but nobody within its radius, whom a
-    # couple would throw about. -1: none.
+    # Who turns with a particle: the other end of its edge, unless that is short, else the farthest that a spring joins
+    # to it, or one that is near to as far and touched itself, so that nothing more answers to contacts. -1: none. What
+    # is far is so where particles were made: in what is crushed it would be another in every step.
     radius = colliders.radius[p]
     if not radius > 0.0:
         return -1
-    if end_b >= 0 and _distance(p, end_b, colliders) > radius:
+    if end_b >= 0 and _distance(p, end_b, colliders.origin) > SHORT * radius:
         return end_b
     if not attached[p] or not colliders.inverse_mass[p] > 0.0:
         return -1
     first, last = colliders.near_start[p], colliders.near_start[p + 1]
-    farthest = radius
+    farthest = 0.0
     for at in range(first, last):
-        farthest = max(farthest, _distance(p, colliders.near_of[at], colliders))
+        farthest = max(farthest, _distance(p, colliders.near_of[at], colliders.origin))
     partner = -1
     longest = 0.0
     for at in range(first, last):
         q = colliders.near_of[at]
-        distance = _distance(p, q, colliders)
-        if not distance > radius:
-            continue
+        distance = _distance(p, q, colliders.origin)
         preferred = distance + farthest if touched[q] and distance > FAR_ENOUGH * farthest else distance
         if preferred > longest:
             partner = q
@@ -83,12 +84,13 @@ def load_couple(contacts: Contacts, c: int, of: int, p: int, arm: float, collide
     q = contacts.partner[c, of]
     if q >= 0:
         dx, dy = difference(p, q, colliders.position)
-        squared = dx * dx + dy * dy
-        contacts.couple[c, 2 * of] = -arm * dy / squared
-        contacts.couple[c, 2 * of + 1] = arm * dx / squared
+        squared = max(dx * dx + dy * dy, SHORT * SHORT * arm * arm)
+        if squared > 0.0:
+            contacts.couple[c, 2 * of] = -arm * dy / squared
+            contacts.couple[c, 2 * of + 1] = arm * dx / squared
 
 
 @inner_kernel
-def _distance(p: int, q: int, colliders: Colliders) -> float:
-    dx, dy = difference(p, q, colliders.position)
+def _distance(p: int, q: int, position: Floats) -> float:
+    dx, dy = difference(p, q, position)
     return math.sqrt(dx * dx + dy * dy)
