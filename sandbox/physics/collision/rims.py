@@ -69,7 +69,8 @@ def _partner_of(p: int, end_b: int, attached: Flags, colliders: Colliders, touch
     for at in range(first, last):
         q = colliders.near_of[at]
         distance = _distance(p, q, colliders.origin)
-        preferred = distance + farthest if touched[q] and distance > FAR_ENOUGH * farthest else distance
+        is_far = distance > max(FAR_ENOUGH * farthest, SHORT * radius)
+        preferred = distance + farthest if touched[q] and is_far else distance
         if preferred > longest:
             partner = q
             longest = preferred
