@@ -89,10 +89,14 @@ def test_a_disc_and_a_box_that_rub_keep_their_angular_momentum(solver):
     assert not np.allclose(w.velocity[:4], 0.0), "they have met"
 
 
-@pytest.mark.parametrize("solver, firmness", [("direct", 1.0), ("iterative", 0.9)])
+# In the iterative solver it gives way where it stands, and rolls by a little less.
+@pytest.mark.parametrize(
+    "solver, substeps, firmness, within",
+    [("direct", 1, 1.0, 0.01), ("iterative", 1, 0.9, 0.04), ("iterative", 4, 0.9, 0.03)],
+)
 @pytest.mark.parametrize("radius, rim, corners", [(0.4, 0.15, 12), (0.7, 0.2, 16)])
-def test_a_wheel_rolls_by_the_radius_of_its_rim(radius, rim, corners, solver, firmness):
-    w = world(FLOOR, solver=solver)
+def test_a_wheel_rolls_by_the_radius_of_its_rim(radius, rim, corners, solver, substeps, firmness, within):
+    w = world(FLOOR, solver=solver, substeps=substeps)
     turns = math.tau * np.arange(corners) / corners
     rounds = radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
     hub = np.array([0.0, radius + rim])
@@ -114,4 +118,4 @@ def test_a_wheel_rolls_by_the_radius_of_its_rim(radius, rim, corners, solver, fi
         now = math.atan2(y, x)
         turned += (now - last + math.pi) % math.tau - math.pi
         last = now
-    assert float(w.position[0, 0]) / -turned == pytest.approx(radius + rim, rel=0.02)
+    assert float(w.position[0, 0]) / -turned == pytest.approx(radius + rim, rel=within)
