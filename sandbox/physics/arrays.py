@@ -23,6 +23,7 @@ class ArrayKind:
 Floats = Annotated[NDArray[np.float64], ArrayKind(np.float64)]
 Slots = Annotated[NDArray[np.int64], ArrayKind(np.int64)]
 Flags = Annotated[NDArray[np.bool_], ArrayKind(np.bool_)]
+Int8s = Annotated[NDArray[np.int8], ArrayKind(np.int8)]
 Int32s = Annotated[NDArray[np.int32], ArrayKind(np.int32)]
 FloatRows = Annotated[NDArray[np.float64], ArrayKind(np.float64, 2)]
 SlotRows = Annotated[NDArray[np.int64], ArrayKind(np.int64, 2)]

@@ -14,14 +14,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, Int8s
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.geometry.polygon import polygon_area
 from sandbox.physics.geometry.segment import doubled_areas
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
-from sandbox.physics.state import StateArrays
+from sandbox.physics.state import State, StateArrays
 
 AREA = 0
 BEND = 1
@@ -45,17 +45,17 @@ class ConstraintArrays(NamedTuple):
     (q,) = |g|^2 at rest.
     """
 
-    kind: NDArray[np.int8]
-    first: NDArray[np.int32]
-    corners: NDArray[np.int32]
-    rest: Floats
-    active: NDArray[np.bool_]
-    particle: NDArray[np.int32]
+    kind: Int8s
+    first: Int32s
+    corners: Int32s
+    rest: FloatRows
+    active: Flags
+    particle: Int32s
     weight: Floats
 
 
 @inlined_kernel
-def constraints_of(state: StateArrays) -> ConstraintArrays:
+def constraints_of(state: State | StateArrays) -> ConstraintArrays:
     """The constraints among the arrays of a world."""
     return ConstraintArrays(
         state.constraint_kind, state.constraint_first, state.constraint_corners, state.constraint_rest,
@@ -64,7 +64,7 @@ def constraints_of(state: StateArrays) -> ConstraintArrays:
 
 
 @inner_kernel
-def _area_slope(place: Floats, first: int, last: int, slope: Floats) -> None:
+def _area_slope(place: FloatRows, first: int, last: int, slope: Floats) -> None:
     # dA / dx_i = the vector between its two neighbours, turned, over 2
     for c in range(first, last):
         previous = c - 1 if c > first else last - 1
@@ -74,7 +74,7 @@ def _area_slope(place: Floats, first: int, last: int, slope: Floats) -> None:
 
 
 @inner_kernel
-def _bend(place: Floats, first: int, cosine: float, sine: float, weight: Floats, slope: Floats) -> float:
+def _bend(place: FloatRows, first: int, cosine: float, sine: float, weight: Floats, slope: FloatRows) -> float:
     # e = the first link, turned by the rest angle; phi from e to the second link: cos(phi / 2) = |e + n| / 2,
     # sin(phi / 2) = |n - e| / 2, and the halves of those; no trigonometry.
     ax = place[first + 1, 0] - place[first, 0]
@@ -113,7 +113,7 @@ def _bend(place: Floats, first: int, cosine: float, sine: float, weight: Floats,
 
 @inner_kernel
 def evaluate(
-    kind: int, place: Floats, first: int, last: int, rest: Floats, at: int, weight: Floats, slope: Floats
+    kind: int, place: FloatRows, first: int, last: int, rest: FloatRows, at: int, weight: Floats, slope: Floats
 ) -> float:
     """C of the constraint of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
     if kind == AREA:
@@ -123,7 +123,7 @@ def evaluate(
 
 
 @inner_kernel
-def rest_mass(first: int, last: int, inverse_mass: Floats, particle: NDArray[np.int32], weight: Floats) -> float:
+def rest_mass(first: int, last: int, inverse_mass: Floats, particle: Int32s, weight: Floats) -> float:
     """Effective mass of the corners first..last at rest; 0 where nothing of them can move."""
     # m = 1 / (sum of w |g|^2)
     total = 0.0
@@ -133,7 +133,7 @@ def rest_mass(first: int, last: int, inverse_mass: Floats, particle: NDArray[np.
 
 
 @inner_kernel
-def look(first: int, last: int, position: Floats, particle: NDArray[np.int32], place: Floats) -> None:
+def look(first: int, last: int, position: FloatRows, particle: Int32s, place: Floats) -> None:
     """Bring the corners first..last to where their particles are."""
     for c in range(first, last):
         place[c, 0] = position[particle[c], 0]
@@ -141,7 +141,7 @@ def look(first: int, last: int, position: Floats, particle: NDArray[np.int32], p
 
 
 @inner_kernel
-def constraint_rate(first: int, last: int, velocity: Floats, particle: NDArray[np.int32], slope: Floats) -> float:
+def constraint_rate(first: int, last: int, velocity: FloatRows, particle: Int32s, slope: FloatRows) -> float:
     """dC/dt of the constraint of the corners first..last whose gradient is slope (q, 2)."""
     rate = 0.0
     for c in range(first, last):
@@ -168,7 +168,7 @@ def constraint_values(
 
 @inner_kernel
 def explicit_mass(
-    first: int, last: int, inverse_mass: Floats, particle: NDArray[np.int32], weight: Floats, slope: Floats
+    first: int, last: int, inverse_mass: Floats, particle: Int32s, weight: Floats, slope: FloatRows
 ) -> tuple[float, float]:
     """Effective mass for a step on the old velocities: the less of the rest shape's and the present one's.
 

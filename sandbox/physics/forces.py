@@ -1,13 +1,13 @@
 """Gravity and air, which act on particles before the springs do. To the springs they are work from outside."""
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.settings import DRAG, GRAVITY_X, GRAVITY_Y, WIND_X, WIND_Y
 from sandbox.physics.state import State
 
 
 @inner_kernel
-def integrate_velocities(state: State, numbers: Floats, start: Floats, h: float) -> None:
+def integrate_velocities(state: State, numbers: Floats, start: FloatRows, h: float) -> None:
     """Bring velocities of free particles from the start of a step of h [s] to where springs begin.
 
     v += g h, times their gravity scale; then, with the air, v' = v + h drag (wind - v'), implicit:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.analysis.query import slot_name
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.events import Containment
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import GUARDED, Family, GoodValues, State
@@ -66,7 +66,7 @@ def _sound_elements(state: State) -> bool:
 
 
 @inner_kernel
-def are_sound(state: State, impulse: Floats, impact: Floats, count: int) -> bool:
+def are_sound(state: State, impulse: FloatRows, impact: Floats, count: int) -> bool:
     """Whether all that a tick begins with is what physics can give, impulses of `count` contacts too; NaN is not."""
     if not _sound_motion(state) or not _sound_elements(state):
         return False

@@ -4,15 +4,17 @@ World and Snapshot have these attributes, appending, hashing, storing and guardi
 line here, and the place that gives it its values.
 """
 
-from collections import namedtuple
+
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.arrays import ArrayKind
 from sandbox.physics.jit import bundle
+from sandbox.physics.terrain import Terrain
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
@@ -58,6 +60,11 @@ class Column:
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
+
+    @property
+    def kind(self) -> Any:
+        """The kind of its array, as kernels are told of it."""
+        return Annotated[NDArray[Any], ArrayKind(self.dtype, 2 if self.width > 1 else 1)]
 
     def empty(self) -> NDArray[Any]:
         """The array of no rows."""
@@ -188,8 +195,8 @@ if TYPE_CHECKING:
         """The last good values of a world's guarded arrays, as kernels take them."""
 
 else:
-    State = namedtuple("State", [*STATE_FIELDS, "terrain"])
-    GoodValues = namedtuple("GoodValues", [column.name for column in GUARDED])
+    State = NamedTuple("State", [*((name, BY_NAME[name].kind) for name in STATE_FIELDS), ("terrain", Terrain)])
+    GoodValues = NamedTuple("GoodValues", [(column.name, column.kind) for column in GUARDED])
 
 
 def state_of(world: Any) -> State:

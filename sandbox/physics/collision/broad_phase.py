@@ -87,7 +87,7 @@ def bucket_of(column: int, row: int, count: int) -> int:
 
 
 @inner_kernel
-def cell_size(box: Floats) -> float:
+def cell_size(box: FloatRows) -> float:
     """Side of a cell [m]: the mean extent of the boxes; boxes of no extent at all, and absurd ones, still get one."""
     total = 0.0
     count = 0
@@ -177,7 +177,7 @@ def fill_grid(boxes: Boxes, cell: float, grid: Grid) -> tuple[int, int]:
 
 
 @inner_kernel
-def overlap(box: Floats, p: int, k: int) -> bool:
+def overlap(box: FloatRows, p: int, k: int) -> bool:
     """Whether the boxes of two objects do."""
     return (
         box[p, 0] <= box[k, 2] and box[k, 0] <= box[p, 2] and box[p, 1] <= box[k, 3] and box[k, 1] <= box[p, 3]

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, give_back, is_full, mark, new_floats, new_slot_rows, new_slots
-from sandbox.physics.arrays import Floats, SlotRows, Slots
+from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import list_by_key, sort_by_value
@@ -32,7 +32,7 @@ class CloseEdges(NamedTuple):
 class FormEdges(NamedTuple):
     """Edges a to b (e,) between places of a form [m] (n, 2); shape (n,) of each place; solid_of: see Outline."""
 
-    form: Floats
+    form: FloatRows
     a: Slots
     b: Slots
     shape: Slots
@@ -162,7 +162,7 @@ def no_close_edges(arena: Arena) -> CloseEdges:
 
 
 @inner_kernel
-def close_edges(form: Floats, a: Slots, b: Slots, shape: Slots, solid_of: Slots, arena: Arena) -> CloseEdges:
+def close_edges(form: FloatRows, a: Slots, b: Slots, shape: Slots, solid_of: Slots, arena: Arena) -> CloseEdges:
     """The close edges, a[k] to b[k], of forms [m] (n, 2); shape (n,): of each place; solid_of (s,): -1: looked at."""
     edges, shapes = a.shape[0], solid_of.shape[0]
     if edges == 0:

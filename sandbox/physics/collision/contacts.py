@@ -7,7 +7,7 @@ manifold: two points at which two bodies touch are two contacts.
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.broad_phase import WITH_ALL, WITH_EDGES, WITH_NOTHING, Boxes, Candidates, Pairs
 from sandbox.physics.collision.edge_geometry import CORNER, is_enclosed
 from sandbox.physics.collision.entered import find_entered
@@ -75,7 +75,7 @@ def fill_boxes(colliders: Colliders, dynamic: int, h: float, boxes: Boxes) -> No
 
 
 @inner_kernel
-def _passes(box: Floats, p: int, ax: float, ay: float, bx: float, by: float) -> bool:
+def _passes(box: FloatRows, p: int, ax: float, ay: float, bx: float, by: float) -> bool:
     # Whether the segment from a to b can reach into a particle's box.
     if max(ax, bx) < box[p, 0] or min(ax, bx) > box[p, 2] or max(ay, by) < box[p, 1] or min(ay, by) > box[p, 3]:
         return False
@@ -133,7 +133,7 @@ def _find_penetration(
     p: int,
     colliders: Colliders,
     outline: Outline,
-    bounds: Floats,
+    bounds: FloatRows,
     near: Near,
     edges: int,
     entered: int,
@@ -204,7 +204,7 @@ def _is_hollow(first: int, last: int, colliders: Colliders) -> bool:
 
 
 @inner_kernel
-def bound_solids(colliders: Colliders, outline: Outline, begin: int, end: int, bounds: Floats) -> None:
+def bound_solids(colliders: Colliders, outline: Outline, begin: int, end: int, bounds: FloatRows) -> None:
     """The box in which a particle can be inside each owner's solid edges begin..end; hollow ones: it is everything."""
     solid = outline.solid
     for k in range(begin, end):
@@ -228,7 +228,7 @@ def find_contacts(
     colliders: Colliders,
     outline: Outline,
     candidates: Candidates,
-    bounds: Floats,
+    bounds: FloatRows,
     near: Near,
     kept: KeptContacts,
     kept_count: int,

@@ -1,6 +1,6 @@
 """Discs do not go through jellies: one that is pressed flat, so that no triangle gives way, stops them as a whole."""
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.entered import edge_of_spring
 from sandbox.physics.collision.narrow_phase import EDGE, INSIDE, KINDS, TIP
 from sandbox.physics.collision.outline import Outline
@@ -14,7 +14,7 @@ CLOSEST = 0.5
 
 @inner_kernel
 def _motion_of(
-    s: int, outline: Outline, mass: Floats, inverse_mass: Floats, velocity: Floats
+    s: int, outline: Outline, mass: Floats, inverse_mass: Floats, velocity: FloatRows
 ) -> tuple[float, float, float]:
     # 1 / mass of a body and the velocity of its centre; 0: a pin holds it.
     sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -28,7 +28,7 @@ def _motion_of(
 
 
 @inner_kernel
-def _move(s: int, outline: Outline, velocity: Floats, vx: float, vy: float) -> None:
+def _move(s: int, outline: Outline, velocity: FloatRows, vx: float, vy: float) -> None:
     # Add to the velocities of all of a body.
     for i in range(outline.member_start[s], outline.member_start[s + 1]):
         velocity[outline.member[i], 0] += vx
@@ -37,7 +37,7 @@ def _move(s: int, outline: Outline, velocity: Floats, vx: float, vy: float) -> N
 
 @inner_kernel
 def _stop_at_tip(
-    contacts: Contacts, c: int, outline: Outline, colliders: Colliders, velocity: Floats, mass: Floats,
+    contacts: Contacts, c: int, outline: Outline, colliders: Colliders, velocity: FloatRows, mass: Floats,
     inverse_mass: Floats, h: float,
 ) -> None:  # fmt: skip
     # The same of a body on a corner of terrain.
@@ -63,7 +63,7 @@ def _stop_at_tip(
 
 @inner_kernel
 def stop_discs(
-    contacts: Contacts, count: int, outline: Outline, colliders: Colliders, velocity: Floats, mass: Floats,
+    contacts: Contacts, count: int, outline: Outline, colliders: Colliders, velocity: FloatRows, mass: Floats,
     inverse_mass: Floats, h: float,
 ) -> None:  # fmt: skip
     """Let no disc's centre come behind an edge of a solid body that it touches in the coming h [s].

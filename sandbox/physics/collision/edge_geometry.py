@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.polygon import winding_of_side
 from sandbox.physics.geometry.segment import difference, doubled_area, unit
@@ -98,7 +98,7 @@ def winds(x: float, y: float, first: int, last: int, colliders: Colliders) -> in
 
 
 @inner_kernel
-def is_enclosed(p: int, k: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
+def is_enclosed(p: int, k: int, solid: SlotRows, bounds: FloatRows, colliders: Colliders) -> bool:
     """Whether particle p is inside the solid edges of span k."""
     winding = winds(colliders.position[p, 0], colliders.position[p, 1], solid[k, 0], solid[k, 1], colliders)
     # A hollow chain runs the other way round: nothing is counted outside it, -1 inside.
@@ -106,7 +106,7 @@ def is_enclosed(p: int, k: int, solid: Slots, bounds: Floats, colliders: Collide
 
 
 @inner_kernel
-def is_in(p: int, owner: int, solid: Slots, bounds: Floats, colliders: Colliders) -> bool:
+def is_in(p: int, owner: int, solid: SlotRows, bounds: FloatRows, colliders: Colliders) -> bool:
     """Whether particle p is inside the solid edges of that owner."""
     for k in range(solid.shape[0]):
         if colliders.owner[colliders.edge_a[solid[k, 0]]] == owner:

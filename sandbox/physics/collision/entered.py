@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.edge_geometry import is_behind, is_in
 from sandbox.physics.collision.narrow_phase import EDGE, INSIDE, KINDS, may_collide, push_out
 from sandbox.physics.collision.outline import Outline
@@ -58,7 +58,7 @@ def _nearest_from(p: int, e: int, colliders: Colliders) -> int:
 
 @inner_kernel
 def find_entered(
-    p: int, colliders: Colliders, outline: Outline, bounds: Floats, kept: KeptContacts, first: int, last: int,
+    p: int, colliders: Colliders, outline: Outline, bounds: FloatRows, kept: KeptContacts, first: int, last: int,
     contacts: Contacts, count: int,
 ) -> tuple[int, int]:  # fmt: skip
     """Contact of a disc that has come into a solid body, to be pushed out where it came in.

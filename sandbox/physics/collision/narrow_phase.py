@@ -6,7 +6,7 @@ is pushed out there. What moves fast is followed along its way, and meets what s
 
 import math
 
-from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.edge_geometry import (
     CORNER,
     corner_normal,
@@ -202,8 +202,8 @@ def collide_edges(
     colliders: Colliders,
     near: Near,
     edges: int,
-    solid: Slots,
-    bounds: Floats,
+    solid: SlotRows,
+    bounds: FloatRows,
     dynamic: int,
     contacts: Contacts,
     count: int,

@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import Flags, Floats
+from sandbox.physics.arrays import Flags, FloatRows, Floats
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
 
@@ -15,7 +15,7 @@ SLOWEST_PASSED = 0.05
 
 @inner_kernel
 def find_bounces(
-    contacts: Contacts, count: int, start: Floats, velocity: Floats, attached: Flags, h: float, small: float
+    contacts: Contacts, count: int, start: FloatRows, velocity: FloatRows, attached: Flags, h: float, small: float
 ) -> None:
     """The bounce [m/s] of every contact, from the velocities before and after gravity and all else from outside.
 

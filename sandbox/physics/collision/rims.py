@@ -8,7 +8,7 @@ symmetric, and a body's angular momentum changes by what friction does at its ri
 
 import math
 
-from sandbox.physics.arrays import Flags, Floats
+from sandbox.physics.arrays import Flags, FloatRows, Floats
 from sandbox.physics.collision.types import TOUCHING, Colliders, Contacts, weight_of
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
@@ -92,6 +92,6 @@ def load_couple(contacts: Contacts, c: int, of: int, p: int, arm: float, collide
 
 
 @inner_kernel
-def _distance(p: int, q: int, position: Floats) -> float:
+def _distance(p: int, q: int, position: FloatRows) -> float:
     dx, dy = difference(p, q, position)
     return math.sqrt(dx * dx + dy * dy)

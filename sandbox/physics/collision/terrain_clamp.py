@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.arrays import Flags, FloatRows, FloatTables, Floats, Slots
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.narrow_phase import are_joined, may_collide
 from sandbox.physics.collision.outline import Outline
@@ -21,8 +21,8 @@ STOPS = 3
 @inner_kernel
 def clamp_at_terrain(
     position: Floats,
-    velocity: Floats,
-    ahead: Floats,
+    velocity: FloatRows,
+    ahead: FloatRows,
     collides: Slots,
     active: Flags,
     inverse_mass: Floats,
@@ -49,7 +49,7 @@ def clamp_at_terrain(
 
 
 @inlined_kernel
-def _cut(p: int, stops: int, dx: float, dy: float, velocity: Floats, ahead: Floats, h: float) -> None:
+def _cut(p: int, stops: int, dx: float, dy: float, velocity: FloatRows, ahead: FloatRows, h: float) -> None:
     # Take from a particle's velocity what its way was cut by, -d; all that moves it, where it was cut too often.
     if stops > STOPS:
         for axis in range(2):
@@ -61,7 +61,7 @@ def _cut(p: int, stops: int, dx: float, dy: float, velocity: Floats, ahead: Floa
 
 
 @inner_kernel
-def stop_at_terrain(p: int, position: Floats, velocity: Floats, terrain: Terrain, h: float) -> bool:
+def stop_at_terrain(p: int, position: FloatRows, velocity: FloatRows, terrain: Terrain, h: float) -> bool:
     """Cut the velocity [m/s] of row p, which moves by that alone, if it would cross terrain in the coming h [s].
 
     Returned: whether it would.
@@ -75,7 +75,7 @@ def stop_at_terrain(p: int, position: Floats, velocity: Floats, terrain: Terrain
 
 @inner_kernel
 def clamp_at_pins(
-    position: Floats, velocity: Floats, ahead: Floats, inverse_mass: Floats, outline: Outline, colliders: Colliders,
+    position: FloatRows, velocity: FloatRows, ahead: FloatRows, inverse_mass: Floats, outline: Outline, colliders: Colliders,
     box: Floats, near_start: Slots, h: float,
 ) -> None:  # fmt: skip
     """The same at edges of bodies that pins hold, which particles of other bodies may touch.
@@ -108,7 +108,7 @@ def clamp_at_pins(
 
 @inner_kernel
 def clamp_at_tips(
-    velocity: Floats, inverse_mass: Floats, terrain: Terrain, dynamic: int, colliders: Colliders, holds: bool, h: float
+    velocity: FloatRows, inverse_mass: Floats, terrain: Terrain, dynamic: int, colliders: Colliders, holds: bool, h: float
 ) -> bool:
     """Cut the velocities of the ends of edges that would cross a corner of terrain in the coming h [s]; whether any.
 
@@ -147,7 +147,7 @@ def clamp_at_tips(
 
 @inner_kernel
 def _stop_edge(
-    e: int, i: int, v: int, velocity: Floats, inverse_mass: Floats, terrain: Terrain, colliders: Colliders,
+    e: int, i: int, v: int, velocity: FloatTables, inverse_mass: Floats, terrain: Terrain, colliders: Colliders,
     holds: bool, h: float,
 ) -> bool:  # fmt: skip
     found = False
@@ -248,7 +248,7 @@ def _pin_crossing(
 
 
 @inner_kernel
-def _stays_in(box: Floats, p: int, x: float, y: float, wx: float, wy: float) -> bool:
+def _stays_in(box: FloatRows, p: int, x: float, y: float, wx: float, wy: float) -> bool:
     # Whether the way w of a particle's centre stays in its box, and SKIN away from what is outside.
     return (
         x + min(0.0, wx) - SKIN >= box[p, 0]

@@ -6,7 +6,7 @@ with shares 1 - s and s, and end_a is -1. At its ends an edge meets terrain as a
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.narrow_phase import KINDS, TIP, TIP_SHIFT, add_contact, may_collide
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.equation import SHORTEST
@@ -25,7 +25,7 @@ NEAR_TIP = 0.5
 
 @inner_kernel
 def meet_tip(
-    e: int, i: int, v: int, near: float, reach: float, h: float, velocity: Floats, terrain: Terrain,
+    e: int, i: int, v: int, near: float, reach: float, h: float, velocity: FloatRows, terrain: Terrain,
     colliders: Colliders,
 ) -> tuple[bool, float, float, float, float]:  # fmt: skip
     """Whether an edge of a body is within `near` [m] of tip i of terrain, vertex v, or comes as near as `reach` in h.
@@ -133,7 +133,7 @@ def _first_root(c: float, b: float, a: float) -> float:
 
 @inlined_kernel
 def find_tips(
-    p: int, h: float, box: Floats, terrain: Terrain, colliders: Colliders, contacts: Contacts, dynamic: int,
+    p: int, h: float, box: FloatRows, terrain: Terrain, colliders: Colliders, contacts: Contacts, dynamic: int,
     particles: int, count: int,
 ) -> int:  # fmt: skip
     """Contacts of the edges that begin at particle p with tips of terrain; the number of contacts then."""

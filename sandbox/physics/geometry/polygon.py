@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.geometry.segment import doubled_area_of, doubled_areas
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 
 
 @inner_kernel
-def polygon_area(place: Floats, first: int, last: int) -> float:
+def polygon_area(place: FloatRows, first: int, last: int) -> float:
     """Signed area [m^2] of the polygon of the corners first..last at place (q, 2)."""
     total = 0.0
     for c in range(first + 1, last - 1):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 
@@ -20,7 +20,7 @@ def doubled_area(ax: float, ay: float, bx: float, by: float, cx: float, cy: floa
 
 
 @inlined_kernel
-def doubled_area_of(a: int, b: int, c: int, position: Floats) -> float:
+def doubled_area_of(a: int, b: int, c: int, position: FloatRows) -> float:
     """`doubled_area` of three rows of positions (n, 2)."""
     return doubled_area(position[a, 0], position[a, 1], position[b, 0], position[b, 1], position[c, 0], position[c, 1])
 
@@ -40,13 +40,13 @@ def nearest_share(px: float, py: float, dx: float, dy: float) -> float:
 
 
 @inlined_kernel
-def difference(a: int, b: int, rows: Floats) -> tuple[float, float]:
+def difference(a: int, b: int, rows: FloatRows) -> tuple[float, float]:
     """Row b of (n, 2) less row a: the way from one place to another, or how fast that changes."""
     return rows[b, 0] - rows[a, 0], rows[b, 1] - rows[a, 1]
 
 
 @inlined_kernel
-def segment_of(a: int, b: int, position: Floats) -> tuple[float, float, float, float]:
+def segment_of(a: int, b: int, position: FloatRows) -> tuple[float, float, float, float]:
     """Where the segment from row a to row b of positions (n, 2) begins, and its way [m]: x, y, dx, dy."""
     ax = position[a, 0]
     ay = position[a, 1]
@@ -54,7 +54,7 @@ def segment_of(a: int, b: int, position: Floats) -> tuple[float, float, float, f
 
 
 @inner_kernel
-def closest_on_segment(p: int, a: int, b: int, position: Floats) -> tuple[float, float, float, int]:
+def closest_on_segment(p: int, a: int, b: int, position: FloatRows) -> tuple[float, float, float, int]:
     """The place nearest to p of the segment a b, as a share of it; distance and signed distance [m]; region.
 
     The signed distance is that from the straight line, above 0 on its right. region: -1 and 1 where an end is nearest.

@@ -3,7 +3,7 @@
 Of those that `Joints` lists; what an impulse does to bodies and to other joints: see joint_answers.py.
 """
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, couple_masses, own_response
@@ -11,7 +11,7 @@ from sandbox.physics.joints.rows import PAIR, SECOND_OF_TWO, JointRows, clamped,
 
 
 @inner_kernel
-def _push(joints: Joints, k: int, impulse: float, delta_v: Floats) -> None:
+def _push(joints: Joints, k: int, impulse: float, delta_v: FloatRows) -> None:
     # What a row's impulse does to particles and to the velocities of rows that are coupled with it.
     actions, couplings = joints.actions, joints.couplings
     for action in range(actions.first[k], actions.first[k + 1]):
@@ -170,7 +170,7 @@ def warm_start_joints(joints: Joints, delta_v: Floats, inverse_mass: Floats) -> 
 
 
 @inner_kernel
-def iterate_joint(joints: Joints, k: int, velocity: Floats, delta_v: Floats, inverse_mass: Floats) -> None:
+def iterate_joint(joints: Joints, k: int, velocity: Floats, delta_v: FloatRows, inverse_mass: Floats) -> None:
     """Bring a joint, or two that are clamped together, to its target; particles answer by their own mass."""
     rows = joints.rows
     if rows.pair[k] == SECOND_OF_TWO or not (rows.limit[k] > 0.0 and own_response(joints, k) > 0.0):

@@ -60,7 +60,7 @@ def any_on(rows: JointRows) -> bool:
 
 
 @inner_kernel
-def row_velocity(rows: JointRows, k: int, velocity: Floats, delta_v: Floats) -> float:
+def row_velocity(rows: JointRows, k: int, velocity: FloatRows, delta_v: FloatRows) -> float:
     """u = sum g . v of a row, from velocity + delta_v (n, 2)."""
     u = 0.0
     for e in range(rows.first[k], rows.first[k + 1]):

@@ -191,7 +191,7 @@ def copy_bound(collisions: Collisions) -> None:
 
 
 @inner_kernel
-def separate_overlaps(state: State, start: Floats, collisions: Collisions) -> None:
+def separate_overlaps(state: State, start: FloatRows, collisions: Collisions) -> None:
     """Let bodies come apart whose outlines overlap; start [m/s] (n, 2): velocities before anything acted."""
     if collisions.overlaps.counts[OVERLAPS] > 0:
         moved = MovedParticles(
@@ -203,7 +203,7 @@ def separate_overlaps(state: State, start: Floats, collisions: Collisions) -> No
 
 
 @inner_kernel
-def prepare_contacts(state: State, start: Floats, collisions: Collisions, h: float) -> None:
+def prepare_contacts(state: State, start: FloatRows, collisions: Collisions, h: float) -> None:
     """Find what bounces in a step of h [s], and give contacts the impulses that they begin with."""
     contacts, counts, bound = collisions.contacts, collisions.counts, collisions.bound
     find_bounces(contacts, counts[CONTACTS], start, state.velocity, collisions.attached, h, h / small_steps(h))
@@ -217,7 +217,7 @@ def prepare_contacts(state: State, start: Floats, collisions: Collisions, h: flo
 
 
 @inner_kernel
-def solve_free(state: State, start: Floats, collisions: Collisions, h: float) -> None:
+def solve_free(state: State, start: FloatRows, collisions: Collisions, h: float) -> None:
     """Solve the contacts of what no spring or constraint holds."""
     contacts, counts = collisions.contacts, collisions.counts
     found = 0

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 
 
 class Inputs(NamedTuple):
@@ -15,6 +15,6 @@ class Inputs(NamedTuple):
     damping: Floats
     constraint_stiffness: Floats
     constraint_damping: Floats
-    start: Floats
+    start: FloatRows
     start_length: Floats
     ease: float

@@ -63,7 +63,7 @@ def _bound(s: int, colliders: Colliders, outline: Outline, shape_bounds: ShapeBo
 
 
 @inner_kernel
-def cross(e: int, f: int, apart: float, position: Floats, colliders: Colliders) -> tuple[float, float]:
+def cross(e: int, f: int, apart: float, position: FloatRows, colliders: Colliders) -> tuple[float, float]:
     """Where edge e crosses edge f, which is widened a little: the shares along both; -1: they do not cross."""
     a = colliders.edge_a[e]
     b = colliders.edge_b[e]
@@ -153,7 +153,8 @@ def find_crossing_candidates(colliders: Colliders, outline: Outline, shape_bound
         crossing[s, 2] = crossing[s, 3] = -math.inf
         for t in range(shapes if shape_bounds.intact[s] else 0):
             if t == s or not (
-                shape_bounds.collides[s] & shape_bounds.group[t] and shape_bounds.collides[t] & shape_bounds.group[s]
+                shape_bounds.collides[s] & shape_bounds.group[t] != 0
+                and shape_bounds.collides[t] & shape_bounds.group[s] != 0
             ):
                 continue
             left, bottom = max(box[s, 0], box[t, 0]), max(box[s, 1], box[t, 1])

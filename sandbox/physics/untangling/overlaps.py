@@ -193,7 +193,7 @@ def _pair_of(s: int, t: int, found: Overlaps) -> int:
 
 
 @inner_kernel
-def _lies_in(k: int, within: int, bounds: Floats) -> bool:
+def _lies_in(k: int, within: int, bounds: FloatRows) -> bool:
     return (
         bounds[within, 0] <= bounds[k, 0]
         and bounds[within, 1] <= bounds[k, 1]
@@ -203,7 +203,7 @@ def _lies_in(k: int, within: int, bounds: Floats) -> bool:
 
 
 @inner_kernel
-def _pair_enclosed(colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps) -> None:
+def _pair_enclosed(colliders: Colliders, outline: Outline, bounds: FloatRows, found: Overlaps) -> None:
     # Solid bodies that lie in others, and cross them nowhere: one corner tells.
     solids = outline.dynamic[1]
     for inner in range(solids):
@@ -243,7 +243,7 @@ def _is_crossed_deep(pair: int, colliders: Colliders, found: Overlaps) -> bool:
 
 
 @inner_kernel
-def _is_in(x: float, y: float, k: int, outline: Outline, bounds: Floats, colliders: Colliders) -> bool:
+def _is_in(x: float, y: float, k: int, outline: Outline, bounds: FloatRows, colliders: Colliders) -> bool:
     # Whether a place is inside solid body k.
     if not (bounds[k, 0] <= x <= bounds[k, 2] and bounds[k, 1] <= y <= bounds[k, 3]):
         return False
@@ -252,7 +252,7 @@ def _is_in(x: float, y: float, k: int, outline: Outline, bounds: Floats, collide
 
 @inner_kernel
 def _is_deep_at(
-    x: float, y: float, deep: float, k: int, outline: Outline, bounds: Floats, colliders: Colliders
+    x: float, y: float, deep: float, k: int, outline: Outline, bounds: FloatRows, colliders: Colliders
 ) -> bool:
     # Whether a place is deeper than that inside solid body k.
     if not _is_in(x, y, k, outline, bounds, colliders):
@@ -269,7 +269,7 @@ def _is_deep_at(
 
 
 @inner_kernel
-def _is_inside_deep(s: int, t: int, outline: Outline, bounds: Floats, colliders: Colliders) -> bool:
+def _is_inside_deep(s: int, t: int, outline: Outline, bounds: FloatRows, colliders: Colliders) -> bool:
     # Whether a particle of shape s, or the middle of all of them, is deep inside the solid body of shape t.
     k = outline.solid_of[t]
     x = 0.0
@@ -295,7 +295,7 @@ def _is_inside_deep(s: int, t: int, outline: Outline, bounds: Floats, colliders:
 
 @inner_kernel
 def mark_separating(
-    pair: int, colliders: Colliders, outline: Outline, bounds: Floats, found: Overlaps, flags: Flags
+    pair: int, colliders: Colliders, outline: Outline, bounds: FloatRows, found: Overlaps, flags: Flags
 ) -> None:
     """Flag the particles that are separated: all of solid bodies; of a line those inside, and the ends of crossing
     edges.
@@ -342,7 +342,7 @@ def _touched(s: int, t: int, colliders: Colliders, outline: Outline, kept: KeptC
 
 @inner_kernel
 def pair_overlaps(
-    colliders: Colliders, outline: Outline, bounds: Floats, kept: KeptContacts, kept_count: int, found: Overlaps
+    colliders: Colliders, outline: Outline, bounds: FloatRows, kept: KeptContacts, kept_count: int, found: Overlaps
 ) -> int:
     """Sort the crossings by pairs of shapes, and decide which part; the number of pairs, counted on without room.
 

@@ -9,7 +9,7 @@ it is paid with: energy that the two have lost before.
 import math
 from typing import NamedTuple
 
-from sandbox.physics.arrays import Flags, Floats
+from sandbox.physics.arrays import Flags, FloatRows, Floats
 from sandbox.physics.collision.edge_geometry import edge_normal, place_on, winds
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders
@@ -35,8 +35,8 @@ class MovedParticles(NamedTuple):
     acted.
     """
 
-    velocity: Floats
-    start: Floats
+    velocity: FloatRows
+    start: FloatRows
     mass: Floats
     inverse_mass: Floats
     energy_bank: Floats
@@ -260,7 +260,7 @@ def _part(
 
 @inner_kernel
 def part_overlaps(
-    outline: Outline, colliders: Colliders, bounds: Floats, particles: MovedParticles, found: Overlaps, flags: Flags
+    outline: Outline, colliders: Colliders, bounds: FloatRows, particles: MovedParticles, found: Overlaps, flags: Flags
 ) -> None:
     """Push apart the pairs that part, in their order. flags (n,): scratch."""
     for pair in range(found.counts[OVERLAPS]):

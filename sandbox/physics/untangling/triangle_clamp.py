@@ -279,7 +279,7 @@ def _sweep(first: int, last: int, triangles: ClampedTriangles, begun: int, h: fl
 def _stop_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float) -> None:
     # What would cross terrain now goes as far as it may.
     for r in range(low, high):
-        if triangles.inverse_mass[r] > 0.0 and triangles.collides[r] & TERRAIN_GROUP:
+        if triangles.inverse_mass[r] > 0.0 and triangles.collides[r] & TERRAIN_GROUP != 0:
             stop_at_terrain(r, triangles.position, triangles.velocity, triangles.terrain, h)
 
 
@@ -369,7 +369,7 @@ def _hold_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float)
         g = root_of(triangles.label, r)
         if triangles.fixed[g] or triangles.sums[g, COUNT] == 1.0:
             continue
-        if triangles.collides[r] & TERRAIN_GROUP:
+        if triangles.collides[r] & TERRAIN_GROUP != 0:
             stops, _, _ = stopped(position[r, 0], position[r, 1], h * velocity[r, 0], h * velocity[r, 1], terrain)
             if stops > 0:
                 triangles.fixed[g] = True

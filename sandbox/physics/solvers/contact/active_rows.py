@@ -1,6 +1,6 @@
 """Rows of contacts that carry and stick: which they are, and the matrix (W + R) of their equations."""
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.active_set import MOST_PRODUCTS, ActiveSet
@@ -31,7 +31,7 @@ MOST_SWEEPS = 40.0
 
 @inner_kernel
 def velocity_of(
-    contacts: Contacts, c: int, velocity: Floats, delta_v: Floats, surface: Floats
+    contacts: Contacts, c: int, velocity: FloatRows, delta_v: Floats, surface: Floats
 ) -> tuple[float, float]:  # fmt: skip
     """Velocity of a contact along its normal, and slip [m/s]."""
     ux, uy = relative_velocity(contacts, c, velocity, delta_v)

@@ -9,7 +9,7 @@ and all that rests have their say in the sweeps.
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.restitution import SLOWEST_PASSED
 from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.jit import inner_kernel
@@ -41,7 +41,7 @@ LEAST_WORK = 4000
 
 @inner_kernel
 def _find_hits(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, is_first: bool, h: float
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, is_first: bool, h: float
 ) -> int:  # fmt: skip
     # direction = impulse in this pass, and the velocity along the normal that is wanted (-inf: no hit); before = the
     # sum of impulses, and how fast forces alone bring it near. How many hits there are.
@@ -76,7 +76,7 @@ def _find_held(contacts: Contacts, terms: ContactConstraints, h: float) -> None:
 
 @inner_kernel
 def _solve_pass(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus, is_alone: bool,
 ) -> int:  # fmt: skip
     # J = max(0, J + (b - u) / W) in sweeps; how many. Then `last_impulse` has what they have given.
@@ -106,7 +106,7 @@ def _solve_pass(
 
 
 @inner_kernel
-def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats) -> bool:
+def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows) -> bool:
     # Whether anything bounces at all, and what `before` is then.
     bounces = False
     for c in range(contacts.particle.shape[0]):
@@ -122,7 +122,7 @@ def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity:
 
 @inner_kernel
 def pass_on(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
     """Find how fast all that bounces in a step of h [s] leaves, in passes from what is hit to what that hits in turn.
@@ -162,7 +162,7 @@ def pass_on(
 
 @inner_kernel
 def pass_on_all(
-    contacts: Contacts, terms: ContactConstraints, order: ContactOrder, velocity: Floats, delta_v: Floats,
+    contacts: Contacts, terms: ContactConstraints, order: ContactOrder, velocity: FloatRows, delta_v: Floats,
     inverse_mass: Floats, delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
     """The same of every island by itself."""
@@ -181,7 +181,7 @@ def _of_island(
 
 @inner_kernel
 def sweep_masses(
-    contacts: Contacts, terms: ContactConstraints, order: ContactOrder, state: State, delta_v: Floats,
+    contacts: Contacts, terms: ContactConstraints, order: ContactOrder, state: State, delta_v: FloatRows,
     delassus: Delassus, sweeps: int, h: float,
 ) -> None:  # fmt: skip
     """Solve contacts of particles that answer by their own mass; bring velocities and spins to the end of the step.

@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints
@@ -30,7 +30,7 @@ SWEEPS_AFTER = 2
 
 @inner_kernel
 def solve_contacts(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus, sweeps: int, most: int, affordable: float, cost: float, accelerate: bool,
 ) -> int:  # fmt: skip
     """Sweep until nothing changes, at most so many times, or `most` where what is calm changes still; what it took, in
@@ -84,7 +84,7 @@ def start_sweeps(
 
 @inner_kernel
 def sweep_all(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: Floats, inverse_mass: Floats,
     delassus: Delassus,
 ) -> tuple[float, float, float]:  # fmt: skip
     """One sweep over joints, then contacts; the largest changes of a velocity [m/s], of joints, contacts, calm ones."""

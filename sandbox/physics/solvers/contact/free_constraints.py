@@ -108,7 +108,7 @@ class FreeContactScratch(NamedTuple):
 
 @inner_kernel
 def _place_of(
-    p: int, colliders: Colliders, start: Floats, spin: Floats, work: FreeContactScratch, count: int
+    p: int, colliders: Colliders, start: FloatRows, spin: Floats, work: FreeContactScratch, count: int
 ) -> tuple[int, int]:
     # The place of a particle, and the number of places then.
     if colliders.inverse_mass[p] > 0.0 and work.local[p] >= 0:
@@ -132,7 +132,7 @@ def _place_of(
 
 
 @inner_kernel
-def _place_of_edge(contacts: Contacts, c: int, start: Floats, work: FreeContactScratch, count: int) -> tuple[int, int]:
+def _place_of_edge(contacts: Contacts, c: int, start: FloatRows, work: FreeContactScratch, count: int) -> tuple[int, int]:
     # The place of an edge that cannot move, be it of terrain or of a body, and the number of places then.
     a = contacts.end_a[c]
     b = contacts.end_b[c]
@@ -175,7 +175,7 @@ def _way_of(contacts: Contacts, c: int, colliders: Colliders) -> float:
 
 @inner_kernel
 def _place_contact(
-    contacts: Contacts, islands: Islands, i: int, colliders: Colliders, start: Floats, spin: Floats,
+    contacts: Contacts, islands: Islands, i: int, colliders: Colliders, start: FloatRows, spin: Floats,
     work: FreeContactScratch, count: int,
 ) -> int:  # fmt: skip
     # The places, level and way of an island's contact; the number of places then.
@@ -235,7 +235,7 @@ def _plan(
 
 @inner_kernel
 def plan_islands(
-    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: Floats, spin: Floats,
+    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows, spin: Floats,
     h: float, work: FreeContactScratch,
 ) -> None:  # fmt: skip
     """The places of all islands, and in how many small steps of h [s] each is solved; places are not known yet.

@@ -9,7 +9,7 @@ in small steps: where their number changed with what is near, a disc's energy wo
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, spin_of
 from sandbox.physics.collision.types import Colliders, Contacts
@@ -341,7 +341,7 @@ def _solve_beside(
 
 @inner_kernel
 def solve_free_contacts(
-    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: Floats, velocity: Floats,
+    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows, velocity: FloatRows,
     spin: Floats, h: float, work: FreeContactScratch,
 ) -> None:  # fmt: skip
     """Solve the sorted free contacts over a step of h [s]; work.ahead goes with velocity and spin.

@@ -105,7 +105,7 @@ def store_spins(terms: ContactConstraints, spin: Floats, radius: Floats) -> None
 
 
 @inner_kernel
-def relative_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> tuple[float, float]:
+def relative_velocity(contacts: Contacts, c: int, velocity: FloatRows, delta_v: Floats) -> tuple[float, float]:
     """Velocity of the particle relative to the other side of the contact, from velocity + delta_v."""
     p = contacts.particle[c]
     ux = velocity[p, 0] + delta_v[p, 0]
@@ -128,7 +128,7 @@ def relative_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Flo
 
 
 @inner_kernel
-def couple_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> float:
+def couple_velocity(contacts: Contacts, c: int, velocity: FloatRows, delta_v: FloatRows) -> float:
     """How fast surfaces of what does not roll move against each other, as that turns with its partners."""
     slip = 0.0
     for of in range(2):
@@ -142,7 +142,7 @@ def couple_velocity(contacts: Contacts, c: int, velocity: Floats, delta_v: Float
 
 
 @inner_kernel
-def _push_particle(p: int, jx: float, jy: float, delta_v: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
+def _push_particle(p: int, jx: float, jy: float, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus) -> None:
     push_at(delassus.joints, p, jx, jy)
     answer_push(p, jx, jy, delta_v, inverse_mass, delassus)
 
@@ -183,7 +183,7 @@ def _push_two(
 
 
 @inner_kernel
-def answer_push(p: int, jx: float, jy: float, delta_v: Floats, inverse_mass: Floats, delassus: Delassus) -> None:
+def answer_push(p: int, jx: float, jy: float, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus) -> None:
     """Add what an impulse at a particle does, joints aside: v += W J."""
     k = delassus.block[p]
     if k < 0:
@@ -243,7 +243,7 @@ def turn_surfaces(contacts: Contacts, c: int, jp: float, jq: float, surface: Flo
 
 
 @inner_kernel
-def surface_speeds(contacts: Contacts, c: int, by: Floats, surface: Floats) -> tuple[float, float]:
+def surface_speeds(contacts: Contacts, c: int, by: FloatRows, surface: Floats) -> tuple[float, float]:
     """The speeds of both surfaces of a contact, times their arms or ratios; 0 of what does not roll."""
     p = 0.0
     q = 0.0
@@ -354,7 +354,7 @@ def warm_start_contacts(
 
 
 @inner_kernel
-def approach_of(contacts: Contacts, c: int, velocity: Floats, delta_v: Floats) -> float:
+def approach_of(contacts: Contacts, c: int, velocity: FloatRows, delta_v: FloatRows) -> float:
     """Velocity along its normal [m/s] of a contact, from velocity + delta_v."""
     ux, uy = relative_velocity(contacts, c, velocity, delta_v)
     return contacts.normal[c, 0] * ux + contacts.normal[c, 1] * uy
@@ -409,7 +409,7 @@ def sweep(
 
 @inner_kernel
 def mark_calm(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, block: Slots, rigid: Flags, firm: Flags
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, block: Slots, rigid: Flags, firm: Flags
 ) -> None:  # fmt: skip
     """Which contacts are slow: all that they touch is, and firm; and which are calm: that is rigid, too."""
     for c in range(contacts.particle.shape[0]):
@@ -428,7 +428,7 @@ def mark_calm(
 
 
 @inner_kernel
-def add_change(velocity: Floats, delta_v: Floats, inverse_mass: Floats) -> None:
+def add_change(velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats) -> None:
     """Add what a step changes to the velocities of particles that can move."""
     for p in range(inverse_mass.shape[0]):
         if inverse_mass[p] > 0.0:

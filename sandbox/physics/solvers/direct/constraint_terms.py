@@ -9,7 +9,7 @@ J = max(0, -K (u' + b)), b = x / h above it and beta x / h below. It stands in t
 where it is foreseen to push, and has the same strength whatever Cs and Cd are: the softest jelly lies on its floors.
 """
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, evaluate
 from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
 from sandbox.physics.geometry.polygon import polygon_area
@@ -26,7 +26,7 @@ WHOLE_BEND = 1.0
 
 
 @inner_kernel
-def _look(k: int, constraints: Constraints, position: Floats, velocity: Floats, time: float) -> None:
+def _look(k: int, constraints: Constraints, position: FloatRows, velocity: Floats, time: float) -> None:
     # The corners of a constraint at position + time velocity.
     for c in range(constraints.first[k], constraints.first[k + 1]):
         r = constraints.row[c]
@@ -35,7 +35,7 @@ def _look(k: int, constraints: Constraints, position: Floats, velocity: Floats, 
 
 
 @inner_kernel
-def _error(k: int, constraints: Constraints, gradient: Floats) -> float:
+def _error(k: int, constraints: Constraints, gradient: FloatRows) -> float:
     # C of the corners that were looked at, and its gradient.
     first = constraints.first[k]
     last = constraints.first[k + 1]
@@ -238,7 +238,7 @@ def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
 
 
 @inner_kernel
-def gradient_dot(k: int, constraints: Constraints, delta_v: Floats, free_count: int) -> float:
+def gradient_dot(k: int, constraints: Constraints, delta_v: FloatRows, free_count: int) -> float:
     """g . delta_v of a constraint."""
     total = 0.0
     for c in range(constraints.first[k], constraints.first[k + 1]):

@@ -4,7 +4,7 @@ Wide constraints are taken in after the factorisation: (A + K g g^T)^-1 = A^-1 -
 (Sherman and Morrison 1950). Right sides and solutions are in `delta_v`: the one array that a helping thread knows.
 """
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import gradient_dot
 from sandbox.physics.solvers.direct.families import assemble, load_residual
@@ -45,7 +45,7 @@ def solve_again(span: Span, system: System) -> None:
 
 
 @inner_kernel
-def respond(span: Span, system: System, vector: Floats) -> None:
+def respond(span: Span, system: System, vector: FloatRows) -> None:
     """Solve A x = vector for the rows of one body, in place, with the factor that a linear solve has left."""
     copy(span, vector, system.rows.delta_v)
     solve_again(span, system)

@@ -13,7 +13,7 @@ nothing.
 
 import math
 
-from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.terrain_clamp import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.turning import SURFACE_WEIGHT
@@ -72,7 +72,7 @@ def clamp_rows(span: Span, rows: Rows, state: State, h: float) -> bool:
     """Cut the velocities of one body's particles that would cross terrain; whether any does."""
     found = False
     for r in range(span.first_row, span.last_row):
-        if state.collides[rows.particle[r]] & TERRAIN_GROUP:
+        if state.collides[rows.particle[r]] & TERRAIN_GROUP != 0:
             found = stop_at_terrain(r, rows.position, rows.v, state.terrain, h) or found
     return found
 
@@ -82,7 +82,7 @@ def clamp_free(islands: BodyIslands, state: State, h: float) -> None:
     """Cut the velocities of free particles that would cross terrain."""
     for i in range(islands.counts[MEMBERS] - islands.counts[BODIES]):
         p = islands.free[i]
-        if not state.collides[p] & TERRAIN_GROUP:
+        if state.collides[p] & TERRAIN_GROUP == 0:
             continue
         wx = h * (islands.given[p, 0] + islands.delta_v[p, 0])
         wy = h * (islands.given[p, 1] + islands.delta_v[p, 1])
@@ -178,7 +178,7 @@ def weigh_body(k: int, span: Span, rows: Rows, islands: BodyIslands) -> None:
 
 
 @inner_kernel
-def open_free(islands: BodyIslands, state: State, start: Floats) -> None:
+def open_free(islands: BodyIslands, state: State, start: FloatRows) -> None:
     """The energies of free particles before the step, and what their banks hold."""
     bodies = islands.counts[BODIES]
     for i in range(islands.counts[MEMBERS] - bodies):
@@ -308,7 +308,7 @@ def _lendable(island: int, islands: BodyIslands, system: System, state: State) -
 
 
 @inner_kernel
-def check_energies(workspace: IslandWorkspace, system: System, state: State, start: Floats) -> bool:
+def check_energies(workspace: IslandWorkspace, system: System, state: State, start: FloatRows) -> bool:
     """Check the energy of every island; whether any fails."""
     # Where a free particle gave way, `given` is below what forces left it.
     islands, surface, push = workspace.islands, workspace.terms.surface, workspace.delassus.joints.push

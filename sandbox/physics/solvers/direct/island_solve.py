@@ -8,7 +8,7 @@ together that touch each other, so that one may take what another gives.
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, FloatTables, Floats
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.jit import inner_kernel
@@ -211,7 +211,7 @@ def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: floa
 
 
 @inner_kernel
-def _leave_unpushed(span: Span, rows: Rows, unpushed: Floats) -> None:
+def _leave_unpushed(span: Span, rows: Rows, unpushed: FloatTables) -> None:
     # What a body does without contacts; `v` stays where the body was linearised.
     for r in range(span.first_row, span.last_row):
         unpushed[r, 0] = rows.v[r, 0] + rows.delta_v[r, 0]
@@ -453,7 +453,7 @@ def _find_due(islands: BodyIslands, misses: bool, h: float) -> bool:
 
 @inner_kernel
 def _solve_linearly(
-    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: Floats, affordable: int,
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, affordable: int,
     h: float,
 ) -> int:  # fmt: skip
     # Linear solves while springs miss the lengths predicted or the test fails; the sweeps left.

@@ -1,6 +1,6 @@
 """Joints of bodies that are solved directly: how bodies answer to them, what they do to a body's spin and energy."""
 
-from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints
 from sandbox.physics.solvers.direct.factor import respond
@@ -21,7 +21,7 @@ def open_joints(joints: Joints, row: Slots, inverse_mass: Floats) -> None:
 
 
 @inner_kernel
-def load_answers(span: Span, system: System, joints: Joints, row: Slots, vector: Floats) -> None:
+def load_answers(span: Span, system: System, joints: Joints, row: Slots, vector: FloatRows) -> None:
     """Z = A^-1 g of a body that has been factored, for every joint that acts on it; row (n,): of each particle."""
     rows, actions = joints.rows, joints.actions
     q = actions.node[system.rows.particle[span.first_row]]
@@ -69,7 +69,7 @@ def release_joints(joints: Joints) -> None:
 
 
 @inner_kernel
-def work_of_joints(span: Span, rows: Rows, push: Floats) -> float:
+def work_of_joints(span: Span, rows: Rows, push: FloatRows) -> float:
     """The work of joints on one body [J]: that of their impulses at the mean of the velocities before and after."""
     # At v' alone, what just begins to move would fail the test by a hair and stick.
     total = 0.0

@@ -1,13 +1,13 @@
 """Velocities of one body's rows: copied, scaled, their energy, and what triangles leave of them."""
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.system import Span, System
 from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, clamp_triangles
 
 
 @inner_kernel
-def copy(span: Span, source: Floats, destination: Floats) -> None:
+def copy(span: Span, source: FloatRows, destination: FloatRows) -> None:
     """Copy the rows of a body from one array (n, 2) to another."""
     for r in range(span.first_row, span.last_row):
         destination[r, 0] = source[r, 0]
@@ -15,7 +15,7 @@ def copy(span: Span, source: Floats, destination: Floats) -> None:
 
 
 @inner_kernel
-def scale(span: Span, factor: float, vector: Floats) -> None:
+def scale(span: Span, factor: float, vector: FloatRows) -> None:
     """Multiply the rows of a body of an array (n, 2)."""
     for r in range(span.first_row, span.last_row):
         vector[r, 0] *= factor
@@ -23,7 +23,7 @@ def scale(span: Span, factor: float, vector: Floats) -> None:
 
 
 @inner_kernel
-def kinetic(span: Span, mass: Floats, velocity: Floats) -> float:
+def kinetic(span: Span, mass: Floats, velocity: FloatRows) -> float:
     """Kinetic energy of one body [J]."""
     # 1/2 |v|^2_M
     total = 0.0

@@ -3,7 +3,7 @@
 It says how particles P that contacts touch answer to impulses.
 """
 
-from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.geometry.rigid import RigidMotion
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.solvers.contact.gauss_seidel import Delassus
@@ -38,7 +38,7 @@ def load_block(k: int, span: Span, system: System, delassus: Delassus, row: Slot
 
 @inner_kernel
 def hold_block(
-    k: int, span: Span, system: System, spin: RigidMotion, delassus: Delassus, row: Slots, vector: Floats
+    k: int, span: Span, system: System, spin: RigidMotion, delassus: Delassus, row: Slots, vector: FloatRows
 ) -> None:  # fmt: skip
     """Let the block of a body answer with the spin that impulses give it.
 
@@ -139,7 +139,7 @@ def _take_out_wide(k: int, span: Span, constraints: Constraints, delassus: Delas
 
 
 @inner_kernel
-def _load_column_wise(k: int, span: Span, system: System, delassus: Delassus, row: Slots, vector: Floats) -> None:
+def _load_column_wise(k: int, span: Span, system: System, delassus: Delassus, row: Slots, vector: FloatRows) -> None:
     # A large body has its factor in fronts: one solution for each column.
     base = delassus.base[k]
     first = delassus.start[k]

@@ -13,7 +13,7 @@ None of the three changes the angular momentum L about the centre of mass, or ab
 
 import math
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.geometry.rigid import (
     RigidMotion,
     WeightedSums,
@@ -294,7 +294,7 @@ def end_turns(system: System, state: State, h: float) -> None:
 
 
 @inner_kernel
-def torque_of(span: Span, rows: Rows, spin: RigidMotion, impulse: Floats) -> float:
+def torque_of(span: Span, rows: Rows, spin: RigidMotion, impulse: FloatRows) -> float:
     """The angular momentum [kg m^2/s] that impulses on a body's rows give it about the place that it turns about."""
     total = 0.0
     for r in range(span.first_row, span.last_row):
@@ -303,7 +303,7 @@ def torque_of(span: Span, rows: Rows, spin: RigidMotion, impulse: Floats) -> flo
 
 
 @inner_kernel
-def turn_to(span: Span, rows: Rows, spin: RigidMotion, momentum: float, vector: Floats) -> None:
+def turn_to(span: Span, rows: Rows, spin: RigidMotion, momentum: float, vector: FloatRows) -> None:
     """Turn velocities (n, 2) [m/s] until they have this angular momentum; for what is slow."""
     missing = momentum
     for r in range(span.first_row, span.last_row):
@@ -317,7 +317,7 @@ def turn_to(span: Span, rows: Rows, spin: RigidMotion, momentum: float, vector: 
 
 
 @inner_kernel
-def add_torque(span: Span, rows: Rows, spin: RigidMotion, torque: float, vector: Floats) -> None:
+def add_torque(span: Span, rows: Rows, spin: RigidMotion, torque: float, vector: FloatRows) -> None:
     """Add the impulses (n, 2) [N s] to which what is rigid answers by turning alone."""
     rate = torque / spin.inertia
     for r in range(span.first_row, span.last_row):
@@ -374,7 +374,7 @@ def hold_spin(span: Span, rows: Rows, spin: RigidMotion, pivots: bool, aims: boo
 
 
 @inner_kernel
-def damp_within(body: int, span: Span, system: System, found: Floats, share: float, h: float) -> None:
+def damp_within(body: int, span: Span, system: System, found: FloatRows, share: float, h: float) -> None:
     """Leave in `v` a share of what moves within a body, beside the rigid motion of its momenta.
 
     found (n, 2) [m/s]: the velocities whose momenta those are.
@@ -398,7 +398,7 @@ def damp_within(body: int, span: Span, system: System, found: Floats, share: flo
 
 
 @inner_kernel
-def halve_within(span: Span, rows: Rows, spin: RigidMotion, share: float, h: float, vector: Floats) -> None:
+def halve_within(span: Span, rows: Rows, spin: RigidMotion, share: float, h: float, vector: FloatRows) -> None:
     """Leave this share of what moves beside the rigid motion that keeps a body's momenta and all its lengths."""
     # v = V + (R - 1) r / h,  whose angular momentum is I sin / h
     sine = h * spin.momentum / spin.inertia

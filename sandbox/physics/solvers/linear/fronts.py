@@ -242,7 +242,7 @@ def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch:
 
 
 @inner_kernel
-def _gather(front: int, fronts: Fronts, vector: Floats, change: Floats) -> None:
+def _gather(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
     k = 0
     for row in range(fronts.first[front], fronts.last[front]):
         vector[k] = change[row, 0]
@@ -256,7 +256,7 @@ def _gather(front: int, fronts: Fronts, vector: Floats, change: Floats) -> None:
 
 
 @inner_kernel
-def _scatter(front: int, fronts: Fronts, vector: Floats, change: Floats) -> None:
+def _scatter(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
     k = 0
     for row in range(fronts.first[front], fronts.last[front]):
         change[row, 0] = vector[k]
@@ -333,7 +333,7 @@ def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, scratch: S
 
 
 @inner_kernel
-def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
+def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: FloatRows) -> None:
     """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
     for back in range(last_front - first_front):
         front = last_front - 1 - back

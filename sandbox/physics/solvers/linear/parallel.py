@@ -11,7 +11,7 @@ from collections.abc import Callable
 from threading import Thread
 from typing import NamedTuple
 
-from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.jit import inner_kernel, precompile, waiting_kernel
 from sandbox.physics.solvers.linear.dissection import Dissection
 from sandbox.physics.solvers.linear.fronts import Fronts, Scratch, eliminate_rows, factorise_fronts, substitute_fronts
@@ -67,7 +67,7 @@ def _work(wanted: int, first_front: int, last_front: int, fronts: Fronts, scratc
 
 
 @inner_kernel
-def _work_aside(wanted: int, body: int, fronts: Fronts, change: Floats) -> None:
+def _work_aside(wanted: int, body: int, fronts: Fronts, change: FloatRows) -> None:
     # The second half of a body, given by its last front. What it makes of rows above both halves is kept apart.
     first_front = fronts.fork[body, 0]
     last_front = fronts.fork[body, 1]
@@ -100,7 +100,7 @@ def _work_both(wanted: int, first_front: int, body: int, fronts: Fronts, change:
 
 
 @inner_kernel
-def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, change: Floats) -> None:
+def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, change: FloatRows) -> None:
     """Solve for the rows of one body of change (n, 2), in place; its fronts are factored first, unless they are."""
     first_front = fronts.of_row[first_row]
     body = fronts.of_row[last_row - 1]

@@ -96,7 +96,7 @@ def factorise(first: int, last: int, matrix: Matrix) -> None:
 
 
 @inner_kernel
-def back_substitute(first: int, last: int, matrix: Matrix, vector: Floats) -> None:
+def back_substitute(first: int, last: int, matrix: Matrix, vector: FloatRows) -> None:
     """Solve for the rows first..last of vector (n, 2) in place, with the factor that `factorise` left."""
     column_start, row, diagonal, lower = matrix.column_start, matrix.row, matrix.diagonal, matrix.lower
     for j in range(first, last):

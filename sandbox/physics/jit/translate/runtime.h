@@ -1,0 +1,112 @@
+// What the kernels below stand on: arrays as bundles lay them out, and Python's arithmetic of integers.
+//
+// No header of a system is needed, and nothing of its libraries.
+
+typedef signed char int8_t;
+typedef int int32_t;
+typedef unsigned uint32_t;
+typedef long long int64_t;
+typedef unsigned long long uint64_t;
+
+#define INFINITY __builtin_inf()
+#define NAN __builtin_nan("")
+
+#if defined(__wasm__)
+// An address has 32 bits there, and lies in 8 bytes, so that bundles look as everywhere.
+template <class T> struct Address {
+    uint64_t word;
+    operator T *() const { return (T *)(unsigned long)word; }
+};
+#else
+template <class T> using Address = T *;
+#endif
+
+template <class T, int dimensions> struct Array {
+    int64_t unused[2], items, item_size;
+    Address<T> data;
+    int64_t shape[dimensions], strides[dimensions];
+
+    T &operator()(int64_t i) const { return ((T *)data)[i]; }
+    T &operator()(int64_t i, int64_t j) const { return ((T *)data)[i * shape[1] + j]; }
+    T &operator()(int64_t i, int64_t j, int64_t k) const { return ((T *)data)[(i * shape[1] + j) * shape[2] + k]; }
+};
+
+// What a bundle is to Python: an array of one record, which lies at its data.
+typedef Array<int64_t, 1> Bundle;
+template <class T> const T &contents(const Bundle &bundle) { return *(const T *)(int64_t *)bundle.data; }
+template <class T> void put(const T &place, const T &value) { const_cast<T &>(place) = value; }
+
+// An array in the memory of another, from an item on, of so many rows.
+template <class A, class... Sizes> static A lying(const Array<int64_t, 1> &memory, int64_t first, Sizes... sizes) {
+    typedef __remove_reference_t(decltype(A{}(0))) Item;
+    A made{};
+    made.data = {decltype(made.data){(Item *)((int64_t *)memory.data + first)}};
+    const int64_t shape[] = {sizes...};
+    const int dimensions = sizeof...(sizes);
+    made.item_size = sizeof(Item);
+    made.items = 1;
+    int64_t stride = sizeof(Item);
+    for (int k = dimensions - 1; k >= 0; k--) {
+        made.shape[k] = shape[k];
+        made.strides[k] = stride;
+        made.items *= shape[k];
+        stride *= shape[k];
+    }
+    return made;
+}
+
+// The rows first..last of an array, those of them that there are.
+template <class T, int dimensions> static Array<T, dimensions> cut(Array<T, dimensions> array, int64_t first, int64_t last) {
+    int64_t width = 1;
+    for (int k = 1; k < dimensions; k++) width *= array.shape[k];
+    const int64_t end = last < array.shape[0] ? last : array.shape[0], begin = first < end ? first : end;
+    array.data = {(T *)array.data + begin * width};
+    array.shape[0] = end - begin;
+    array.items = array.shape[0] * width;
+    return array;
+}
+
+template <class A, class B> struct Tuple2 { A item0; B item1; };
+template <class A, class B, class C> struct Tuple3 { A item0; B item1; C item2; };
+template <class A, class B, class C, class D> struct Tuple4 { A item0; B item1; C item2; D item3; };
+template <class A, class B, class C, class D, class E> struct Tuple5 { A item0; B item1; C item2; D item3; E item4; };
+template <class A, class B, class C, class D, class E, class F, class G, class H> struct Tuple8 {
+    A item0; B item1; C item2; D item3; E item4; F item5; G item6; H item7;
+};
+
+// As Python's min, max and abs: of equal ones the first, and a NaN only where it is the first.
+template <class T> static T least(T a, T b) { return b < a ? b : a; }
+template <class T> static T greatest(T a, T b) { return b > a ? b : a; }
+static double size_of(double a) { return __builtin_fabs(a); }
+static int64_t size_of(int64_t a) { return a < 0 ? -a : a; }
+
+static double root(double a) { return __builtin_sqrt(a); }
+// Processors of the oldest kind have no instruction for these: the same bits as theirs, but for the sign of 0.
+static int64_t floor_of(double a) {
+    const int64_t whole = (int64_t)a;
+    return (double)whole > a ? whole - 1 : whole;
+}
+static int64_t ceiling_of(double a) {
+    const int64_t whole = (int64_t)a;
+    return (double)whole < a ? whole + 1 : whole;
+}
+static int64_t floor_divide(int64_t a, int64_t b) {
+    const int64_t quotient = a / b;
+    return a % b != 0 && (a < 0) != (b < 0) ? quotient - 1 : quotient;
+}
+static int64_t modulo(int64_t a, int64_t b) {
+    const int64_t rest = a % b;
+    return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
+}
+
+// Entries: a block of words holds the arguments, one after another, and then the result in its first word.
+#if defined(_WIN32)
+#define SHARED __declspec(dllexport)
+#else
+#define SHARED __attribute__((visibility("default")))
+#endif
+#define ENTRY(name) extern "C" SHARED int name(int64_t *block)
+template <class T> static const T &argument(const int64_t *word) { return *(const T *)word; }
+static void give(int64_t *block, double result) { __builtin_memcpy(block, &result, sizeof result); }
+static void give(int64_t *block, int64_t result) { block[0] = result; }
+static void give(int64_t *block, bool result) { block[0] = result; }
