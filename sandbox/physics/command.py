@@ -8,6 +8,7 @@ import numpy as np
 
 from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.collision.pieces import new_piece_scratch, part
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
@@ -215,13 +216,12 @@ def _side_is_lost(p: int, q: int, state: State, start: Slots, listed: Slots, gon
 
 @inner_kernel
 def _cut(state: State, springs: Slots, disturbs: bool, arena: Arena) -> int:
-    # Take springs out, and the constraints that they were a side of, unless another spring holds that side. Pieces of
-    # what breaks by itself keep the energy of the body.
+    # Take springs out, and the constraints that they were a side of, unless another spring holds that side. What falls
+    # into pieces becomes several bodies; those of what breaks by itself keep the energy of the body.
     begin(arena)
-    count, constraints = state.law.shape[0], state.constraint_kind.shape[0]
-    looked_at = count if constraints > 0 else 0
-    gone = new_flags(arena, count)
-    start, listed = new_slots(arena, state.owner.shape[0] + 1), new_slots(arena, 2 * looked_at)
+    count = state.law.shape[0]
+    gone, pieces = new_flags(arena, count), new_piece_scratch(state, arena)
+    start, listed = new_slots(arena, state.owner.shape[0] + 1), new_slots(arena, 2 * count)
     if is_full(arena):
         return NO_ARENA
     for k in range(springs.shape[0]):
@@ -231,10 +231,15 @@ def _cut(state: State, springs: Slots, disturbs: bool, arena: Arena) -> int:
         state.impulse[s, 0] = state.impulse[s, 1] = state.tension[s] = 0.0
         if disturbs:
             state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
-    if constraints == 0:
-        return 0
     list_ends(state.particle_a, state.particle_b, count, state.owner.shape[0], start, listed)
-    for k in range(constraints):
+    _end_constraints(state, start, listed, gone)
+    part(state, springs, start, listed, pieces)
+    return 0
+
+
+@inner_kernel
+def _end_constraints(state: State, start: Slots, listed: Slots, gone: Flags) -> None:
+    for k in range(state.constraint_kind.shape[0]):
         first, last = state.constraint_first[k], state.constraint_first[k] + state.constraint_corners[k]
         # A bend's two outer corners are no side of it.
         begins = last - 1 if state.constraint_kind[k] == AREA else first
@@ -243,7 +248,6 @@ def _cut(state: State, springs: Slots, disturbs: bool, arena: Arena) -> int:
             if _side_is_lost(p, q, state, start, listed, gone):
                 state.constraint_active[k] = False
             begins = corner
-    return 0
 
 
 @inner_kernel
