@@ -88,7 +88,7 @@ def command(lent: Any, arena: Arena, kind: int, slots: Slots, numbers: Floats) -
     elif kind == FREEZE:
         _freeze(state, world.good, slots[1])
     elif kind in (CUT, BREAK):
-        return _cut(state, slots, kind == CUT, arena)
+        return _cut(state, world.good, slots, kind == CUT, arena)
     elif kind == SET_COEFFICIENTS:
         _set_coefficients(state, world.good, slots, numbers)
     elif kind == DRIVE:
@@ -215,7 +215,7 @@ def _side_is_lost(p: int, q: int, state: State, start: Slots, listed: Slots, gon
 
 
 @inner_kernel
-def _cut(state: State, springs: Slots, disturbs: bool, arena: Arena) -> int:
+def _cut(state: State, good: GoodValues, springs: Slots, disturbs: bool, arena: Arena) -> int:
     # Take springs out, and the constraints that they were a side of, unless another spring holds that side. What falls
     # into pieces becomes several bodies; those of what breaks by itself keep the energy of the body.
     begin(arena)
@@ -233,7 +233,7 @@ def _cut(state: State, springs: Slots, disturbs: bool, arena: Arena) -> int:
             state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
     list_ends(state.particle_a, state.particle_b, count, state.owner.shape[0], start, listed)
     _end_constraints(state, start, listed, gone)
-    part(state, springs, start, listed, pieces)
+    part(state, good, springs, start, listed, pieces)
     return 0
 
 
