@@ -105,14 +105,16 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
     if look.skin == "lattice":
         return made
     if actor.body.type == "jelly":
-        _, left, loops, _ = actor.filling(there)
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
+        made["keeps_area"] = actor.body.__dict__["area"]
         made["spacing"] = float(actor.body.__dict__.get("spacing", actor.cell))
+        loops = [loop for piece in actor.filling(there).pieces for loop in piece.loops]
         made["shapes"] = [_shape(shape_of(actor, loops, there, radius))]
-        if look.face and look.skin in SOFT_SKINS and len(left):
-            place, room = spot_of(actor, max(loops, key=len))
-            made["face"] = [round(float(value), DIGITS) for value in (*place, room)]
+        if len(triangles):
+            place, room = actor.spot(spot_of)
+            made["spot"] = [round(float(value), DIGITS) for value in (*place, room)]
+            made["face"] = look.face and look.skin in SOFT_SKINS
     elif actor.body.type == "ring":
         made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], actor.springs.tolist()
         # Where something is, or will be, tied to it.
