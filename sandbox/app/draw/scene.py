@@ -16,10 +16,10 @@ from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme, outline_of
 from sandbox.app.draw.things.balls import added_balls
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
-from sandbox.app.draw.things.faces import spot_of
+from sandbox.app.draw.things.faces import LEAST_KEPT, LEAST_OWN, spot_of
 from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots, joined_slots, level_slots_of
 from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
-from sandbox.app.draw.things.soft import ROUNDING, USUAL_ROUNDING, Shape, shape_of
+from sandbox.app.draw.things.soft import CRUMB, FLAT, ROUNDING, USUAL_ROUNDING, Shape, shape_of
 from sandbox.app.draw.things.springs import CYLINDER
 from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
@@ -52,6 +52,7 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
             {"slot": ball.slot, "kind": ball.kind, "colour": None if ball.colour is None else _hex(ball.colour)}
             for ball in [*slots.balls, *added_balls(balls, snapshot)]
         ],
+        "pieces": {"own": LEAST_OWN, "kept": LEAST_KEPT, "crumb": CRUMB, "flat": _lighting(FLAT)},
         "ground": ground,
         "pictures": _pictures(slots, ground),
     }
