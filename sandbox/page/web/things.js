@@ -5,7 +5,7 @@ const STRANDS = ['rope', 'cable', 'chain', 'deck', 'thread', 'silk'];
 const WORKING = ['coil', 'muscle', 'piston'];
 const LAID = ['wood', 'stone', 'brick'];
 // Half widths of bars: as a part of their body's cells, from [pixels], to [pixels].
-const TRUSS = [0.11, 1.6, 4.2], MESH = [0.075, 1.0, 3.4], LOOSE = [0.1, 1.2, 2.6];
+const TRUSS = [0.11, 1.6, 4.2], MESH = [0.075, 1.0, 3.4], LOOSE = [0.1, 1.2, 2.6], THREADS = [...MESH];
 const BRACE = 0.62, HANGER = 0.62, DECK = 0.95;
 
 // The scene with the slots of each body's particles and its springs as [spring, first end, second end].
@@ -99,7 +99,7 @@ function addFilled(things, body, springs, { scene, world, active, whole }) {
     if (isCloth || isLaid) things.sheets.push({ body, triangles: left, loops, isCloth });
     if (face) things.faces.push(face);
   }
-  addLines(things, body, springs.filter(([spring]) => !inside.has(spring)), MESH);
+  addLines(things, body, springs.filter(([spring]) => !inside.has(spring)), THREADS);
 }
 
 // The look of a shape with its colour alone.

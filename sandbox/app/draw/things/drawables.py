@@ -10,7 +10,7 @@ from sandbox.app.draw.raster.shadows import Thrown
 from sandbox.app.draw.themes import dark_edge, outline_of
 from sandbox.app.draw.things.balls import Balls
 from sandbox.app.draw.things.borders import hull_of
-from sandbox.app.draw.things.faces import Face, Faces, faces_of
+from sandbox.app.draw.things.faces import DrawnFace, Faces, faces_of
 from sandbox.app.draw.things.frame import Frame, Seen
 from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots, Piece
 from sandbox.app.draw.things.members import Members
@@ -52,7 +52,7 @@ class Drawables:
         self.wheels: list[DrawnWheel] = []
         self._balloons: list[tuple[int, Actor]] = []
         self._shapes: list[Shape] = []
-        self._faces: list[Face] = []
+        self._faces: list[DrawnFace] = []
         joins = [join for join in level_slots.joins if springs[join.spring]]
         for actor in level_slots.actors:
             there = springs[actor.springs]
@@ -122,7 +122,7 @@ class Drawables:
         bare = there & ~filling.inside
         return self._add_lines(actor, bare) if bare.any() else []
 
-    def _skin(self, actor: Actor, pieces: list[Piece]) -> tuple[list[Shape], list[Face]]:
+    def _skin(self, actor: Actor, pieces: list[Piece]) -> tuple[list[Shape], list[DrawnFace]]:
         look = actor.look
         shapes = shapes_of(actor, pieces, self._radius(actor)) if look.skin != CLOTH else []
         return shapes, faces_of(actor, pieces) if look.face and look.skin in SOFT_SKINS and pieces else []

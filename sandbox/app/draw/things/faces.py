@@ -25,17 +25,17 @@ SQUEEZED, FAST = 0.10, 2.5
 BLINK, BLINK_EVERY = 0.13, 3.4
 GAP, EYE_SIZE, EYE_UP, MOUTH_DOWN, MOUTH_WIDE = 0.19, 0.118, -0.09, 0.125, 0.125
 MOUTH_PIECES = 8
-# A piece that was cut off has a face of its own if a circle fits into it this large, as a part of that of the whole; the
-# face that was there stays where one fits of this part.
+# A piece that was cut off has a face of its own if a circle of this part of the whole's largest one fits into it; the
+# face that was there stays where one of that part does.
 LEAST_OWN, LEAST_KEPT = 0.5, 0.3
 # Places and sides that are compared to find the largest circle, at most.
 MOST_COMPARED = 1_000_000
 TONGUE = 0xF0708A
 
 
-class Face(NamedTuple):
-    """A face: slots (n,) that it turns with, their places (n, 2) [m] about their middle at rest, springs whose strain it
-    shows, where it sits about that middle, how much room there is [m], how far [rad] its body was turned when made.
+class DrawnFace(NamedTuple):
+    """A face: slots (n,) that it turns with, their places (n, 2) [m] about their middle at rest; springs whose strain
+    it shows; where it sits about that middle, how much room there is [m], how far [rad] its body was turned when made.
     """
 
     slots: Slots
@@ -49,7 +49,7 @@ class Face(NamedTuple):
 class Faces:
     """Faces of bodies and of their pieces."""
 
-    def __init__(self, rows: list[Face]) -> None:
+    def __init__(self, rows: list[DrawnFace]) -> None:
         self._count = len(rows)
         if not rows:
             return
@@ -206,11 +206,11 @@ def _towards(pointer: tuple[float, float], centre: Floats, size: Floats) -> Floa
     return np.asarray(way / np.maximum(np.sqrt(np.sum(way * way, axis=1)), 1.0)[:, None])
 
 
-def faces_of(actor: Actor, pieces: list[Piece]) -> list[Face]:
+def faces_of(actor: Actor, pieces: list[Piece]) -> list[DrawnFace]:
     """The faces of a body and of its pieces: that of the whole stays with the piece it lies on, where it fits."""
     place, room = actor.spot(spot_of)
     if len(pieces) == 1 and len(pieces[0].left) == len(actor.triangles()):
-        return [Face(actor.slots, actor.form, actor.springs, place, room, actor.angle)]
+        return [DrawnFace(actor.slots, actor.form, actor.springs, place, room, actor.angle)]
     keeper = min(range(len(pieces)), key=lambda k: _away(actor.form[pieces[k].left], place))
     found = []
     for k, piece in enumerate(pieces):
@@ -218,10 +218,8 @@ def faces_of(actor: Actor, pieces: list[Piece]) -> list[Face]:
         middle = actor.form[own].mean(axis=0)
         spot, inner = _spot_in(actor, piece, place if k == keeper else middle)
         if inner >= (LEAST_KEPT if k == keeper else LEAST_OWN) * room:
-            springs = actor.springs[piece.inside]
-            found.append(
-                Face(actor.slots[own], actor.form[own] - middle, springs, spot - middle, min(inner, room), actor.angle)
-            )
+            form, springs = actor.form[own] - middle, actor.springs[piece.inside]
+            found.append(DrawnFace(actor.slots[own], form, springs, spot - middle, min(inner, room), actor.angle))
     return found
 
 
