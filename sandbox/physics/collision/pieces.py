@@ -51,7 +51,7 @@ def new_piece_scratch(state: State, arena: Arena) -> PieceScratch:
 def part(
     state: State, good: GoodValues, springs: Slots, start: Slots, listed: Slots, work: PieceScratch
 ) -> None:  # fmt: skip
-    """Make bodies of the pieces of soft bodies that have just lost these springs (k,).
+    """Make bodies of the pieces of soft bodies that have lost springs: those at which these springs (k,) are or were.
 
     Springs of particle p, inactive ones too: listed[start[p]:start[p + 1]].
     """

@@ -103,7 +103,7 @@ class Actor:
 
     def _whole(self, there: Mask, whole: Slots | None) -> Slots:
         triangles = self.triangles()
-        if there.all():
+        if there.all() and not self.body.cut:
             return triangles
         if whole is None or not self.body.__dict__.get("area", False):
             sides = sides_of(triangles, self.pairs)
