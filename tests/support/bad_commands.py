@@ -39,7 +39,8 @@ POINTS = (
     *((0.0, each) for each in _NO_NUMBERS), *((each, 0.0) for each in _NO_NUMBERS), (0.0,), (0.0, 1.0, 2.0), (), 1.0,
     None, "ab", np.zeros((2, 2)), NAN,
 )  # fmt: skip
-# Of every kind: the method of World, or a function of one, arguments that are right, and for each of these what is wrong in its place.
+# Of every kind: the method of World, or a function of one, arguments that are right, and for each of these what is
+# wrong in its place.
 CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[Any, ...], ...]]] = {
     "grab": ("hold", (1, 0, (0.0, 1.0), 100.0, 0.1), (HANDS, PARTICLES, POINTS, NOT_BELOW_0, NOT_BELOW_0)),
     "move_grab": ("move_grab", (0, (0.0, 1.0)), (HANDS, POINTS)),

@@ -69,25 +69,11 @@ class Faces:
         """Draw them."""
         if not self._count:
             return
-        size = np.minimum(2.0 * self._inner * frame.zoom, LARGEST * frame.scale)
-        at, begins = frame.at[self._slots], self._start[:-1]
-        mean = np.add.reduceat(at, begins, axis=0) / self._size[:, None]
-        off = at - np.repeat(mean, self._size, axis=0)
-        x, y = self._form[:, 0], self._form[:, 1]
-        cosine = np.add.reduceat(x * off[:, 0] + y * off[:, 1], begins)
-        sine = np.add.reduceat(x * off[:, 1] - y * off[:, 0], begins)
-        length = np.sqrt(cosine * cosine + sine * sine)
-        shown = np.isfinite(length) & (length > 0.0) & (size >= SMALLEST * min(frame.scale, 1.0))
+        centre, turn, size = self.placed(frame)
+        shown = np.isfinite(turn).all(axis=1) & (size >= SMALLEST * min(frame.scale, 1.0))
         if not shown.any():
             return
-        length = np.where(length > 0.0, length, 1.0)
-        cosine, sine = cosine / length, sine / length
-        spot = self._spot * frame.zoom
-        centre = mean + np.stack(
-            [cosine * spot[:, 0] - sine * spot[:, 1], sine * spot[:, 0] + cosine * spot[:, 1]], axis=1
-        )
-        up = self._upright
-        turn = np.stack([cosine * up[:, 0] - sine * up[:, 1], sine * up[:, 0] + cosine * up[:, 1]], axis=1)
+        begins = self._start[:-1]
         strain = np.abs(np.clip(np.nan_to_num(frame.strain[self._springs]), -9.0, 9.0))
         load = np.add.reduceat(strain, self._spring_start[:-1]) / np.maximum(np.diff(self._spring_start), 1)
         velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
@@ -98,6 +84,26 @@ class Faces:
         )  # fmt: skip
         at_rest = None if frame.pointer is None else _towards(frame.pointer, centre, size)
         _draw_faces(marks, centre, turn, size, load, velocity, shut, at_rest)
+
+    def placed(self, frame: Frame) -> tuple[Floats, Floats, Floats]:
+        """Centres (f, 2) and sizes (f,) [pixels] of faces; between, cosine and sine (f, 2) of their turn, nan: none."""
+        size = np.minimum(2.0 * self._inner * frame.zoom, LARGEST * frame.scale)
+        at, begins = frame.at[self._slots], self._start[:-1]
+        mean = np.add.reduceat(at, begins, axis=0) / self._size[:, None]
+        off = at - np.repeat(mean, self._size, axis=0)
+        x, y = self._form[:, 0], self._form[:, 1]
+        cosine = np.add.reduceat(x * off[:, 0] + y * off[:, 1], begins)
+        sine = np.add.reduceat(x * off[:, 1] - y * off[:, 0], begins)
+        length = np.sqrt(cosine * cosine + sine * sine)
+        length[~(np.isfinite(length) & (length > 0.0))] = np.nan
+        cosine, sine = cosine / length, sine / length
+        spot = self._spot * frame.zoom
+        centre = mean + np.stack(
+            [cosine * spot[:, 0] - sine * spot[:, 1], sine * spot[:, 0] + cosine * spot[:, 1]], axis=1
+        )
+        up = self._upright
+        turn = np.stack([cosine * up[:, 0] - sine * up[:, 1], sine * up[:, 0] + cosine * up[:, 1]], axis=1)
+        return centre, turn, size
 
     def blinks(self, seconds: float) -> NDArray[np.bool_]:
         """Which of them have their eyes shut at a time [s]."""
