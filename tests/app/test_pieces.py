@@ -1,5 +1,7 @@
 """What is seen and heard of a jelly that was cut: a skin and a face for each piece that is large enough."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,8 @@ from sandbox.session.commands import CutSprings
 from tests.support.cutting import SOFT_LEVELS, STROKES, actor_of, advance, begun, crossed, cut, level_with
 
 SIZE = (1280, 720)
+# Of rubber and of wood.
+FACELESS = ("jelly_wheel", "balloons")
 # Eyes and mouth lie within this part of a face's size around its centre.
 ROUND_FACE = 0.33
 
@@ -41,7 +45,7 @@ def drawn(session):
 def loops_of(things):
     """Corners [pixels] of every outline that is drawn."""
     point, start = things.soft.outlines.point, things.soft.outlines.start
-    return [point[first:last] for first, last in zip(start[:-1], start[1:], strict=True)]
+    return [point[first:last] for first, last in pairwise(start.tolist())]
 
 
 def holds(loop, place):
@@ -49,7 +53,7 @@ def holds(loop, place):
 
 
 @pytest.mark.parametrize("stroke", STROKES)
-@pytest.mark.parametrize("name", SOFT_LEVELS)
+@pytest.mark.parametrize("name", [name for name in SOFT_LEVELS if name not in FACELESS])
 def test_after_a_cut_each_face_lies_inside_an_outline(name, stroke):
     session = begun(level_with(name, "direct"))
     for body in SOFT_LEVELS[name]:
@@ -57,9 +61,6 @@ def test_after_a_cut_each_face_lies_inside_an_outline(name, stroke):
     for ticks in (1, 30, 150):
         advance(session, ticks)
         things, frame = drawn(session)
-        if not things._faces:
-            assert name == "balloons"
-            continue
         centre, turn, size = things.faces.placed(frame)
         loops = loops_of(things)
         for at, (cosine, sine), wide in zip(centre, turn, size, strict=True):
