@@ -9,6 +9,8 @@ from sandbox.commands import CutSprings
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import total_energy
+from sandbox.physics.analysis.firmness import lowest_mode_of
+from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.analysis.query import shown_springs
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.collision.outline import outline_of
@@ -234,3 +236,22 @@ def test_a_body_that_is_cut_but_holds_together_keeps_its_number_and_gets_the_out
     assert outline.shape[actor.slots[2]] == outline.shape[actor.slots[3]]
     solid = outline.side[np.isin(outline.edge_a[: outline.dynamic[0]], actor.slots).nonzero()[0]]
     assert solid.all()
+
+
+def test_pieces_are_firm_bodies_with_names_and_forms_of_their_own():
+    session = begun(level_with("jelly_pile", "direct"))
+    whole = firm_bodies(session.world)
+    assert [body.name for body in whole] == [body.name for body in session.world.forms]
+    actor = cut(session, "cube 1", "across")
+    session.apply_pending()
+    world, parted = session.world, firm_bodies(session.world)
+    assert [body.name for body in parted] == ["cube 1, 1 of 2", "cube 1, 2 of 2", *(body.name for body in whole[1:])]
+    for body, piece in zip(parted[:2], sorted(pieces_of(world, actor), key=len, reverse=True), strict=True):
+        assert len(body.shape.points) == len(piece) and 0.0 < lowest_mode_of(body.shape) < 1.0
+        assert np.isin(world.particle_a[body.springs], piece).all() and world.spring_active[body.springs].all()
+        ends = world.origin[world.particle_b[body.springs]] - world.origin[world.particle_a[body.springs]]
+        form = body.shape.points[body.shape.pairs[:, 1]] - body.shape.points[body.shape.pairs[:, 0]]
+        np.testing.assert_allclose(ends, form, atol=1e-12)
+        corners = body.shape.points[body.shape.areas]
+        areas = world.constraint_rest[body.constraints, 1]
+        np.testing.assert_allclose([signed_area(each, np.roll(each, -1, axis=0)) for each in corners], areas)
