@@ -78,10 +78,8 @@ class Faces:
         load = np.add.reduceat(strain, self._spring_start[:-1]) / np.maximum(np.diff(self._spring_start), 1)
         velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
         velocity = np.nan_to_num(velocity * np.array([1.0, -1.0]))
-        shut = self.blinks(frame.seconds) | frame.asleep
-        centre, turn, size, load, velocity, shut = (
-            each[shown] for each in (centre, turn, size, load, velocity, shut)
-        )  # fmt: skip
+        shut = (self.blinks(frame.seconds) | frame.asleep)[shown]
+        centre, turn, size, load, velocity = (each[shown] for each in (centre, turn, size, load, velocity))
         at_rest = None if frame.pointer is None else _towards(frame.pointer, centre, size)
         _draw_faces(marks, centre, turn, size, load, velocity, shut, at_rest)
 
