@@ -106,7 +106,7 @@ class StateArrays:
     energy_bank = _array("energy_bank", P, F64, "J", "energy bank of a body, at its free particle of lowest slot; -1: a new bank begins, -2: a new bank begins empty")
     friction = _array("friction", P, F64, "1", "friction of its surface; at a contact the geometric mean of both counts", guarded=True)
     restitution = _array("restitution", P, F64, "1", "restitution of its surface; at a contact the larger one counts", guarded=True)
-    owner = _array("owner", P, I32, "", "its body; negative: it is a body of its own", topology=True)
+    owner = _array("owner", P, I32, "", "its body; negative: of a body that is named by its first particle p, -1 - p: a loose particle, or a piece that was cut off", topology=True)
     group = _array("group", P, I64, "", "its collision group, one bit", topology=True)
     collides = _array("collides", P, I64, "", "bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 = nothing", topology=True)
     parting_reserve = _array("parting_reserve", P, F64, "J", "energy that a body has lost and may spend on parting from others, at its free particle of lowest slot; negative: what it was lent", sparse=True)

@@ -70,6 +70,7 @@ BAD: dict[str, list[dict[str, Any]]] = {
         for value in (["SPRING.1", "no"], ["SPRING.1", "SPRING.0"], ["+hand.1"], [0], "SPRING.1", None, [None], NAN)
     ],
     "break_springs": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
+    "part_bodies": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
     "set_coefficients": [
         *({"stiffness": value} for value in (5, -1, NAN, INF, "1", True, [], 1.0000001)),
         *({"damping": value} for value in (5, -1, NAN, INF, "1", True, {}, -1e-300)),
@@ -125,7 +126,8 @@ def wrong_records() -> list[dict[str, Any]]:
 def any_records(count: int) -> list[Any]:
     """Records of all types: right ones, ones with fields left out, changed or added, and what is no record."""
     chance, found = random.Random(5), []
-    types = [*GOOD, *GOOD, *COMMAND_TYPES, "freeze", "break_springs", "nothing", "Grab", "constructor", "toString"]
+    inner = ("freeze", "break_springs", "part_bodies")
+    types = [*GOOD, *GOOD, *COMMAND_TYPES, *inner, "nothing", "Grab", "constructor", "toString"]
     found += [None, [], {}, 5, NAN, "grab", True, {"type": None}, {"type": 5}, {"type": ["grab"]}, {"kind": "grab"}]
     while len(found) < count:
         name = chance.choice(types)
@@ -201,7 +203,7 @@ def test_the_kernel_itself_refuses_slots_that_are_not_there_in_pages(tmp_path):
         *({"type": "set_drive", "part": part, "value": 1} for part in (-1, len(world.actuators.names), 10**6)),
         *(
             {"type": kind, "springs": [1, 2, slot]}
-            for kind in ("cut_springs", "break_springs")
+            for kind in ("cut_springs", "break_springs", "part_bodies")
             for slot in (-1, world.grab_spring, world.spring_count, 10**6)
         ),
         {"type": "shake", "acceleration": [NAN, 0]},
@@ -216,4 +218,4 @@ def test_the_kernel_itself_refuses_slots_that_are_not_there_in_pages(tmp_path):
 
 def test_there_are_eight_bad_values_and_more_of_every_kind():
     assert all(len(each) >= 8 for each in BAD.values())
-    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {"freeze", "break_springs"}
+    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {"freeze", "break_springs", "part_bodies"}

@@ -20,7 +20,7 @@ from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.state import Family, good_of, state_of
 from sandbox.physics.step import step
 from tests.support import bad_commands
-from tests.support.bad_commands import CALLS, INF, NAN, made, outcome, wrong_calls
+from tests.support.bad_commands import CALLS, INF, NAN, call, made, outcome, wrong_calls
 
 ROOT = Path(__file__).resolve().parents[2]
 ARGUMENTS = {
@@ -32,6 +32,7 @@ ARGUMENTS = {
     "freeze": ("particle",),
     "cut_springs": ("springs",),
     "break_springs": ("springs",),
+    "part_bodies": ("springs",),
     "set_coefficients": ("stiffness", "damping", "material"),
     "set_drive": ("part", "value"),
     "push": ("place", "impulse", "outward", "radius"),
@@ -104,7 +105,7 @@ def test_a_wrong_argument_of_any_command_raises_and_changes_no_byte(kind, has_ha
     # It is as good as new.
     method, right, _ = CALLS[kind]
     if has_hands or kind not in ("move_grab", "release"):
-        getattr(world, method)(*right)
+        call(world, method, right)
     step(world)
     assert np.isfinite(world.position).all()
 

@@ -20,7 +20,7 @@ from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import THEMES, Theme, theme_now
 from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame, strain_of
-from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of
+from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
@@ -173,7 +173,7 @@ class Renderer:
                     )  # fmt: skip
             with profile.part("things"):
                 if self.level is not None:
-                    drawables = self._drawables_of(frame, particles, springs)
+                    drawables = self._drawables_of(frame, current, particles, springs)
                     self._draw_things(drawables, frame, camera)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
@@ -237,13 +237,16 @@ class Renderer:
             self._joined, self._drawables = joined, None
         return self._level_slots
 
-    def _drawables_of(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> Drawables:
+    def _drawables_of(
+        self, frame: Frame, state: Snapshot, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
+    ) -> Drawables:
         held = frame.state.inverse_mass == 0.0
         key = particles, springs, held
         is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
         if self._drawables is None or not is_same:
             assert self._level_slots is not None
-            self._drawables, self._key = Drawables(self._level_slots, frame.state, particles, springs), key
+            whole = whole_triangles(state)
+            self._drawables, self._key = Drawables(self._level_slots, frame.state, particles, springs, whole), key
         return self._drawables
 
     def _draw_lattice(

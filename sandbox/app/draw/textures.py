@@ -68,6 +68,7 @@ _SKINS = {
     "jelly": SkinLook(0.62, (90, 10, 110), 0.40, 0.75, 0.13), "balloon": SkinLook(0.5, (60, 0, 70), 0.42, 0.0, 0.14),
     "tyre": SkinLook(0.30, BLACK, 0.6, 0.15, 0.0), "window": SkinLook(0.7, (60, 110, 150), 0.4, 0.5, 0.1),
     "lattice": SkinLook(0.25, BLACK, 0.2, 0.0, 0.66), "wood": _LAID, "stone": _LAID, "brick": _LAID,
+    "flat": SkinLook(0.0, BLACK, 0.0, 0.0, 0.0),
 }  # fmt: skip
 _RUBBER = SkinLook(0.32, (20, 0, 40), 0.38, 0.15, 0.0)
 
