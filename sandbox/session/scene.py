@@ -24,7 +24,7 @@ class Standing:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class RunScene:
     """How a run stands. script: the commands that count; standings: some states, of which the last is the present one.
 
     breaks: ticks in which springs broke.
@@ -50,11 +50,13 @@ class Scene:
         """What was done in it, in a few words."""
         return deeds_of(self.script)
 
-    def follows(self, earlier: "Scene") -> bool:
+    def follows(self, earlier: "RunScene") -> bool:
         """Whether it is the same run as another scene, or that run gone on."""
-        count = len(earlier.script)
-        same = self.level == earlier.level and self.tick >= earlier.tick
-        return same and _plain(self.script[:count]) == _plain(earlier.script)
+        return self.level == earlier.level and earlier.is_done_by(self.script[: len(earlier.script)])
+
+    def is_done_by(self, script: Sequence[ScriptLine]) -> bool:
+        """Whether just these commands were done in it."""
+        return len(script) == len(self.script) and _plain(script) == _plain(self.script)
 
     def session(self) -> Session:
         """A run that stands so. What was held or driven is let go of, by commands that still wait.
@@ -81,7 +83,7 @@ class SceneTaker:
     # Lines of the commands by their orders, as most of them are in each scene.
     _lines: dict[int, ScriptLine] = field(default_factory=dict)
 
-    def take(self) -> Scene:
+    def take(self) -> RunScene:
         """How the run stands now, without what was undone."""
         session, history = self.session, self.session.history
         counting = [entry for entry in history.timeline if entry.tick <= session.tick and entry.in_effect]
@@ -97,7 +99,7 @@ class SceneTaker:
                 )
         standings = [kept[key] for key in sorted(kept)]
         breaks = tuple(tick for tick in session.breaks if tick <= session.tick)
-        return Scene(session.level, script, (*standings, Standing(len(script), session.snapshot())), breaks)
+        return RunScene(session.level, script, (*standings, Standing(len(script), session.snapshot())), breaks)
 
     def _line(self, entry: LogEntry) -> ScriptLine:
         if entry.order not in self._lines:

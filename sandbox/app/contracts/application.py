@@ -13,16 +13,23 @@ from sandbox.app.contracts.screen import Screen
 from sandbox.app.film.film import Film
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.run.playback import Playback
+from sandbox.app.run.scene_keeping import SceneKeeping
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.document.model import Level
+from sandbox.session.scene import RunScene
 
 
 class Run(Screen, Protocol):
-    """A run on the screen; of_document: of the level that the editor has open."""
+    """A run on the screen; of_document: of the level that the editor has open; source: the file of its level.
+
+    saved: where in My levels it is saved, and how it stood then.
+    """
 
     of_document: bool
+    source: Path | None
+    saved: tuple[Path, RunScene] | None
 
     @property
     def playback(self) -> Playback:
@@ -118,6 +125,14 @@ class Files(Protocol):
         """Save the run so far as a recording."""
         ...
 
+    def save_scene(self) -> None:
+        """Save how the run stands, in My levels."""
+        ...
+
+    def open_scene(self, path: Path) -> bool:
+        """Open a scene as it stood; whether it could be."""
+        ...
+
 
 class Page(Protocol):
     """A page over the screen that takes keys and the wheel."""
@@ -182,6 +197,11 @@ class Application(Protocol):
     @property
     def documents(self) -> Documents:
         """What is edited."""
+        ...
+
+    @property
+    def scenes(self) -> SceneKeeping:
+        """What keeps the runs."""
         ...
 
     @property

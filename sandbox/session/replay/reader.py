@@ -36,7 +36,7 @@ class Sealed(Line):
     chain: Digest
 
 
-class Header(Sealed):
+class FirstLine(Sealed):
     """The first line."""
 
     format: str
@@ -224,7 +224,7 @@ def _check_end(source: str, gathered: _Gathered, number: int, cut: bool, partial
         raise ReplayError(f"{source}: its last bytes are cut off; --partial verifies what is there")
 
 
-def _read_header(source: str, line: bytes, retold: bool) -> tuple[Header, str]:
+def _read_header(source: str, line: bytes, retold: bool) -> tuple[FirstLine, str]:
     where = f"{source}: line 1"
     if line.count(b",") > FILE_LIMIT // 2:
         raise ReplayError(f"{where}: holds more than a level may; it is no recording")
@@ -247,10 +247,10 @@ def _read_header(source: str, line: bytes, retold: bool) -> tuple[Header, str]:
     digest = unseal(line, "", version)
     if digest is None:
         raise ReplayError(f"{where}: changed or damaged: its chain does not fit; record the run again")
-    return checked(where, Header, line), digest
+    return checked(where, FirstLine, line), digest
 
 
-def level_of(source: str, head: Header) -> Level:
+def level_of(source: str, head: FirstLine) -> Level:
     """The level of a first line. Raises ReplayError."""
     if level_digest(head.level) != head.level_sha256:
         raise ReplayError(f"{source}: line 1: the level is not the one that was recorded: its sha256 differs")

@@ -4,6 +4,8 @@
     {"tick": 12, "gesture": 3, "command": {...}, "chain": "..."}       as in a recording
     {"tick": 600, "state": {...}, "settings": {...}, "chain": "..."}   after the commands above it
     {"end": true, "tick": 900, "hash": "...", "chain": "..."}          the hash of the last state
+
+The first line also says when it was kept, the file of its level, and what was done, for lists of scenes.
 """
 
 import datetime
@@ -27,7 +29,7 @@ from sandbox.session.replay.format import decode_state, encode_state, header, se
 from sandbox.session.replay.line_reader import ReplayLines
 from sandbox.session.replay.reader import (
     EndLine,
-    Header,
+    FirstLine,
     SealedCommand,
     StateLine,
     level_of,
@@ -37,7 +39,7 @@ from sandbox.session.replay.reader import (
 )
 from sandbox.session.replay.record import checked, json_object
 from sandbox.session.replay.recording import ReplayError
-from sandbox.session.scene import Scene, Standing, deeds_of
+from sandbox.session.scene import RunScene, Standing, deeds_of
 
 FORMAT = "spring-sandbox/scene"
 VERSION = 1
@@ -46,7 +48,7 @@ SUFFIX = ".scene.jsonl"
 STANDING_LIMIT = 16
 
 
-class _SceneHeader(Header):
+class _SceneFirstLine(FirstLine):
     when: str
     source: str | None
     deeds: str
@@ -63,7 +65,7 @@ class About:
     source: Path | None
 
 
-def scene_lines(scene: Scene, source: Path | None) -> Iterator[bytes]:
+def scene_lines(scene: RunScene, source: Path | None) -> Iterator[bytes]:
     """The lines of a scene's file; source: the file of its level, if it has one."""
     first = header(scene.level, PHYSICS_VERSION, __version__) | {"format": FORMAT, "version": VERSION}
     when = datetime.datetime.now(datetime.UTC).isoformat()
@@ -105,7 +107,7 @@ def read_about(path: Path) -> About:
     return About(path, name, when, one_line(head.deeds), None if head.source is None else Path(head.source))
 
 
-def read_scene(path: Path) -> tuple[Scene, About]:
+def read_scene(path: Path) -> tuple[RunScene, About]:
     """Read a scene's file. Raises ReplayError, naming file and line, for anything that `scene_lines` did not make."""
     source, lines = str(path), ReplayLines(path)
     each = iter(lines)
@@ -132,7 +134,7 @@ def read_scene(path: Path) -> tuple[Scene, About]:
         path, level.name, datetime.datetime.fromisoformat(head.when).astimezone(datetime.UTC),
         deeds_of(reading.script), None if head.source is None else Path(head.source),
     )  # fmt: skip
-    return Scene(level, tuple(reading.script), tuple(reading.standings)), about
+    return RunScene(level, tuple(reading.script), tuple(reading.standings)), about
 
 
 class _Reading:
@@ -185,7 +187,7 @@ class _Reading:
         self.has_ended = True
 
 
-def _read_header(source: str, line: bytes) -> tuple[_SceneHeader, str]:
+def _read_header(source: str, line: bytes) -> tuple[_SceneFirstLine, str]:
     where = f"{source}: line 1"
     if fault := scan(line):
         raise ReplayError(f"{where}: {fault[1]}")
@@ -197,7 +199,7 @@ def _read_header(source: str, line: bytes) -> tuple[_SceneHeader, str]:
     digest = unseal(line, "")
     if digest is None:
         raise ReplayError(f"{where}: changed or damaged: its chain does not fit")
-    head: _SceneHeader = checked(where, _SceneHeader, line)
+    head: _SceneFirstLine = checked(where, _SceneFirstLine, line)
     try:
         datetime.datetime.fromisoformat(head.when)
     except ValueError:
