@@ -155,8 +155,8 @@ def test_a_recording_on_a_full_disk_is_refused_in_plain_words_and_leaves_no_file
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr("sandbox.session.replay.writer.Recorder.write_tick", full)
-    for key in (pygame.K_r, pygame.K_s):
-        driver.key(key, CTRL)
+    for key, mods in ((pygame.K_r, CTRL), (pygame.K_s, CTRL | pygame.KMOD_SHIFT)):
+        driver.key(key, mods)
         path = documents / "small.replay.jsonl"
         assert driver.notices == [f"The recording cannot be written to {path}: No space left on device."]
         assert driver.playback.session.recording is None and not list(documents.iterdir())

@@ -69,6 +69,10 @@ class Documents(Protocol):
         """Edit a level that has no file."""
         ...
 
+    def take_over(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
+        """Edit the level of a run, in the file that it is from, and go on."""
+        ...
+
     def save(self) -> None:
         """Save the level to its file."""
         ...

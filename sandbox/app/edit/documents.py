@@ -63,6 +63,19 @@ class DocumentActions:
         """Edit a level that has no file of its own."""
         self.if_saved(lambda: self._show(level, LevelFile(), label))
 
+    def take_over(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
+        """Edit the level of a run, in the file that it is from where that still holds it, and go on."""
+
+        def show() -> None:
+            self._show(level, _file_of(level, source), "Open")
+            then()
+
+        if self.editor is not None and self.editor.document.level == level:
+            self.back()
+            then()
+        else:
+            self.if_saved(show)
+
     def open(self, path: str | Path) -> None:
         """Edit a level file; the one that is open already is shown as it is."""
         path = Path(path)
@@ -381,6 +394,18 @@ class DocumentActions:
             if play is not None:
                 self.editor.watch.remember(play.playback.session)
             self.app.show_screen(self.editor)
+
+
+def _file_of(level: Level, source: Path | None) -> LevelFile:
+    """The file that a level is from, or none where it now holds another one."""
+    try:
+        level_file, there = LevelFile.open(source) if source is not None else (LevelFile(), None)
+    except (StorageError, LevelError):
+        return LevelFile()
+    if there != level:
+        level_file.close()
+        return LevelFile()
+    return level_file
 
 
 def _called(path: Path) -> str:

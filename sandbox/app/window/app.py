@@ -347,6 +347,8 @@ class App:
         with self.profile.part("ui"):
             self.status.update(frame_time)
             self.documents.update()
+            if fault := self.scenes.fault():
+                self.say(fault)
             if self.gallery is not None:
                 self.gallery.update(frame_time)
             self.guide.update(frame_time)
