@@ -32,7 +32,7 @@ from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.recent import played_levels, recent_levels
-from sandbox.editor.storage.scene_shelf import kept_scenes, scenes_in
+from sandbox.editor.storage.scene_shelf import scenes_in
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import parse_level, read_bytes, shipped_folder, shipped_levels
 from sandbox.physics import jit
@@ -200,8 +200,7 @@ class Gallery:
 
     def _add_kept(self, group: Group) -> None:
         """Add the runs that were kept by themselves, but the one on the screen: in a row as many as fit."""
-        shelf = self._app.scenes.shelf
-        kept = [path for path in kept_scenes(shelf.folder) if path != shelf.present]
+        kept = self._app.scenes.shelf.others()
         for path in kept[: group.columns if group.is_shortcut else None]:
             self._add_scene(group, path, is_kept=True)
 

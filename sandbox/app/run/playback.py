@@ -32,6 +32,8 @@ from sandbox.tools.tool import Response
 TICK_BUDGET = 0.05
 # Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
 FRAMES_TO_JOIN = 2
+# What stood for so long [s] before an undo, or before another command in the past, is kept.
+LOOKED_AT = 1.0
 # What is said where playing a run again was given up.
 GIVEN_UP = "Cancelled. The run did not change."
 
@@ -63,8 +65,8 @@ class Playback:
         self._taker = SceneTaker(self.session)
         # How the run stands at its end, while it is in its past.
         self._end: RunScene | None = None
-        # Whether the last command was an undo or a redo: all that these go through is in the scene before them.
-        self._undoing = False
+        # How long the last undo or redo is ago [s]: what stood for a moment between two of them is not kept.
+        self._stood = LOOKED_AT
         self.level = level
         self.replay = replay
         self.clock = TickClock()
@@ -134,7 +136,9 @@ class Playback:
         return self._taker.take()
 
     def _tell_cut(self) -> None:
-        scene = self.scene()
+        self.apply_pending()
+        has_stood, self._stood = self._stood >= LOOKED_AT, 0.0
+        scene = self.scene() if has_stood else None
         if scene is not None:
             self.cut(scene)
 
@@ -153,7 +157,7 @@ class Playback:
         if self.clock.speed < 0.0:
             self.clock.speed, self.clock.accumulator = 1.0, 0.0
         self.travel.target = None
-        self._submitted, self._undoing = True, isinstance(command, (Undo, Redo))
+        self._submitted = True
         if self.listener is not None and isinstance(command, (Undo, Redo)):
             self.listener.forget()
         session.submit(command, gesture)
@@ -167,14 +171,12 @@ class Playback:
 
     def submit_undo(self) -> None:
         """Take the last gesture back, also one of this frame."""
-        self.apply_pending()
-        if not self._undoing:
-            self._tell_cut()
+        self._tell_cut()
         self._submit_if(self.session.can_undo, Undo(), "There is nothing to undo.")
 
     def submit_redo(self) -> None:
         """Make the gesture again that was undone last, also in this frame."""
-        self.apply_pending()
+        self._tell_cut()
         self._submit_if(self.session.can_redo, Redo(), "There is nothing to redo.")
 
     def _submit_if(self, possible: bool, command: Command, otherwise: str) -> None:
@@ -304,6 +306,7 @@ class Playback:
 
     def advance(self, frame_time: float) -> int:
         """Let frame_time [s] of wall time pass; returns the ticks that were made."""
+        self._stood += frame_time
         if self._making_room and not self.clock.paused:
             self._make_room()
             return 0

@@ -33,23 +33,34 @@ class SceneShelf:
         self._changed = threading.Condition()
         self._wanted: dict[Path, tuple[RunScene, Path | None]] = {}
         self._busy = self._is_closing = False
-        self._last: tuple[RunScene, Path] | None = None
+        # What was set aside, by where it is kept.
+        self._aside: dict[Path, RunScene] = {}
         self._thread: threading.Thread | None = None
 
     def note(self, scene: RunScene, source: Path | None) -> None:
         """Keep the present run so from now on; source: the file of its level. Returns at once."""
         if scene.script:
+            self.present = self._place(scene)
             self._want(scene, source)
 
     def set_aside(self, scene: RunScene, source: Path | None) -> None:
         """Keep the present run so for good: what comes is another one."""
-        if not scene.script:
-            return
-        if self._last is not None and self._last[0].level == scene.level and self._last[0].is_done_by(scene.script):
-            # Only time has passed in it.
-            self.present = self._last[1]
-        self._want(scene, source)
-        self.present, self._last = self._new_path(), (scene, self.present)
+        if scene.script:
+            self.note(scene, source)
+            self._aside[self.present] = scene
+            for path in list(self._aside)[:-KEPT]:
+                del self._aside[path]
+
+    def _place(self, scene: RunScene) -> Path:
+        """Where a scene is kept: where one is of the same deeds, in which only time has passed, or else of its own."""
+        for path, kept in self._aside.items():
+            if kept.tick <= scene.tick and kept.is_done_by(scene.script) and kept.level == scene.level:
+                return path
+        return self._new_path() if self.present in self._aside else self.present
+
+    def others(self) -> list[Path]:
+        """What is kept, newest first, but the run that goes on here."""
+        return [path for path in kept_scenes(self.folder) if path != self.present or path in self._aside]
 
     def settle(self) -> None:
         """Wait until all that was noted is written, or cannot be."""
