@@ -53,8 +53,16 @@ class Documents(Protocol):
         """Its screen."""
         ...
 
-    def new(self, then: Callable[[], object] = ...) -> None:
-        """Begin an empty level, once it is clear what becomes of the present one."""
+    def new(self, then: Callable[[], object] = ..., level: Level | None = ...) -> None:
+        """Begin an empty level, or the one given, once it is clear what becomes of the present one."""
+        ...
+
+    def new_place(self) -> None:
+        """Begin with a place to play in, on the sheet."""
+        ...
+
+    def play_new(self) -> None:
+        """Play in a new place, with the parts at hand."""
         ...
 
     def open(self, path: str | Path) -> None:

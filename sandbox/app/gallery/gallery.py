@@ -57,8 +57,8 @@ NO_LEVELS = (
     "E in any level."
 )
 NO_REPLAYS = "No recordings yet. Record a run with Ctrl+R, or save what you did with Ctrl+Shift+S."
-KEPT, GO_ON = "Kept by themselves", "Go on where you were"
-KEPT_LINE = "What you played and did not save, as it stood. The newest come first."
+SAVED, KEPT, GO_ON = "Saved", "Not saved, and kept", "Go on where you were"
+KEPT_LINE = "What you played, as it stood. The newest come first, and the oldest go some day."
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
 
@@ -104,7 +104,8 @@ class Gallery:
         self._nothing = TextBlock(ui, ui.rect(6, 12, self._width, 60), "", self.area.content, 13.0)
         self._build_groups_of[section]()
         titles = [group.title for group in self.groups if group.cards and not group.is_shortcut]
-        self.header.show_sections(titles, self._show_section)
+        if section == "levels":
+            self.header.show_sections(titles, self._show_section)
         self._arrange()
 
     @property
@@ -184,7 +185,7 @@ class Gallery:
                 card.show_picture(twice(picture))
 
     def _add_own(self) -> None:
-        group = self._group("")
+        group = self._group(SAVED)
         try:
             saved = scenes_in(recordings_folder())
         except OSError:

@@ -11,10 +11,13 @@ from sandbox.app.draw.colours import shown_theme
 from sandbox.app.draw.picture import crop_of, draw_picture
 from sandbox.app.draw.picture_cache import LINE_SCALE, SIZE, find_picture, keep_for_later, kept_picture, picture_key
 from sandbox.app.gallery.card import Card
+from sandbox.editor.document import UNTITLED
 from sandbox.level.plan.surfaces import terrain_of
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.replay.scene_file import SUFFIX, read_about, read_scene
 
+# What the place is called that New begins with.
+NEW_PLACE = "New place"
 # Bytes at the end of a scene's file, where the hash of its state is, which a picture goes by.
 END_BYTES = 256
 
@@ -27,14 +30,11 @@ def fill_scene(card: Card, path: Path, is_kept: bool) -> Iterator[bool]:
     except (ReplayError, OSError) as error:
         card.show_fault(error.faults[0] if isinstance(error, ReplayError) else str(error))
         return
-    when = told_time(about.when)
-    if card.is_small:
-        name = f"{about.name}, {when}, {about.deeds}"
-    else:
-        name = about.name if is_kept else path.name.removesuffix(SUFFIX)
+    when, level = told_time(about.when), about.name if about.name != UNTITLED else NEW_PLACE
+    name = level if is_kept else path.name.removesuffix(SUFFIX)
     card.line = f"{when}, {about.deeds}" if is_kept else f"Scene, {when}"
-    text = f"{about.name}, as it stood {when}: {about.deeds}."
-    card.show_texts(name, text, ("scene",))
+    text = f"{level}, as it stood {when}: {about.deeds}."
+    card.show_texts(f"{level}, {when}, {about.deeds}" if card.is_small else name, text, ("scene",))
     yield True
     key, theme = picture_key(end), shown_theme()
     picture = find_picture(path, key, card.picture_size, theme)

@@ -146,7 +146,7 @@ class PlayScreen:
     @property
     def has_contacts(self) -> bool:
         """Whether things touch in the run."""
-        return self.playback.session.world.has_contacts
+        return self.playback.level.has_contacts
 
     @property
     def viewport(self) -> tuple[int, int, int, int]:

@@ -34,7 +34,7 @@ LEFT = (
     (("undo", "undo"), ("redo", "redo")),
     (("reset", "reset"), ("pause", "pause"), ("step", "step"), ("slow", ""), ("timeline", "timeline")),
     (("keep", "keep"),),
-    (("record", "record"), ("save", "save")),
+    (("save", "save"), ("record", "record")),
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
@@ -54,7 +54,6 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
 LEAVING = (
     "toy",
-    "save",
     "compare",
     "graphs",
     "settings",
@@ -68,6 +67,7 @@ LEAVING = (
     "slow",
     "keep",
     "share",
+    "save",
     "panel",
     "palette",
     "tool_pin",

@@ -17,6 +17,7 @@ from sandbox.app.base.recordings import (
 from sandbox.app.contracts.application import Application
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import ask
+from sandbox.editor.document import UNTITLED
 from sandbox.editor.storage.recent import remember_played
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file
@@ -113,7 +114,7 @@ class FileActions:
         play = self.app.play
         if play is not None and path.parent != self.app.scenes.shelf.folder:
             play.saved = path, scene
-        self.app.say(f"{one_line(about.name)} as it stood {told_time(about.when)}. Space lets it go on.")
+        self.app.say(f"As it stood {told_time(about.when)}. Space lets it go on.")
         return True
 
     def ask_to_open(self) -> None:
@@ -164,7 +165,7 @@ class FileActions:
             if again and play.saved is not None:
                 path = play.saved[0]
             else:
-                path = free_path(recordings_folder(), readable_name(scene.level.name), SCENE)
+                path = free_path(recordings_folder(), _proposed_name(scene), SCENE)
             write_file(path, b"".join(scene_lines(scene, play.source)))
         except OSError as error:
             self.app.say(f"The scene cannot be saved: {error.strerror or error}.")
@@ -285,6 +286,11 @@ class FileActions:
 
 def _recording(path: Path) -> str:
     return f"Recording to {path}, from the beginning of the run."
+
+
+def _proposed_name(scene: RunScene) -> str:
+    name = scene.level.name
+    return readable_name(name) if name != UNTITLED else "Scene"
 
 
 def _in_my_levels(path: Path) -> str:
