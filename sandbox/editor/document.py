@@ -58,12 +58,12 @@ def empty_level() -> Level:
 def new_level() -> Level:
     """A place to play in: ground between walls, and things that touch."""
     (left, top, right), far = (-PLACE_HALF, PLACE_HEIGHT, PLACE_HALF), 3.0 * PLACE_HALF
-    ground = ((-far, -3.0), (far, -3.0), (far, 0.0), (-far, 0.0))
+    ground = ((-far, -far), (far, -far), (far, 0.0), (-far, 0.0))
     return replaced(
         empty_level(),
         view=(left - 0.5, -1.5, right + 0.5, top + 0.5),
         contacts=ContactsDef(),
-        walls=WallsDef(box=(left, -1.0, right, top)),
+        walls=WallsDef(box=(left, -right, right, top)),
         terrain=(TerrainDef(id="ground", polygon=ground),),
     )
 

@@ -24,9 +24,7 @@ from sandbox.level.reading.files import load_level
 # Longest name of a level's file [characters].
 NAME_LIMIT = 200
 # What is said where a new place is played in.
-NEW_PLACE = (
-    "Click a part at the left, then the world. Ctrl+S saves the scene; E draws on the sheet, walls and ground too."
-)
+NEW_PLACE = "Click a part at the left, then the world. Ctrl+S saves the scene. E leads to the sheet of this place."
 # Autosaves that are offered at once.
 OFFERED = 5
 
