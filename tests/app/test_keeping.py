@@ -140,6 +140,28 @@ def test_ctrl_s_saves_the_scene_in_my_levels_under_a_proposed_name_that_can_be_c
     assert state_hash(read_scene(documents / "My heap.scene.jsonl")[0].state) == stood
 
 
+def test_what_is_saved_is_not_among_what_was_not_and_is_again_once_more_is_done_or_it_is_discarded(toy):
+    def kept():
+        toy.frames(40)
+        toy.app.scenes.shelf.settle()
+        return len(kept_scenes())
+
+    drop(toy)
+    assert kept() == 1
+    toy.key(pygame.K_s, CTRL)
+    assert kept_scenes() == []
+    toy.choose("Save")
+    toy.key(pygame.K_SPACE)
+    assert kept() == 0
+    drop(toy)
+    assert kept() == 1
+    toy.app.play.saved = None
+    toy.key(pygame.K_s, CTRL)
+    assert kept_scenes() == []
+    toy.choose("Discard")
+    assert kept() == 1
+
+
 def test_saving_again_goes_on_in_the_same_file_only_while_it_is_the_same_run(toy, documents):
     drop(toy)
     toy.key(pygame.K_s, CTRL)

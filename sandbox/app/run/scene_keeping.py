@@ -18,12 +18,13 @@ class SceneKeeping:
         self.shelf = SceneShelf()
         self.before: RunScene | None = None
         self._told_fault: str | None = None
+        self._saved: RunScene | None = None
         self._kept: tuple[Playback | None, int, int] = (None, 0, 0)
         self._seconds = 0.0
 
     def begin(self, playback: Playback, source: Path | None) -> RunScene | None:
         """Keep what is cut off from the history of a run too; how the run of the same level stood that was there."""
-        playback.cut = lambda scene: self.shelf.set_aside(scene, source)
+        playback.cut = lambda scene: self._set_aside(scene, source)
         return self.of_level(playback.level)
 
     def of_level(self, level: Level) -> RunScene | None:
@@ -39,16 +40,30 @@ class SceneKeeping:
             return
         self._seconds, self._kept = 0.0, present
         scene = playback.scene()
-        if scene is not None:
+        if scene is not None and not self._is_saved(scene):
             self.shelf.note(scene, source)
 
     def set_aside(self, playback: Playback, source: Path | None) -> RunScene | None:
         """Keep how a run stands that leaves the screen; None: nothing was done in it."""
         scene = playback.scene()
         if scene is not None:
-            self.shelf.set_aside(scene, source)
+            self._set_aside(scene, source)
             self.before = scene
         return scene
+
+    def is_saved(self, scene: RunScene | None) -> None:
+        """Keep the present run no more while it is as the person saved it; None: it is not saved after all."""
+        self._saved, self._kept = scene, (None, 0, 0)
+        if scene is not None:
+            self.shelf.give_up(scene)
+
+    def _is_saved(self, scene: RunScene) -> bool:
+        saved = self._saved
+        return saved is not None and saved.is_done_by(scene.script) and saved.level == scene.level
+
+    def _set_aside(self, scene: RunScene, source: Path | None) -> None:
+        if not self._is_saved(scene):
+            self.shelf.set_aside(scene, source)
 
     def fault(self) -> str | None:
         """A line, once, where runs cannot be kept."""

@@ -171,6 +171,7 @@ class FileActions:
             self.app.say(f"The scene cannot be saved: {error.strerror or error}.")
             return
         play.saved = path, scene
+        self.app.scenes.is_saved(scene)
         if again:
             self.app.say(_in_my_levels(path))
         else:
@@ -185,6 +186,7 @@ class FileActions:
 
         def discard() -> None:
             self._discard(path)
+            self.app.scenes.is_saved(None)
             if self.app.play is not None:
                 self.app.play.saved = None
 

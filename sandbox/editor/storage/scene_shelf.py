@@ -51,6 +51,18 @@ class SceneShelf:
             for path in list(self._aside)[:-KEPT]:
                 del self._aside[path]
 
+    def give_up(self, scene: RunScene) -> None:
+        """Keep the present run no more: it has been saved as this scene."""
+        aside = self._aside.get(self.present)
+        if aside is not None and not aside.is_done_by(scene.script):
+            return
+        with self._changed:
+            self._wanted.pop(self.present, None)
+        self.settle()
+        with contextlib.suppress(OSError):
+            self.present.unlink(missing_ok=True)
+        self._aside.pop(self.present, None)
+
     def _place(self, scene: RunScene) -> Path:
         """Where a scene is kept: where one is of the same deeds, in which only time has passed, or else of its own."""
         for path, kept in self._aside.items():
