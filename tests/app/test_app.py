@@ -155,8 +155,8 @@ def test_a_recording_on_a_full_disk_is_refused_in_plain_words_and_leaves_no_file
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr("sandbox.session.replay.writer.Recorder.write_tick", full)
-    for key in (pygame.K_r, pygame.K_s):
-        driver.key(key, CTRL)
+    for key, mods in ((pygame.K_r, CTRL), (pygame.K_s, CTRL | pygame.KMOD_SHIFT)):
+        driver.key(key, mods)
         path = documents / "small.replay.jsonl"
         assert driver.notices == [f"The recording cannot be written to {path}: No space left on device."]
         assert driver.playback.session.recording is None and not list(documents.iterdir())
@@ -196,24 +196,24 @@ def test_a_recording_holds_what_was_done_before_it_ended_though_no_frame_came_be
 def test_a_replays_name_that_exists_is_refused_and_nothing_is_overwritten(driver, documents):
     documents.mkdir()
     (documents / "taken.replay.jsonl").write_text("mine")
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.type("taken")
     driver.key(pygame.K_RETURN)
     assert driver.app.ui.has_sheet
     assert (documents / "taken.replay.jsonl").read_text() == "mine"
     driver.key(pygame.K_ESCAPE)
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_ESCAPE)
     assert len(list(documents.iterdir())) == 3
 
 
 def test_a_saved_run_can_be_discarded_and_escape_keeps_it(driver, documents):
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     for _ in range(2):
         driver.key(pygame.K_TAB)
     driver.key(pygame.K_RETURN)
     assert not driver.app.ui.has_sheet and list(documents.iterdir()) == []
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_ESCAPE)
     assert [path.name for path in documents.iterdir()] == ["small.replay.jsonl"]
 
@@ -221,7 +221,7 @@ def test_a_saved_run_can_be_discarded_and_escape_keeps_it(driver, documents):
 def recording(driver, documents):
     driver.fill(driver.panel.damping_field, "0.2")
     driver.frames(30)
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_RETURN)
     (path,) = documents.iterdir()
     return path

@@ -56,7 +56,7 @@ CHANGING = frozenset({"contacts", "forces", "velocities", "stability"})
 class Overlay:
     """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls.
 
-    ghost: lines [m] of what a click would do.
+    ghost: lines [m] of what a click would do; is_refused: it would do nothing, as there is no room.
     lit (m,): springs that are pointed at in a panel.
     stability (m,): how near springs are to the limit of what is proven stable, 1 = at it; None = not known.
     """
@@ -66,6 +66,7 @@ class Overlay:
     cursor: tuple[float, float] | None = None
     pulls: list[Pull] = field(default_factory=list)
     ghost: list[list[tuple[float, float]]] = field(default_factory=list)
+    is_refused: bool = False
     # And a picture of it, with the place of its middle [m].
     ghost_picture: tuple[pygame.Surface, tuple[float, float]] | None = None
     stability: NDArray[np.float64] | None = None
@@ -198,6 +199,7 @@ class Renderer:
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
             (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost)),
+             overlay.is_refused,
              None if overlay.ghost_picture is None else (id(overlay.ghost_picture[0]), overlay.ghost_picture[1]),
              b"" if overlay.lit is None else overlay.lit.tobytes()),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
@@ -328,7 +330,7 @@ class Renderer:
         for line in overlay.ghost:
             points = camera.project(np.array(line))
             ends = np.ascontiguousarray(np.concatenate([points[:-1], points[1:]], axis=1))
-            canvas.lines(ends, np.full(len(ends), packed(ACCENT)), 2.0 * scale)
+            canvas.lines(ends, np.full(len(ends), packed(DANGER if overlay.is_refused else ACCENT)), 2.0 * scale)
         if overlay.cursor is not None:
             self._draw_cursor(canvas, camera.to_pixels(overlay.cursor))
 

@@ -9,7 +9,7 @@ import pygame
 
 from sandbox.app.base.loop import SPEEDS
 from sandbox.app.base.profile import Profile
-from sandbox.app.base.shortcuts import Mode, tip_of
+from sandbox.app.base.shortcuts import Mode
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.draw.camera import Camera
@@ -27,10 +27,13 @@ from sandbox.app.panel.touching import Touching, begin_touching
 from sandbox.app.parts.part_page import PartPage
 from sandbox.app.play.bake_choice import ask_to_keep
 from sandbox.app.play.drive_keys import DriveKeys
+from sandbox.app.play.earlier_runs import EarlierRuns
 from sandbox.app.play.hand_labels import draw_labels
+from sandbox.app.play.hand_strength import keep_strength, kept_strength, next_strength
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
 from sandbox.app.play.melting import toggle_melt
+from sandbox.app.play.offers import add_offers, show_while
 from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.out_of_view import OutOfView, put_back
 from sandbox.app.play.palette import NAMES, PartsPalette
@@ -47,19 +50,15 @@ from sandbox.level.document.model import Level
 from sandbox.physics.analysis.motor_readings import motor_readings
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.solvers import SOLVERS
-from sandbox.tools.drag import STRENGTHS
+from sandbox.session.scene import RunScene
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.play_tools import PLAY_TOOLS
 
-# Where the button is that frees what is stuck, below the bar, and its size [layout units].
-FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
-# The button that begins again, in the middle [layout units].
-AGAIN_SIZE = (150.0, 40.0)
+# Where the buttons are that free what is stuck, and how far from the strip of parts [layout units].
+OFFERS_LEFT, OFFERS_GAP = 16.0, 12.0
 # Graphs and timeline have that much room beside a panel, or are as wide as the window [layout units].
 ROOM_BESIDE_PANEL = 340.0
-# Under what the strength of the hand is remembered.
-HAND = "hand"
-# And how springs are set: "pad" or "sliders".
+# Under what it is remembered how springs are set: "pad" or "sliders".
 SPRINGS = "springs"
 # And, with the name of a section of the panel behind it, whether that is open.
 FOLD = "open_"
@@ -101,9 +100,7 @@ class PlayScreen:
             is_open = preference(f"{FOLD}{section}")
             if isinstance(is_open, bool):
                 self.shape.open[section] = is_open
-        kept = preference(HAND)
-        if isinstance(kept, str) and kept in STRENGTHS:
-            self.stage.drag.strength = kept
+        self.stage.drag.strength = kept_strength(self.stage.drag.strength)
         self._keys = DriveKeys(playback)
         self.stuck = StuckBodies()
         self.out_of_view = OutOfView()
@@ -112,6 +109,11 @@ class PlayScreen:
         self.told = ""
         self.actions = self._actions()
         app.follow(playback, self.can_cancel)
+        before = app.scenes.begin(playback, source)
+        # Of a pair one run alone could be brought back.
+        self.earlier = EarlierRuns(before if self.can_cancel else None, self._show_run, app.say)
+        # Where in My levels it is saved, and how it stood then.
+        self.saved: tuple[Path, RunScene] | None = None
 
     @property
     def camera(self) -> Camera:
@@ -144,7 +146,7 @@ class PlayScreen:
     @property
     def has_contacts(self) -> bool:
         """Whether things touch in the run."""
-        return self.playback.session.world.has_contacts
+        return self.playback.level.has_contacts
 
     @property
     def viewport(self) -> tuple[int, int, int, int]:
@@ -186,18 +188,11 @@ class PlayScreen:
         if self.show_palette:
             wide, tall = (side / ui.scale for side in self.area[2:])
             self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall)
-        left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
-        place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
-        self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
-        self.free.hide()
-        left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
-        place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
-        self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
-        self.again.hide()
-        left, top = self.free.relative_rect.bottomleft
-        place = pygame.Rect((left, top + ui.px(FREE_PLACE[1] / 2)), self.free.relative_rect.size)
-        self.lost = ui.button(place, "Bring back", self._bring_back, tip=tip_of("bring_back", "play"))
-        self.lost.hide()
+        left = OFFERS_LEFT if self.palette is None else self.palette.right + OFFERS_GAP
+        middle = (self.viewport[0] + self.viewport[2] / 2) / ui.scale
+        self.free, self.lost, self.again = add_offers(
+            ui, left, middle, self.again_top, self._free, self._bring_back, self._reset
+        )
         # Beside a panel in a narrow window they have no room: they lie below it.
         wide, below_panel = self.area[2] / ui.scale, 0.0
         if wide < ROOM_BESIDE_PANEL:
@@ -276,8 +271,8 @@ class PlayScreen:
             "touching": lambda: self.touch(Touching.of(self.playback.level).other),
             "free": self._free,
             "bring_back": self._bring_back,
-            "undo": lambda: self.playback.submit_undo(),
-            "redo": lambda: self.playback.submit_redo(),
+            "undo": lambda: self.earlier.undo(self.playback),
+            "redo": lambda: self.earlier.redo(self.playback),
             "pause": lambda: self.playback.toggle_pause(),
             "step": lambda: self.playback.clock.step_once(),
             "slow": lambda: self.playback.clock.next_speed(SPEEDS),
@@ -289,7 +284,8 @@ class PlayScreen:
             "zoom_out": lambda: self._zoom(-2),
             "fit": stage.fit,
             "record": files.toggle_recording,
-            "save": files.save_run,
+            "save": files.save_scene,
+            "save_recording": files.save_run,
             "press": lambda: stage.press_cursor(pygame.key.get_mods()),
             "next_particle": lambda: stage.visit_particle(1),
             "previous_particle": lambda: stage.visit_particle(-1),
@@ -366,15 +362,14 @@ class PlayScreen:
     def choose_strength(self, name: str) -> None:
         """Let the hand be gentle, normal or strong from its next hold on, in later runs too."""
         self.stage.drag.strength = name
-        set_preference(HAND, name)
+        keep_strength(name)
         if self.stage.drag.holds:
             self._app.say(f"The present hold keeps its strength; the next one is {name}.")
 
     def _next_strength(self) -> None:
-        names = list(STRENGTHS)
-        name = names[(names.index(self.stage.drag.strength) + 1) % len(names)]
+        name, line = next_strength(self.stage.drag.strength)
         self.choose_strength(name)
-        self._app.say(f"Hand: {name}, at most {STRENGTHS[name] / 10.0:g} times the weight of what it holds.")
+        self._app.say(line)
 
     def _free(self) -> None:
         """Free what is stuck, all in one gesture."""
@@ -382,23 +377,42 @@ class PlayScreen:
             self._app.say("Nothing is stuck.")
 
     def _reset(self) -> None:
-        self.leave()
+        self._stop()
+        left = self._app.scenes.set_aside(self.playback, self.source)
+        self.earlier.begin_again(self.playback, left if self.can_cancel else None)
+        self.saved = None
         self._begin_again()
-        self.stuck = StuckBodies()
-        self.out_of_view = OutOfView()
-        self._app.follow(self.playback, self.can_cancel)
-        if self.panel is not None:
-            self.panel.follow(self.playback)
+        self._follow_run()
 
     def _begin_again(self) -> None:
         self.stage.replace_playback(self.playback.reset())
+
+    def _show_run(self, playback: Playback) -> None:
+        """Show another run of the same level."""
+        self._stop()
+        self.stage.replace_playback(playback)
+        self._follow_run()
+
+    def _follow_run(self) -> None:
+        """Let all that is about the run be about the one that is shown now."""
+        self.stuck = StuckBodies()
+        self.out_of_view = OutOfView()
+        self._app.follow(self.playback, self.can_cancel)
+        self._app.scenes.begin(self.playback, self.source)
+        if self.panel is not None:
+            self.panel.follow(self.playback)
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
         self._app.rebuild()
 
     def leave(self) -> None:
-        """End a recording that is being made, whose file is complete, and what is measured for the pad."""
+        """Keep how the run stands; end a recording that is being made, whose file is complete."""
+        self._stop()
+        self._app.scenes.set_aside(self.playback, self.source)
+
+    def _stop(self) -> None:
+        """End a recording that is being made, and what is measured for the pad."""
         self.shape.sweeps.stop()
         path = self.playback.stop_recording()
         if path is not None:
@@ -450,6 +464,7 @@ class PlayScreen:
         """Let time pass, where no page is open."""
         before = self.playback.session.tick
         self.stage.update(frame_time if not self._ui.has_sheet else 0.0, pointer, profile)
+        self._app.scenes.follow(self.playback, self.source, frame_time)
         self._measure(self.playback.session.tick - before, profile)
         self._show_stuck()
         self._show_again()
@@ -470,8 +485,8 @@ class PlayScreen:
                 self.playback.clock.paused,
                 self.playback.clock.speed,
                 self.playback.session.recording is not None,
-                self.playback.session.can_undo,
-                self.playback.session.can_redo,
+                self.earlier.can_undo(self.playback),
+                self.earlier.can_redo(self.playback),
                 self.show_panel,
                 self.show_palette,
                 self._app.chosen["sound"] == "on",
@@ -511,8 +526,7 @@ class PlayScreen:
         found = len(self.stuck.particles)
         if found > before:
             self._app.say(NOTICE)
-        if bool(found) != bool(self.free.visible):
-            (self.free.show if found else self.free.hide)()
+        show_while(self.free, found > 0)
 
     def _bring_back(self) -> None:
         """Put what has left the picture back into it, at rest."""
@@ -526,10 +540,8 @@ class PlayScreen:
         is_over = self.out_of_view.is_over
         if is_over != was_over:
             (self._app.say if is_over else self._app.take_back)(LEFT_VIEW)
-        if is_over != bool(self.again.visible):
-            (self.again.show if is_over else self.again.hide)()
-        if self.out_of_view.has_lost != bool(self.lost.visible):
-            (self.lost.show if self.out_of_view.has_lost else self.lost.hide)()
+        show_while(self.again, is_over)
+        show_while(self.lost, self.out_of_view.has_lost)
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""

@@ -1,6 +1,7 @@
 """Playback: the run on the screen: a session, the clock that drives it and the two snapshots that are drawn."""
 
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +22,7 @@ from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Redo, Undo
 from sandbox.session.log import Branch
 from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.scene import RunScene, SceneTaker
 from sandbox.session.session import Session
 from sandbox.session.transaction import Interrupted
 from sandbox.tools.tool import Response
@@ -30,6 +32,8 @@ from sandbox.tools.tool import Response
 TICK_BUDGET = 0.05
 # Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
 FRAMES_TO_JOIN = 2
+# What stood for so long [s] before an undo, or before another command in the past, is kept.
+LOOKED_AT = 1.0
 # What is said where playing a run again was given up.
 GIVEN_UP = "Cancelled. The run did not change."
 
@@ -47,10 +51,22 @@ class Listener(Protocol):
 
 
 class Playback:
-    """A level being played, or a replay being watched; `previous` and `current` are what the renderer draws between."""
+    """A level being played, or a replay being watched; `previous` and `current` are what the renderer draws between.
 
-    def __init__(self, level: Level, replay: Replay | None = None, start: Snapshot | None = None) -> None:
-        self.session = Session(level, replay.script if replay else (), start)
+    first: the scene that it goes on from. cut: is told how the run stands before some of its history is cut off.
+    """
+
+    def __init__(
+        self, level: Level, replay: Replay | None = None, start: Snapshot | None = None, first: RunScene | None = None
+    ) -> None:
+        self.session = first.session() if first else Session(level, replay.script if replay else (), start)
+        self.first = first
+        self.cut: Callable[[RunScene], None] = lambda scene: None
+        self._taker = SceneTaker(self.session)
+        # How the run stands at its end, while it is in its past.
+        self._end: RunScene | None = None
+        # How long the last undo or redo is ago [s]: what stood for a moment between two of them is not kept.
+        self._stood = LOOKED_AT
         self.level = level
         self.replay = replay
         self.clock = TickClock()
@@ -104,6 +120,28 @@ class Playback:
         fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span
         return fresh
 
+    def scene(self) -> RunScene | None:
+        """How the run stands at its end; None: nothing was done in it, or nothing since the scene that it began as."""
+        if self.watching:
+            return None
+        self.apply_pending()
+        scene = self._end if self.session.tick < self.session.last_tick else self._taker.take()
+        if scene is None or not scene.script:
+            return None
+        return None if self.first is not None and self.first.is_done_by(scene.script) else scene
+
+    def present_scene(self) -> RunScene:
+        """How the run stands on the screen."""
+        self.apply_pending()
+        return self._taker.take()
+
+    def _tell_cut(self) -> None:
+        self.apply_pending()
+        has_stood, self._stood = self._stood >= LOOKED_AT, 0.0
+        scene = self.scene() if has_stood else None
+        if scene is not None:
+            self.cut(scene)
+
     def submit(self, command: Command, gesture: int | None = None) -> None:
         """Queue a command of the person's; while a replay is watched, or in the past, the person takes over from it."""
         session = self.session
@@ -114,6 +152,7 @@ class Playback:
         if self.watching:
             self.take_over()
         if is_past and not self._submitted:
+            self._tell_cut()
             self.messages.append("The run goes on from here. Shift+Y goes back to the old one.")
         if self.clock.speed < 0.0:
             self.clock.speed, self.clock.accumulator = 1.0, 0.0
@@ -132,12 +171,12 @@ class Playback:
 
     def submit_undo(self) -> None:
         """Take the last gesture back, also one of this frame."""
-        self.apply_pending()
+        self._tell_cut()
         self._submit_if(self.session.can_undo, Undo(), "There is nothing to undo.")
 
     def submit_redo(self) -> None:
         """Make the gesture again that was undone last, also in this frame."""
-        self.apply_pending()
+        self._tell_cut()
         self._submit_if(self.session.can_redo, Redo(), "There is nothing to redo.")
 
     def _submit_if(self, possible: bool, command: Command, otherwise: str) -> None:
@@ -178,6 +217,8 @@ class Playback:
             self.clock.speed = abs(self.clock.speed)
             return
         self.apply_pending()
+        if session.tick == session.last_tick:
+            self._end = self._taker.take()
         here = session.snapshot()
         self._jump(tick)
         self.travel.target = tick if tick > session.last_tick else None
@@ -212,6 +253,7 @@ class Playback:
         if self.session.recording is not None:
             self.messages.append("Stop the recording before you go back in time.")
             return
+        self._tell_cut()
         try:
             with np.errstate(over="ignore", invalid="ignore"):
                 self.session.return_to(branch)
@@ -264,6 +306,7 @@ class Playback:
 
     def advance(self, frame_time: float) -> int:
         """Let frame_time [s] of wall time pass; returns the ticks that were made."""
+        self._stood += frame_time
         if self._making_room and not self.clock.paused:
             self._make_room()
             return 0

@@ -31,6 +31,7 @@ from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine
 from sandbox.app.run.playback import Playback
+from sandbox.app.run.scene_keeping import SceneKeeping
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.settings.settings_sheet import SettingsSheet
 from sandbox.app.settings.system_theme import theme_of
@@ -76,6 +77,7 @@ class App:
         # What was on it when a frame ended last.
         self._seen: Screen | None = None
         self.input = Input(self)
+        self.scenes = SceneKeeping()
         self.files = FileActions(self)
         self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
@@ -292,6 +294,7 @@ class App:
         self.sounds.close()
         self.sharing.close()
         self.documents.close()
+        self.scenes.shelf.close()
         self.display.close()
         self._collector.close()
 
@@ -344,6 +347,8 @@ class App:
         with self.profile.part("ui"):
             self.status.update(frame_time)
             self.documents.update()
+            if fault := self.scenes.fault():
+                self.say(fault)
             if self.gallery is not None:
                 self.gallery.update(frame_time)
             self.guide.update(frame_time)

@@ -95,17 +95,17 @@ def header(level: Level, physics_version: int, sandbox_version: str) -> dict[str
     }
 
 
-def encode_state(world: World, names: Iterable[str] = tuple(BY_STORED)) -> dict[str, Any]:
+def encode_state(state: World | Snapshot, names: Iterable[str] = tuple(BY_STORED)) -> dict[str, Any]:
     """State arrays of those names as base64 of zlib of their little-endian bytes, and the settings."""
     arrays = {
-        name: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, BY_STORED[name].name)), 6)).decode()
+        name: base64.b64encode(zlib.compress(canonical_bytes(getattr(state, BY_STORED[name].name)), 6)).decode()
         for name in names
     }
     joined = [
         {"particle": each.first_particle, "spring": each.first_spring, "definition": each.definition}
-        for each in world.joined
+        for each in state.equipment.joined
     ]
-    return {"state": arrays, "settings": asdict(world.settings)} | ({"joined": joined} if joined else {})
+    return {"state": arrays, "settings": asdict(state.settings)} | ({"joined": joined} if joined else {})
 
 
 def _equipment(level: Level, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int]) -> Equipment:
