@@ -3,13 +3,13 @@
 import numpy as np
 
 from sandbox.physics.arrays import Floats
-from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, constraint_values
+from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, TRIANGLE, constraint_values
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.marks import GRAB_MATERIAL, LAW_HOOKE
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
-from sandbox.physics.world import TRIANGLE, World
+from sandbox.physics.world import World
 
 # The energy of what blew up is inf or NaN, and no fault.
 _unbounded = np.errstate(over="ignore", invalid="ignore")

@@ -152,7 +152,9 @@ class Block:
         self._make_room([array[:count] for array in self._kept_room])
 
     def end(self, world: World) -> None:
-        """Make the contacts of a tick's last step those of the world's state."""
+        """Make the contacts of a tick's last step those of the world's state, and settings that it changed."""
+        world.follow_numbers(self.given.numbers)
+        self._settings = world.settings
         if len(world.contact_impulse) != self.given.collisions.counts[KEPT] or self._has_other_contacts(world):
             self._share_contacts(world)
 

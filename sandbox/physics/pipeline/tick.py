@@ -37,6 +37,7 @@ from sandbox.physics.pipeline.collide import (
     solve_free,
     store_impulses,
 )
+from sandbox.physics.ramps import follow_ramps
 from sandbox.physics.sanitise import are_sound, keep_if_sound
 from sandbox.physics.settings import (
     DIRECT,
@@ -130,8 +131,9 @@ def _find_broken(world: WorldBlock) -> int:
 
 @inner_kernel
 def _begin_tick(world: WorldBlock) -> None:
-    # Drive springs, choose the substeps, and bring Cs, Cd and kept impulses to those.
+    # Follow ramps, drive springs, choose the substeps, and bring Cs, Cd and kept impulses to those.
     state, choices, progress, drives = world.state, world.choices, world.progress, world.drives
+    follow_ramps(state, world.good, world.numbers, choices[SOLVER])
     if drives.muscle.shape[0] + drives.hydraulic.shape[0] > 0:
         for s in range(state.rest_length.shape[0]):
             world.start_length[s] = state.rest_length[s]
