@@ -12,7 +12,7 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
-from sandbox.physics.ramps import begin_constraint, begin_spring, set_number
+from sandbox.physics.ramps import set_constraint, set_number, set_spring
 from sandbox.physics.settings import DRAG, GRAVITY_X, WIND_X
 from sandbox.physics.state import GoodValues, State, StateArrays
 from sandbox.physics.topology.sorting import list_ends
@@ -29,7 +29,7 @@ NOTHING, OF_HANDS, OF_TOPOLOGY = "", "hands", "topology"
 class KernelCommand(NamedTuple):
     """A kind of command: its number; what lies in `slots` and `numbers` then; what has to be derived again.
 
-    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; duration [ticks]: of a ramp, 0: at once; ?name:
+    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; duration [ticks]: see ramps.py; ?name:
     whether that is given. Others are what commands of files call so: places have two numbers, springs as many slots as
     there are.
     """
@@ -276,23 +276,16 @@ def _set_air(state: State, settings: Floats, slots: Slots, numbers: Floats) -> N
 @inner_kernel
 def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Floats) -> None:
     # Of springs and areas; grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
-    duration = slots[4]
     for s in range(state.material.shape[0]):
         if _is_of(state.material[s], slots):
-            firm, damps = state.stiffness[s], state.damping[s]
-            if state.ramp_ticks[s] != 0:
-                firm, damps = state.stiffness_goal[s], state.damping_goal[s]
-            firm = numbers[0] if slots[2] != 0 else firm
-            damps = numbers[1] if slots[3] != 0 else damps
-            begin_spring(state, good, s, firm, damps, duration)
+            stiffness = numbers[0] if slots[2] != 0 else state.stiffness[s]
+            damping = numbers[1] if slots[3] != 0 else state.damping[s]
+            set_spring(state, good, s, stiffness, damping, slots[4])
     for k in range(state.constraint_material.shape[0]):
         if _is_of(state.constraint_material[k], slots):
-            firm, damps = state.constraint_stiffness[k], state.constraint_damping[k]
-            if state.constraint_ramp_ticks[k] != 0:
-                firm, damps = state.constraint_stiffness_goal[k], state.constraint_damping_goal[k]
-            firm = numbers[0] if slots[2] != 0 else firm
-            damps = numbers[1] if slots[3] != 0 else damps
-            begin_constraint(state, good, k, firm, damps, duration)
+            stiffness = numbers[0] if slots[2] != 0 else state.constraint_stiffness[k]
+            damping = numbers[1] if slots[3] != 0 else state.constraint_damping[k]
+            set_constraint(state, good, k, stiffness, damping, slots[4])
 
 
 @inner_kernel

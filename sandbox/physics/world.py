@@ -189,16 +189,10 @@ class World(StateArrays):
         if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
             self.energy_bank[:] = BANK_UNOPENED
             self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
-        # What is set ends its ramp.
+        # What is set so is in force at once.
         is_set = np.array(settings.numbers) != np.array(self._settings.numbers)
-        self.setting_goal[is_set] = self.setting_ticks[is_set] = 0
+        self.setting_now[is_set] = self.setting_ticks[is_set] = 0
         self._settings = settings
-
-    def follow_numbers(self, numbers: Floats) -> None:
-        """Take over the numbers of the settings that a tick or a command ends with; ramps go on."""
-        present = tuple(numbers.tolist())
-        if present != self._settings.numbers:
-            self._settings = self._settings.with_numbers(present)
 
     def scale_impulses(self, factor: float) -> None:
         """Turn what solvers keep of the last step's impulses into those of a step of another length."""
@@ -434,10 +428,9 @@ class World(StateArrays):
     def set_coefficients(
         self, stiffness: float | None, damping: float | None, material: int | None, duration: int = 0
     ) -> None:
-        """Bring Cs, Cd or both, of one material's springs and areas or (None) of all, to these in so many ticks.
+        """Set Cs, Cd or both, of one material's springs and areas or (None) of all, and end their bodies' firmness.
 
-        duration: see ramps.py; 0: at once. Their bodies' firmness ends. Grabs, Hooke springs and constraints with Cs
-        and Cd of their own keep theirs.
+        Grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs. duration [ticks]: see ramps.py.
         """
         if material is not None:
             arguments.slot("material", material, "materials", len(self.material_names))
@@ -448,11 +441,11 @@ class World(StateArrays):
         self._command("set_coefficients", material=material, duration=duration, **given)
 
     def set_gravity(self, gravity: Point, duration: int = 0) -> None:
-        """Bring gravity [m/s^2] to this in so many ticks; 0: at once."""
+        """Set gravity [m/s^2]; duration [ticks]: see ramps.py."""
         self._command("set_gravity", gravity=arguments.point("gravity", gravity), duration=duration)
 
     def set_air(self, wind: Point | None, drag: float | None, duration: int = 0) -> None:
-        """Bring the wind [m/s], the drag [1/s] or both to these (None: it stays) in so many ticks; 0: at once."""
+        """Set the wind [m/s], the drag [1/s] or both (None: it stays); duration [ticks]: see ramps.py."""
         wind = None if wind is None else arguments.point("wind", wind)
         drag = None if drag is None else arguments.number("drag", drag, 0.0)
         self._command("set_air", wind=wind, drag=drag, duration=duration)
@@ -479,7 +472,8 @@ class World(StateArrays):
         arguments.ticks("duration", given.setdefault("duration", 0))
         self._numbers[:] = self._settings.numbers
         result = carry_out(self.derived(_lend, of_hands=False), name, given, self)
-        self.follow_numbers(self._numbers)
+        if name in ("set_gravity", "set_air"):
+            self._settings = self._settings.with_numbers(self._numbers.tolist())
         changes = KINDS[name].changes
         if changes == OF_TOPOLOGY:
             self.topology_version += 1

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
-from sandbox.physics.changing.ramping import CONSTRAINTS, SPRINGS, ramp_rows
+from sandbox.physics.changing.ramping import set_rows
 from sandbox.physics.equation import (
     HIGHEST_COEFFICIENT,
     coefficients_from_frequency,
@@ -22,6 +22,7 @@ from sandbox.physics.equation import (
 )
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.forms import Firmness, StiffForm, strength_of
+from sandbox.physics.ramps import CONSTRAINTS, SPRINGS
 from sandbox.physics.world import World
 
 # F^2 sag H / g of a box that stands on the floor, which holds its foot: 0.75 of that of a free column.
@@ -158,7 +159,7 @@ class FirmnessRange:
 def set_firmness(world: World, body: int, stiffness: float, damping: float, duration: int = 0) -> None:
     """Give a body, by its place in the world's `forms`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
 
-    They are shared out over its springs, areas and bends, which go there in so many ticks (ramps.py); 0: at once.
+    They are shared out over its springs, areas and bends, in force in so many ticks (ramps.py); 0: at once.
     Raises IndexError and ValueError.
     """
     body = arguments.slot("body", body, "bodies that may be stiff by their form", len(world.forms))
@@ -172,7 +173,7 @@ def set_firmness(world: World, body: int, stiffness: float, damping: float, dura
     else:
         stiffness, damping = of_springs(stiffness, damping, lowest_mode)
     for family, slots in ((SPRINGS, form.springs), (CONSTRAINTS, form.constraints)):
-        ramp_rows(world, family, slots, (stiffness, damping, lowest_mode), duration)
+        set_rows(world, family, slots, (stiffness, damping, lowest_mode), duration)
 
 
 def usual_ratio(hz: float, h: float) -> float:

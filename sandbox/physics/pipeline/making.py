@@ -152,9 +152,7 @@ class Block:
         self._make_room([array[:count] for array in self._kept_room])
 
     def end(self, world: World) -> None:
-        """Make the contacts of a tick's last step those of the world's state, and settings that it changed."""
-        world.follow_numbers(self.given.numbers)
-        self._settings = world.settings
+        """Make the contacts of a tick's last step those of the world's state."""
         if len(world.contact_impulse) != self.given.collisions.counts[KEPT] or self._has_other_contacts(world):
             self._share_contacts(world)
 

@@ -19,8 +19,8 @@ class SetFirmness(Command):
     """Set how soft a body is as a whole, whatever its grid, size and mass: by its sag, or by hz and ratio.
 
     For bodies whose form is stiff without pins. sag: part of its height by which it sags where it stands, 0 = rigid;
-    hz, ratio: frequency [Hz] and damping ratio of its slowest wobble, ratio null = 0.15 or the least possible. duration:
-    see ramping.py.
+    hz, ratio: frequency [Hz] and damping ratio of its slowest wobble, ratio null = 0.15 or the least possible.
+    It becomes so in `duration` ticks.
     """
 
     type = "set_firmness"

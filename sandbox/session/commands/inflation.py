@@ -12,7 +12,10 @@ from sandbox.session.commands.ramping import Duration
 
 @dataclass(frozen=True)
 class SetInflation(Command):
-    """Let a body's areas, the one of a ring or those of a jelly, want this multiple of their own, in `duration` ticks."""
+    """Let a body's areas, the one of a ring or those of a jelly, want this multiple of their own.
+
+    They come to it in `duration` ticks.
+    """
 
     type = "set_inflation"
     body: BodySlot

@@ -1,7 +1,7 @@
 """Commands whose change takes time: the field `duration`.
 
-What such a command sets goes there in so many ticks (sandbox/physics/ramps.py) from where it is, also from the middle of
-what another one has begun; 0: at once. Recordings from before there were durations have none, and mean 0.
+What such a command sets goes there in so many ticks (sandbox/physics/ramps.py) from where it is, also from the middle
+of what another one has begun; 0: at once. Recordings from before there were durations have none, and mean 0.
 """
 
 from typing import Annotated
