@@ -1,4 +1,4 @@
-"""Commands whose change takes time: undone, redone, recorded, and gone on with when the body is cut, held or removed."""
+"""Commands whose change takes time: undone, redone, recorded, and gone on with when the body is cut or removed."""
 
 import pytest
 

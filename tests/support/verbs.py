@@ -21,7 +21,7 @@ from tests.support.overlaps import overlaps
 RAMP_TIME = 0.75
 # How long a level runs first, and after what is done to it [s].
 BEFORE, AFTER = 2.0, 3.0
-# Depth of an overlap at most, as a share of the shortest spring's length; bodies that are still in the picture at least.
+# Depth of an overlap at most, as a share of the shortest spring's length; part of the bodies in the picture at least.
 DEEPEST, LEAST_SEEN = 1 / 20, 9 / 10
 
 Step = Callable[[World, int], Iterator[Command]]
@@ -102,9 +102,7 @@ def seen(session: Session) -> dict[str, bool]:
     found = {}
     for form in world.forms:
         place = world.position[world.particle_a[form.springs]].mean(axis=0)
-        found[form.name] = view is None or bool(
-            view[0] <= place[0] <= view[2] and view[1] <= place[1] <= view[3]
-        )
+        found[form.name] = view is None or bool(view[0] <= place[0] <= view[2] and view[1] <= place[1] <= view[3])
     return found
 
 
