@@ -7,12 +7,10 @@ With n ticks left, this one too, and r = (n - 1) / n, a tick leaves r^2 of the w
 from wherever a new goal finds it. That is the way of a wanted area, of gravity and air, and of what a spring gives way
 by under a load, y: in the direct solver (1 - Cd) / Cs, in the others 1 / Cs. So what sags sinks or rises evenly.
 
-What firms up gives back what its springs hold, which throws it. So a Cd that rises runs ahead, by r^4: at first the
-body becomes tough as honey. And Cs is at least Cd (1 - r^1.5), so that in each tick it takes back that part of what it
-lacks, and all of it in the last one. From the softest heap of jellies to a rigid one takes 0.75 s without a leap.
+What firms up gives back what its springs hold, which throws it. So a Cd that rises runs ahead, by r^8: at first the
+body becomes tough as honey. And Cs is at least Cd (1 - r^2), so that in each tick it takes back that part of what it
+lacks, and all of it in the last one. A heap of the softest jellies becomes rigid in a second without a leap.
 """
-
-import math
 
 import numpy as np
 
@@ -49,8 +47,9 @@ def next_pair(
     """Cs and Cd of a tick, from those of the tick before; ticks: left, this one too. Cs <= Cd stays so."""
     if ticks <= 1:
         return stiffness_goal, damping_goal
-    part, rest = way_of_tick(ticks), (ticks - 1.0) / ticks
-    ahead = 1.0 - rest * rest * rest * rest if damping_goal > damping else part
+    part = way_of_tick(ticks)
+    rest = (1.0 - part) * (1.0 - part)
+    ahead = 1.0 - rest * rest if damping_goal > damping else part
     damps = damping + ahead * (damping_goal - damping)
     here, there, after = 1.0, 1.0, 1.0
     if solver == DIRECT:
@@ -58,7 +57,7 @@ def next_pair(
     gives, wanted = here / (stiffness + LEAST_STIFFNESS), there / (stiffness_goal + LEAST_STIFFNESS)
     found = after / (gives + part * (wanted - gives)) - LEAST_STIFFNESS
     found = min(max(found, min(stiffness, stiffness_goal)), max(stiffness, stiffness_goal))
-    return max(found, min(stiffness_goal, damps * (1.0 - rest * math.sqrt(rest)))), damps
+    return max(found, min(stiffness_goal, damps * part)), damps
 
 
 @inner_kernel

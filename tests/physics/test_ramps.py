@@ -114,7 +114,7 @@ def test_gravity_and_air_come_to_what_is_set_and_settings_end_their_ramps():
         step(world)
         seen.append(of_last_tick(world).settings.gravity)
     assert np.all(np.diff(np.array(seen)[:, 0]) > 0.0) and seen[-1] == (3.0, 0.0) == world.settings.gravity
-    world.set_air((5.0, 0.0), 1.0, 10)
+    world.set_air((5.0, 0.5), 1.0, 10)
     step(world)
     world.settings = world.settings.with_numbers((0.0, -9.0, 0.0, 0.0, 0.0, 0.5))
     step(world)

@@ -37,10 +37,10 @@ from sandbox.tools.tool import Response
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
 # but the window goes on answering.
 TICK_BUDGET = 0.05
-# What is set here comes about in this time [s], rather than at once: half of it throws the softest heap of jellies that
-# is made rigid as high as it is.
+# What is set here comes about in this time [s], rather than at once: in half of it a heap of soft jellies that is made
+# rigid leaps higher than its bodies are.
 RAMPED = (SetCoefficients, SetFirmness, SetGravity, SetInflation)
-RAMP_TIME = 0.75
+RAMP_TIME = 1.0
 # Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
 FRAMES_TO_JOIN = 2
 # What is said where playing a run again was given up.
