@@ -47,7 +47,7 @@ def test_a_word_makes_the_body_so_and_is_undone(jelly):
     assert texts(jelly)[0] == "0" and jelly.panel.firmness.words.chosen == "rigid"
 
 
-def test_what_is_chosen_is_read_at_once_and_comes_about_in_a_second(jelly):
+def test_what_is_chosen_is_read_at_once_and_comes_about_within_moments(jelly):
     session = jelly.playback.session
     before = jelly.world.stiffness[0]
     jelly.click_widget(jelly.panel.firmness.words.buttons["rigid"])
@@ -55,12 +55,12 @@ def test_what_is_chosen_is_read_at_once_and_comes_about_in_a_second(jelly):
     assert texts(jelly)[0] == "0" and jelly.world.stiffness[0] == 1.0
     assert before <= in_force(jelly.world, SPRINGS)[0][0] < 0.5
     command = session.history.log[-1].command
-    assert command == SetFirmness(0, sag=0.0, duration=60)
+    assert command == SetFirmness(0, sag=0.0, duration=75)
     # A slider takes it over from there.
     jelly.fill(jelly.panel.stiffness_field, "0.5")
     jelly.frames(1)
     assert 0.0 < in_force(jelly.world, SPRINGS)[0][0] < 0.5 == jelly.world.stiffness[0]
-    for _ in range(60):
+    for _ in range(75):
         session.advance()
     assert not jelly.world.ramp_ticks.any() and in_force(jelly.world, SPRINGS)[0][0] == 0.5
 

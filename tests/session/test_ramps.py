@@ -140,7 +140,7 @@ def heights(world):
 @pytest.mark.parametrize("softness", [0.25, None], ids=["jelly", "the level's own"])
 def test_a_heap_of_jellies_that_is_made_rigid_stays_where_it_is(softness):
     session = Session(load_level("jelly_pile"))
-    bodies, firm_up = range(len(session.world.forms)), 60
+    bodies, firm_up = range(len(session.world.forms)), 75
     go(session, 240)
     if softness is not None:
         for body in bodies:

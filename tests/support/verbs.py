@@ -18,7 +18,7 @@ from sandbox.session.session import Session
 from tests.support.overlaps import overlaps
 
 # As the window has it [s].
-RAMP_TIME = 1.0
+RAMP_TIME = 1.25
 # How long a level runs first, and after what is done to it [s].
 BEFORE, AFTER = 2.0, 3.0
 # Depth of an overlap at most, as a share of the shortest spring's length; part of the bodies in the picture at least.

@@ -38,9 +38,9 @@ from sandbox.tools.tool import Response
 # but the window goes on answering.
 TICK_BUDGET = 0.05
 # What is set here comes about in this time [s], rather than at once: in half of it a heap of soft jellies that is made
-# rigid leaps higher than its bodies are.
+# rigid leaps as high as its bodies are.
 RAMPED = (SetCoefficients, SetFirmness, SetGravity, SetInflation)
-RAMP_TIME = 1.0
+RAMP_TIME = 1.25
 # Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
 FRAMES_TO_JOIN = 2
 # What is said where playing a run again was given up.
