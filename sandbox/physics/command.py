@@ -13,10 +13,13 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
+from sandbox.physics.ramps import set_constraint, set_number, set_spring
+from sandbox.physics.settings import DRAG, GRAVITY_X, WIND_X
 from sandbox.physics.state import GoodValues, State, StateArrays
 from sandbox.physics.topology.sorting import list_ends
 
 GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(13)
+SET_GRAVITY, SET_AIR = 13, 14
 # In place of a result: the arena is full, and nothing was changed; the k-th of slots and numbers, counted through, is
 # BAD_SLOT - k: a slot that is not there, or a number that is not finite, and nothing was changed.
 NO_ARENA, BAD_SLOT = -1, -2
@@ -27,8 +30,9 @@ NOTHING, OF_HANDS, OF_TOPOLOGY = "", "hands", "topology"
 class KernelCommand(NamedTuple):
     """A kind of command: its number; what lies in `slots` and `numbers` then; what has to be derived again.
 
-    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; ?name: whether that is given. Others are what
-    commands of files call so: places have two numbers, springs as many slots as there are.
+    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; duration [ticks]: see ramps.py; ?name:
+    whether that is given. Others are what commands of files call so: places have two numbers, springs as many slots as
+    there are.
     """
 
     code: int
@@ -52,8 +56,11 @@ KINDS = {
     "break_springs": KernelCommand(BREAK, ("springs",), (), OF_TOPOLOGY),
     "part_bodies": KernelCommand(PART, ("springs",), (), OF_TOPOLOGY),
     "set_coefficients": KernelCommand(
-        SET_COEFFICIENTS, ("?material", "material", "?stiffness", "?damping"), ("stiffness", "damping")
+        SET_COEFFICIENTS, ("?material", "material", "?stiffness", "?damping", "duration"), ("stiffness", "damping")
     ),
+    "set_gravity": KernelCommand(SET_GRAVITY, ("duration",), ("gravity",)),
+    # What may be left out and is a pair comes last.
+    "set_air": KernelCommand(SET_AIR, ("?wind", "?drag", "duration"), ("drag", "wind")),
     "set_drive": KernelCommand(DRIVE, ("part",), ("value",)),
     "push": KernelCommand(PUSH, ("first_cursor",), ("position", "impulse", "outward", "radius")),
     "shake": KernelCommand(SHAKE, ("first_cursor",), ("acceleration", "tick_rate")),
@@ -61,10 +68,11 @@ KINDS = {
 
 
 class Commanded(NamedTuple):
-    """What commands change; a world block begins with it."""
+    """What commands change; a world block begins with it. numbers: the settings, see settings.py."""
 
     state: State
     good: GoodValues
+    numbers: Floats
 
 
 @kernel
@@ -93,6 +101,11 @@ def command(lent: Any, arena: Arena, kind: int, slots: Slots, numbers: Floats) -
         return _cut(state, world.good, slots, kind, arena)
     elif kind == SET_COEFFICIENTS:
         _set_coefficients(state, world.good, slots, numbers)
+    elif kind == SET_GRAVITY:
+        for axis in range(2):
+            set_number(state, world.numbers, GRAVITY_X + axis, numbers[axis], slots[0])
+    elif kind == SET_AIR:
+        _set_air(state, world.numbers, slots, numbers)
     elif kind == DRIVE:
         state.actuator_value[slots[0]] = numbers[0]
     elif kind == PUSH:
@@ -259,24 +272,27 @@ def _is_of(material: int, slots: Slots) -> bool:
 
 
 @inner_kernel
+def _set_air(state: State, settings: Floats, slots: Slots, numbers: Floats) -> None:
+    if slots[0] != 0:
+        for axis in range(2):
+            set_number(state, settings, WIND_X + axis, numbers[1 + axis], slots[2])
+    if slots[1] != 0:
+        set_number(state, settings, DRAG, numbers[0], slots[2])
+
+
+@inner_kernel
 def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Floats) -> None:
     # Of springs and areas; grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
     for s in range(state.material.shape[0]):
         if _is_of(state.material[s], slots):
-            state.stiffness[s] = good.stiffness[s] = numbers[0] if slots[2] != 0 else state.stiffness[s]
-            state.damping[s] = good.damping[s] = numbers[1] if slots[3] != 0 else state.damping[s]
-            state.lowest_mode[s] = good.lowest_mode[s] = 0.0
-            state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
+            stiffness = numbers[0] if slots[2] != 0 else state.stiffness[s]
+            damping = numbers[1] if slots[3] != 0 else state.damping[s]
+            set_spring(state, good, s, stiffness, damping, slots[4])
     for k in range(state.constraint_material.shape[0]):
         if _is_of(state.constraint_material[k], slots):
-            stiffness, damping = state.constraint_stiffness, state.constraint_damping
-            stiffness[k] = good.constraint_stiffness[k] = numbers[0] if slots[2] != 0 else stiffness[k]
-            damping[k] = good.constraint_damping[k] = numbers[1] if slots[3] != 0 else damping[k]
-            state.constraint_lowest_mode[k] = good.constraint_lowest_mode[k] = 0.0
-            for corner in range(
-                state.constraint_first[k], state.constraint_first[k] + state.constraint_corners[k]
-            ):  # fmt: skip
-                state.energy_bank[state.corner_particle[corner]] = BANK_UNOPENED
+            stiffness = numbers[0] if slots[2] != 0 else state.constraint_stiffness[k]
+            damping = numbers[1] if slots[3] != 0 else state.constraint_damping[k]
+            set_constraint(state, good, k, stiffness, damping, slots[4])
 
 
 @inner_kernel
@@ -335,9 +351,9 @@ def _shake(state: State, good: GoodValues, first_cursor: int, numbers: Floats) -
     return count
 
 
-def lend(state: State, good: GoodValues) -> Any:
+def lend(state: State, good: GoodValues, numbers: Floats) -> Any:
     """What commands change, as kernels take it."""
-    return bundle(Commanded(state, good))
+    return bundle(Commanded(state, good, numbers))
 
 
 def carry_out(lent: Any, name: str, given: Mapping[str, Any], state: StateArrays) -> int:

@@ -5,6 +5,7 @@ import pytest
 from sandbox.editor.items import Item
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.reading.parse import parse_level
+from sandbox.physics.ramps import SPRINGS, in_force
 from sandbox.session.commands import AddBody, SetCoefficients, SetFirmness
 from tests.support.wobbles import firm_level
 
@@ -44,6 +45,24 @@ def test_a_word_makes_the_body_so_and_is_undone(jelly):
     jelly.click_widget(jelly.panel.firmness.words.buttons["rigid"])
     jelly.frames(2)
     assert texts(jelly)[0] == "0" and jelly.panel.firmness.words.chosen == "rigid"
+
+
+def test_what_is_chosen_is_read_at_once_and_comes_about_within_moments(jelly):
+    session = jelly.playback.session
+    before = jelly.world.stiffness[0]
+    jelly.click_widget(jelly.panel.firmness.words.buttons["rigid"])
+    jelly.frames(2)
+    assert texts(jelly)[0] == "0" and jelly.world.stiffness[0] == 1.0
+    assert before <= in_force(jelly.world, SPRINGS)[0][0] < 0.5
+    command = session.history.log[-1].command
+    assert command == SetFirmness(0, sag=0.0, duration=75)
+    # A slider takes it over from there.
+    jelly.fill(jelly.panel.stiffness_field, "0.5")
+    jelly.frames(1)
+    assert 0.0 < in_force(jelly.world, SPRINGS)[0][0] < 0.5 == jelly.world.stiffness[0]
+    for _ in range(75):
+        session.advance()
+    assert not jelly.world.ramp_ticks.any() and in_force(jelly.world, SPRINGS)[0][0] == 0.5
 
 
 def test_typed_numbers_are_taken_and_those_out_of_reach_become_the_nearest(jelly):

@@ -41,12 +41,12 @@ GOOD: dict[str, dict[str, Any]] = {
     "pin": {"particle": "FREE.3"},
     "unpin": {"particle": "FREE.1"},
     "cut_springs": {"springs": ["SPRING.1", "SPRING.2", "SPRING.1"]},
-    "set_coefficients": {"stiffness": 0.25, "damping": 0.75, "material": "MATERIAL.0"},
+    "set_coefficients": {"stiffness": 0.25, "damping": 0.75, "material": "MATERIAL.0", "duration": 7},
     "set_drive": {"part": "PART.1", "value": -1},
     "push": {"position": [0, 0], "radius": 500, "impulse": [1, 2], "outward": 3},
     "shake": {"acceleration": [1, -2]},
-    "set_gravity": {"gravity": [0, -3]},
-    "set_air": {"wind": [1, 0], "drag": 0.125},
+    "set_gravity": {"gravity": [0, -3], "duration": 5},
+    "set_air": {"wind": [1, 0], "drag": 0.125, "duration": 4},
 }
 # Bad values of a field of each kind of command that kernels carry out: eight and more.
 BAD: dict[str, list[dict[str, Any]]] = {
@@ -75,6 +75,7 @@ BAD: dict[str, list[dict[str, Any]]] = {
         *({"stiffness": value} for value in (5, -1, NAN, INF, "1", True, [], 1.0000001)),
         *({"damping": value} for value in (5, -1, NAN, INF, "1", True, {}, -1e-300)),
         *({"material": value} for value in ("no", 0, -1, NAN, True, [], ["MATERIAL.0"], {})),
+        *({"duration": value} for value in (-1, 1.5, NAN, INF, None, "1", True, 1_000_001)),
     ],
     "set_drive": [
         *({"part": value} for value in ("no", 0, -1, None, NAN, True, [], {})),
@@ -85,6 +86,15 @@ BAD: dict[str, list[dict[str, Any]]] = {
         *({"radius": value} for value in (0, -1, NAN, INF, None, "1", 2e6, True)),
         *({"impulse": value} for value in ([NAN, 0], [0], [0, 0, 0], None, 5, ["a", 1], [2e15, 0], "ab")),
         *({"outward": value} for value in (NAN, INF, None, "1", 2e15, True, [], {})),
+    ],
+    "set_gravity": [
+        *({"gravity": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], None, 5, ["a", 1], [-1e30, 0])),
+        *({"duration": value} for value in (-1, 1.5, NAN, INF, None, "1", True, 1_000_001)),
+    ],
+    "set_air": [
+        *({"wind": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], 5, ["a", 1], [-1e30, 0], "ab")),
+        *({"drag": value} for value in (-1, NAN, INF, "1", True, [], {}, 1e30)),
+        *({"duration": value} for value in (-1, 1.5, NAN, INF, None, "1", True, 1_000_001)),
     ],
     "shake": [{"acceleration": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], None, 5, ["a", 1], [-1e30, 0])],
 }  # fmt: skip

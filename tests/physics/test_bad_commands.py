@@ -14,6 +14,7 @@ from sandbox.physics.actuators import Actuators
 from sandbox.physics.analysis.firmness import set_firmness
 from sandbox.physics.changing.freeing import free_body
 from sandbox.physics.changing.moving import move_body
+from sandbox.physics.changing.ramping import inflate
 from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.command import carry_out, lend
 from sandbox.physics.constraints import AREA, BEND
@@ -33,7 +34,9 @@ ARGUMENTS = {
     "cut_springs": ("springs",),
     "break_springs": ("springs",),
     "part_bodies": ("springs",),
-    "set_coefficients": ("stiffness", "damping", "material"),
+    "set_coefficients": ("stiffness", "damping", "material", "duration"),
+    "set_gravity": ("gravity", "duration"),
+    "set_air": ("wind", "drag", "duration"),
     "set_drive": ("part", "value"),
     "push": ("place", "impulse", "outward", "radius"),
     "shake": ("acceleration",),
@@ -74,7 +77,7 @@ OTHERS = {
     "add a bend, stiffness": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], stiffness=INF), "constraint_"),
     "add a bend, material": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], material=7), "material 7: "),
     "name areas": (lambda world: world.name_areas("balloon", range(1)), "constraints 0: a world without constraints"),
-    "inflate": (lambda world: world.inflate(0, 1.0), "body 0: a world without bodies that keep areas"),
+    "inflate": (lambda world: inflate(world, 0, 1.0), "body 0: a world without bodies that keep areas"),
     "fit, too many": (lambda world: world.fit(Actuators(("a",)), [0.0, 0.0]), "values of 2 parts"),
     "fit, too fast": (lambda world: world.fit(Actuators(("a",)), [2.0]), "values 2.0: "),
     "rest lengths, beyond": (lambda world: world.set_rest_lengths([0, 13], [1, 1]), "springs 13: "),
@@ -139,7 +142,7 @@ def test_interpreted_kernels_say_the_same_of_each():
 def test_a_number_that_is_not_finite_is_refused_by_the_kernel_itself():
     world = made()
     lent, given = (
-        lend(state_of(world), good_of(world)),
+        lend(state_of(world), good_of(world), np.zeros(6)),
         {"first_cursor": 4, "acceleration": (NAN, 0.0), "tick_rate": 60},
     )
     assert outcome(world, lambda world: carry_out(lent, "shake", given, world)) == (

@@ -39,6 +39,8 @@ POINTS = (
     *((0.0, each) for each in _NO_NUMBERS), *((each, 0.0) for each in _NO_NUMBERS), (0.0,), (0.0, 1.0, 2.0), (), 1.0,
     None, "ab", np.zeros((2, 2)), NAN,
 )  # fmt: skip
+DURATIONS = (-1, 1_000_001, 10**30, *_NO_WHOLE_NUMBER)
+_GIVEN_POINTS, _GIVEN_NUMBERS = (tuple(each for each in values if each is not None) for values in (POINTS, NOT_BELOW_0))
 # Of every kind: the method of World, or a function of one, arguments that are right, and for each of these what is
 # wrong in its place.
 CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[Any, ...], ...]]] = {
@@ -52,8 +54,11 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "break_springs": ("break_springs", ([0, 1],), (LISTS,)),
     "part_bodies": (part_bodies, ([0, 1],), (LISTS,)),
     "set_coefficients": (
-        "set_coefficients", (0.5, 0.5, 0), (SHARES, SHARES, tuple(each for each in PARTS if each is not None)),
+        "set_coefficients", (0.5, 0.5, 0, 3),
+        (SHARES, SHARES, tuple(each for each in PARTS if each is not None), DURATIONS),
     ),
+    "set_gravity": ("set_gravity", ((1.0, 0.0), 3), (POINTS, DURATIONS)),
+    "set_air": ("set_air", ((1.0, 0.0), 0.5, 3), (_GIVEN_POINTS, _GIVEN_NUMBERS, DURATIONS)),
     "set_drive": ("drive", (0, 0.5), (PARTS, DRIVES)),
     "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),
     "shake": ("shake", ((1.0, 0.0),), (POINTS,)),

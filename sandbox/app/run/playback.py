@@ -19,7 +19,16 @@ from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.step import precompute
 from sandbox.physics.world import World
 from sandbox.session.breaks import break_lines
-from sandbox.session.commands import Command, CommandError, Redo, Undo
+from sandbox.session.commands import (
+    Command,
+    CommandError,
+    Redo,
+    SetCoefficients,
+    SetFirmness,
+    SetGravity,
+    SetInflation,
+    Undo,
+)
 from sandbox.session.log import Branch
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.scene import RunScene, SceneTaker
@@ -30,6 +39,10 @@ from sandbox.tools.tool import Response
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
 # but the window goes on answering.
 TICK_BUDGET = 0.05
+# What is set here comes about in this time [s], rather than at once: in half of it a heap of soft jellies that is made
+# rigid leaps as high as its bodies are.
+RAMPED = (SetCoefficients, SetFirmness, SetGravity, SetInflation)
+RAMP_TIME = 1.25
 # Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
 FRAMES_TO_JOIN = 2
 # What stood for so long [s] before an undo, or before another command in the past, is kept.
@@ -160,7 +173,13 @@ class Playback:
         self._submitted = True
         if self.listener is not None and isinstance(command, (Undo, Redo)):
             self.listener.forget()
-        session.submit(command, gesture)
+        session.submit(self._taking_time(command), gesture)
+
+    def _taking_time(self, command: Command) -> Command:
+        """The command, which takes its time if it is one of RAMPED without a duration of its own."""
+        if not isinstance(command, RAMPED) or command.duration:
+            return command
+        return replace(command, duration=round(RAMP_TIME * self.session.world.settings.tick_rate))
 
     def respond(self, response: Response) -> None:
         """Queue what a tool answered."""

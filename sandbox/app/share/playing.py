@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from sandbox import __version__
 from sandbox.app.draw.scene import scene_of
+from sandbox.app.run.playback import RAMP_TIME
 from sandbox.app.share.recorded import recorded
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
@@ -79,6 +80,7 @@ def playable_in_slices(
         "sounds": _sounds(world),
         "materials": _materials(world),
         "gravity_limit": GRAVITY_LIMIT,
+        "ramp_ticks": round(RAMP_TIME * world.settings.tick_rate),
         "checks": _checks(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),

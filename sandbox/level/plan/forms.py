@@ -8,8 +8,9 @@ import numpy as np
 from sandbox.level.document.model import HookeMaterial, Level, Material
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.physics.analysis.firmness import FirmnessRange, set_firmness
+from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.keeping.forms import FirmBody
-from sandbox.physics.world import TRIANGLE, World
+from sandbox.physics.world import World
 
 
 def add_forms(

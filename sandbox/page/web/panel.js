@@ -65,7 +65,7 @@ export class Panel {
       // What is wrong with it, the browser says.
       if (!field.reportValidity()) field.value = gravity[k];
       else if (value !== gravity[k]) this.run.submit({ type: 'set_gravity', gravity: gravity.map((old, n) => (n === k
-        ? value : old)) }, this.run.newGesture());
+        ? value : old)), duration: this.level.ramp_ticks }, this.run.newGesture());
     });
     return field;
   }
@@ -79,7 +79,8 @@ export class Panel {
 
   #set(stiffness, damping) {
     this.#gesture ??= this.run.newGesture();
-    const record = { type: 'set_coefficients', stiffness, damping, material: this.chosen.slot };
+    const { slot: material } = this.chosen, { ramp_ticks: duration } = this.level;
+    const record = { type: 'set_coefficients', stiffness, damping, material, duration };
     this.run.submit(record, this.#gesture);
     this.show();
   }

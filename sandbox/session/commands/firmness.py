@@ -11,6 +11,7 @@ from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import FormSlot
+from sandbox.session.commands.ramping import Duration
 
 
 @dataclass(frozen=True)
@@ -19,6 +20,7 @@ class SetFirmness(Command):
 
     For bodies whose form is stiff without pins. sag: part of its height by which it sags where it stands, 0 = rigid;
     hz, ratio: frequency [Hz] and damping ratio of its slowest wobble, ratio null = 0.15 or the least possible.
+    It becomes so in `duration` ticks.
     """
 
     type = "set_firmness"
@@ -26,6 +28,7 @@ class SetFirmness(Command):
     sag: Annotated[float, Field(ge=0.0, le=SAG_LIMIT)] | None = None
     hz: Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])] | None = None
     ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = None
+    duration: Duration = 0
 
     def carry_out(self, world: World) -> None:
         if (self.sag is None) == (self.hz is None) or (self.hz is None and self.ratio is not None):
@@ -38,4 +41,4 @@ class SetFirmness(Command):
             coefficients = reach.coefficients(Firmness(self.sag, self.hz, self.ratio))
         except OutOfReach as error:
             raise CommandError(f"{body.name}: {error}") from None
-        set_firmness(world, self.body, *coefficients)
+        set_firmness(world, self.body, *coefficients, self.duration)

@@ -34,6 +34,7 @@ from sandbox.level.reading.files import level_data
 from sandbox.physics.constraints import AREA
 from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
+from sandbox.physics.settings import NUMBER_COUNT
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, FAMILIES, Column, Family
 from sandbox.physics.terrain import NO_TERRAIN
@@ -157,6 +158,8 @@ def decode_state(
         raise ValueError("state.particle_a: a hand has no particle of its own")
     if len(arrays["hand_force"]) != len(hands):
         raise ValueError("state.hand_force: there is one of each hand")
+    if len(arrays["setting_ticks"]) != NUMBER_COUNT:
+        raise ValueError(f"state.setting_ticks: there are {NUMBER_COUNT}, one of each number of the settings")
     return Snapshot(
         {BY_STORED[name].name: array for name, array in arrays.items()},
         settings=settings,
