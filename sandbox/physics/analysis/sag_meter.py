@@ -10,61 +10,71 @@ from time import perf_counter
 import numpy as np
 
 from sandbox.physics.analysis.body_motion import present_coefficients
-from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach
+from sandbox.physics.analysis.firmness import STANDING, FirmnessRange
 from sandbox.physics.analysis.sag_curve import SagCurve, softness_of
-from sandbox.physics.analysis.stance import Stance
+from sandbox.physics.analysis.stance import Stance, Support
 from sandbox.physics.analysis.standing import StandingRun
+from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import of_springs
 from sandbox.physics.keeping.forms import Firmness, strength_of
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.world import World
 
 # A search ends this near to what is asked, and after so many runs.
 NEAR, MOST_RUNS = 0.004, 8
-# Work [s] that one question may take; what needs more is not measured.
-MOST_WORK = 2.5
-# Where a curve begins, and how many times as soft each of its runs is as the first; beyond this sag it ends.
-CURVE_FROM, CURVE_STEPS, CURVE_TO = 0.02, (1.0, 4.0, 9.0, 18.0, 32.0), 0.5
-# Cd at least of the run that tells how much of the damping holds up what stands.
-LEAST_DAMPING = 0.2
+# Work [s] that a question may take, and the curve, which nobody waits for; what needs more is not measured.
+MOST_WORK, MOST_OF_CURVE = 1.5, 10.0
+CURVE_ASKED = "curve"
+# Sags that a curve is measured at, about.
+CURVE = (0.02, 0.08, 0.16, 0.3, 0.5)
+# Cd at least of the run that tells how much of the damping holds up what stands, and what is taken before it is known.
+LEAST_DAMPING, USUAL_SHARE = 0.2, 0.5
 # What sags by less is rigid, to the eye and to a search.
 RIGID = 1e-7
-# Softest that a search goes to, in what a sag would be by the slowest wobble alone.
-SOFTEST = 8.0
+# Sags between these say where other runs come to rest; a search takes what sags by more for collapsed.
+SMALL, LARGE = 1e-5, 0.5
+# Frequencies [Hz] that firmness may have, and halvings of their range.
+FREQUENCIES, HALVINGS = (0.01, 1_000.0), 24
 
+# Cs and Cd per tick of springs, and the lowest mode that they have.
 Pair = tuple[float, float, float]
-Steps = Generator[None, None, float]
+Work = Generator[None, None, None]
+Measuring = Generator[None, None, float]
 
 
 class SagMeter:
-    """Answers of one body in one stance; None: not known yet, and asked for. `advance` goes on with the work.
+    """Answers of one body in one stance; what is not known yet is asked for, and `advance` goes on with the work.
 
-    lowest_mode: of its form; 0: it has none, and all its springs have Cs and Cd in common.
+    lowest_mode: of its form; 0: it has none, and all its springs have one Cs and Cd.
     """
 
     def __init__(self, stance: Stance, settings: WorldSettings, lowest_mode: float) -> None:
         self.stance, self.settings, self.mode = stance, settings, lowest_mode
-        self.range = FirmnessRange(
-            lowest_mode or 1.0, stance.length, strength_of(settings.gravity), 1.0 / settings.tick_rate
-        )
+        gravity, h = strength_of(settings.gravity), 1.0 / settings.tick_rate
+        self.range = FirmnessRange(lowest_mode or 1.0, stance.length, gravity, h)
         self.curve: SagCurve | None = None
-        self._run: StandingRun | None = None
+        self._share = 1.0 if SOLVERS[settings.solver].bounded else USUAL_SHARE
+        # Where a spring of a pair gets what it has in a substep.
+        self._probe = World(settings)
+        self._probe.add_particles(["a", "b"], [[0.0, 0.0], [1.0, 0.0]])
+        self._probe.add_springs(["s"], [0], [1])
         self._sags: dict[Pair, float] = {}
         self._found: dict[float, Firmness | None] = {}
-        self._jobs: dict[object, Generator[None, None, None]] = {}
+        self._last: tuple[float, Floats] | None = None
+        self._jobs: dict[object, Work] = {}
         self._work: dict[object, float] = {}
 
     # Questions.
 
-    def sag(self, stiffness: float, damping: float, lowest_mode: float) -> float | None:
-        """The sag at Cs and Cd per tick, as springs with that lowest mode get them; NaN: it cannot be measured."""
-        pair = stiffness, damping, lowest_mode
+    def sag(self, pair: Pair) -> float | None:
+        """The sag of springs of that Cs, Cd and mode; None: not known yet, NaN: it cannot be measured."""
         if pair not in self._sags:
             self._ask(pair, self._measure(pair))
         return self._sags.get(pair)
 
     def firmness(self, sag: float) -> tuple[bool, Firmness | None]:
-        """Whether it is known what makes the body sag so far, and that; None: nothing does."""
+        """Whether it is known what makes the body sag so far, and that, or the nearest; None: none could be measured."""
         if sag not in self._found:
             self._ask(sag, self._search(sag))
         return sag in self._found, self._found.get(sag)
@@ -72,174 +82,173 @@ class SagMeter:
     def trace(self) -> None:
         """Ask for the curve."""
         if self.curve is None:
-            self._ask("curve", self._trace())
+            self._ask(CURVE_ASKED, self._trace())
 
     @property
     def is_busy(self) -> bool:
         """Whether there is work to go on with."""
         return bool(self._jobs)
 
-    def forget(self, question: object) -> None:
-        """Ask no longer what is not known yet."""
-        self._jobs.pop(question, None)
-
     # Work.
 
     def advance(self, seconds: float) -> bool:
-        """Work for so long at least; whether anything has come to be known."""
-        start = perf_counter()
-        news = False
-        while self._jobs and perf_counter() - start < seconds:
-            # What was asked last is wanted first.
-            question = next(reversed(self._jobs))
-            news = self._go_on(question, start, seconds) or news
+        """Work for so long at most, what was asked last first; whether anything has come to be known."""
+        end, news = perf_counter() + seconds, False
+        while self._jobs and perf_counter() < end:
+            news = self._go_on(next(reversed(self._jobs)), end) or news
         return news
 
-    def _go_on(self, question: object, start: float, seconds: float) -> bool:
-        job, began = self._jobs[question], perf_counter()
-        over = False
-        while not over and perf_counter() - start < seconds:
+    def _go_on(self, question: object, end: float) -> bool:
+        job, began, is_over = self._jobs[question], perf_counter(), False
+        most = MOST_OF_CURVE if question == CURVE_ASKED else MOST_WORK
+        end = min(end, began + most - self._work.get(question, 0.0))
+        while not is_over and perf_counter() < end:
             try:
                 next(job)
             except StopIteration:
-                over = True
+                is_over = True
         self._work[question] = self._work.get(question, 0.0) + perf_counter() - began
-        if not over and self._work[question] < MOST_WORK:
+        if not is_over and self._work[question] < most:
             return False
         del self._jobs[question]
-        if not over:
-            self._give_up(question)
+        if isinstance(question, tuple):
+            self._sags.setdefault(question, math.nan)
+        elif isinstance(question, float):
+            self._found.setdefault(question, None)
         return True
 
-    def _give_up(self, question: object) -> None:
-        if isinstance(question, tuple):
-            self._sags[question] = math.nan
-        elif isinstance(question, float):
-            self._found[question] = None
-
-    def _ask(self, question: object, job: Generator[None, None, None]) -> None:
-        if question not in self._jobs and self._work.get(question, 0.0) < MOST_WORK:
+    def _ask(self, question: object, job: Work) -> None:
+        if question not in self._jobs and self._work.get(question, 0.0) == 0.0:
             self._jobs[question] = job
 
-    def _measure(self, pair: Pair) -> Generator[None, None, None]:
+    # What one run tells.
+
+    def _measure(self, pair: Pair) -> Work:
         yield from self._sag_of(pair)
 
-    def _sag_of(self, pair: Pair) -> Steps:
+    def _sag_of(self, pair: Pair) -> Measuring:
         """The sag at a pair, from a run of its own if it is not known."""
         if pair not in self._sags:
             run = StandingRun(self.stance, self.settings)
-            run.take(*pair)
+            run.take(*self._that_swings(pair), self._moved_at(pair))
             while not run.advance(1):
                 yield
             assert run.sag is not None
             self._sags[pair] = run.sag
-            self._run = run
+            if SMALL < run.sag < LARGE:
+                self._last = self._softness(pair), run.moved
         return self._sags[pair]
 
-    def springs_of(self, firmness: Firmness) -> Pair:
-        """Cs and Cd per tick and lowest mode that springs of that firmness have. Raises OutOfReach."""
-        whole = self.range.coefficients(firmness)
-        if whole == (1.0, 1.0):
-            return (*whole, 0.0)
-        return (*of_springs(*whole, self.mode), self.mode) if self.mode > 0.0 else (*whole, 0.0)
+    def _that_swings(self, pair: Pair) -> Pair:
+        """In the direct solver, where k alone holds what stands: a pair of the same k that comes to rest sooner."""
+        if not SOLVERS[self.settings.solver].bounded:
+            return pair
+        soft = self._softness(pair)
+        _, swinging = self._as_soft_as(soft)
+        return swinging if abs(self._softness(swinging) / soft - 1.0) < NEAR else pair
 
-    def _by_wobble(self, sag: float) -> Firmness:
-        """The firmness whose slowest wobble alone would sag so far. Raises OutOfReach."""
-        hz = math.sqrt(0.0565 * self.range.gravity / (sag * max(self.range.height, 1e-9)))
+    def _moved_at(self, pair: Pair) -> Floats | None:
+        """About how far the particles (n, 2) will move until they rest, from how far they moved in the last run."""
+        # On a floor, what has moved lies in it.
+        if self._last is None or self.stance.support in (Support.FLOOR, Support.ENDS):
+            return None
+        soft, moved = self._last
+        share = self._softness(pair) / soft
+        return moved * share if float(np.abs(moved).max()) * share < LARGE * self.stance.length else None
+
+    def _softness(self, pair: Pair) -> float:
+        stiffness, damping = self._in_substep(pair)
+        return float(softness_of(np.array(stiffness), np.array(damping), self._share))
+
+    def _in_substep(self, pair: Pair) -> tuple[float, float]:
+        for name, value in zip(("stiffness", "damping", "lowest_mode"), pair, strict=True):
+            self._probe.change(name, value)
+        stiffness, damping = present_coefficients(self._probe)
+        return float(stiffness[0]), float(damping[0])
+
+    # Searching.
+
+    def springs_of(self, firmness: Firmness) -> Pair:
+        """What springs of that firmness have. Raises OutOfReach."""
+        whole = self.range.coefficients(firmness)
+        if whole == (1.0, 1.0) or not self.mode > 0.0:
+            return (*whole, 0.0)
+        return (*of_springs(*whole, self.mode), self.mode)
+
+    def _of_frequency(self, hz: float) -> Firmness:
         return self.range.nearest(Firmness(hz=float(f"{hz:.4g}")))
 
-    def _search(self, sag: float) -> Generator[None, None, None]:
-        """Look for the firmness that sags so far, by the secant of what runs have sagged, in logarithms."""
-        self._found.pop(sag, None)
+    def _as_soft_as(self, soft: float) -> tuple[Firmness, Pair]:
+        """The firmness, and its springs, of that softness; the softest or the stiffest where none has it."""
+        low, high = (math.log(each) for each in FREQUENCIES)
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            is_softer = self._softness(self.springs_of(self._of_frequency(math.exp(middle)))) > soft
+            low, high = (middle, high) if is_softer else (low, middle)
+        firmness = self._of_frequency(math.exp(0.5 * (low + high)))
+        return firmness, self.springs_of(firmness)
+
+    def _search(self, sag: float) -> Work:
+        """Look for the firmness that sags so far, by the secant of all that runs have sagged, in logarithms."""
         if sag <= RIGID:
             self._found[sag] = Firmness(sag=0.0)
             return
-        tried: list[tuple[float, float]] = []
-        soft = self._guess(sag)
+        tried: dict[Pair, tuple[Firmness, float]] = {}
         for _ in range(MOST_RUNS):
-            try:
-                firmness = self._by_wobble(min(soft, SOFTEST))
-                pair = self.springs_of(firmness)
-            except OutOfReach:
+            firmness, pair = self._as_soft_as(self._guess(sag))
+            if pair in tried:
                 break
             found = yield from self._sag_of(pair)
-            if abs(found / sag - 1.0) <= NEAR:
-                self._found[sag] = firmness
-                return
-            if math.isfinite(found) and found > 0.0:
-                tried.append((math.log(soft), math.log(found)))
-            soft = self._next(tried, soft, math.log(sag))
-            if soft > SOFTEST:
+            tried[pair] = firmness, abs(math.log(found / sag)) if 0.0 < found < LARGE else math.inf
+            if tried[pair][1] <= NEAR:
                 break
-        self._found[sag] = None
+        nearest, far = min(tried.values(), key=lambda each: each[1])
+        self._found[sag] = nearest if math.isfinite(far) else None
 
     def _guess(self, sag: float) -> float:
-        return sag
+        """The softness at which it may sag so far."""
+        known = sorted((self._softness(pair), each) for pair, each in self._sags.items() if each > SMALL)
+        below = [each for each in known if each[1] < sag]
+        above = [each for each in known if each[1] >= sag]
+        if below and above:
+            (soft, low), (softer, high) = below[-1], above[0]
+            share = math.log(sag / low) / math.log(high / low)
+            return soft * (softer / soft) ** min(max(share, 0.03), 0.97)
+        if known:
+            soft, nearest = below[-1] if below else above[0]
+            return soft * sag / nearest
+        # As a box would that stands.
+        hz = math.sqrt(STANDING * self.range.gravity / (sag * self.range.height))
+        return self._softness(self.springs_of(self._of_frequency(hz)))
 
-    @staticmethod
-    def _next(tried: list[tuple[float, float]], soft: float, wanted: float) -> float:
-        """The softness to try next."""
-        if not tried:
-            return 0.25 * soft
-        low = max((each for each in tried if each[1] < wanted), default=None)
-        high = min((each for each in tried if each[1] > wanted), default=None)
-        if low is None or high is None:
-            x, y = tried[-1]
-            return math.exp(x + wanted - y)
-        share = min(max((wanted - low[1]) / (high[1] - low[1]), 0.05), 0.95)
-        return math.exp(low[0] + share * (high[0] - low[0]))
-
-    def _trace(self) -> Generator[None, None, None]:
+    def _trace(self) -> Work:
         """Measure the curve."""
-        share = 1.0
         if not SOLVERS[self.settings.solver].bounded:
-            share = yield from self._damping_share()
+            self._share = yield from self._damping_share()
         points: list[tuple[float, float]] = []
-        soft = CURVE_FROM
-        for step in CURVE_STEPS:
-            try:
-                pair = self.springs_of(self._by_wobble(soft * step))
-            except OutOfReach:
-                continue
-            sag = yield from self._sag_of(pair)
-            if step == 1.0 and 0.0 < sag < CURVE_FROM:
-                # From here on in measured sags.
-                soft *= CURVE_FROM / sag
-            if not 0.0 < sag:
+        for sag in CURVE:
+            _, pair = self._as_soft_as(self._guess(sag))
+            found = yield from self._sag_of(pair)
+            # What is softer than it should be has buckled, or flies.
+            if not 0.0 < found:
                 break
-            points.append((self._softness(pair, share), sag))
-            if sag > CURVE_TO:
-                break
-        points.sort()
-        rising = [each for k, each in enumerate(points) if k == 0 or each[1] > points[k - 1][1]]
-        if rising:
-            self.curve = SagCurve(share, tuple(x for x, _ in rising), tuple(y for _, y in rising))
+            points = sorted([*points, (self._softness(pair), found)])
+            rising = [each for k, each in enumerate(points) if k == 0 or each[1] > points[k - 1][1]]
+            self.curve = SagCurve(self._share, tuple(x for x, _ in rising), tuple(y for _, y in rising))
 
-    def _softness(self, pair: Pair, share: float) -> float:
-        """Softness in a substep of springs of a pair per tick."""
-        stiffness, damping = self._in_substep(pair)
-        return float(softness_of(np.array(stiffness), np.array(damping), share))
-
-    def _in_substep(self, pair: Pair) -> tuple[float, float]:
-        assert self._run is not None
-        world = self._run.world
-        for name, value in zip(("stiffness", "damping", "lowest_mode"), pair, strict=True):
-            world.change(name, value)
-        stiffness, damping = present_coefficients(world)
-        return float(stiffness[0]), float(damping[0])
-
-    def _damping_share(self) -> Steps:
+    def _damping_share(self) -> Measuring:
         """Which part of Cd holds up what stands, from runs at two Cd."""
-        stiffness, damping, mode = self.springs_of(self._by_wobble(CURVE_FROM))
-        high = max(damping, LEAST_DAMPING) if not SOLVERS[self.settings.solver].proven_limit else damping
+        _, (stiffness, damping, mode) = self._as_soft_as(self._guess(CURVE[0]))
+        if not SOLVERS[self.settings.solver].proven_limit:
+            damping = max(damping, LEAST_DAMPING)
         sags, dampings = [], []
-        for each in (high, 0.5 * high):
+        for each in (damping, 0.5 * damping):
             pair = stiffness, each, mode
             sags.append((yield from self._sag_of(pair)))
             dampings.append(self._in_substep(pair)[1])
         if not sags[0] > 0.0 or not sags[1] > 0.0:
-            return 0.0
+            return USUAL_SHARE
         # S ~ 1 - y Cd
         ratio = sags[1] / sags[0]
         below = ratio * dampings[0] - dampings[1]
-        return min(max((ratio - 1.0) / below, 0.0), 1.0) if below > 0.0 else 0.0
+        return min(max((ratio - 1.0) / below, 0.0), 1.0) if below > 0.0 else USUAL_SHARE

@@ -20,23 +20,28 @@ from sandbox.physics.world import World
 FRICTION, ENDS_FRICTION = 0.5, 0.05
 # Radius of its particles as a share of its shortest spring, and at most so many [m].
 RADIUS_SHARE, LARGEST_RADIUS = 0.4, 0.05
-# It rests where no particle has moved by more than this share of its length in so many ticks, twice; longer than so
-# many ticks is not waited.
-AT_REST, LOOK_EVERY, LONGEST = 2e-5, 15, 1_500
-# What has dropped by so many of its lengths flies, and what still moves by this share of its sag in a look at the end
-# does not come to rest.
-LOST, STILL = 20.0, 0.02
+# It is looked at every so many ticks, and rests where no particle has moved by more than this share of its length, twice
+# in a row, or where its sag has changed by less than this share of itself, three times; longer is not waited.
+LOOK_EVERY, AT_REST, SETTLED, LONGEST = 15, 2e-5, 5e-4, 1_500
+# A column leans by this much of gravity, so that it buckles where it would in a world that is not even; what is so many
+# times as high as wide is one.
+LEAN, COLUMN = 0.005, 1.5
+# What has dropped by so many of its lengths flies. What still moves at the end by less than this share of its length, its
+# sag by less than this share of itself, is about at rest.
+LOST, CALM, NEAR = 20.0, 2e-3, 0.02
 
 
 class StandingRun:
     """A run of a body, alone, in a stance; sag: None until it is known, NaN where it does not come to rest."""
 
     def __init__(self, stance: Stance, settings: WorldSettings) -> None:
-        self.stance, self.sag = stance, None
+        self.stance = stance
+        self.sag: float | None = None
         shortest = float(stance.rest.min()) if len(stance.rest) else 1.0
         self._radius = min(LARGEST_RADIUS, RADIUS_SHARE * shortest)
         strength = strength_of(settings.gravity)
-        self.world = world = World(replace(settings, gravity=(0.0, -strength), wind=(0.0, 0.0)))
+        gravity = (LEAN * strength if _may_buckle(stance) else 0.0, -strength)
+        self.world = world = World(replace(settings, gravity=gravity, wind=(0.0, 0.0)))
         points = stance.points - (stance.points[:, 0].mean(), stance.points[:, 1].min() - 1.001 * self._radius)
         touches = TERRAIN_GROUP if stance.support in (Support.FLOOR, Support.ENDS) else 0
         world.add_particles(
@@ -65,16 +70,21 @@ class StandingRun:
         return [Chain([[start, 0.0], [end, 0.0]], friction=ENDS_FRICTION) for start, end in ends]
 
     def _begin(self) -> None:
-        self.sag, self._from, self._still, self._energy = None, self.world.tick, 0, 0.0
+        self.sag, self._from, self._energy = None, self.world.tick, 0.0
+        self._still = self._settled = 0
         self._before, self._sag_before = self.world.position.copy(), math.inf
 
-    def take(self, stiffness: float, damping: float, lowest_mode: float) -> None:
-        """Measure with other Cs and Cd per tick, from the places that the body has now; afresh where it collapsed."""
+    @property
+    def moved(self) -> Floats:
+        """How far its particles (n, 2) are from where they began [m]."""
+        return self.world.position - self._places
+
+    def take(self, stiffness: float, damping: float, lowest_mode: float, moved: Floats | None = None) -> None:
+        """Measure with these Cs and Cd per tick; moved (n, 2): how far from its form it begins [m], None: not at all."""
         for family in ("", "constraint_"):
             for name, value in (("stiffness", stiffness), ("damping", damping), ("lowest_mode", lowest_mode)):
                 self.world.change(f"{family}{name}", value)
-        if not self._drop() < 0.5:
-            self.world.change("position", self._places)
+        self.world.change("position", self._places if moved is None else self._places + moved)
         self._stop()
         self._begin()
 
@@ -133,14 +143,20 @@ class StandingRun:
 
     def _look(self) -> None:
         position, now = self.world.position, self._drop()
-        moved = float(np.abs(position - self._before).max())
-        ticks = self.world.tick - self._from
+        moved, changed = float(np.abs(position - self._before).max()), abs(now - self._sag_before)
         if not math.isfinite(moved) or abs(now) > LOST:
             self.sag = math.nan
             return
         self._still = self._still + 1 if moved < AT_REST * self.stance.length else 0
-        if self._still == 2:
+        self._settled = self._settled + 1 if changed < SETTLED * now else 0
+        if self._still == 2 or self._settled == 3:
             self.sag = max(now, 0.0)
-        elif ticks >= LONGEST:
-            self.sag = max(now, 0.0) if abs(now - self._sag_before) <= STILL * abs(now) else math.nan
+        elif self.world.tick - self._from >= LONGEST:
+            about = moved < CALM * self.stance.length and changed <= NEAR * abs(now)
+            self.sag = max(now, 0.0) if about else math.nan
         self._before, self._sag_before = position.copy(), now
+
+
+def _may_buckle(stance: Stance) -> bool:
+    wide, tall = np.ptp(stance.points, axis=0)
+    return stance.support in (Support.FLOOR, Support.ARM) and bool(tall > COLUMN * wide)
