@@ -38,7 +38,7 @@ Mask = NDArray[np.bool_]
 class PadState(NamedTuple):
     """What the pad shows: Cs and Cd, whether springs differ in them, and whether there are any.
 
-    own: what the level itself has; scale: of both axes; body: that of which words are.
+    own: what the level itself has; scale: of both axes; body: that of which words are, and subject: what of it sags.
     """
 
     stiffness: float
@@ -48,6 +48,7 @@ class PadState(NamedTuple):
     own: tuple[float, float] | None = None
     scale: CoefficientScale = PLAIN
     body: BodyMotion | None = None
+    subject: str = ""
 
 
 class CoefficientPad(Draggable):
@@ -258,6 +259,8 @@ class CoefficientPad(Draggable):
             texts = [f"Cs {cs:.2g}, Cd {cd:.2g}: {self._sweep.text_at(cs, cd)}"]
         elif self._sweep is not None:
             texts.append(self._sweep.text_at(self.state.stiffness, self.state.damping))
+        elif self.state.subject and self.state.enabled:
+            texts = [self._note or f"sag of {self.state.subject}"]
         font, inside = self.ui.font(NUMBER_SIZE), self._inside
         widest = inside.width - self.ui.font(NUMBER_SIZE, True).size(UP_NAME)[0] - self.ui.px(6)
         picture = font.render(wrapped(", ".join(filter(None, texts)), font, widest, 1)[0], True, TEXT)

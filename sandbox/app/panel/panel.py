@@ -13,7 +13,7 @@ from sandbox.app.panel.engineers_rows import EngineersRows
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
 from sandbox.app.panel.panel_section import PanelSection
-from sandbox.app.panel.readings import number, stability_words
+from sandbox.app.panel.readings import SAG_TIP, number, stability_words
 from sandbox.app.panel.response_curve import ResponseCurve
 from sandbox.app.panel.sweeps.pad_maps import PadMaps
 from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
@@ -150,7 +150,7 @@ class Panel:
         x = MARGIN + INSIDE - width
         ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "@muted")
         firmness.sag = ui.field(rows.place(x, 14, width, ROW - 2), "", firmness.type_sag, rows.back, 24)
-        firmness.sag.entry.set_tooltip("Part of its height by which the body sags where it stands; 0 is rigid")
+        firmness.sag.entry.set_tooltip(SAG_TIP)
         rows.row(42, 8)
 
     def _build_springs(self) -> None:
@@ -245,7 +245,8 @@ class Panel:
             return
         self._refreshed_at = fresh
         inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
-        key = (settings, self.material, self.firmness.body, *(array.tobytes() for array in inputs))
+        told = self.firmness.curve_of(self.material)
+        key = (settings, self.material, self.firmness.body, told, *(array.tobytes() for array in inputs))
         if key != self._limits_of:
             self._limits_of = key
             self._limits = coefficient_limits(world, self.material)
@@ -303,14 +304,13 @@ class Panel:
 
     def _find_scale(self) -> None:
         """Find the axes on which most is seen of the body that is spoken of; they stay while something is dragged."""
-        world, slot = self.playback.session.world, self.firmness.body_of(self.material)
-        key = (world.forms, world.settings, slot, self.material)
+        name = self.firmness.body_of(self.material)
+        body = None if name is None else self.firmness.motion_of(name)
+        key = (body, name, self.material)
         if self._gesture is not None or key == self._scale_of:
             return
-        self._scale_of = key
-        self._body = body = None if slot is None else self.firmness.motion_of(slot)
-        self._scale = PLAIN
-        if body is not None and body.solver != "iterative":
+        self._scale_of, self._body, self._scale = key, body, PLAIN
+        if body is not None and body.tells_sag:
             own = self._own() or ()
             self._scale = scale_for(lambda cs, cd: _sag(body, cs, cd), own)
 
@@ -333,7 +333,11 @@ class Panel:
             return
         is_mixed = bool(stiffness.min() != stiffness.max() or damping.min() != damping.max())
         pair = float(np.median(stiffness)), float(np.median(damping))
-        self.pad.show_state(PadState(*pair, is_mixed, True, self._own(), self._scale, self._body), self._zones)
+        name = None if self._body is None else self.firmness.body_of(self.material)
+        subject = "" if name is None else self.firmness.subject_of(name)
+        self.pad.show_state(
+            PadState(*pair, is_mixed, True, self._own(), self._scale, self._body, subject), self._zones
+        )  # fmt: skip
         if is_mixed:
             self.curve.show_none("One spring: the chosen ones differ")
         else:
@@ -388,8 +392,9 @@ class Panel:
         # What works out the numbers of other engines, which a window does without until then.
         from sandbox.app.panel.take_home_page import show_take_home
 
-        world, slot = self.playback.session.world, self.firmness.body_of(self.material)
-        show_take_home(self._ui, world, self.say, None if slot is None else world.forms[slot].name)
+        world, name = self.playback.session.world, self.firmness.body_of(self.material)
+        has_form = name in {body.name for body in world.forms}
+        show_take_home(self._ui, world, self.say, name if has_form else None)
 
     def choose_body(self, name: str) -> None:
         """Show and change a body, by its name, or all, and the springs that it is made of."""
@@ -476,7 +481,7 @@ def _sag(body: BodyMotion, stiffness: Floats, damping: Floats) -> Floats:
 
 
 def _word_tip(sag: float) -> str:
-    return f"Sags by {100.0 * sag:g} % of its height" if sag else "Perfectly rigid: it gives way to nothing"
+    return f"Sags by {100.0 * sag:g} % as it stands or hangs" if sag else "Perfectly rigid: it gives way to nothing"
 
 
 # Sections that fold, in the order in which the panel shows them.

@@ -73,6 +73,10 @@ class SagMeter:
             self._ask(pair, self._measure(pair))
         return self._sags.get(pair)
 
+    def sag_known(self, pair: Pair) -> float | None:
+        """The same, without asking for it."""
+        return self._sags.get(pair)
+
     def firmness(self, sag: float) -> tuple[bool, Firmness | None]:
         """Whether it is known what makes the body sag so far, and that, or the nearest; None: none could be measured."""
         if sag not in self._found:
