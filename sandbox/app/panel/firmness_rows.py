@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.app.base.sag_sentences import subject_words
 from sandbox.app.base.sentences import capitalised
-from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words, subject_words
+from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import DASH, MIXED, Choice, Field, typed_number
 from sandbox.app.widgets.painted import TextBlock
@@ -33,6 +34,8 @@ ALL_BODIES = "All bodies"
 WORK, HASTE, AT_ONCE = 0.006, 0.02, 0.1
 # What is reached of an asked sag within this share is as asked.
 AS_ASKED = 0.1
+# What is so many times as much or as little as asked is not set in its place.
+FAR = 10.0
 TOO_STIFF = "Too stiff for the single pass: it melts or explodes."
 # Significant digits of a sag.
 DIGITS = 2
@@ -87,6 +90,12 @@ class FirmnessRows:
         self._find_bodies()
         if self.shown:
             ui.offer(self.menu, [ALL_BODIES, *self.bodies], self.body)
+
+    def speak_of(self, material: int | None) -> None:
+        """Begin with the one body of several that is of a material, if there is one: the level's text speaks of it."""
+        names = [name for name in self._subjects if self.material_of(name) == material]
+        if len(names) == 1 < len(self._subjects):
+            self.body = names[0]
 
     def choose_body(self, name: str) -> None:
         """Show and change that body, or all."""
@@ -166,9 +175,9 @@ class FirmnessRows:
         has_motions = len(motions) == len(found) and bool(found)
         self.frequency.show(self._one([number(motion.hz) for motion in motions], has_motions))
         self.ratio.show(self._one([number(motion.ratio) for motion in motions], has_motions))
-        words = {word_for(sag, reading.is_rigid) for reading, sag in zip(readings, sags, strict=False)} if whole else set()
+        words = {word_for(each.sag, each.is_rigid) for each in readings if each.sag is not None}
         explodes = self._may_explode()
-        self.words.show(words.pop() if len(words) == 1 and not explodes else "")
+        self.words.show(words.pop() if whole and len(words) == 1 and not explodes else "")
         self.text.show_text(TOO_STIFF if explodes else self._text(readings, sags, whole))
 
     def _is_waited_for(self) -> bool:
@@ -279,8 +288,10 @@ class FirmnessRows:
         """Give a body what was found for a sag; what is to be said of it, if it is not that."""
         if firmness is None:
             return f"a sag of {per_cent(sag)} cannot be had or measured here. Set Cs and Cd."
-        self._give(subject, firmness, gesture)
         reached = meter.sag_known(meter.springs_of(firmness))
+        if reached is not None and not sag / FAR <= reached <= sag * FAR:
+            return f"a sag of {per_cent(sag)} is far out of reach here; {per_cent(reached)} is the nearest."
+        self._give(subject, firmness, gesture)
         if reached is None or abs(reached / sag - 1.0) <= AS_ASKED:
             return ""
         return f"a sag of {per_cent(sag)} is not possible here. It has the nearest value now: {per_cent(reached)}."

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from sandbox.app.base.sag_sentences import SAG_TIP
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
@@ -13,7 +14,7 @@ from sandbox.app.panel.engineers_rows import EngineersRows
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
 from sandbox.app.panel.panel_section import PanelSection
-from sandbox.app.panel.readings import SAG_TIP, number, stability_words
+from sandbox.app.panel.readings import number, stability_words
 from sandbox.app.panel.response_curve import ResponseCurve
 from sandbox.app.panel.sweeps.pad_maps import PadMaps
 from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
@@ -31,7 +32,6 @@ from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.analysis.firmness import WORDS
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
-from sandbox.physics.arrays import Floats
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients
 
@@ -89,6 +89,8 @@ class Panel:
         self._refreshes = -1
         self._refreshed_at: tuple[object, ...] = ()
         self.firmness = FirmnessRows(playback, say)
+        if playback.level.look is not None and playback.level.look.material is not None:
+            self.firmness.speak_of(self.material)
         self.engineers = EngineersRows(playback, say, choose["rate"], self.firmness, self._set_both)
         self.world = WorldRows(playback, say, choose, touch)
         self._offered = self._present()
@@ -142,16 +144,16 @@ class Panel:
         ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "@heading")
         names = [ALL_BODIES, *firmness.bodies]
         place = rows.row(ROW, 6, MARGIN + 90, INSIDE - 90)
-        firmness.menu = ui.menu(place, names, ALL_BODIES, self.choose_body, rows.back)
+        firmness.menu = ui.menu(place, names, firmness.body, self.choose_body, rows.back)
         words = [(word, word.capitalize(), _word_tip(sag)) for word, sag in WORDS.items()]
         firmness.words = ui.choice(rows.row(ROW + 4, 6), words, firmness.choose_word, rows.back)
         width = ENTRY_WIDTH - 20
-        firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 42), "", rows.back, 13.0, TEXT)
+        firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 52), "", rows.back, 13.0, TEXT)
         x = MARGIN + INSIDE - width
         ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "@muted")
         firmness.sag = ui.field(rows.place(x, 14, width, ROW - 2), "", firmness.type_sag, rows.back, 24)
         firmness.sag.entry.set_tooltip(SAG_TIP)
-        rows.row(42, 8)
+        rows.row(52, 6)
 
     def _build_springs(self) -> None:
         ui, rows = self._ui, self.rows
@@ -311,8 +313,7 @@ class Panel:
             return
         self._scale_of, self._body, self._scale = key, body, PLAIN
         if body is not None and body.tells_sag:
-            own = self._own() or ()
-            self._scale = scale_for(lambda cs, cd: _sag(body, cs, cd), own)
+            self._scale = scale_for(body.sag_of_tick, self._own() or ())
 
     def _find_zones(self) -> None:
         """Find the pad's zones again, where what they depend on has changed: not the chosen springs' own Cs and Cd."""
@@ -472,12 +473,6 @@ class Panel:
             self.say("There is no spring here that Cs and Cd apply to.")
             return False
         return True
-
-
-def _sag(body: BodyMotion, stiffness: Floats, damping: Floats) -> Floats:
-    sag = body.sag(*body.of_substep(stiffness, damping))
-    assert sag is not None
-    return sag
 
 
 def _word_tip(sag: float) -> str:

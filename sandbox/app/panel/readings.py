@@ -5,7 +5,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from sandbox.app.base.sentences import capitalised
+from sandbox.app.base.sag_sentences import sag_sentence, size_word
 from sandbox.physics.analysis.body_motion import FLAT
 from sandbox.physics.analysis.spring_motion import SpringMotion
 from sandbox.physics.analysis.stability import CoefficientLimits
@@ -72,37 +72,15 @@ def motion_words(motion: SpringMotion) -> str:
     return f"creeps back, half in {seconds(motion.half)}"
 
 
-SAG_TIP = "Part of its height by which a body sags where it stands, or of its length where it is held; 0 is rigid"
-# What one sees of a body under its weight, by how it is held: the part that moves, how, and of what that is a share.
-_SAGS = {
-    Support.FLOOR: ("", "sags by", "height"),
-    Support.ENDS: ("'s middle", "drops by", "length"),
-    Support.HANGING: ("", "stretches by", "height"),
-    Support.SPANNED: ("'s middle", "drops by", "length"),
-    Support.ARM: ("'s end", "drops by", "length"),
-    Support.HUB: ("'s rim", "drops by", "height"),
-}
-
-
-def subject_words(name: str, support: Support) -> str:
-    """What of a body sags, as it stands in a sentence: "the girder's end"."""
-    article = "" if name[-1:].isdigit() else "the "
-    return f"{article}{name}{_SAGS[support][0]}"
-
-
 def sag_words(least: float, most: float, name: str | None, supports: Collection[Support]) -> str:
     """How far bodies sag that are held so, from the least to the most; name: of the one that it is, None: several."""
     if name is not None:
         (support,) = supports
-        _, verb, of = _SAGS[support]
-        subject = capitalised(subject_words(name, support))
-        if most >= FLAT:
-            flat = "lies flat under its own weight" if support is Support.FLOOR else f"{verb} more than half its {of}"
-            return f"{subject} {flat}"
-        return f"{subject} {verb} {per_cent(most)} of its {of}"
+        said = sag_sentence(name, support)
+        return said.flat if most >= FLAT else said.sag.format(per_cent(most))
     if least >= FLAT and set(supports) == {Support.FLOOR}:
         return "They lie flat under their own weight"
-    sizes = {_SAGS[support][2] for support in supports}
+    sizes = {size_word(support) for support in supports}
     of = f"{sizes.pop()}s" if len(sizes) == 1 else "size"
     if per_cent(least) == per_cent(most):
         return f"They sag by {per_cent(most)} of their {of}"

@@ -95,6 +95,12 @@ class BodyMotion:
         with np.errstate(divide="ignore"):
             return np.asarray(np.where(square > 0.0, STANDING * self.gravity / square, np.inf))
 
+    def sag_of_tick(self, stiffness: Floats, damping: Floats) -> Floats:
+        """The same (k,) from Cs and Cd of its springs in a tick; only where `tells_sag`."""
+        sag = self.sag(*self.of_substep(stiffness, damping))
+        assert sag is not None
+        return sag
+
     def motion(self, stiffness: float, damping: float) -> SpringMotion:
         """How its slowest wobble goes on, from Cs and Cd of its springs in a substep."""
         whole, damp = self.whole(np.array([stiffness]), np.array([damping]))

@@ -32,8 +32,10 @@ CURVE = (0.02, 0.08, 0.16, 0.3, 0.5)
 LEAST_DAMPING, USUAL_SHARE = 0.2, 0.5
 # What sags by less is rigid, to the eye and to a search.
 RIGID = 1e-7
+# Parts of what is guessed at first, where that is too soft to rest.
+FOOTHOLDS = (1.0, 0.1, 0.01)
 # Sags between these say where other runs come to rest; a search takes what sags by more for collapsed.
-SMALL, LARGE = 1e-5, 0.5
+SMALL, LARGE, FLYING = 1e-5, 0.5, 2.0
 # Frequencies [Hz] that firmness may have, and halvings of their range.
 FREQUENCIES, HALVINGS = (0.01, 1_000.0), 24
 
@@ -45,6 +47,8 @@ Measuring = Generator[None, None, float]
 
 class SagMeter:
     """Answers of one body in one stance; what is not known yet is asked for, and `advance` goes on with the work.
+
+    What was asked last comes first, and the curve after all that somebody waits for.
 
     lowest_mode: of its form; 0: it has none, and all its springs have one Cs and Cd.
     """
@@ -78,7 +82,7 @@ class SagMeter:
         return self._sags.get(pair)
 
     def firmness(self, sag: float) -> tuple[bool, Firmness | None]:
-        """Whether it is known what makes the body sag so far, and that, or the nearest; None: none could be measured."""
+        """Whether it is known what makes the body sag so far, and that, or the nearest; None: none was measured."""
         if sag not in self._found:
             self._ask(sag, self._search(sag))
         return sag in self._found, self._found.get(sag)
@@ -96,10 +100,11 @@ class SagMeter:
     # Work.
 
     def advance(self, seconds: float) -> bool:
-        """Work for so long at most, what was asked last first; whether anything has come to be known."""
+        """Work for so long at most; whether anything has come to be known."""
         end, news = perf_counter() + seconds, False
         while self._jobs and perf_counter() < end:
-            news = self._go_on(next(reversed(self._jobs)), end) or news
+            waited_for = (question for question in reversed(self._jobs) if question != CURVE_ASKED)
+            news = self._go_on(next(waited_for, CURVE_ASKED), end) or news
         return news
 
     def _go_on(self, question: object, end: float) -> bool:
@@ -117,8 +122,10 @@ class SagMeter:
         del self._jobs[question]
         if isinstance(question, tuple):
             self._sags.setdefault(question, math.nan)
-        elif isinstance(question, float):
-            self._found.setdefault(question, None)
+        elif isinstance(question, float) and question not in self._found:
+            # Not measured itself, but near to what was.
+            is_told = any(SMALL < sag < LARGE for sag in self._sags.values())
+            self._found[question] = self._as_soft_as(self._guess(question))[0] if is_told else None
         return True
 
     def _ask(self, question: object, job: Work) -> None:
@@ -197,6 +204,7 @@ class SagMeter:
         if sag <= RIGID:
             self._found[sag] = Firmness(sag=0.0)
             return
+        yield from self._find_foothold()
         tried: dict[Pair, tuple[Firmness, float]] = {}
         for _ in range(MOST_RUNS):
             firmness, pair = self._as_soft_as(self._guess(sag))
@@ -211,7 +219,7 @@ class SagMeter:
 
     def _guess(self, sag: float) -> float:
         """The softness at which it may sag so far."""
-        known = sorted((self._softness(pair), each) for pair, each in self._sags.items() if each > SMALL)
+        known = sorted((self._softness(pair), each) for pair, each in self._sags.items() if SMALL < each < FLYING)
         below = [each for each in known if each[1] < sag]
         above = [each for each in known if each[1] >= sag]
         if below and above:
@@ -230,15 +238,24 @@ class SagMeter:
         if not SOLVERS[self.settings.solver].bounded:
             self._share = yield from self._damping_share()
         points: list[tuple[float, float]] = []
+        yield from self._find_foothold()
         for sag in CURVE:
             _, pair = self._as_soft_as(self._guess(sag))
             found = yield from self._sag_of(pair)
             # What is softer than it should be has buckled, or flies.
-            if not 0.0 < found:
+            if not found > 0.0:
                 break
             points = sorted([*points, (self._softness(pair), found)])
             rising = [each for k, each in enumerate(points) if k == 0 or each[1] > points[k - 1][1]]
             self.curve = SagCurve(self._share, tuple(x for x, _ in rising), tuple(y for _, y in rising))
+
+    def _find_foothold(self) -> Work:
+        """Measure a sag from which others can be guessed, the stiffer the later."""
+        for share in FOOTHOLDS:
+            if any(SMALL < sag < LARGE for sag in self._sags.values()):
+                break
+            _, pair = self._as_soft_as(self._guess(CURVE[0]) * share)
+            yield from self._sag_of(pair)
 
     def _damping_share(self) -> Measuring:
         """Which part of Cd holds up what stands, from runs at two Cd."""

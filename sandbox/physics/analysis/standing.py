@@ -20,14 +20,14 @@ from sandbox.physics.world import World
 FRICTION, ENDS_FRICTION = 0.5, 0.05
 # Radius of its particles as a share of its shortest spring, and at most so many [m].
 RADIUS_SHARE, LARGEST_RADIUS = 0.4, 0.05
-# It is looked at every so many ticks, and rests where no particle has moved by more than this share of its length, twice
-# in a row, or where its sag has changed by less than this share of itself, three times; longer is not waited.
+# It is looked at every so many ticks, and rests where no particle has moved by more than this share of its length,
+# twice in a row, or where its sag has changed by less than this share of itself, three times; longer is not waited.
 LOOK_EVERY, AT_REST, SETTLED, LONGEST = 15, 2e-5, 5e-4, 1_500
 # A column leans by this much of gravity, so that it buckles where it would in a world that is not even; what is so many
 # times as high as wide is one.
 LEAN, COLUMN = 0.005, 1.5
-# What has dropped by so many of its lengths flies. What still moves at the end by less than this share of its length, its
-# sag by less than this share of itself, is about at rest.
+# What has dropped by so many of its lengths flies. What still moves at the end by less than this share of its length,
+# its sag by less than this share of itself, is about at rest.
 LOST, CALM, NEAR = 20.0, 2e-3, 0.02
 
 
@@ -80,7 +80,7 @@ class StandingRun:
         return self.world.position - self._places
 
     def take(self, stiffness: float, damping: float, lowest_mode: float, moved: Floats | None = None) -> None:
-        """Measure with these Cs and Cd per tick; moved (n, 2): how far from its form it begins [m], None: not at all."""
+        """Measure with these Cs and Cd per tick; moved [m] (n, 2): where it begins, from its form; None: in its form."""
         for family in ("", "constraint_"):
             for name, value in (("stiffness", stiffness), ("damping", damping), ("lowest_mode", lowest_mode)):
                 self.world.change(f"{family}{name}", value)

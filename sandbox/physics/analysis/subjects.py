@@ -14,6 +14,8 @@ from sandbox.physics.world import World
 
 # Digits of lengths and masses by which bodies count as alike.
 ALIKE = 9
+# A rope or a net is set by its material, of whose springs at least this share is its own.
+OWN = 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +36,13 @@ def subjects_of(world: World) -> dict[str, Subject]:
     found = {}
     for slot, body in enumerate(world.forms):
         mode = _mode_of(world, body)
-        if mode > 0.0:
+        # What is held everywhere cannot sag.
+        if mode > 0.0 and not stance_of(world, body).held.all():
             found[body.name] = Subject(body.name, body, slot, mode)
     for name, springs in _named(world).items():
         net = None if name in found else _net(world, name, springs)
-        if net is not None and stance_of(world, net).support is Support.SPANNED:
+        stance = None if net is None else stance_of(world, net)
+        if net is not None and stance is not None and stance.support is Support.SPANNED and not stance.held.all():
             found[name] = Subject(name, net, None, 0.0)
     return found
 
@@ -56,16 +60,16 @@ def _named(world: World) -> dict[str, list[int]]:
     found: dict[str, list[int]] = {}
     for slot, name in enumerate(world.spring_names):
         body, colon, _ = name.rpartition(":")
-        if colon and world.spring_active[slot] and world.law[slot] != LAW_HOOKE:
+        if body and colon and world.spring_active[slot] and world.law[slot] != LAW_HOOKE:
             found.setdefault(body, []).append(slot)
     return found
 
 
 def _net(world: World, name: str, slots: list[int]) -> FirmBody | None:
-    """A body of springs alone that no other body shares its material with; None: it is none."""
+    """A body of springs alone that has a material almost for itself; None: it is none."""
     springs = np.array(slots, np.int64)
     kinds = np.unique(world.material[springs])
-    if len(kinds) != 1 or kinds[0] < 0 or np.count_nonzero(world.material == kinds[0]) != len(springs):
+    if len(kinds) != 1 or kinds[0] < 0 or OWN * np.count_nonzero(world.material == kinds[0]) > len(springs):
         return None
     ends = np.stack([world.particle_a[springs], world.particle_b[springs]], axis=1)
     particles, pairs = np.unique(ends, return_inverse=True)
