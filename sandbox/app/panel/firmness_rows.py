@@ -233,9 +233,8 @@ class FirmnessRows:
         sag = meter.sag_known(pair)
         if sag is None and is_steady:
             sag = meter.sag(pair)
-        if sag is None and meter.curve is not None:
-            at = [each[subject.body.springs[:1]] for each in present]
-            sag = float(meter.curve.of(*at)[0])
+        if sag is None:
+            sag = meter.estimate(pair)
         return Reading(subject, sag, motion, is_rigid)
 
     # Changing.

@@ -31,16 +31,21 @@ FREQUENCIES, HALVINGS = (0.01, 1_000.0), 40
 Rows = list[dict[str, Any]]
 
 
-def material_rows(world: World, done: bool) -> Generator[float, None, Rows]:
-    """Materials that springs have; before several of them, all as one. Yields how much is done while runs go on."""
+def material_rows(world: World, first: str | None, done: bool) -> Generator[float, None, Rows]:
+    """Materials that springs have; before several of them, all as one. Yields how much is done while runs go on.
+
+    first: the material that is shown first, None: that of the most springs.
+    """
     used = [slot for slot in range(len(world.material_names)) if (world.material == slot).any()]
     rows: list[tuple[str, int | None]] = [(world.material_names[slot], slot) for slot in used]
     if len(rows) > 1:
         rows.insert(0, (ALL, None))
+    counts = np.bincount(world.material[world.material >= 0], minlength=1)
+    shown = first if first in world.material_names else world.material_names[int(np.argmax(counts))]
     subjects, meters, found = subjects_of(world), Meters(), []
     for name, slot in rows:
         made = yield from _words(world, slot, subjects, meters, float(done))
-        found.append({"name": name, "slot": slot, **made})
+        found.append({"name": name, "slot": slot, "is_first": slot is not None and name == shown, **made})
     return found
 
 

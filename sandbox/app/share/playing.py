@@ -72,7 +72,7 @@ def playable_in_slices(
         "name": level.name,
         "scene": scene_of(level, take(world)),
         "sounds": _sounds(world),
-        "materials": (yield from material_rows(world, played is not None)),
+        "materials": (yield from material_rows(world, None if level.look is None else level.look.material, played is not None)),
         "gravity_limit": GRAVITY_LIMIT,
         "checks": _checks(level, world),
         "keys": dict(sorted(driving_keys(level).items())),

@@ -22,10 +22,10 @@ export class Panel {
   #gesture = null;
   #shown = '';
 
-  // materials: [{ name, slot, words, subject, says, map }], slot null for all; words: Cs and Cd by the words of
+  // materials: [{ name, slot, is_first, words, subject, says, map }], slot null for all; words: Cs and Cd by the words of
   // firmness; what sags, the sentence that says how far, and the map of the pad, where something sags.
   constructor(root, run, materials, level) {
-    Object.assign(this, { run, materials, level, chosen: materials[0] });
+    Object.assign(this, { run, materials, level, chosen: materials.find((each) => each.is_first) ?? materials[0] });
     for (const each of materials) {
       each.sags = each.map ? new SagMap(each.map) : null;
       each.scale = each.map ? new Scale(each.map.lowest, each.map.rest) : PLAIN;

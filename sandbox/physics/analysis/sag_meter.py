@@ -23,8 +23,11 @@ from sandbox.physics.world import World
 
 # A search ends this near to what is asked, and after so many runs.
 NEAR, MOST_RUNS = 0.004, 8
-# Work [s] that a question may take, and the curve, which nobody waits for; what needs more is not measured.
-MOST_WORK, MOST_OF_CURVE = 1.5, 10.0
+# Work [s] that may go into a sag, of which there may be an estimate, into a search, and into the curve, which nobody
+# waits for; what needs more is not measured.
+MOST_OF_SAG, MOST_OF_SEARCH, MOST_OF_CURVE = 4.0, 1.5, 10.0
+# Work [s] after which a sag without an estimate is given up.
+PATIENCE = 1.5
 CURVE_ASKED = "curve"
 # Sags that a curve is measured at, about.
 CURVE = (0.02, 0.08, 0.16, 0.3, 0.5)
@@ -64,6 +67,7 @@ class SagMeter:
         self._probe.add_particles(["a", "b"], [[0.0, 0.0], [1.0, 0.0]])
         self._probe.add_springs(["s"], [0], [1])
         self._sags: dict[Pair, float] = {}
+        self._given_up: dict[Pair, float] = {}
         self._found: dict[float, Firmness | None] = {}
         self._last: tuple[float, Floats] | None = None
         self._jobs: dict[object, Work] = {}
@@ -75,11 +79,11 @@ class SagMeter:
         """The sag of springs of that Cs, Cd and mode; None: not known yet, NaN: it cannot be measured."""
         if pair not in self._sags:
             self._ask(pair, self._measure(pair))
-        return self._sags.get(pair)
+        return self.sag_known(pair)
 
     def sag_known(self, pair: Pair) -> float | None:
         """The same, without asking for it."""
-        return self._sags.get(pair)
+        return self._sags.get(pair, self._given_up.get(pair))
 
     def firmness(self, sag: float) -> tuple[bool, Firmness | None]:
         """Whether it is known what makes the body sag so far, and that, or the nearest; None: none was measured."""
@@ -109,24 +113,47 @@ class SagMeter:
 
     def _go_on(self, question: object, end: float) -> bool:
         job, began, is_over = self._jobs[question], perf_counter(), False
-        most = MOST_OF_CURVE if question == CURVE_ASKED else MOST_WORK
-        end = min(end, began + most - self._work.get(question, 0.0))
+        end = min(end, began + self._most_for(question) - self._work.get(question, 0.0))
         while not is_over and perf_counter() < end:
             try:
                 next(job)
             except StopIteration:
                 is_over = True
         self._work[question] = self._work.get(question, 0.0) + perf_counter() - began
-        if not is_over and self._work[question] < most:
+        if not is_over and self._work[question] < self._most_for(question):
             return False
         del self._jobs[question]
-        if isinstance(question, tuple):
-            self._sags.setdefault(question, math.nan)
+        if isinstance(question, tuple) and question not in self._sags:
+            found = self.estimate(question)
+            self._given_up[question] = math.nan if found is None else found
         elif isinstance(question, float) and question not in self._found:
             # Not measured itself, but near to what was.
-            is_told = any(SMALL < sag < LARGE for sag in self._sags.values())
-            self._found[question] = self._as_soft_as(self._guess(question))[0] if is_told else None
+            self._found[question] = self._as_soft_as(self._guess(question))[0] if self._is_told else None
         return True
+
+    def _most_for(self, question: object) -> float:
+        if question == CURVE_ASKED:
+            return MOST_OF_CURVE
+        if isinstance(question, float):
+            return MOST_OF_SEARCH
+        return MOST_OF_SAG if self._is_told else PATIENCE
+
+    @property
+    def _is_told(self) -> bool:
+        """Whether a sag is known from which others can be told."""
+        return any(SMALL < sag < LARGE for sag in self._sags.values())
+
+    def estimate(self, pair: Pair) -> float | None:
+        """About what the sag is, from what is known by now of others; None: nothing is."""
+        if self.curve is not None:
+            stiffness, damping = (np.array([each]) for each in self._in_substep(pair))
+            return float(self.curve.of(stiffness, damping)[0])
+        if not self._is_told:
+            return None
+        known = [(self._softness(each), sag) for each, sag in self._sags.items() if SMALL < sag < LARGE]
+        soft = self._softness(pair)
+        nearest, sag = min(known, key=lambda each: abs(math.log(each[0] / soft)))
+        return sag * soft / nearest
 
     def _ask(self, question: object, job: Work) -> None:
         if question not in self._jobs and self._work.get(question, 0.0) == 0.0:
@@ -252,7 +279,7 @@ class SagMeter:
     def _find_foothold(self) -> Work:
         """Measure a sag from which others can be guessed, the stiffer the later."""
         for share in FOOTHOLDS:
-            if any(SMALL < sag < LARGE for sag in self._sags.values()):
+            if self._is_told:
                 break
             _, pair = self._as_soft_as(self._guess(CURVE[0]) * share)
             yield from self._sag_of(pair)

@@ -37,13 +37,15 @@ class Support(Enum):
 class Stance:
     """A body alone, as it is held, upright: gravity goes down.
 
-    points [m], gravity_scale, mass [kg] (n, ...); pairs (m, 2) with rest lengths [m] (m,); areas, bends (t, 3); held
+    points [m] (n, 2); mass [kg], gravity_scale, radius [m], friction (n,); pairs (m, 2) with rest lengths [m] (m,); areas, bends (t, 3); held
     (n,): what does not move; rests (n,): what lies on something, for ENDS; length [m]: of what a sag is a share.
     """
 
     points: Floats
     mass: Floats
     gravity_scale: Floats
+    radius: Floats
+    friction: Floats
     pairs: Slots
     rest: Floats
     areas: Slots
@@ -75,9 +77,9 @@ def stance_of(world: World, body: FirmBody) -> Stance:
     wide, tall = (float(size) for size in np.ptp(points, axis=0))
     is_upright = support in (Support.FLOOR, Support.HANGING, Support.HUB)
     length = tall if is_upright and tall > 0.0 else max(wide, tall)
-    scale = world.gravity_scale[slots]
     return Stance(
-        points, body.shape.mass, scale, pairs, rest, body.shape.areas, body.shape.bends, held, rests, support, length
+        points, body.shape.mass, world.gravity_scale[slots], world.radius[slots], world.friction[slots], pairs, rest,
+        body.shape.areas, body.shape.bends, held, rests, support, length,
     )  # fmt: skip
 
 

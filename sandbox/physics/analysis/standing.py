@@ -18,8 +18,8 @@ from sandbox.physics.world import World
 
 # Friction of a floor, and of what a beam's ends lie on, which lets them come closer.
 FRICTION, ENDS_FRICTION = 0.5, 0.05
-# Radius of its particles as a share of its shortest spring, and at most so many [m].
-RADIUS_SHARE, LARGEST_RADIUS = 0.4, 0.05
+# How far above a floor it begins, as a share of its length.
+CLEAR = 1e-5
 # It is looked at every so many ticks, and rests where no particle has moved by more than this share of its length,
 # twice in a row, or where its sag has changed by less than this share of itself, three times; longer is not waited.
 LOOK_EVERY, AT_REST, SETTLED, LONGEST = 15, 2e-5, 5e-4, 1_500
@@ -37,17 +37,16 @@ class StandingRun:
     def __init__(self, stance: Stance, settings: WorldSettings) -> None:
         self.stance = stance
         self.sag: float | None = None
-        shortest = float(stance.rest.min()) if len(stance.rest) else 1.0
-        self._radius = min(LARGEST_RADIUS, RADIUS_SHARE * shortest)
         strength = strength_of(settings.gravity)
         gravity = (LEAN * strength if _may_buckle(stance) else 0.0, -strength)
         self.world = world = World(replace(settings, gravity=gravity, wind=(0.0, 0.0)))
-        points = stance.points - (stance.points[:, 0].mean(), stance.points[:, 1].min() - 1.001 * self._radius)
+        lowest = float((stance.points[:, 1] - stance.radius).min())
+        points = stance.points - (stance.points[:, 0].mean(), lowest - CLEAR * stance.length)
         touches = TERRAIN_GROUP if stance.support in (Support.FLOOR, Support.ENDS) else 0
         world.add_particles(
-            [str(k) for k in range(len(points))], points, mass=stance.mass, radius=self._radius, pinned=stance.held,
+            [str(k) for k in range(len(points))], points, mass=stance.mass, radius=stance.radius, pinned=stance.held,
             gravity_scale=stance.gravity_scale, owner=0, group=TERRAIN_GROUP, collides=touches,
-            friction=ENDS_FRICTION if stance.support is Support.ENDS else FRICTION,
+            friction=ENDS_FRICTION if stance.support is Support.ENDS else stance.friction,
         )  # fmt: skip
         names = [f"s{k}" for k in range(len(stance.pairs))]
         world.add_springs(names, *stance.pairs.T, rest_length=stance.rest)
@@ -80,7 +79,7 @@ class StandingRun:
         return self.world.position - self._places
 
     def take(self, stiffness: float, damping: float, lowest_mode: float, moved: Floats | None = None) -> None:
-        """Measure with these Cs and Cd per tick; moved [m] (n, 2): where it begins, from its form; None: in its form."""
+        """Measure with these Cs and Cd per tick, from where moved [m] (n, 2) puts it off its form; None: in its form."""
         for family in ("", "constraint_"):
             for name, value in (("stiffness", stiffness), ("damping", damping), ("lowest_mode", lowest_mode)):
                 self.world.change(f"{family}{name}", value)

@@ -94,7 +94,7 @@ class Meters:
         places = stance.points - stance.points.min(axis=0)
         key = (
             settings, stance.support, stance.held.tobytes(), stance.rests.tobytes(), stance.gravity_scale.tobytes(),
-            stance.pairs.tobytes(), *(np.round(each, ALIKE).tobytes() for each in (places, stance.mass, stance.rest)),
+            stance.friction.tobytes(), stance.pairs.tobytes(), *(np.round(each, ALIKE).tobytes() for each in (places, stance.mass, stance.rest, stance.radius)),
         )  # fmt: skip
         if key not in self._meters:
             self._meters[key] = SagMeter(stance, settings, subject.lowest_mode)
