@@ -8,6 +8,7 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.session.commands import AddBody, SetCoefficients, SetFirmness
 from tests.support.wobbles import firm_level
 
+AS_MADE = ["9.7", "2.32", "0.15"]
 BOX = {"shape": {"box": [1, 1]}, "position": [0, 1], "spacing": 0.25}
 
 
@@ -30,8 +31,10 @@ def texts(driver):
 
 
 def test_the_rows_show_the_firmness_of_the_level_in_words_and_numbers(jelly):
-    assert texts(jelly) == ["10", "2.32", "0.15"]
+    # The level says 10 %, by the slowest wobble alone; what stands sags by this.
+    assert texts(jelly) == AS_MADE
     assert jelly.panel.firmness.words.chosen == "soft"
+    assert jelly.panel.firmness.text.text.startswith("The body sags by 9.7 % of its height; swings")
 
 
 def test_a_word_makes_the_body_so_and_is_undone(jelly):
@@ -40,7 +43,7 @@ def test_a_word_makes_the_body_so_and_is_undone(jelly):
     assert texts(jelly)[0] == "2" and jelly.panel.firmness.words.chosen == "firm"
     jelly.playback.session.undo()
     jelly.frames(20)
-    assert texts(jelly) == ["10", "2.32", "0.15"]
+    assert texts(jelly) == AS_MADE
     jelly.click_widget(jelly.panel.firmness.words.buttons["rigid"])
     jelly.frames(2)
     assert texts(jelly)[0] == "0" and jelly.panel.firmness.words.chosen == "rigid"
@@ -77,7 +80,7 @@ def test_cs_and_cd_end_the_firmness_and_the_rows_read_what_they_amount_to(jelly)
     jelly.click_widget(panel.firmness.words.buttons["soft"])
     jelly.frames(2)
     assert [type(entry.command) for entry in jelly.playback.session.history.log] == [SetCoefficients, SetFirmness]
-    assert texts(jelly) == ["10", "2.32", "0.15"]
+    assert texts(jelly) == ["10", "2.28", "0.15"]
 
 
 def test_all_bodies_are_set_in_one_gesture_and_one_alone_where_it_is_chosen(open_app):

@@ -66,13 +66,14 @@ def _words(
         return {"words": USUAL}
     motion = BodyMotion.of(subject.body.shape, world.settings, subject.lowest_mode or 1.0)
     motion = replace(motion, curve=meter.curve)
-    support = meter.stance.support
+    support, pairs = meter.stance.support, {word: _pair(meter, motion, sag) for word, sag in WORDS.items()}
     said = sag_sentence(subject.name, support)
+    scale = scale_for(motion.sag_of_tick, tuple(value for pair in pairs.values() for value in pair))
     return {
-        "words": {word: _pair(meter, motion, sag) for word, sag in WORDS.items()},
+        "words": pairs,
         "subject": subject_words(subject.name, support),
         "says": {"sag": said.sag, "flat": said.flat, "flat_from": FLAT},
-        "map": SagMap.of(motion, scale_for(motion.sag_of_tick, ())).as_data(),
+        "map": SagMap.of(motion, scale).as_data(),
     }
 
 

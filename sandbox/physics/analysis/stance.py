@@ -37,8 +37,9 @@ class Support(Enum):
 class Stance:
     """A body alone, as it is held, upright: gravity goes down.
 
-    points [m] (n, 2); mass [kg], gravity_scale, radius [m], friction (n,); pairs (m, 2) with rest lengths [m] (m,); areas, bends (t, 3); held
-    (n,): what does not move; rests (n,): what lies on something, for ENDS; length [m]: of what a sag is a share.
+    points [m] (n, 2); mass [kg], gravity_scale, radius [m], friction (n,); pairs (m, 2) with rest lengths [m] (m,);
+    areas, bends (t, 3); held (n,): what does not move; rests (n,): what lies on something, for ENDS; length [m]: of
+    what a sag is a share.
     """
 
     points: Floats
@@ -65,10 +66,10 @@ def stance_of(world: World, body: FirmBody) -> Stance:
     held = _is_held(world, body, slots)
     rests = np.zeros(len(points), np.bool_)
     weight = body.shape.mass * world.gravity_scale[slots]
+    support = Support.FLOOR
     if held.any():
         held, support = _support_of(points, weight, held, pairs)
-    else:
-        support = Support.FLOOR
+    if not held.any():
         points = _stood_up(points, weight)
         wide, tall = np.ptp(points, axis=0)
         if not len(body.shape.areas) and wide >= SLENDER * tall:
@@ -126,6 +127,9 @@ def _support_of(points: Floats, weight: Floats, held: Flags, pairs: Slots) -> tu
     if np.ptp(points[held], axis=0).max() == 0.0:
         centre = weight @ points / weight.sum() - points[held][0]
         reach = BALANCED * max(wide, tall)
+        if abs(centre[0]) <= reach and centre[1] > reach:
+            # A cord from below carries nothing.
+            return np.zeros_like(held), Support.FLOOR
         if abs(centre[0]) <= reach:
             return held, Support.HUB if abs(centre[1]) <= reach else Support.HANGING
         # It may turn there; what holds it up elsewhere is not its own.

@@ -16,8 +16,8 @@ from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
 
-# Friction of a floor, and of what a beam's ends lie on, which lets them come closer.
-FRICTION, ENDS_FRICTION = 0.5, 0.05
+# Friction of a floor, and of what a beam's ends lie on.
+FRICTION = 0.5
 # How far above a floor it begins, as a share of its length.
 CLEAR = 1e-5
 # It is looked at every so many ticks, and rests where no particle has moved by more than this share of its length,
@@ -46,7 +46,7 @@ class StandingRun:
         world.add_particles(
             [str(k) for k in range(len(points))], points, mass=stance.mass, radius=stance.radius, pinned=stance.held,
             gravity_scale=stance.gravity_scale, owner=0, group=TERRAIN_GROUP, collides=touches,
-            friction=ENDS_FRICTION if stance.support is Support.ENDS else stance.friction,
+            friction=stance.friction,
         )  # fmt: skip
         names = [f"s{k}" for k in range(len(stance.pairs))]
         world.add_springs(names, *stance.pairs.T, rest_length=stance.rest)
@@ -66,7 +66,7 @@ class StandingRun:
         gap = int(np.argmax(np.diff(x)))
         reach = 0.01 * self.stance.length
         ends = ((-far, float(x[gap]) + reach), (float(x[gap + 1]) - reach, far))
-        return [Chain([[start, 0.0], [end, 0.0]], friction=ENDS_FRICTION) for start, end in ends]
+        return [Chain([[start, 0.0], [end, 0.0]], friction=FRICTION) for start, end in ends]
 
     def _begin(self) -> None:
         self.sag, self._from, self._energy = None, self.world.tick, 0.0
@@ -79,7 +79,7 @@ class StandingRun:
         return self.world.position - self._places
 
     def take(self, stiffness: float, damping: float, lowest_mode: float, moved: Floats | None = None) -> None:
-        """Measure with these Cs and Cd per tick, from where moved [m] (n, 2) puts it off its form; None: in its form."""
+        """Measure with these Cs and Cd per tick; moved [m] (n, 2): how far off its form it begins, None: not at all."""
         for family in ("", "constraint_"):
             for name, value in (("stiffness", stiffness), ("damping", damping), ("lowest_mode", lowest_mode)):
                 self.world.change(f"{family}{name}", value)
@@ -100,7 +100,9 @@ class StandingRun:
             step(self.world)
             if self.stance.support is Support.HUB:
                 self._turn_back()
-            self._calm()
+            # Where it lies on its ends it has to swing, or friction keeps them where they are.
+            if self.stance.support is not Support.ENDS:
+                self._calm()
             if (self.world.tick - self._from) % LOOK_EVERY == 0:
                 self._look()
         return self.sag is not None

@@ -92,9 +92,11 @@ class Meters:
         stance = self._stance(world, subject)
         settings = replace(world.settings, wind=(0.0, 0.0))
         places = stance.points - stance.points.min(axis=0)
+        exact = (stance.held, stance.rests, stance.gravity_scale, stance.friction, stance.pairs)
+        about = (places, stance.mass, stance.rest, stance.radius)
         key = (
-            settings, stance.support, stance.held.tobytes(), stance.rests.tobytes(), stance.gravity_scale.tobytes(),
-            stance.friction.tobytes(), stance.pairs.tobytes(), *(np.round(each, ALIKE).tobytes() for each in (places, stance.mass, stance.rest, stance.radius)),
+            settings, stance.support, *(each.tobytes() for each in exact),
+            *(np.round(each, ALIKE).tobytes() for each in about),
         )  # fmt: skip
         if key not in self._meters:
             self._meters[key] = SagMeter(stance, settings, subject.lowest_mode)
