@@ -137,4 +137,4 @@ def test_the_menus_follow_bodies_that_join_a_run_and_are_taken_back(jelly):
     jelly.frames(20)
     assert (offered(panel.firmness.menu), offered(panel.menu)) == (bodies, materials)
     assert panel.firmness.menu.selected_option[0] == bodies[0] and panel.menu.selected_option[0] == materials[0]
-    assert texts(jelly) == ["10", "2.32", "0.15"]
+    assert texts(jelly) == AS_MADE

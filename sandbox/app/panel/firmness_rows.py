@@ -73,6 +73,8 @@ class FirmnessRows:
         self._meters = Meters()
         # Sags that were asked for and are looked for, by the name of the body, and the gesture that asked.
         self._asked: dict[str, tuple[float, int]] = {}
+        # Those of them that have about that by now.
+        self._answered: set[str] = set()
         self._seen: dict[str, object] = {}
 
     @property
@@ -254,6 +256,7 @@ class FirmnessRows:
             return False
         gesture = self.playback.session.new_gesture()
         self._asked = {subject.name: (sag, gesture) for subject in self._chosen()}
+        self._answered = set()
         if jit.COMPILED and sag > 0.0:
             self._settle(AT_ONCE)
         else:
@@ -274,14 +277,23 @@ class FirmnessRows:
             meter = self._meters.of(self.playback.session.world, subject)
             is_known, firmness = meter.firmness(sag)
             if not is_known:
+                self._answer_first(subject, meter, sag, gesture)
                 continue
             del self._asked[name]
+            self._answered.discard(name)
             fault = self._take(subject, meter, sag, firmness, gesture)
             if fault:
                 others.setdefault(fault, []).append(name)
         for fault, names in others.items():
             more = f" and {len(names) - 1} more" if len(names) > 1 else ""
             self._say(f"{capitalised(names[0])}{more}: {fault}")
+
+    def _answer_first(self, subject: Subject, meter: SagMeter, sag: float, gesture: int) -> None:
+        """Give a large body at once, and once, about what is looked for."""
+        firmness = meter.first_answer(sag)
+        if firmness is not None and subject.name not in self._answered:
+            self._answered.add(subject.name)
+            self._give(subject, firmness, gesture)
 
     def _take(self, subject: Subject, meter: SagMeter, sag: float, firmness: Firmness | None, gesture: int) -> str:
         """Give a body what was found for a sag; what is to be said of it, if it is not that."""

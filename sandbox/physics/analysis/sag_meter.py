@@ -25,9 +25,9 @@ from sandbox.physics.world import World
 NEAR, MOST_RUNS = 0.004, 8
 # Work [s] that may go into a sag, of which there may be an estimate, into a search, and into the curve, which nobody
 # waits for; what needs more is not measured.
-MOST_OF_SAG, MOST_OF_SEARCH, MOST_OF_CURVE = 4.0, 1.5, 10.0
-# Work [s] after which a sag without an estimate is given up.
-PATIENCE = 1.5
+MOST_OF_SAG, MOST_OF_SEARCH, MOST_OF_CURVE = 4.0, 6.0, 10.0
+# Work [s] after which a sag without an estimate is given up, and a search has a first answer.
+PATIENCE, FIRST_ANSWER = 1.5, 0.4
 CURVE_ASKED = "curve"
 # Sags that a curve is measured at, about.
 CURVE = (0.02, 0.08, 0.16, 0.3, 0.5)
@@ -90,6 +90,11 @@ class SagMeter:
         if sag not in self._found:
             self._ask(sag, self._search(sag))
         return sag in self._found, self._found.get(sag)
+
+    def first_answer(self, sag: float) -> Firmness | None:
+        """About what makes the body sag so far, of a search that takes longer; None: it is too early, or not known."""
+        is_due = self._work.get(sag, 0.0) >= FIRST_ANSWER and self._is_told
+        return self._as_soft_as(self._guess(sag))[0] if is_due else None
 
     def trace(self) -> None:
         """Ask for the curve."""
