@@ -5,7 +5,7 @@ Its runs go on a little at a time, while a window shows something else.
 
 import math
 from collections.abc import Generator
-from time import perf_counter
+from time import perf_counter, process_time
 
 import numpy as np
 
@@ -23,10 +23,10 @@ from sandbox.physics.world import World
 
 # A search ends this near to what is asked, and after so many runs.
 NEAR, MOST_RUNS = 0.004, 8
-# Work [s] that may go into a sag, of which there may be an estimate, into a search, and into the curve, which nobody
-# waits for; what needs more is not measured.
+# Time of the processor [s] that may go into a sag, of which there may be an estimate, into a search, and into the
+# curve, which nobody waits for; what needs more is not measured.
 MOST_OF_SAG, MOST_OF_SEARCH, MOST_OF_CURVE = 4.0, 6.0, 10.0
-# Work [s] after which a sag without an estimate is given up, and a search has a first answer.
+# Time of the processor [s] after which a sag without an estimate is given up, and a search has a first answer.
 PATIENCE, FIRST_ANSWER = 1.5, 0.4
 CURVE_ASKED = "curve"
 # Sags that a curve is measured at, about.
@@ -117,14 +117,14 @@ class SagMeter:
         return news
 
     def _go_on(self, question: object, end: float) -> bool:
-        job, began, is_over = self._jobs[question], perf_counter(), False
-        end = min(end, began + self._most_for(question) - self._work.get(question, 0.0))
-        while not is_over and perf_counter() < end:
+        job, began, is_over = self._jobs[question], process_time(), False
+        most = self._most_for(question) - self._work.get(question, 0.0)
+        while not is_over and perf_counter() < end and process_time() - began < most:
             try:
                 next(job)
             except StopIteration:
                 is_over = True
-        self._work[question] = self._work.get(question, 0.0) + perf_counter() - began
+        self._work[question] = self._work.get(question, 0.0) + process_time() - began
         if not is_over and self._work[question] < self._most_for(question):
             return False
         del self._jobs[question]
