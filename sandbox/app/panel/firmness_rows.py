@@ -14,6 +14,7 @@ from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import DASH, MIXED, Choice, Field, typed_number
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.sag_map import Pairs, word_pairs
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
@@ -151,6 +152,11 @@ class FirmnessRows:
         # A net moves as its springs do.
         motion = BodyMotion.of(subject.body.shape, world.settings, subject.lowest_mode or 1.0)
         return replace(motion, curve=curve)
+
+    def word_pairs(self, name: str, body: BodyMotion) -> Pairs:
+        """Cs and Cd of each word for a body, where runs have told."""
+        meter = self._meter(self._subjects[name])
+        return {} if meter is None or meter.curve is None else word_pairs(meter, body)
 
     def subject_of(self, name: str) -> str:
         """Of what the words for a body are, as a part of a sentence: "the girder's end"."""

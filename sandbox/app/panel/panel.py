@@ -21,13 +21,13 @@ from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale, scale_for
+from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.widgets.fields import DASH, MIXED, typed_number
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.sag_map import own_of, scale_of
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.ui import Ui
-from sandbox.level.document.model import NissenMaterial
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.analysis.firmness import WORDS
@@ -301,8 +301,7 @@ class Panel:
         """Cs and Cd that the level itself gives the material."""
         if self.material is None:
             return None
-        own = self.playback.level.materials.get(self._material_names()[self.material])
-        return (own.stiffness, own.damping) if isinstance(own, NissenMaterial) else None
+        return own_of(self.playback.level, self._material_names()[self.material])
 
     def _find_scale(self) -> None:
         """Find the axes on which most is seen of the body that is spoken of; they stay while something is dragged."""
@@ -312,8 +311,8 @@ class Panel:
         if self._gesture is not None or key == self._scale_of:
             return
         self._scale_of, self._body, self._scale = key, body, PLAIN
-        if body is not None and body.tells_sag:
-            self._scale = scale_for(body.sag_of_tick, self._own() or ())
+        if name is not None and body is not None and body.tells_sag:
+            self._scale = scale_of(body, self.firmness.word_pairs(name, body), self._own() or ())
 
     def _find_zones(self) -> None:
         """Find the pad's zones again, where what they depend on has changed: not the chosen springs' own Cs and Cd."""

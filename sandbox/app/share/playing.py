@@ -65,14 +65,14 @@ def playable_in_slices(
     until = [line for line in script if ticks is not None and line.tick <= ticks]
     played = None if ticks is None else (yield from recorded(level, until, ticks))
     world = build_world(level)
-    counts, shown = row_counts(world), None if level.look is None else level.look.material
+    counts = row_counts(world)
     if played is not None:
         make_room(world, played.world)
     data = {
         "name": level.name,
         "scene": scene_of(level, take(world)),
         "sounds": _sounds(world),
-        "materials": (yield from material_rows(world, shown, played is not None)),
+        "materials": (yield from material_rows(world, level, played is not None)),
         "gravity_limit": GRAVITY_LIMIT,
         "checks": _checks(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
