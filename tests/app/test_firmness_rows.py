@@ -15,7 +15,9 @@ BOX = {"shape": {"box": [1, 1]}, "position": [0, 1], "spacing": 0.25}
 @pytest.fixture
 def jelly(open_app):
     """The app on a jelly box of 1 m that sags by a tenth."""
-    return unfolded(open_app(parse_level(firm_level({"sag": 0.1}, floor=True, **BOX), "jelly")))
+    driver = unfolded(open_app(parse_level(firm_level({"sag": 0.1}, floor=True, **BOX), "jelly")))
+    driver.measure()
+    return driver
 
 
 def unfolded(driver):
@@ -91,15 +93,16 @@ def test_all_bodies_are_set_in_one_gesture_and_one_alone_where_it_is_chosen(open
     data["bodies"].append({"type": "rope", "id": "rope", "start": [5, 3], "end": [7, 3], "segments": 4})
     driver = unfolded(open_app(parse_level(json.dumps(data).encode(), "two")))
     rows = driver.panel.firmness
+    driver.measure()
     assert rows.bodies == ["body", "other"] and texts(driver) == ["mixed"] * 3
     driver.click_widget(rows.words.buttons["hard"])
-    driver.frames(2)
+    driver.measure()
     assert texts(driver)[0] == "0.3"
     entries = driver.playback.session.history.log
     assert len(entries) == 2 and len({entry.gesture for entry in entries}) == 1
     driver.panel.choose_body("other")
     driver.click_widget(rows.words.buttons["jelly"])
-    driver.frames(2)
+    driver.measure()
     assert (
         texts(driver)[0] == "25"
         and driver.world.stiffness[0] != driver.world.stiffness[rows.playback.session.world.forms[1].springs[0]]

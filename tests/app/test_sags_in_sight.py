@@ -7,19 +7,11 @@ from sandbox.physics.jit import COMPILED
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
 
-# Frames in which all that is measured has to be known.
-MOST_FRAMES = 3_000
-
 
 def settled(driver):
-    """The driver, once what was asked is set and nothing is measured any more."""
-    rows = driver.panel.firmness
-    for _ in range(MOST_FRAMES):
-        driver.pass_unseen(1)
-        if not rows._asked and not rows._meters.busy:
-            break
-    driver.frames(20)
-    return rows
+    """The rows, once what was asked is set and nothing is measured any more."""
+    driver.measure()
+    return driver.panel.firmness
 
 
 @pytest.mark.parametrize(

@@ -188,6 +188,11 @@ class FirmnessRows:
         self.words.show(words.pop() if whole and len(words) == 1 and not explodes else "")
         self.text.show_text(TOO_STIFF if explodes else self._text(readings, sags, whole))
 
+    @property
+    def is_measuring(self) -> bool:
+        """Whether something that was asked for is not set yet, or runs still tell of the bodies."""
+        return bool(self._asked or self._meters.busy)
+
     def _is_waited_for(self) -> bool:
         return not self._shown_of or self.text.text.startswith("Measuring")
 
