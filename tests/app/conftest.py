@@ -19,6 +19,8 @@ from sandbox.level.reading.files import parse_level
 from tests.support.person import VirtualScreen
 
 FRAME = 1 / 60
+# In so many frames all is measured.
+MOST_FRAMES = 3_000
 
 
 def small_level(**changes):
@@ -93,6 +95,14 @@ class Driver:
 
     def _frame(self):
         self.app.frame(FRAME)
+
+    def measure(self):
+        """Let frames pass until the panel has measured what was asked, and all else that it shows."""
+        for _ in range(MOST_FRAMES):
+            self.pass_unseen(1)
+            if not self.panel.firmness.is_measuring:
+                break
+        self.frames(20)
 
     def take_sliders(self):
         """Have the whole panel in sight, with sliders in place of the pad."""

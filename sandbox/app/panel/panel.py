@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from sandbox.app.base.sag_sentences import SAG_TIP
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
@@ -20,18 +21,17 @@ from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale, scale_for
+from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.widgets.fields import DASH, MIXED, typed_number
 from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.sag_map import own_of, scale_of
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.ui import Ui
-from sandbox.level.document.model import NissenMaterial
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.analysis.firmness import WORDS
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
-from sandbox.physics.arrays import Floats
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients
 
@@ -89,6 +89,8 @@ class Panel:
         self._refreshes = -1
         self._refreshed_at: tuple[object, ...] = ()
         self.firmness = FirmnessRows(playback, say)
+        if playback.level.look is not None and playback.level.look.material is not None:
+            self.firmness.speak_of(self.material)
         self.engineers = EngineersRows(playback, say, choose["rate"], self.firmness, self._set_both)
         self.world = WorldRows(playback, say, choose, touch)
         self._offered = self._present()
@@ -142,16 +144,16 @@ class Panel:
         ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "@heading")
         names = [ALL_BODIES, *firmness.bodies]
         place = rows.row(ROW, 6, MARGIN + 90, INSIDE - 90)
-        firmness.menu = ui.menu(place, names, ALL_BODIES, self.choose_body, rows.back)
+        firmness.menu = ui.menu(place, names, firmness.body, self.choose_body, rows.back)
         words = [(word, word.capitalize(), _word_tip(sag)) for word, sag in WORDS.items()]
         firmness.words = ui.choice(rows.row(ROW + 4, 6), words, firmness.choose_word, rows.back)
         width = ENTRY_WIDTH - 20
-        firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 42), "", rows.back, 13.0, TEXT)
+        firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 52), "", rows.back, 13.0, TEXT)
         x = MARGIN + INSIDE - width
         ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "@muted")
         firmness.sag = ui.field(rows.place(x, 14, width, ROW - 2), "", firmness.type_sag, rows.back, 24)
-        firmness.sag.entry.set_tooltip("Part of its height by which the body sags where it stands; 0 is rigid")
-        rows.row(42, 8)
+        firmness.sag.entry.set_tooltip(SAG_TIP)
+        rows.row(52, 6)
 
     def _build_springs(self) -> None:
         ui, rows = self._ui, self.rows
@@ -245,7 +247,8 @@ class Panel:
             return
         self._refreshed_at = fresh
         inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
-        key = (settings, self.material, self.firmness.body, *(array.tobytes() for array in inputs))
+        told = self.firmness.curve_of(self.material)
+        key = (settings, self.material, self.firmness.body, told, *(array.tobytes() for array in inputs))
         if key != self._limits_of:
             self._limits_of = key
             self._limits = coefficient_limits(world, self.material)
@@ -298,21 +301,18 @@ class Panel:
         """Cs and Cd that the level itself gives the material."""
         if self.material is None:
             return None
-        own = self.playback.level.materials.get(self._material_names()[self.material])
-        return (own.stiffness, own.damping) if isinstance(own, NissenMaterial) else None
+        return own_of(self.playback.level, self._material_names()[self.material])
 
     def _find_scale(self) -> None:
         """Find the axes on which most is seen of the body that is spoken of; they stay while something is dragged."""
-        world, slot = self.playback.session.world, self.firmness.body_of(self.material)
-        key = (world.forms, world.settings, slot, self.material)
+        name = self.firmness.body_of(self.material)
+        body = None if name is None else self.firmness.motion_of(name)
+        key = (body, name, self.material)
         if self._gesture is not None or key == self._scale_of:
             return
-        self._scale_of = key
-        self._body = body = None if slot is None else self.firmness.motion_of(slot)
-        self._scale = PLAIN
-        if body is not None and body.solver != "iterative":
-            own = self._own() or ()
-            self._scale = scale_for(lambda cs, cd: _sag(body, cs, cd), own)
+        self._scale_of, self._body, self._scale = key, body, PLAIN
+        if name is not None and body is not None and body.tells_sag:
+            self._scale = scale_of(body, self.firmness.word_pairs(name, body), self._own() or ())
 
     def _find_zones(self) -> None:
         """Find the pad's zones again, where what they depend on has changed: not the chosen springs' own Cs and Cd."""
@@ -333,7 +333,11 @@ class Panel:
             return
         is_mixed = bool(stiffness.min() != stiffness.max() or damping.min() != damping.max())
         pair = float(np.median(stiffness)), float(np.median(damping))
-        self.pad.show_state(PadState(*pair, is_mixed, True, self._own(), self._scale, self._body), self._zones)
+        name = None if self._body is None else self.firmness.body_of(self.material)
+        subject = "" if name is None else self.firmness.subject_of(name)
+        self.pad.show_state(
+            PadState(*pair, is_mixed, True, self._own(), self._scale, self._body, subject), self._zones
+        )  # fmt: skip
         if is_mixed:
             self.curve.show_none("One spring: the chosen ones differ")
         else:
@@ -388,8 +392,9 @@ class Panel:
         # What works out the numbers of other engines, which a window does without until then.
         from sandbox.app.panel.take_home_page import show_take_home
 
-        world, slot = self.playback.session.world, self.firmness.body_of(self.material)
-        show_take_home(self._ui, world, self.say, None if slot is None else world.forms[slot].name)
+        world, name = self.playback.session.world, self.firmness.body_of(self.material)
+        has_form = name in {body.name for body in world.forms}
+        show_take_home(self._ui, world, self.say, name if has_form else None)
 
     def choose_body(self, name: str) -> None:
         """Show and change a body, by its name, or all, and the springs that it is made of."""
@@ -469,14 +474,8 @@ class Panel:
         return True
 
 
-def _sag(body: BodyMotion, stiffness: Floats, damping: Floats) -> Floats:
-    sag = body.sag(*body.of_substep(stiffness, damping))
-    assert sag is not None
-    return sag
-
-
 def _word_tip(sag: float) -> str:
-    return f"Sags by {100.0 * sag:g} % of its height" if sag else "Perfectly rigid: it gives way to nothing"
+    return f"Sags by {100.0 * sag:g} % as it stands or hangs" if sag else "Perfectly rigid: it gives way to nothing"
 
 
 # Sections that fold, in the order in which the panel shows them.
