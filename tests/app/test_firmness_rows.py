@@ -14,14 +14,7 @@ BOX = {"shape": {"box": [1, 1]}, "position": [0, 1], "spacing": 0.25}
 @pytest.fixture
 def jelly(open_app):
     """The app on a jelly box of 1 m that sags by a tenth."""
-    return unfolded(open_app(parse_level(firm_level({"sag": 0.1}, floor=True, **BOX), "jelly")))
-
-
-def unfolded(driver):
-    """The app with all of the panel's numbers in sight."""
-    driver.app.play.fold("engineers")
-    driver.frames(2)
-    return driver
+    return open_app(parse_level(firm_level({"sag": 0.1}, floor=True, **BOX), "jelly"))
 
 
 def texts(driver):
@@ -86,7 +79,7 @@ def test_all_bodies_are_set_in_one_gesture_and_one_alone_where_it_is_chosen(open
     data = json.loads(firm_level({"sag": 0.1}, floor=True, **BOX))
     data["bodies"].append({**data["bodies"][0], "id": "other", "position": [3, 1], "firmness": {"sag": 0.02}})
     data["bodies"].append({"type": "rope", "id": "rope", "start": [5, 3], "end": [7, 3], "segments": 4})
-    driver = unfolded(open_app(parse_level(json.dumps(data).encode(), "two")))
+    driver = open_app(parse_level(json.dumps(data).encode(), "two"))
     rows = driver.panel.firmness
     assert rows.bodies == ["body", "other"] and texts(driver) == ["mixed"] * 3
     driver.click_widget(rows.words.buttons["hard"])

@@ -15,7 +15,7 @@ def page(open_app):
     driver.app.display.window.size = (1280, 860)
     driver.frames(2)
     driver.panel.choose_body("cube 1")
-    driver.click_widget(driver.panel.take_home)
+    driver.click_widget(driver.panel.play.take_home)
     driver.frames(2)
     return driver
 
@@ -47,7 +47,7 @@ def test_it_says_what_the_springs_are_now(page):
     page.frames(1)
     page.fill(page.panel.stiffness_field, "0.05")
     page.fill(page.panel.damping_field, "0.07")
-    page.click_widget(page.panel.take_home)
+    page.click_widget(page.panel.play.take_home)
     page.frames(2)
     assert "Here: Cs 0.05, Cd 0.07 in a tick of 1/60 s" in shown(page)
     assert "the level's own numbers are inside" in shown(page)

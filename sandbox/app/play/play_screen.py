@@ -19,7 +19,7 @@ from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.graphs.graph_dock import GraphDock
-from sandbox.app.panel.panel import SECTIONS, Panel, PanelShape
+from sandbox.app.panel.panel import MORE, SECTIONS, Panel, PanelShape
 from sandbox.app.panel.panel_rows import PANEL_WIDTH
 from sandbox.app.panel.rate_choice import ask_for_pace
 from sandbox.app.panel.side_panel import ROOM_FOR_PANEL, SidePanel
@@ -97,10 +97,12 @@ class PlayScreen:
         self.stage.place(self.viewport, app.ui.scale)
         kept = preference(SPRINGS)
         self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
-        for section in SECTIONS:
-            is_open = preference(f"{FOLD}{section}")
-            if isinstance(is_open, bool):
-                self.shape.open[section] = is_open
+        for name in (MORE, *SECTIONS):
+            is_open = preference(f"{FOLD}{name}")
+            # What the level's text asks for is in sight, whatever was folded elsewhere.
+            is_asked_for = name != MORE and SECTIONS[name].is_asked_for(playback.level.description)
+            if isinstance(is_open, bool) and not is_asked_for:
+                self.shape.open[name] = is_open
         kept = preference(HAND)
         if isinstance(kept, str) and kept in STRENGTHS:
             self.stage.drag.strength = kept
