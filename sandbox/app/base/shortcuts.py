@@ -195,6 +195,7 @@ SHORTCUTS = (
     Shortcut("previous_page", ("Ctrl+Shift+Tab",), "Previous page of the panel", "View", "edit"),
     Shortcut("larger", ("Ctrl++", "Ctrl+="), "Larger widgets", "View"),
     Shortcut("smaller", ("Ctrl+-",), "Smaller widgets", "View"),
+    Shortcut("usual_size", ("Ctrl+0",), "Widgets as large as the system asks for", "View"),
     Shortcut("gallery", ("G",), "Levels", "Files", "play"),
     Shortcut("open", ("Ctrl+O",), "Open a level or a recording, or drop its file here", "Files", "play"),
     Shortcut("share", ("F12",), "Share the last minute: GIF, MP4, PNG, page", "Files", "play"),

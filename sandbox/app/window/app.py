@@ -214,6 +214,7 @@ class App:
             "fullscreen": self.display.toggle_fullscreen,
             "larger": lambda: self._rescale(1.125),
             "smaller": lambda: self._rescale(1 / 1.125),
+            "usual_size": lambda: self.chosen.choose("scale", None),
             "settings": self._open_settings,
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
