@@ -178,7 +178,7 @@ class Panel:
             self._build_pad()
         else:
             self._build_sliders()
-        self.note = TextBlock(ui, rows.row(30, 4), "", rows.back)
+        self.note = TextBlock(ui, rows.row(28, 2), "", rows.back)
 
     def _build_sliders(self) -> None:
         rows = self.rows
