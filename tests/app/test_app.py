@@ -16,6 +16,7 @@ from sandbox.app.base.start_request import StartRequest
 from sandbox.app.contracts.screen import Figures
 from sandbox.app.widgets.scroll import BAR_WIDTH
 from sandbox.app.window.opening import open_app
+from sandbox.editor.storage.preferences import preference
 from sandbox.level.reading.files import shipped_levels
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -403,6 +404,15 @@ def test_a_window_that_holds_next_to_nothing_is_laid_out_smaller_and_cut_off(ope
     driver.frames(2)
     driver.key(pygame.K_MINUS, CTRL)
     assert driver.app.ui.scale == pytest.approx(440 / 360 / 1.125)
+
+
+def test_a_key_makes_widgets_as_large_as_they_are_by_themselves(driver):
+    own = driver.app.ui.scale
+    for key in (pygame.K_MINUS, pygame.K_MINUS):
+        driver.key(key, CTRL)
+    assert driver.app.ui.scale < own and preference("scale") is not None
+    driver.key(pygame.K_0, CTRL)
+    assert driver.app.ui.scale == own and preference("scale") is None
 
 
 def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):

@@ -110,7 +110,7 @@ def test_all_bodies_are_set_in_one_gesture_and_one_alone_where_it_is_chosen(open
     data = json.loads(firm_level({"sag": 0.1}, floor=True, **BOX))
     data["bodies"].append({**data["bodies"][0], "id": "other", "position": [3, 1], "firmness": {"sag": 0.02}})
     data["bodies"].append({"type": "rope", "id": "rope", "start": [5, 3], "end": [7, 3], "segments": 4})
-    driver = unfolded(open_app(parse_level(json.dumps(data).encode(), "two")))
+    driver = open_app(parse_level(json.dumps(data).encode(), "two"))
     rows = driver.panel.firmness
     driver.measure()
     assert rows.bodies == ["body", "other"] and texts(driver) == ["mixed"] * 3

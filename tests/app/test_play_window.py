@@ -106,7 +106,6 @@ def test_the_panel_folds_in_a_narrow_window_comes_back_with_room_and_obeys_the_p
 
 def test_what_the_panel_has_no_room_for_is_scrolled_to_by_the_keyboard(driver):
     driver.app.display.window.size = (900, 480)
-    driver.app.play.fold("world")
     driver.frames(2)
     area = driver.panel.area
     assert area.bar.needed

@@ -1,4 +1,4 @@
-"""Whatever is done to the soft bodies of shipped levels, a while later they lie in the picture and not in each other."""
+"""Whatever is done to the soft bodies of shipped levels, a while later they lie in the picture, not in each other."""
 
 import pytest
 

@@ -59,8 +59,6 @@ class CompareScreen(PlayScreen):
         # The beginning is the same in both: they show the same part of it.
         self.stage.place(self.viewport, app.ui.scale)
         app.follow(other, self.can_cancel)
-        if self.welcome:
-            app.say(self.welcome)
 
     @property
     def other(self) -> TwinPlayback:
@@ -128,7 +126,7 @@ class CompareScreen(PlayScreen):
         return Panel(
             ui,
             playback,
-            self._app.say,
+            self.say,
             {**choices, "side": self.choose_side},
             BAR_HEIGHT,
             height,

@@ -221,12 +221,16 @@ class Application(Protocol):
         """Opening, recording, saving."""
         ...
 
-    def say(self, text: str) -> None:
-        """Show a line to the person for some seconds."""
+    def say(self, text: str, screen: Screen | None = None) -> None:
+        """Show a line to the person for some seconds; screen: what it is about, and ends with."""
         ...
 
     def take_back(self, text: str) -> None:
         """Take away a line that no longer holds."""
+        ...
+
+    def end_messages(self, screen: Screen) -> None:
+        """Take away all lines about a screen."""
         ...
 
     def show_faults(self, title: str, faults: list[str]) -> None:

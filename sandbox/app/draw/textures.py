@@ -190,7 +190,7 @@ _TILES: dict[str, Callable[[], Packed]] = {
     "steel": lambda: _bar(STEEL), "paint": lambda: _bar(0xFFFFFF, 0.3), "brass": lambda: _bar(BRASS, 0.5),
     "rope": lambda: _twist(0xDEB276, 0x80542C, 0.16, 2), "cable": lambda: _twist(0xBEC8D8, 0x5C667A, 0.12, 3),
     "chain": _chain, "deck": _deck, "wood": _grained, "rubber": lambda: _bar(0xEB605C, 0.25),
-    "thread": lambda: _bar(0xCED2DA, 0.0), "silk": lambda: _bar(0xE8EEF6, 0.0), "bone": lambda: _bar(0xF0E4CC, 0.15),
+    "thread": lambda: _bar(0xCED2DA, 0.0), "silk": lambda: _bar(0x8C9BB2, 0.0), "bone": lambda: _bar(0xF0E4CC, 0.15),
     "muscle": _muscle,
 }  # fmt: skip
 # Tiles of strips by name; the bars of bare colours come after them.

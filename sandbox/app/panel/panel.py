@@ -1,21 +1,20 @@
 """Panel: how firm bodies are, Cs and Cd by a pad or sliders and what is proven of them; solver, gravity, settings."""
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 
 from sandbox.app.base.sag_sentences import SAG_TIP
-from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
 from sandbox.app.panel.engineers_rows import EngineersRows
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
 from sandbox.app.panel.panel_section import PanelSection
+from sandbox.app.panel.play_rows import PlayRows
 from sandbox.app.panel.readings import number, stability_words
-from sandbox.app.panel.response_curve import ResponseCurve
 from sandbox.app.panel.sweeps.pad_maps import PadMaps
 from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.panel.touching import Touching
@@ -36,14 +35,17 @@ from sandbox.physics.marks import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients
 
 # Sizes in layout units.
-# From this height of the panel on Cs and Cd are set by the pad.
-PAD_FROM = 470.0
-PAD_HEIGHT, CURVE_HEIGHT = 214.0, 84.0
+PAD_HEIGHT = 214.0
+# Cs and Cd are set by the pad where so much of the panel's height is left for their rows.
+PAD_ROOM = 334.0
 SPRINGS_CHOICE = 118.0
+HEADING = 26.0
 SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
+# What all is under that play does without, and that the level's text does not ask for.
+MORE, MORE_TITLE = "more", "More"
 CS_TIP = "Cs: part of its error that a spring takes back in a tick; more is stiffer. 0 to 1"
 CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calmer. 0 to 1"
 
@@ -52,7 +54,7 @@ CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calm
 class PanelShape:
     """How a person has the panel: springs by "pad" or "sliders", None: as room allows; which sections are open.
 
-    open: by name; those that are not in it are as room allows.
+    open: by name, MORE too; of those that are not in it all but MORE are open.
     """
 
     springs: str | None = None
@@ -77,7 +79,6 @@ class Panel:
     ) -> None:  # fmt: skip
         self._ui, self.playback, self.say, self.choose = ui, playback, say, choose
         self.pad: CoefficientPad | None = None
-        self.curve: ResponseCurve | None = None
         self.maps: PadMaps | None = None
         self._sweeps = shape.sweeps
         self._zones: CoefficientZones | None = None
@@ -93,17 +94,16 @@ class Panel:
             self.firmness.speak_of(self.material)
         self.engineers = EngineersRows(playback, say, choose["rate"], self.firmness, self._set_both)
         self.world = WorldRows(playback, say, choose, touch)
+        self.play = PlayRows(playback, lambda: choose["melt"](""), self._take_home)
+        self.springs = _SpringsSection(self)
         self._offered = self._present()
         self._scale_of: tuple[object, ...] = ()
         self._scale: CoefficientScale = PLAIN
         self._body: BodyMotion | None = None
-        self.by_pad = height >= PAD_FROM if shape.springs is None else shape.springs == "pad"
-        # What the level's text points at is open, unless the person has folded it.
-        self._open = {
-            name: section.title in playback.level.description
-            or (section.open_from is not None and height >= section.open_from)
-            for name, section in SECTIONS.items()
-        } | shape.open
+        self.by_pad = shape.springs == "pad"
+        # Without a choice of the person's the pad is taken where this height has room for it.
+        self._height = height if shape.springs is None else 0.0
+        self._open = dict.fromkeys(SECTIONS, True) | {MORE: False} | shape.open
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         # What does not fit is scrolled to.
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
@@ -112,19 +112,25 @@ class Panel:
             self._build_sides(shape.side)
         if self.firmness.shown:
             self._build_firmness()
-        self._build_springs()
+        self.play.build(rows)
         self.sections = {name: section.make(self) for name, section in SECTIONS.items()}
-        for name, made in self.sections.items():
-            fold = partial(choose["fold"], name)
-            rows.section(SECTIONS[name].title, self._open[name], fold, partial(made.build, rows))
+        asked = [name for name, section in SECTIONS.items() if section.is_asked_for(playback.level.description)]
+        self._build_sections(asked)
+        others = [name for name in SECTIONS if name not in asked]
+        rows.section(MORE_TITLE, self._open[MORE], partial(choose["fold"], MORE), lambda: self._build_sections(others))
         self.area.set_height(ui.px(rows.y))
         self.refresh()
 
     # Building.
 
     def is_open(self, name: str) -> bool:
-        """Whether a section, by its name in SECTIONS, is unfolded."""
+        """Whether a section, by its name in SECTIONS, or MORE is unfolded."""
         return self._open[name]
+
+    def _build_sections(self, names: Iterable[str]) -> None:
+        for name in names:
+            fold, made = partial(self.choose["fold"], name), self.sections[name]
+            self.rows.section(SECTIONS[name].title, self._open[name], fold, partial(made.build, self.rows))
 
     def _build_sides(self, side: str) -> None:
         """Which of two runs all below is of."""
@@ -135,7 +141,7 @@ class Panel:
 
     def follow(self, playback: Playback) -> None:
         """Show and change another run of the same level."""
-        self.playback = self.firmness.playback = playback
+        self.playback = self.firmness.playback = self.play.playback = playback
         for section in self.sections.values():
             section.playback = playback
 
@@ -155,11 +161,12 @@ class Panel:
         firmness.sag.entry.set_tooltip(SAG_TIP)
         rows.row(52, 6)
 
-    def _build_springs(self) -> None:
+    def build_springs(self) -> None:
+        """Make the rows that set Cs and Cd, by the pad where it is whole in sight."""
         ui, rows = self._ui, self.rows
-        ui.label(rows.place(MARGIN, 2, INSIDE - SPRINGS_CHOICE, 18), "SPRINGS", rows.back, "@heading")
+        self.by_pad = self.by_pad or self._height - rows.y >= PAD_ROOM
         ways = [("pad", "Pad", "Cs and Cd on a map of what they do"), ("sliders", "Sliders", "Cs and Cd one by one")]
-        place = rows.row(22, 6, MARGIN + INSIDE - SPRINGS_CHOICE, SPRINGS_CHOICE)
+        place = rows.place(MARGIN + INSIDE - SPRINGS_CHOICE, -HEADING - 2, SPRINGS_CHOICE, 22)
         self.ways = ui.choice(place, ways, self.choose["springs"], rows.back)
         self.ways.show("pad" if self.by_pad else "sliders")
         names = [ALL_MATERIALS, *self._material_names()]
@@ -167,19 +174,13 @@ class Panel:
         width = INSIDE / 2 - 4 if self.by_pad else INSIDE
         if self.by_pad:
             place = rows.place(MARGIN + INSIDE - width, 0, width, 30)
-        self.menu = ui.menu(rows.row(30, 10, width=width), names, chosen, self._choose_material, rows.back)
+        self.menu = ui.menu(rows.row(30, 6, width=width), names, chosen, self._choose_material, rows.back)
         if self.by_pad:
             self.maps = PadMaps(ui, place, self.playback, self._sweeps, rows.back)
             self._build_pad()
         else:
             self._build_sliders()
-        self.note = TextBlock(ui, rows.row(30, 4), "", rows.back)
-        tip, half = tip_of("melt", "play"), (INSIDE - 8) / 2
-        place = rows.place(MARGIN, 0, half, ROW)
-        self.melt = ui.button(place, "Melt", lambda: self.choose["melt"](""), rows.back, tip=tip)
-        tip = "What these springs are in your own loop or engine: numbers and code to copy"
-        place = rows.row(ROW, 10, MARGIN + half + 8, half)
-        self.take_home = ui.button(place, "Take home", self._take_home, rows.back, tip=tip)
+        self.note = TextBlock(ui, rows.row(28, 2), "", rows.back)
 
     def _build_sliders(self) -> None:
         rows = self.rows
@@ -196,7 +197,6 @@ class Panel:
         rows = self.rows
         place = rows.row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
         self.pad = CoefficientPad(self._ui, place, self._move, self._end_gesture, rows.back)
-        self.curve = ResponseCurve(self._ui, rows.row(CURVE_HEIGHT - 6, 6), rows.back)
         self.stiffness_field, self.damping_field = rows.beside(
             ("Cs  stiffness", CS_TIP, lambda text: self._type_coefficient(text, True)),
             ("Cd  damping", CD_TIP, lambda text: self._type_coefficient(text, False)),
@@ -232,9 +232,7 @@ class Panel:
         world = self.playback.session.world
         settings = world.settings
         self._follow_what_joins()
-        words = "Make whole" if settings.solver == "single_pass" else "Melt"
-        if words != self.melt.text:
-            self.melt.set_text(words)
+        self.play.refresh()
         is_look = self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused
         for section in self.sections.values():
             section.refresh(is_look)
@@ -326,10 +324,9 @@ class Panel:
             self._zones_of, self._zones = key, coefficient_zones(world, self.material, STIFFNESSES)
 
     def _show_on_pad(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
-        assert self.pad is not None and self.curve is not None
+        assert self.pad is not None
         if not len(stiffness):
             self.pad.show_state(self.pad.state._replace(enabled=False), self._zones)
-            self.curve.show_none("One spring: there is none")
             return
         is_mixed = bool(stiffness.min() != stiffness.max() or damping.min() != damping.max())
         pair = float(np.median(stiffness)), float(np.median(damping))
@@ -338,10 +335,6 @@ class Panel:
         self.pad.show_state(
             PadState(*pair, is_mixed, True, self._own(), self._scale, self._body, subject), self._zones
         )  # fmt: skip
-        if is_mixed:
-            self.curve.show_none("One spring: the chosen ones differ")
-        else:
-            self.curve.show_spring(pair, self.playback.session.world.settings.tick_rate)
 
     def _no_spring_note(self) -> str:
         world = self.playback.session.world
@@ -478,8 +471,23 @@ def _word_tip(sag: float) -> str:
     return f"Sags by {100.0 * sag:g} % as it stands or hangs" if sag else "Perfectly rigid: it gives way to nothing"
 
 
-# Sections that fold, in the order in which the panel shows them.
+class _SpringsSection:
+    """The section of springs, whose rows are the panel's own."""
+
+    def __init__(self, panel: Panel) -> None:
+        self.playback, self._panel = panel.playback, panel
+
+    def build(self, rows: PanelRows) -> None:
+        """Make the widgets."""
+        self._panel.build_springs()
+
+    def refresh(self, is_look: bool) -> None:
+        """Nothing: the panel shows what has changed in them."""
+
+
+# Sections that fold, in the order in which the panel shows them: first those that the level's text asks for.
 SECTIONS = {
+    "springs": PanelSection("Springs", lambda panel: panel.springs, ("Cs", "Cd")),
     "engineers": PanelSection("For engineers", lambda panel: panel.engineers),
-    "world": PanelSection("World", lambda panel: panel.world, open_from=840.0),
+    "world": PanelSection("World", lambda panel: panel.world),
 }

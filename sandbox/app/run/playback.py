@@ -12,6 +12,7 @@ import numpy as np
 from sandbox.app.base.loop import TickClock
 from sandbox.app.run.breaks import Breaks
 from sandbox.app.run.liveliness import Liveliness
+from sandbox.app.run.stopped import Stopped
 from sandbox.app.run.travel import Travel
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
@@ -85,6 +86,7 @@ class Playback:
         self.clock = TickClock()
         self.dissipation = Dissipation()
         self.breaks = Breaks(level)
+        self.stopped = Stopped()
         self.liveliness = Liveliness()
         self.behind = False
         self.verdict = ""
@@ -171,8 +173,10 @@ class Playback:
             self.clock.speed, self.clock.accumulator = 1.0, 0.0
         self.travel.target = None
         self._submitted = True
-        if self.listener is not None and isinstance(command, (Undo, Redo)):
-            self.listener.forget()
+        if isinstance(command, (Undo, Redo)):
+            self.stopped = Stopped()
+            if self.listener is not None:
+                self.listener.forget()
         session.submit(self._taking_time(command), gesture)
 
     def _taking_time(self, command: Command) -> Command:
@@ -393,7 +397,7 @@ class Playback:
                 self.dissipation.before(self.session.world)
                 self.session.advance()
                 self.dissipation.after(self.session.world)
-                self._note_breaks()
+                self._note_events()
                 if self.listener is not None and self.travel.target is None:
                     self.listener.hear(self.session.world)
         except CommandError as error:
@@ -406,13 +410,14 @@ class Playback:
             self._compare()
         return True
 
-    def _note_breaks(self) -> None:
-        """Tell what broke in words of its own, in place of the session's."""
+    def _note_events(self) -> None:
+        """Tell what broke, and what was stopped, in words for a person, in place of the session's."""
         world, messages = self.session.world, self.session.messages
         # Of a past that is played again the session says nothing.
-        said = break_lines(world)
+        said = {*break_lines(world), *map(str, world.contained)}
         messages[:] = [line for line in messages if line not in said]
         self.breaks.note(world)
+        self.stopped.note(world)
 
     def _compare(self) -> None:
         assert self.replay is not None
