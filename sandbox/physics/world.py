@@ -67,7 +67,6 @@ class World(StateArrays):
         self.good: dict[str, Floats] = {}
         self.trust()
         self._settings = settings or WorldSettings()
-        # As kernels take them, for commands.
         self._numbers = np.array(self._settings.numbers)
         self.append(Family.SETTING, len(self._numbers))
         self.tick = 0
@@ -467,8 +466,7 @@ class World(StateArrays):
 
     def _command(self, name: str, **given: Any) -> int:
         """Let a kernel carry out a command, see command.py; nothing is changed where it raises."""
-        given["first_cursor"], given["first_spring"] = self.grab_particle, self.grab_spring
-        given["tick_rate"] = self._settings.tick_rate
+        given.update(first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate)
         arguments.ticks("duration", given.setdefault("duration", 0))
         self._numbers[:] = self._settings.numbers
         result = carry_out(self.derived(_lend, of_hands=False), name, given, self)
