@@ -67,7 +67,6 @@ class World(StateArrays):
         self.good: dict[str, Floats] = {}
         self.trust()
         self._settings = settings or WorldSettings()
-        # As kernels take them, for commands.
         self._numbers = np.array(self._settings.numbers)
         self.append(Family.SETTING, len(self._numbers))
         self.tick = 0
@@ -77,15 +76,13 @@ class World(StateArrays):
         # What a particle that is added while the world runs is like to the touch.
         self.surface = Surface()
         self.particle_naming, self.spring_naming = Names(), Names()
-        # Bodies that keep areas, and the constraints of each.
-        self.area_names: tuple[str, ...] = ()
+        self.area_names: tuple[str, ...] = ()  # bodies that keep areas, and the constraints of each
         self.area_constraints: tuple[range, ...] = ()
         self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
         # What it was built from, for who adds more of the kind, and what joined it since.
         self.source: Any = None
         self.joined: tuple[Joined, ...] = ()
-        self.grab_particle = -1
-        self.grab_spring = -1
+        self.grab_particle = self.grab_spring = -1
         self.terrain: Terrain = NO_TERRAIN
         # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
         self.contained: list[Containment] = []
@@ -467,8 +464,7 @@ class World(StateArrays):
 
     def _command(self, name: str, **given: Any) -> int:
         """Let a kernel carry out a command, see command.py; nothing is changed where it raises."""
-        given["first_cursor"], given["first_spring"] = self.grab_particle, self.grab_spring
-        given["tick_rate"] = self._settings.tick_rate
+        given.update(first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate)
         arguments.ticks("duration", given.setdefault("duration", 0))
         self._numbers[:] = self._settings.numbers
         result = carry_out(self.derived(_lend, of_hands=False), name, given, self)

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from sandbox.physics.command import carry_out, lend
 from sandbox.physics.state import good_of, state_of
 from sandbox.physics.world import World
@@ -12,5 +14,6 @@ def part_bodies(world: World, springs: Sequence[int]) -> None:
 
     Raises IndexError for a spring that is not there or not in use.
     """
-    carry_out(lend(state_of(world), good_of(world)), "part_bodies", {"springs": springs}, world)
+    lent = lend(state_of(world), good_of(world), np.array(world.settings.numbers))
+    carry_out(lent, "part_bodies", {"springs": springs}, world)
     world.topology_version += 1
