@@ -9,15 +9,17 @@ from sandbox.commands import CutSprings
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import total_energy
-from sandbox.physics.analysis.firmness import lowest_mode_of
+from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
 from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.analysis.query import shown_springs
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.constraints import AREA
+from sandbox.physics.equation import of_body
 from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
+from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session
 from tests.support.cutting import SOFT_LEVELS, STROKES, actor_of, advance, begun, crossed, cut, level_with
 from tests.support.overlaps import crossed_by_itself, overlaps
@@ -245,8 +247,11 @@ def test_pieces_are_firm_bodies_with_names_and_forms_of_their_own():
     actor = cut(session, "cube 1", "across")
     session.apply_pending()
     world, parted = session.world, firm_bodies(session.world)
-    assert [body.name for body in parted] == ["cube 1, 1 of 2", "cube 1, 2 of 2", *(body.name for body in whole[1:])]
-    for body, piece in zip(parted[:2], sorted(pieces_of(world, actor), key=len, reverse=True), strict=True):
+    # What was not cut keeps its place.
+    assert [body.name for body in parted] == ["cube 1, 1 of 2", *(body.name for body in whole[1:]), "cube 1, 2 of 2"]
+    for body, piece in zip(
+        (parted[0], parted[-1]), sorted(pieces_of(world, actor), key=len, reverse=True), strict=True
+    ):
         assert len(body.shape.points) == len(piece) and 0.0 < lowest_mode_of(body.shape) < 1.0
         assert np.isin(world.particle_a[body.springs], piece).all() and world.spring_active[body.springs].all()
         ends = world.origin[world.particle_b[body.springs]] - world.origin[world.particle_a[body.springs]]
@@ -255,3 +260,29 @@ def test_pieces_are_firm_bodies_with_names_and_forms_of_their_own():
         corners = body.shape.points[body.shape.areas]
         areas = world.constraint_rest[body.constraints, 1]
         np.testing.assert_allclose([signed_area(each, np.roll(each, -1, axis=0)) for each in corners], areas)
+
+
+def test_each_piece_is_made_firm_by_its_name_alone_and_undo_keeps_to_what_it_was_said_of():
+    session = begun(level_with("jelly_pile", "direct"))
+    cut(session, "cube 1", "across")
+    session.apply_pending()
+    world = session.world
+    larger, smaller, other = (firm_bodies(world)[k] for k in (0, -1, 1))
+    before = world.stiffness.copy()
+    for body, sag in ((smaller.name, 0.0), (larger.name, 0.25), (other.name, 0.1)):
+        session.submit(from_record({"type": "set_firmness", "body": body, "sag": sag}, world), session.new_gesture())
+        session.apply_pending()
+    assert np.all(world.stiffness[smaller.springs] == 1.0)
+    for body, sag in ((larger, 0.25), (other, 0.1)):
+        reach = FirmnessRange.of(body.shape, world.settings.gravity, world.settings.tick_rate)
+        mode = float(world.lowest_mode[body.springs[0]])
+        pair = of_body(float(world.stiffness[body.springs[0]]), float(world.damping[body.springs[0]]), mode)
+        assert reach.reading(*pair)[0] == pytest.approx(sag, rel=0.01)
+    untouched = np.setdiff1d(
+        np.arange(world.spring_count), np.concatenate([larger.springs, smaller.springs, other.springs])
+    )
+    np.testing.assert_array_equal(world.stiffness[untouched], before[untouched])
+    session.undo()
+    session.apply_pending()
+    np.testing.assert_array_equal(world.stiffness[other.springs], before[other.springs])
+    assert np.all(world.stiffness[smaller.springs] == 1.0)

@@ -30,6 +30,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
 from sandbox.physics.analysis.firmness import WORDS
+from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients
@@ -359,11 +360,11 @@ class Panel:
 
     def _present(self) -> tuple[object, object]:
         world = self.playback.session.world
-        return world.material_names, world.forms
+        return world.material_names, tuple(body.name for body in firm_bodies(world))
 
     def _follow_what_joins(self) -> None:
         """Offer the materials and bodies that there are: some join a run with what is dropped, and go again."""
-        if all(now is then for now, then in zip(self._present(), self._offered, strict=True)):
+        if self._present() == self._offered:
             return
         self._offered, names = self._present(), self._material_names()
         if self.material is not None and self.material >= len(names):

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
+from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.changing.ramping import set_rows
 from sandbox.physics.equation import (
     HIGHEST_COEFFICIENT,
@@ -157,15 +158,16 @@ class FirmnessRange:
 
 
 def set_firmness(world: World, body: int, stiffness: float, damping: float, duration: int = 0) -> None:
-    """Give a body, by its place in the world's `forms`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
+    """Give a body, by its place among `firm_bodies`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
 
     They are shared out over its springs, areas and bends, in force in so many ticks (ramps.py); 0: at once.
     Raises IndexError and ValueError.
     """
-    body = arguments.slot("body", body, "bodies that may be stiff by their form", len(world.forms))
+    bodies = firm_bodies(world)
+    body = arguments.slot("body", body, "bodies that may be stiff by their form", len(bodies))
     stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
     damping = arguments.number("damping", damping, 0.0, 1.0)
-    form = world.forms[body]
+    form = bodies[body]
     lowest_mode = lowest_mode_of(form.shape)
     if stiffness == damping == 1.0:
         # All of them rigid, which they are alone as well.

@@ -9,11 +9,18 @@ from sandbox.physics.world import World
 
 
 def firm_bodies(world: World) -> tuple[FirmBody, ...]:
-    """The bodies of `World.forms` as they are now: of one that was cut its pieces, "cube, 1 of 2", the largest first.
+    """The bodies of `World.forms` as they are now: of one that was cut its pieces, "cube, 1 of 2".
 
-    Pieces that keep no area, crumbs and threads, are none.
+    The largest piece takes the place of its body, the others come after all bodies, so that a cut moves no place of
+    what it does not touch. Pieces that keep no area, crumbs and threads, are none.
     """
-    return tuple(piece for body in world.forms for piece in pieces_of(world, body))
+    found: tuple[FirmBody, ...] = world.derived(_find_bodies, of_hands=False)
+    return found
+
+
+def _find_bodies(world: World) -> tuple[FirmBody, ...]:
+    pieces = [pieces_of(world, body) for body in world.forms]
+    return (*(each[0] for each in pieces), *(piece for each in pieces for piece in each[1:]))
 
 
 def pieces_of(world: World, body: FirmBody) -> tuple[FirmBody, ...]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sandbox.physics.analysis.firmness import LARGEST_READ, lowest_mode_of
+from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.analysis.sag_meter import Pair, SagMeter
 from sandbox.physics.analysis.stance import Stance, Support, stance_of
 from sandbox.physics.jit import COMPILED
@@ -20,7 +21,7 @@ OWN = 0.9
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A body by its name; slot: its place in the world's `forms`, None: a rope or a net, which pins hold.
+    """A body by its name; slot: its place among `firm_bodies`, None: a rope or a net, which pins hold.
 
     lowest_mode: of its form; 0: it is not stiff without pins, or a net.
     """
@@ -34,7 +35,7 @@ class Subject:
 def subjects_of(world: World) -> dict[str, Subject]:
     """The bodies that are stiff by their form, and the ropes and nets that pins hold from end to end, by name."""
     found = {}
-    for slot, body in enumerate(world.forms):
+    for slot, body in enumerate(firm_bodies(world)):
         mode = _mode_of(world, body)
         # What is held everywhere cannot sag.
         if mode > 0.0 and not stance_of(world, body).held.all():
@@ -49,7 +50,8 @@ def subjects_of(world: World) -> dict[str, Subject]:
 
 def _mode_of(world: World, body: FirmBody) -> float:
     """The lowest mode of a body; while kernels are interpreted, which takes long, only where it is known."""
-    known = float(world.lowest_mode[body.springs[0]])
+    is_whole = any(body is form for form in world.forms)
+    known = float(world.lowest_mode[body.springs[0]]) if is_whole else 0.0
     if known > 0.0 or not COMPILED:
         return known
     return lowest_mode_of(body.shape) if len(body.shape.mass) <= LARGEST_READ else 0.0

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, set_firmness
+from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
@@ -33,7 +34,7 @@ class SetFirmness(Command):
     def carry_out(self, world: World) -> None:
         if (self.sag is None) == (self.hz is None) or (self.hz is None and self.ratio is not None):
             raise CommandError("say sag, or hz with or without ratio")
-        body = world.forms[self.body]
+        body = firm_bodies(world)[self.body]
         reach = FirmnessRange.of(body.shape, world.settings.gravity, world.settings.tick_rate)
         if reach.lowest_mode == 0.0:
             raise CommandError(f"the form of {body.name} is not stiff without pins: it has no firmness")
