@@ -33,7 +33,7 @@ def box(stiffness, damping, *, cells=8, **settings):
 
 
 def reading(world, slot=0):
-    return read_body(world, slot, lowest_mode_of(world.forms[slot].shape))
+    return read_body(world, world.forms[slot], lowest_mode_of(world.forms[slot].shape))
 
 
 def stands(world, slot=0):
@@ -112,11 +112,11 @@ def test_bodies_of_shipped_levels_swing_as_is_said(name):
     if level.settings.solver == "iterative" or level.settings.drag > 0.0:
         pytest.skip("a run alone tells: it is measured, or the air damps it too")
     world, seen = build_world(level), set()
-    for slot, body in enumerate(world.forms):
+    for body in world.forms:
         spring = body.springs[0]
         pair = float(world.stiffness[spring]), float(world.damping[spring])
         mode, kind = lowest_mode_of(body.shape), (len(body.shape.mass), *pair)
-        said = read_body(world, slot, mode)
+        said = read_body(world, body, mode)
         # What is over in a few ticks has no wobble to be measured.
         if kind in seen or len(body.shape.mass) > 80 or said is None or said.motion.rest < 8 / 60:
             continue

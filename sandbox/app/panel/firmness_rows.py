@@ -236,7 +236,7 @@ class FirmnessRows:
         pair, meter = pair_of(world, subject.body), self._meter(subject)
         if pair is None:
             return None
-        found = None if subject.slot is None else read_body(world, subject.slot, subject.lowest_mode, present)
+        found = None if subject.slot is None else read_body(world, subject.body, subject.lowest_mode, present)
         motion = None if found is None else found.motion
         is_rigid = pair[:2] == (1.0, 1.0)
         if meter is None:
@@ -347,7 +347,7 @@ class FirmnessRows:
     def _kept(self, subject: Subject) -> tuple[float | None, float | None]:
         """Frequency [Hz] and damping ratio of a body, those that can be asked for again."""
         world = self.playback.session.world
-        reading = None if subject.slot is None else read_body(world, subject.slot, subject.lowest_mode)
+        reading = None if subject.slot is None else read_body(world, subject.body, subject.lowest_mode)
         if reading is None or not math.isfinite(reading.motion.hz):
             return None, None
         hz, ratio = (float(f"{value:.3g}") for value in (reading.motion.hz, reading.motion.ratio))

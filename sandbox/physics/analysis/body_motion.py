@@ -14,7 +14,7 @@ from sandbox.physics.analysis.sag_curve import SagCurve
 from sandbox.physics.analysis.spring_motion import SpringMotion, motion_of
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
-from sandbox.physics.keeping.forms import StiffForm, strength_of
+from sandbox.physics.keeping.forms import FirmBody, StiffForm, strength_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import divide, halve, substep_coefficients, substep_time
@@ -127,13 +127,12 @@ def present_coefficients(world: World) -> tuple[Floats, Floats]:
 
 
 def read_body(
-    world: World, slot: int, lowest_mode: float, present: tuple[Floats, Floats] | None = None
+    world: World, body: FirmBody, lowest_mode: float, present: tuple[Floats, Floats] | None = None
 ) -> BodyReading | None:
-    """The reading of a body, by its place in the world's `forms`; None where its springs have several Cs or Cd.
+    """The reading of a body of `firm_bodies`; None where its springs have several Cs or Cd.
 
     lowest_mode: of its form; 0: no wobble is shown. present: see present_coefficients, None: found anew.
     """
-    body = world.forms[slot]
     springs = body.springs[world.spring_active[body.springs]]
     differ = not len(springs) or np.ptp(world.stiffness[springs]) or np.ptp(world.damping[springs])
     if differ or not lowest_mode > 0.0:
