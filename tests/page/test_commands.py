@@ -219,6 +219,8 @@ def test_the_kernel_itself_refuses_slots_that_are_not_there_in_pages(tmp_path):
         {"type": "shake", "acceleration": [NAN, 0]},
         {"type": "push", "position": [0, 0], "radius": INF, "impulse": [0, 0], "outward": 0},
         {"type": "set_coefficients", "stiffness": NAN},
+        {"type": "set_gravity", "gravity": [NAN, 0]},
+        {"type": "set_air", "drag": NAN},
     ]
     told = tried_in_node(tmp_path, world, names_in(BEFORE, world), tried, are_slots=True)
     for record, page in zip(tried, told, strict=True):

@@ -9,8 +9,8 @@ from sandbox.commands import CutSprings
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import total_energy
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
-from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.analysis.query import shown_springs
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.collision.outline import outline_of

@@ -7,12 +7,12 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
+from sandbox.app.base.sag_map import WORD_SHARE, SagMap
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.panel.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
-from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.widgets.painted import Draggable, wrapped
-from sandbox.app.widgets.sag_map import WORD_SHARE, SagMap
 from sandbox.app.widgets.slider import FINE_KEY_STEP, KEY_STEP
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.body_motion import BodyMotion

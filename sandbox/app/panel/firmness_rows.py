@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.app.base.sag_map import Pairs, word_pairs
 from sandbox.app.base.sag_sentences import subject_words
 from sandbox.app.base.sentences import capitalised
 from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import DASH, MIXED, Choice, Field, typed_number
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.app.widgets.sag_map import Pairs, word_pairs
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit

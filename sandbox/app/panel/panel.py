@@ -6,6 +6,8 @@ from functools import partial
 
 import numpy as np
 
+from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
+from sandbox.app.base.sag_map import own_of, scale_of
 from sandbox.app.base.sag_sentences import SAG_TIP
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
@@ -20,17 +22,15 @@ from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.widgets.fields import DASH, MIXED, typed_number
 from sandbox.app.widgets.painted import TextBlock
-from sandbox.app.widgets.sag_map import own_of, scale_of
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import WORDS
-from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients

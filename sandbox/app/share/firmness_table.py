@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.app.base.sag_map import SagMap, own_of, scale_of, word_pairs
 from sandbox.app.base.sag_sentences import sag_sentence, subject_words
-from sandbox.app.widgets.sag_map import SagMap, own_of, scale_of, word_pairs
 from sandbox.level.document.model import Level
 from sandbox.physics import jit
 from sandbox.physics.analysis.body_motion import FLAT, BodyMotion

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import LARGEST_READ, lowest_mode_of
-from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.analysis.sag_meter import Pair, SagMeter
 from sandbox.physics.analysis.stance import Stance, Support, stance_of
 from sandbox.physics.jit import COMPILED

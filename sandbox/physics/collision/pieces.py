@@ -214,7 +214,9 @@ def _add_side(p: int, q: int, state: State, start: Slots, listed: Slots, beside:
 def _outline_pieces(state: State, work: PieceScratch) -> None:
     for s in range(state.edge.shape[0]):
         first = work.torn[state.particle_a[s]]
-        if first < 0 or not state.spring_active[s] or not (work.has_triangles[first] and work.has_solids[first]):
+        if first < 0 or work.torn[state.particle_b[s]] != first or not state.spring_active[s]:
+            continue
+        if not (work.has_triangles[first] and work.has_solids[first]):
             continue
         if work.beside[s] == AT_LEFT:
             state.edge[s] = SOLID_LEFT

@@ -6,8 +6,8 @@ from typing import Annotated
 from pydantic import Field
 
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, set_firmness
-from sandbox.physics.analysis.pieces import firm_bodies
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError

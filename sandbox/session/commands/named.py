@@ -8,7 +8,7 @@ from typing import Annotated, Any, get_args, get_type_hints
 from pydantic import Field
 
 from sandbox.level.format.level_error import shown, suggestion
-from sandbox.physics.analysis.pieces import firm_bodies
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.world import World
 from sandbox.session.commands.faults import NO_NAME, NO_SLOT, CommandError
 

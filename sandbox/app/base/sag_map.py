@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.app.widgets.coefficient_scale import CoefficientScale, scale_for
+from sandbox.app.base.coefficient_scale import CoefficientScale, scale_for
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.physics.analysis.body_motion import BodyMotion, word_edges
 from sandbox.physics.analysis.firmness import WORDS
