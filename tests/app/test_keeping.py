@@ -11,7 +11,7 @@ from tests.app.conftest import Driver
 from tests.support.scene_player import ScenePlayer, first_level, unreachable
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
-RUNS, ALL_RUNS = 6, 200
+RUNS, ALL_RUNS = 6, 40
 DEEDS = 16
 
 
