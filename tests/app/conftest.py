@@ -181,7 +181,8 @@ class Driver:
         self.click_widget(widget)
 
     def fill(self, field, text):
-        """Focus a field, replace its text and press Enter."""
+        """Focus a field that is there, replace its text and press Enter."""
+        assert field.entry.visible
         self.app.ui.focus_on(field.entry)
         self.type(text)
         self.key(pygame.K_RETURN)

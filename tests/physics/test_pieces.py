@@ -286,3 +286,12 @@ def test_each_piece_is_made_firm_by_its_name_alone_and_undo_keeps_to_what_it_was
     session.apply_pending()
     np.testing.assert_array_equal(world.stiffness[other.springs], before[other.springs])
     assert np.all(world.stiffness[smaller.springs] == 1.0)
+
+
+def test_every_body_of_a_level_begins_with_the_firmness_that_it_says():
+    data = json.loads(small(firmness={"sag": 0.1}).model_dump_json(exclude_unset=True))
+    data["bodies"].append({**data["bodies"][0], "id": "other", "position": [4.0, 0.0]})
+    world = build_world(parse_level(json.dumps(data).encode(), "two jellies"))
+    assert [body.name for body in firm_bodies(world)] == ["it", "other"]
+    one, other = (world.stiffness[body.springs] for body in firm_bodies(world))
+    assert np.array_equal(one, other) and one[0] != 0.2

@@ -22,7 +22,7 @@ from sandbox.physics.equation import (
     of_springs,
 )
 from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.forms import Firmness, StiffForm, strength_of
+from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, strength_of
 from sandbox.physics.ramps import CONSTRAINTS, SPRINGS
 from sandbox.physics.world import World
 
@@ -165,16 +165,20 @@ def set_firmness(world: World, body: int, stiffness: float, damping: float, dura
     """
     bodies = firm_bodies(world)
     body = arguments.slot("body", body, "bodies that may be stiff by their form", len(bodies))
+    give_firmness(world, bodies[body], stiffness, damping, duration)
+
+
+def give_firmness(world: World, body: FirmBody, stiffness: float, damping: float, duration: int = 0) -> None:
+    """Give a body of a world, or a piece of one, Cs and Cd as `set_firmness` does. Raises ValueError."""
     stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
     damping = arguments.number("damping", damping, 0.0, 1.0)
-    form = bodies[body]
-    lowest_mode = lowest_mode_of(form.shape)
+    lowest_mode = lowest_mode_of(body.shape)
     if stiffness == damping == 1.0:
         # All of them rigid, which they are alone as well.
         lowest_mode = 0.0
     else:
         stiffness, damping = of_springs(stiffness, damping, lowest_mode)
-    for family, slots in ((SPRINGS, form.springs), (CONSTRAINTS, form.constraints)):
+    for family, slots in ((SPRINGS, body.springs), (CONSTRAINTS, body.constraints)):
         set_rows(world, family, slots, (stiffness, damping, lowest_mode), duration)
 
 
