@@ -42,13 +42,8 @@ HAND_STRENGTH = 100.0
 # Attributes that another value of counts as a change of topology. A step's contacts are other arrays in every step, and
 # nothing is derived from them.
 _WATCHED = frozenset(
-    {
-        "terrain",
-        "actuators",
-        "limits",
-        "forms",
-        *(column.name for column in COLUMNS if column.family is not Family.CONTACT),
-    }
+    {"terrain", "actuators", "limits", "forms"}
+    | {column.name for column in COLUMNS if column.family is not Family.CONTACT}
 )
 
 

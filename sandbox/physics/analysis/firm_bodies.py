@@ -14,15 +14,13 @@ def firm_bodies(world: World) -> tuple[FirmBody, ...]:
     The largest piece takes the place of its body, the others come after all bodies, so that a cut moves no place of
     what it does not touch. Pieces that keep no area, crumbs and threads, are none.
     """
-    forms, found = world.derived(_find_bodies, of_hands=False)
-    # Forms may be added to bodies that are there.
-    return found if forms is world.forms else _find_bodies(world)[1]
+    found: tuple[FirmBody, ...] = world.derived(_find_bodies, of_hands=False)
+    return found
 
 
-def _find_bodies(world: World) -> tuple[tuple[FirmBody, ...], tuple[FirmBody, ...]]:
-    # For which forms, and the bodies.
+def _find_bodies(world: World) -> tuple[FirmBody, ...]:
     pieces = [pieces_of(world, body) for body in world.forms]
-    return world.forms, (*(each[0] for each in pieces), *(piece for each in pieces for piece in each[1:]))
+    return (*(each[0] for each in pieces), *(piece for each in pieces for piece in each[1:]))
 
 
 def pieces_of(world: World, body: FirmBody) -> tuple[FirmBody, ...]:
