@@ -115,3 +115,15 @@ def test_without_springs_there_is_nothing_to_melt_or_to_take_home(open_app):
     driver = open_app(small_level(bodies=[], particles=[{"id": "ball", "position": [0, 0]}]), more=False)
     assert not driver.panel.play.melt.is_enabled and not driver.panel.play.take_home.is_enabled
     assert open_app(small_level(), more=False).panel.play.melt.is_enabled
+
+
+def test_the_first_body_that_joins_a_run_brings_the_rows_of_its_firmness(player):
+    player.app.documents.play_new()
+    player.frames(2)
+    assert not player.panel.firmness.shown
+    player.key(pygame.K_6)
+    left, top, width, height = player.app.play.viewport
+    player.click((left + width // 2, top + height // 2))
+    player.frames(5)
+    assert player.panel.firmness.shown and len(player.panel.firmness.bodies) == 1
+    assert in_sight(player, player.panel.firmness.sag.entry)

@@ -358,6 +358,11 @@ class Panel:
     def _submit(self, command: Command, gesture: int | None = None) -> None:
         self.playback.submit(command, gesture)
 
+    @property
+    def lacks_rows(self) -> bool:
+        """Whether a body has joined a run that had none, so that it is to be laid out anew."""
+        return not self.firmness.shown and bool(self.firmness.bodies)
+
     def _present(self) -> tuple[object, object]:
         world = self.playback.session.world
         return world.material_names, tuple(body.name for body in firm_bodies(world))

@@ -469,6 +469,8 @@ class PlayScreen:
         self._show_again()
         if self.panel is not None:
             self.panel.refresh()
+            if isinstance(self.panel, Panel) and self.panel.lacks_rows:
+                self._app.rebuild()
             self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
         self.stage.lit = self.panel.pointed_springs() if isinstance(self.panel, Panel) else None
         self.time.show()
