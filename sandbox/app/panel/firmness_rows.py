@@ -209,7 +209,7 @@ class FirmnessRows:
 
     def _text(self, readings: list[Reading], sags: list[float], whole: bool) -> str:
         if not self._chosen():
-            return "No body here keeps its form without pins."
+            return "There is no body here whose firmness can be set."
         if not readings:
             return "The springs of a body differ in Cs or Cd."
         if any(reading.sag is None for reading in readings) and jit.COMPILED:
