@@ -512,11 +512,11 @@ def test_a_section_of_the_play_panel_is_one_file_and_its_line_in_the_table(packa
     put(panel, '    "clock": CLOCK,\n', before='    "world": PanelSection(')
     script = """
 panel = driver.panel
-assert not panel.is_open("clock") and not panel.sections["clock"].flip.visible
+assert not panel.is_open("more") and not panel.sections["clock"].flip.visible
 low = panel.rows.y
-driver.app.play.fold("clock")
+driver.app.play.fold("more")
 driver.frames(2)
-assert driver.panel.is_open("clock") and driver.panel.rows.y > low
+assert driver.panel.sections["clock"].flip.visible and driver.panel.rows.y > low
 rows = driver.panel.sections["clock"]
 before = driver.world.settings.gravity
 driver.app.ui.focus_on(rows.flip)

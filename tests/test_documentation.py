@@ -320,10 +320,10 @@ def test_every_key_of_the_page_of_controls_is_one_of_the_window(heading, mode):
     assert len(named) > 20 and named - known == set()
 
 
-def test_the_six_keys_of_the_readme_do_in_the_window_what_it_says():
+def test_the_keys_of_the_readme_do_in_the_window_what_it_says():
     actions = {key: entry.action for entry in shortcuts("play") for key in entry.keys}
     told = [key for key, _ in rows(README, "## Start")]
-    assert [actions[key] for key in told] == ["palette", "tool_cut", "pause", "undo", "edit", "help"]
+    assert [actions[key] for key in told] == ["palette", "tool_cut", "pause", "undo", "edit", "save", "help"]
 
 
 def test_every_figure_of_the_readme_s_strip_stands_in_the_table_of_the_same_run():

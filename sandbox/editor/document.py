@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from sandbox.editor.items import Item, Kind, Selection, keys
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.messages import worded
-from sandbox.level.document.model import Level, NissenMaterial
+from sandbox.level.document.model import ContactsDef, Level, NissenMaterial, TerrainDef, WallsDef
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.level_error import LevelError, shown
 from sandbox.level.format.limits import FILE_LIMIT, FORMAT, VERSION
@@ -35,6 +35,8 @@ class Document:
     selection: Selection = frozenset()
 
 
+# Half of the width, and the height above its ground, of a place to play in [m].
+PLACE_HALF, PLACE_HEIGHT = 8.0, 11.0
 # What a level is called that nobody has named.
 UNTITLED = "Untitled"
 
@@ -50,6 +52,19 @@ def empty_level() -> Level:
             "rubber": NissenMaterial(stiffness=0.2, damping=0.3),
             "jelly": NissenMaterial(stiffness=0.02, damping=0.1),
         },
+    )
+
+
+def new_level() -> Level:
+    """A place to play in: ground between walls, and things that touch."""
+    (left, top, right), far = (-PLACE_HALF, PLACE_HEIGHT, PLACE_HALF), 3.0 * PLACE_HALF
+    ground = ((-far, -far), (far, -far), (far, 0.0), (-far, 0.0))
+    return replaced(
+        empty_level(),
+        view=(left - 0.5, -1.5, right + 0.5, top + 0.5),
+        contacts=ContactsDef(),
+        walls=WallsDef(box=(left, -right, right, top)),
+        terrain=(TerrainDef(id="ground", polygon=ground),),
     )
 
 

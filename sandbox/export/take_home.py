@@ -81,7 +81,7 @@ def _firmness(body: ChosenBody) -> str:
     """How soft the body is as a whole, in the words and numbers of the panel."""
     if body.form is None or not body.mode > 0.0:
         return "Its form is not stiff without pins, so it has no firmness of its own."
-    reading = read_body(body.world, body.form, body.mode)
+    reading = read_body(body.world, body.world.forms[body.form], body.mode)
     if reading is None:
         return "Its springs have several Cs and Cd, so it has no one firmness."
     wobble = f"wobbles at {short(reading.motion.hz)} Hz with a damping ratio of {short(reading.motion.ratio)}"

@@ -1,6 +1,5 @@
 """About: what a page must know of a world beside its memory: places, names, codes and the table of state arrays."""
 
-from dataclasses import fields
 from typing import Any
 
 from sandbox.physics import command
@@ -10,12 +9,11 @@ from sandbox.physics.jit.making.platforms import WEB
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline import block, collide, tick
 from sandbox.physics.sanitise import ABSURD
-from sandbox.physics.settings import DRAG, GRAVITY_X, SOLVER_NAMES, WIND_X
+from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Column, Family
 from sandbox.physics.world import World
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.for_pages import table_of
-from sandbox.session.commands.world_settings import SettingsCommand
 
 # Kernels that a page calls.
 KERNELS = {path.rpartition(".")[2]: path for path in WEB.entries}
@@ -24,22 +22,11 @@ PROGRESS = ("TICK", "MAY_FLY", "COUNT", "DONE", "BROKEN", "CHECKED")
 # Arrays of a block beside its state that go on from tick to tick.
 SETTING_ARRAYS = ("numbers", "choices")
 CONTACT = "contact_"
-# Settings that a tick reads from the numbers of a world, and where they are there.
-PLACES = {"gravity": GRAVITY_X, "wind": WIND_X, "drag": DRAG}
-
-
-def places_of(name: str) -> dict[str, int]:
-    """Where the settings are that a command of that type changes; nothing where pages cannot, or it changes none."""
-    kind = COMMAND_TYPES.get(name)
-    if kind is None or not issubclass(kind, SettingsCommand):
-        return {}
-    names = [each.name for each in fields(kind)]
-    return {each: PLACES[each] for each in names} if all(each in PLACES for each in names) else {}
 
 
 def is_done_by_pages(name: str) -> bool:
     """Whether pages carry out commands of that type themselves; of others they are told what they change."""
-    return name in command.KINDS or bool(places_of(name))
+    return name in command.KINDS
 
 
 def about(world: World, words: int) -> dict[str, Any]:
@@ -52,7 +39,6 @@ def about(world: World, words: int) -> dict[str, Any]:
         "codes": {name: getattr(tick, name) for name in CODES},
         "progress": {name: getattr(block, name) for name in PROGRESS} | {"KEPT": collide.KEPT},
         "kinds": {name: kind._asdict() for name, kind in command.KINDS.items()},
-        "places": {name: places_of(name) for name in COMMAND_TYPES if places_of(name)},
         "badSlot": command.BAD_SLOT,
         **table_of(set(filter(is_done_by_pages, COMMAND_TYPES))),
         "solvers": SOLVER_NAMES,

@@ -18,8 +18,8 @@ WEB = Path(__file__).with_name("web")
 KERNELS = FOLDER / "kernels.wasm"
 # In an order in which each is behind what it imports from.
 MODULES = (
-    "hash", "commands", "world", "run", "recording", "paint", "things", "draw", "hand", "drives", "panel", "sound",
-    "checks", "pace", "toy", "main",
+    "hash", "commands", "world", "run", "recording", "paint", "pieces", "things", "draw", "hand", "drives", "sag_map",
+    "panel", "sound", "checks", "pace", "toy", "main",
 )  # fmt: skip
 GZIP_LEVEL = 9
 # Sources in policies: that lets kernels be compiled, and that of the icon; without one a browser asks a server for it.

@@ -16,6 +16,7 @@ _UNUSED: dict[str, Any] = {
     "particle_active": False, "inverse_mass": 0.0, "velocity": 0.0, "slow_velocity": 0.0, "spin": 0.0, "collides": 0,
     "energy_bank": 0.0, "unmoved": False, "spring_active": False, "material": -1, "impulse": 0.0, "tension": 0.0,
     "constraint_active": False, "constraint_material": -1, "actuator_value": 0.0, "actuator_impulse": 0.0,
+    "ramp_ticks": 0, "constraint_ramp_ticks": 0, "constraint_area_ticks": 0,
 }  # fmt: skip
 
 

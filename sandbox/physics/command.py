@@ -8,14 +8,18 @@ import numpy as np
 
 from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.collision.pieces import new_piece_scratch, part
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
 from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
+from sandbox.physics.ramps import set_constraint, set_number, set_spring
+from sandbox.physics.settings import DRAG, GRAVITY_X, WIND_X
 from sandbox.physics.state import GoodValues, State, StateArrays
 from sandbox.physics.topology.sorting import list_ends
 
-GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
+GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(13)
+SET_GRAVITY, SET_AIR = 13, 14
 # In place of a result: the arena is full, and nothing was changed; the k-th of slots and numbers, counted through, is
 # BAD_SLOT - k: a slot that is not there, or a number that is not finite, and nothing was changed.
 NO_ARENA, BAD_SLOT = -1, -2
@@ -26,8 +30,9 @@ NOTHING, OF_HANDS, OF_TOPOLOGY = "", "hands", "topology"
 class KernelCommand(NamedTuple):
     """A kind of command: its number; what lies in `slots` and `numbers` then; what has to be derived again.
 
-    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; ?name: whether that is given. Others are what
-    commands of files call so: places have two numbers, springs as many slots as there are.
+    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; duration [ticks]: see ramps.py; ?name:
+    whether that is given. Others are what commands of files call so: places have two numbers, springs as many slots as
+    there are.
     """
 
     code: int
@@ -38,7 +43,8 @@ class KernelCommand(NamedTuple):
 
 _HAND = ("first_cursor", "first_spring", "grab")
 _PARTICLE = ("first_cursor", "particle")
-# Kinds of commands by their names in files; files have no `freeze` and `break_springs`, which a tick ends with.
+# Kinds of commands by their names in files; files have no `freeze` and `break_springs`, which a tick ends with, and no
+# `part_bodies`, which building a level with cut bodies does.
 KINDS = {
     "grab": KernelCommand(GRAB, (*_HAND, "particle"), ("target", "strength", "radius"), OF_HANDS),
     "move_grab": KernelCommand(MOVE_GRAB, _HAND, ("target", "tick_rate")),
@@ -48,9 +54,13 @@ KINDS = {
     "freeze": KernelCommand(FREEZE, _PARTICLE, (), OF_TOPOLOGY),
     "cut_springs": KernelCommand(CUT, ("springs",), (), OF_TOPOLOGY),
     "break_springs": KernelCommand(BREAK, ("springs",), (), OF_TOPOLOGY),
+    "part_bodies": KernelCommand(PART, ("springs",), (), OF_TOPOLOGY),
     "set_coefficients": KernelCommand(
-        SET_COEFFICIENTS, ("?material", "material", "?stiffness", "?damping"), ("stiffness", "damping")
+        SET_COEFFICIENTS, ("?material", "material", "?stiffness", "?damping", "duration"), ("stiffness", "damping")
     ),
+    "set_gravity": KernelCommand(SET_GRAVITY, ("duration",), ("gravity",)),
+    # What may be left out and is a pair comes last.
+    "set_air": KernelCommand(SET_AIR, ("?wind", "?drag", "duration"), ("drag", "wind")),
     "set_drive": KernelCommand(DRIVE, ("part",), ("value",)),
     "push": KernelCommand(PUSH, ("first_cursor",), ("position", "impulse", "outward", "radius")),
     "shake": KernelCommand(SHAKE, ("first_cursor",), ("acceleration", "tick_rate")),
@@ -58,10 +68,11 @@ KINDS = {
 
 
 class Commanded(NamedTuple):
-    """What commands change; a world block begins with it."""
+    """What commands change; a world block begins with it. numbers: the settings, see settings.py."""
 
     state: State
     good: GoodValues
+    numbers: Floats
 
 
 @kernel
@@ -86,10 +97,15 @@ def command(lent: Any, arena: Arena, kind: int, slots: Slots, numbers: Floats) -
         _unpin(state, slots[1])
     elif kind == FREEZE:
         _freeze(state, world.good, slots[1])
-    elif kind in (CUT, BREAK):
-        return _cut(state, slots, kind == CUT, arena)
+    elif kind in (CUT, BREAK, PART):
+        return _cut(state, world.good, slots, kind, arena)
     elif kind == SET_COEFFICIENTS:
         _set_coefficients(state, world.good, slots, numbers)
+    elif kind == SET_GRAVITY:
+        for axis in range(2):
+            set_number(state, world.numbers, GRAVITY_X + axis, numbers[axis], slots[0])
+    elif kind == SET_AIR:
+        _set_air(state, world.numbers, slots, numbers)
     elif kind == DRIVE:
         state.actuator_value[slots[0]] = numbers[0]
     elif kind == PUSH:
@@ -111,7 +127,7 @@ def _first_bad(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
         return slots.shape[0] - 1
     if kind == FREEZE and not 0 <= slots[1] < particles:
         return 1
-    if kind in (CUT, BREAK):
+    if kind in (CUT, BREAK, PART):
         for k in range(slots.shape[0]):
             if not 0 <= slots[k] < springs or not state.spring_active[slots[k]] or state.material[slots[k]] < 0:
                 return k
@@ -214,27 +230,32 @@ def _side_is_lost(p: int, q: int, state: State, start: Slots, listed: Slots, gon
 
 
 @inner_kernel
-def _cut(state: State, springs: Slots, disturbs: bool, arena: Arena) -> int:
-    # Take springs out, and the constraints that they were a side of, unless another spring holds that side. Pieces of
-    # what breaks by itself keep the energy of the body.
+def _cut(state: State, good: GoodValues, springs: Slots, kind: int, arena: Arena) -> int:
+    # Take springs out, and the constraints that they were a side of, unless another spring holds that side. What falls
+    # into pieces becomes several bodies; those of what breaks by itself keep the energy of the body. PART: the bodies
+    # of springs have lost others already.
     begin(arena)
-    count, constraints = state.law.shape[0], state.constraint_kind.shape[0]
-    looked_at = count if constraints > 0 else 0
-    gone = new_flags(arena, count)
-    start, listed = new_slots(arena, state.owner.shape[0] + 1), new_slots(arena, 2 * looked_at)
+    count = state.law.shape[0]
+    gone, pieces = new_flags(arena, count), new_piece_scratch(state, arena)
+    start, listed = new_slots(arena, state.owner.shape[0] + 1), new_slots(arena, 2 * count)
     if is_full(arena):
         return NO_ARENA
-    for k in range(springs.shape[0]):
+    for k in range(springs.shape[0] if kind != PART else 0):
         s = springs[k]
         gone[s] = True
         state.spring_active[s] = False
         state.impulse[s, 0] = state.impulse[s, 1] = state.tension[s] = 0.0
-        if disturbs:
+        if kind == CUT:
             state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
-    if constraints == 0:
-        return 0
     list_ends(state.particle_a, state.particle_b, count, state.owner.shape[0], start, listed)
-    for k in range(constraints):
+    _end_constraints(state, start, listed, gone)
+    part(state, good, springs, start, listed, pieces)
+    return 0
+
+
+@inner_kernel
+def _end_constraints(state: State, start: Slots, listed: Slots, gone: Flags) -> None:
+    for k in range(state.constraint_kind.shape[0]):
         first, last = state.constraint_first[k], state.constraint_first[k] + state.constraint_corners[k]
         # A bend's two outer corners are no side of it.
         begins = last - 1 if state.constraint_kind[k] == AREA else first
@@ -243,7 +264,6 @@ def _cut(state: State, springs: Slots, disturbs: bool, arena: Arena) -> int:
             if _side_is_lost(p, q, state, start, listed, gone):
                 state.constraint_active[k] = False
             begins = corner
-    return 0
 
 
 @inner_kernel
@@ -252,24 +272,27 @@ def _is_of(material: int, slots: Slots) -> bool:
 
 
 @inner_kernel
+def _set_air(state: State, settings: Floats, slots: Slots, numbers: Floats) -> None:
+    if slots[0] != 0:
+        for axis in range(2):
+            set_number(state, settings, WIND_X + axis, numbers[1 + axis], slots[2])
+    if slots[1] != 0:
+        set_number(state, settings, DRAG, numbers[0], slots[2])
+
+
+@inner_kernel
 def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Floats) -> None:
     # Of springs and areas; grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
     for s in range(state.material.shape[0]):
         if _is_of(state.material[s], slots):
-            state.stiffness[s] = good.stiffness[s] = numbers[0] if slots[2] != 0 else state.stiffness[s]
-            state.damping[s] = good.damping[s] = numbers[1] if slots[3] != 0 else state.damping[s]
-            state.lowest_mode[s] = good.lowest_mode[s] = 0.0
-            state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
+            stiffness = numbers[0] if slots[2] != 0 else state.stiffness[s]
+            damping = numbers[1] if slots[3] != 0 else state.damping[s]
+            set_spring(state, good, s, stiffness, damping, slots[4])
     for k in range(state.constraint_material.shape[0]):
         if _is_of(state.constraint_material[k], slots):
-            stiffness, damping = state.constraint_stiffness, state.constraint_damping
-            stiffness[k] = good.constraint_stiffness[k] = numbers[0] if slots[2] != 0 else stiffness[k]
-            damping[k] = good.constraint_damping[k] = numbers[1] if slots[3] != 0 else damping[k]
-            state.constraint_lowest_mode[k] = good.constraint_lowest_mode[k] = 0.0
-            for corner in range(
-                state.constraint_first[k], state.constraint_first[k] + state.constraint_corners[k]
-            ):  # fmt: skip
-                state.energy_bank[state.corner_particle[corner]] = BANK_UNOPENED
+            stiffness = numbers[0] if slots[2] != 0 else state.constraint_stiffness[k]
+            damping = numbers[1] if slots[3] != 0 else state.constraint_damping[k]
+            set_constraint(state, good, k, stiffness, damping, slots[4])
 
 
 @inner_kernel
@@ -328,9 +351,9 @@ def _shake(state: State, good: GoodValues, first_cursor: int, numbers: Floats) -
     return count
 
 
-def lend(state: State, good: GoodValues) -> Any:
+def lend(state: State, good: GoodValues, numbers: Floats) -> Any:
     """What commands change, as kernels take it."""
-    return bundle(Commanded(state, good))
+    return bundle(Commanded(state, good, numbers))
 
 
 def carry_out(lent: Any, name: str, given: Mapping[str, Any], state: StateArrays) -> int:

@@ -15,3 +15,5 @@ GRAB_COUNT = 10
 GRAB_MATERIAL = -1
 # The material index of a constraint with Cs and Cd of its own, which no slider reaches.
 OWN_MATERIAL = -1
+# The longest ramp [ticks].
+LONGEST_RAMP = 1_000_000

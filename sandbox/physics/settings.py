@@ -1,7 +1,8 @@
 """WorldSettings: the few numbers of a world that are no arrays."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 # Substeps that every tick chooses for itself, see substeps.py.
@@ -15,6 +16,7 @@ DEFAULT_SOLVER = "direct"
 
 # Settings as kernels read them: places among the numbers and among the choices; SOLVER by its place in SOLVER_NAMES.
 GRAVITY_X, GRAVITY_Y, WIND_X, WIND_Y, DRAG, WARM_START = range(6)
+NUMBER_COUNT = 6
 SOLVER, TICK_RATE, SUBSTEP_COUNT, IS_AUTO, ITERATIONS = range(5)
 SINGLE_PASS, ITERATIVE, DIRECT = range(3)
 
@@ -58,6 +60,11 @@ class WorldSettings:
     def numbers(self) -> tuple[float, ...]:
         """Its numbers as kernels read them."""
         return (*self.gravity, *self.wind, self.drag, self.warm_start)
+
+    def with_numbers(self, numbers: Sequence[float]) -> "WorldSettings":
+        """The same settings with other numbers, in the order of `numbers`."""
+        x, y, wind_x, wind_y, drag, warm_start = numbers
+        return replace(self, gravity=(x, y), wind=(wind_x, wind_y), drag=drag, warm_start=warm_start)
 
     @property
     def choices(self) -> tuple[int, int, int, int, int]:

@@ -34,6 +34,7 @@ class Family(Enum):
     ACTUATOR = "actuator"
     CONTACT = "contact"
     HAND = "hand"
+    SETTING = "number of the settings: gravity x and y, wind x and y, drag, warm start"
 
 
 @dataclass(eq=False)
@@ -88,12 +89,12 @@ def _array(
     return cast(Any, Column(stored, family, dtype, unit, meaning, width, guarded, topology, sparse, usual))
 
 
-P, S, E, C, A, T, H = Family
+P, S, E, C, A, T, H, G = Family
 F64, I64, I32, I8, BOOL = np.float64, np.int64, np.int32, np.int8, np.bool_
 
 
 class StateArrays:
-    """Particles, springs, constraints, actuators, contacts and hands as a struct of arrays.
+    """Particles, springs, constraints, actuators, contacts, hands and ramps of settings as a struct of arrays.
 
     The order of the lines is that in which arrays are hashed and stored. It and the names in quotes are part of the
     replay contract: they do not follow a rename in code, and new lines go to the end of their family.
@@ -113,7 +114,7 @@ class StateArrays:
     energy_bank = _array("energy_bank", P, F64, "J", "energy bank of a body, at its free particle of lowest slot; -1: a new bank begins, -2: a new bank begins empty")
     friction = _array("friction", P, F64, "1", "friction of its surface; at a contact the geometric mean of both counts", guarded=True)
     restitution = _array("restitution", P, F64, "1", "restitution of its surface; at a contact the larger one counts", guarded=True)
-    owner = _array("owner", P, I32, "", "its body; negative: it is a body of its own", topology=True)
+    owner = _array("owner", P, I32, "", "its body; negative: of a body that is named by its first particle p, -1 - p: a loose particle, or a piece that was cut off", topology=True)
     group = _array("group", P, I64, "", "its collision group, one bit", topology=True)
     collides = _array("collides", P, I64, "", "bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 = nothing", topology=True)
     parting_reserve = _array("parting_reserve", P, F64, "J", "energy that a body has lost and may spend on parting from others, at its free particle of lowest slot; negative: what it was lent", sparse=True)
@@ -139,6 +140,10 @@ class StateArrays:
     tension = _array("tension", S, F64, "N s", "its pulling impulse of the last step, with \"auto\" substeps of the whole tick, for the direct solver")
     edge = _array("edge", S, I8, "", "kind of edge for collisions: none, a line of two sides, or the outline of a solid body on its left or right", topology=True)
     lowest_mode = _array("lowest_mode", S, F64, "1", "lowest mode of the body whose firmness sets its Cs and Cd; 0: they are its own", guarded=True, sparse=True)
+    stiffness_now = _array("stiffness_now", S, F64, "1", "Cs of the last tick, while it comes to what is set", sparse=True)
+    damping_now = _array("damping_now", S, F64, "1", "Cd of the last tick, while it comes to what is set", sparse=True)
+    lowest_mode_now = _array("lowest_mode_now", S, F64, "1", "lowest_mode of the last tick, while Cs and Cd come to what is set", sparse=True)
+    ramp_ticks = _array("ramp_ticks", S, I32, "tick", "ticks until Cs and Cd are what is set; 0: they are", sparse=True)
 
     constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
     constraint_first = _array("element_first", E, I32, "corner", "index of its first corner", topology=True)
@@ -149,6 +154,12 @@ class StateArrays:
     constraint_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own")
     constraint_active = _array("element_active", E, BOOL, "", "whether it acts; false once a spring along its sides is cut or broken", topology=True)
     constraint_lowest_mode = _array("element_lowest_mode", E, F64, "1", "as lowest_mode of a spring", guarded=True, sparse=True)
+    constraint_stiffness_now = _array("element_stiffness_now", E, F64, "1", "as stiffness_now of a spring", sparse=True)
+    constraint_damping_now = _array("element_damping_now", E, F64, "1", "as damping_now of a spring", sparse=True)
+    constraint_lowest_mode_now = _array("element_lowest_mode_now", E, F64, "1", "as lowest_mode_now of a spring", sparse=True)
+    constraint_ramp_ticks = _array("element_ramp_ticks", E, I32, "tick", "as ramp_ticks of a spring", sparse=True)
+    constraint_area_now = _array("element_area_now", E, F64, "m^2", "wanted area of the last tick, while it comes to what is set", sparse=True)
+    constraint_area_ticks = _array("element_area_ticks", E, I32, "tick", "ticks until the wanted area is what is set; 0: it is", sparse=True)
 
     corner_particle = _array("corner_particle", C, I32, "slot", "particle of the corner", topology=True)
     corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "square of its gradient, at rest", guarded=True)
@@ -165,6 +176,8 @@ class StateArrays:
     hand_strength = _array("hand_strength", H, F64, "m/s^2", "largest force divided by the mass of the body; 0: it holds nothing", sparse=True)
     hand_radius = _array("hand_radius", H, F64, "m", "particles of the body within this distance of the grabbed one share the force; 0: only the grabbed one bears it", sparse=True)
     hand_force = _array("hand_force", H, F64, "N", "its force in the last substep", width=2, sparse=True)
+    setting_now = _array("setting_now", G, F64, "m/s^2, m/s, 1/s or 1", "its value in the last tick, while it comes to what is set", sparse=True)
+    setting_ticks = _array("setting_ticks", G, I32, "tick", "ticks until it is what is set; 0: it is", sparse=True)
     # fmt: on
 
 

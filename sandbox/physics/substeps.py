@@ -6,13 +6,14 @@ The choice is a pure function of the state at the tick's start, of + - * / and c
 from typing import Any
 
 from sandbox.physics.arrays import Floats
+from sandbox.physics.constraints import HIGHEST_OF_RING, TRIANGLE
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, half_step_of_network, part_of_network
 from sandbox.physics.jit import contents, inner_kernel, kernel
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.state import State, lent_state
-from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE, World
+from sandbox.physics.world import World
 
 # No tick chooses more substeps than this. 4 leaves a rope dragged at 20 m/s at a stretch above 1e-2, 16 doubles the
 # time.

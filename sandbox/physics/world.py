@@ -39,16 +39,11 @@ GRAB_STIFFNESS, GRAB_DAMPING = 0.2, 0.3
 # weight. Lower lags behind the mouse, higher tears what is soft.
 HAND_STRENGTH = 100.0
 
-# Corners of an area that is all shape: it and its sides agree in one.
-TRIANGLE = 3
-# Cs and Cd at most of an area of more corners, whose size its sides may not allow: at 0.999 a rigid skin that is blown
-# up shakes for seconds at 20 m/s, at 1 for ever at 90; at 0.95 it breathes.
-HIGHEST_OF_RING = 0.99
-
 # Attributes that another value of counts as a change of topology. A step's contacts are other arrays in every step, and
 # nothing is derived from them.
 _WATCHED = frozenset(
-    {"terrain", "actuators", "limits", *(column.name for column in COLUMNS if column.family is not Family.CONTACT)}
+    {"terrain", "actuators", "limits", "forms"}
+    | {column.name for column in COLUMNS if column.family is not Family.CONTACT}
 )
 
 
@@ -73,6 +68,8 @@ class World(StateArrays):
         self.good: dict[str, Floats] = {}
         self.trust()
         self._settings = settings or WorldSettings()
+        self._numbers = np.array(self._settings.numbers)
+        self.append(Family.SETTING, len(self._numbers))
         self.tick = 0
         self.material_names = tuple(material_names)
         self.limits: StrainLimits = unlimited(len(self.material_names))
@@ -80,15 +77,13 @@ class World(StateArrays):
         # What a particle that is added while the world runs is like to the touch.
         self.surface = Surface()
         self.particle_naming, self.spring_naming = Names(), Names()
-        # Bodies that keep areas, and the constraints of each.
-        self.area_names: tuple[str, ...] = ()
+        self.area_names: tuple[str, ...] = ()  # bodies that keep areas, and the constraints of each
         self.area_constraints: tuple[range, ...] = ()
         self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
         # What it was built from, for who adds more of the kind, and what joined it since.
         self.source: Any = None
         self.joined: tuple[Joined, ...] = ()
-        self.grab_particle = -1
-        self.grab_spring = -1
+        self.grab_particle = self.grab_spring = -1
         self.terrain: Terrain = NO_TERRAIN
         # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
         self.contained: list[Containment] = []
@@ -192,6 +187,9 @@ class World(StateArrays):
         if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
             self.energy_bank[:] = BANK_UNOPENED
             self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
+        # What is set so is in force at once.
+        is_set = np.array(settings.numbers) != np.array(self._settings.numbers)
+        self.setting_now[is_set] = self.setting_ticks[is_set] = 0
         self._settings = settings
 
     def scale_impulses(self, factor: float) -> None:
@@ -425,20 +423,12 @@ class World(StateArrays):
         self.area_names += (name,)
         self.area_constraints += (constraints,)
 
-    def inflate(self, body: int, inflation: float) -> None:
-        """Let each area of a body, by its place in `area_names`, want this multiple of its form's."""
-        body = arguments.slot("body", body, "bodies that keep areas", len(self.area_constraints))
-        inflation = arguments.number("inflation", inflation, 0.0)
-        first, last = self.area_constraints[body].start, self.area_constraints[body].stop
-        self.constraint_rest[first:last, 0] = inflation * self.constraint_rest[first:last, 1]
-        self.good["constraint_rest"][first:last] = self.constraint_rest[first:last]
-        corners = self.constraint_first[first], self.constraint_first[last - 1] + self.constraint_corners[last - 1]
-        self.disturb(self.corner_particle[corners[0] : corners[1]])
-
-    def set_coefficients(self, stiffness: float | None, damping: float | None, material: int | None) -> None:
+    def set_coefficients(
+        self, stiffness: float | None, damping: float | None, material: int | None, duration: int = 0
+    ) -> None:
         """Set Cs, Cd or both, of one material's springs and areas or (None) of all, and end their bodies' firmness.
 
-        Grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
+        Grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs. duration [ticks]: see ramps.py.
         """
         if material is not None:
             arguments.slot("material", material, "materials", len(self.material_names))
@@ -446,7 +436,17 @@ class World(StateArrays):
         for name, value in given.items():
             if value is not None:
                 arguments.number(name, value, 0.0, 1.0)
-        self._command("set_coefficients", material=material, **given)
+        self._command("set_coefficients", material=material, duration=duration, **given)
+
+    def set_gravity(self, gravity: Point, duration: int = 0) -> None:
+        """Set gravity [m/s^2]; duration [ticks]: see ramps.py."""
+        self._command("set_gravity", gravity=arguments.point("gravity", gravity), duration=duration)
+
+    def set_air(self, wind: Point | None, drag: float | None, duration: int = 0) -> None:
+        """Set the wind [m/s], the drag [1/s] or both (None: it stays); duration [ticks]: see ramps.py."""
+        wind = None if wind is None else arguments.point("wind", wind)
+        drag = None if drag is None else arguments.number("drag", drag, 0.0)
+        self._command("set_air", wind=wind, drag=drag, duration=duration)
 
     def reserve_grabs(self) -> None:
         """Reserve the slots of all grabs, inactive; done once, when the world is built."""
@@ -465,9 +465,12 @@ class World(StateArrays):
 
     def _command(self, name: str, **given: Any) -> int:
         """Let a kernel carry out a command, see command.py; nothing is changed where it raises."""
-        given["first_cursor"], given["first_spring"] = self.grab_particle, self.grab_spring
-        given["tick_rate"] = self._settings.tick_rate
+        given.update(first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate)
+        arguments.ticks("duration", given.setdefault("duration", 0))
+        self._numbers[:] = self._settings.numbers
         result = carry_out(self.derived(_lend, of_hands=False), name, given, self)
+        if name in ("set_gravity", "set_air"):
+            self._settings = self._settings.with_numbers(self._numbers.tolist())
         changes = KINDS[name].changes
         if changes == OF_TOPOLOGY:
             self.topology_version += 1
@@ -499,12 +502,8 @@ class World(StateArrays):
     def push(self, place: Point, impulse: Point, outward: float, radius: float) -> bool:
         """Give the free particles nearer to place [m] than radius [m] an impulse [N s] together; False: there are none.
 
-        outward [N s]: the sum of the impulses that also drive each one straight away from the place. A particle at a
-        distance d gets the velocity
-
-            dv_i = (J + outward n_i) w_i / sum m w,     w_i = 1 - (d_i / radius)^2
-
-        so that what is near moves more, whatever its mass, and the momentum grows by J.
+        outward [N s]: the sum of the impulses that also drive each one straight away from the place. See `_push` in
+        command.py: what is near moves more, whatever its mass.
         """
         given = {"position": arguments.point("place", place), "impulse": arguments.point("impulse", impulse)}
         outward, radius = arguments.number("outward", outward), arguments.number("radius", radius, 0.0)
@@ -593,7 +592,7 @@ class World(StateArrays):
 
 
 def _lend(world: World) -> Any:
-    return lend(state_of(world), good_of(world))
+    return lend(state_of(world), good_of(world), world._numbers)
 
 
 def _collides(world: World) -> bool:

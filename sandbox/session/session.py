@@ -187,6 +187,10 @@ class Session:
             self._script = itertools.chain([*lines, *filter(None, [self.history.scripted])], self._script)
             self.history.scripted = next(self._script, None)
             raise
+        self._enter(lines, commands)
+
+    def _enter(self, lines: Iterable[ScriptLine], commands: Iterable[Command]) -> None:
+        """Enter commands into history, whose effects the present state holds."""
         for line, command in zip(lines, commands, strict=True):
             if line.gesture in self.history.undone:
                 continue
@@ -194,6 +198,16 @@ class Session:
             self.history.last_gesture = max(self.history.last_gesture, line.gesture)
             self.history.enter(LogEntry(self.history.next_order, line.tick, line.gesture, command))
         self.history.last_tick = self.tick
+
+    def come_to(self, state: Snapshot, lines: Iterable[ScriptLine]) -> None:
+        """Go on from the end of the run to a later state of it, without stepping there; lines: what led there.
+
+        Raises CommandError where a command names what is not there.
+        """
+        lines = list(lines)
+        self._put_back(state)
+        self._enter(lines, [from_record(line.record, self.world) for line in lines])
+        self.history.keyframes.keep(Keyframe(self.history.next_order, take(self.world)))
 
     def retold(self, tick: int) -> "Session":
         """A run of its own with the same history, at the last keyframe at or before a tick; `advance` follows it from

@@ -7,6 +7,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import significant
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
+from sandbox.tools.clearance import lift
 from sandbox.tools.parts import COLOURS, PARTS, in_pace
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.sizing import SMALLEST, Sized, resized
@@ -26,6 +27,8 @@ from sandbox.tools.tool import (
 THROW_SECONDS = 0.08
 # The fastest throw [m/s]: beyond it a part passes through walls of other parts.
 FASTEST_THROW = 25.0
+# What is said where a part has no room.
+NO_ROOM = "There is no room for it here. Click where it is free, or make it smaller with the wheel."
 # Significant digits of how many times as large a part of the catalogue is: turned back, the wheel comes to 1 again.
 TIMES_DIGITS = 4
 
@@ -34,15 +37,53 @@ class ThrowTool(PlacedTool):
     """Drops or throws what subclasses make. Each drop is a gesture."""
 
     adds = True
+    # Whether what it drops touches other things.
+    touches = False
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
         self._new_gesture = new_gesture
+        self._snapshot: Snapshot | None = None
+        self._landing: tuple[object, Point | None] = (None, None)
         self._pressed_at: Point | None = None
         self._trail: list[tuple[float, Point]] = []
 
     def made(self, place: Point, velocity: Point, snapshot: Snapshot) -> tuple[Command, ...]:
         """The commands that add it at a place [m], with a velocity [m/s]. Raises ValueError, with one line."""
         raise NotImplementedError
+
+    def outline(self, place: Point) -> list[Loop]:
+        """Lines [m] around what is dropped at a place [m]; closed ones end where they begin."""
+        raise NotImplementedError
+
+    def reconcile(self, snapshot: Snapshot) -> None:
+        """Know what is in the way."""
+        self._snapshot = snapshot
+
+    @property
+    def landing(self) -> Point | None:
+        """Where a click drops: on what is below the pointer; None: there is no room, or no pointer."""
+        return None if self.place is None else self._landing_at(self.place, self._snapshot)
+
+    @property
+    def fits(self) -> bool:
+        """Whether a click drops something at the pointer."""
+        return self.place is None or self.landing is not None
+
+    def _landing_at(self, place: Point, snapshot: Snapshot | None) -> Point | None:
+        if not self.touches or snapshot is None:
+            return place
+        outline = self.outline(place)
+        key = outline, snapshot.tick, len(snapshot.mass)
+        if self._landing[0] != key:
+            by = lift(outline, snapshot)
+            self._landing = key, None if by is None else (place[0], place[1] + by)
+        return self._landing[1]
+
+    @property
+    def ghost(self) -> list[Loop]:
+        """Lines [m] of what would be dropped; closed ones end where they begin."""
+        place = self.landing or self.place
+        return [] if place is None else self.outline(place)
 
     def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
         """Follow the pointer; drop on the release."""
@@ -56,8 +97,11 @@ class ThrowTool(PlacedTool):
             return NOTHING
         velocity = self._thrown(event)
         self._pressed_at = None
+        landing = self._landing_at(event.position, snapshot)
+        if landing is None:
+            return Response(message=NO_ROOM)
         try:
-            commands = self.made(event.position, velocity, snapshot)
+            commands = self.made(landing, velocity, snapshot)
         except ValueError as error:
             return Response(message=f"{error}.")
         gesture = self._new_gesture()
@@ -105,12 +149,9 @@ class DropTool(Sized, ThrowTool):
         """The part in its present size and colour."""
         return DropPicture(self.part.name, self.size, self.colour)
 
-    @property
-    def ghost(self) -> list[Loop]:
-        """Lines [m] of what would be dropped; closed ones end where they begin."""
-        if self.place is None:
-            return []
-        x, y = self.place
+    def outline(self, place: Point) -> list[Loop]:
+        """Lines [m] of the part in its present size."""
+        x, y = place
         loops = [[(x + self.size * px, y + self.size * py) for px, py in loop] for loop in self.part.ghost]
         return [[*loop, loop[0]] if self.part.solid else loop for loop in loops]
 
@@ -146,12 +187,9 @@ class CatalogueTool(ThrowTool):
         """The part in its present size."""
         return DropPicture(self.part, self.times, replaces_ghost=True)
 
-    @property
-    def ghost(self) -> list[Loop]:
-        """The box [m] around what would be dropped."""
-        if self.place is None:
-            return []
-        (x, y), (width, height) = self.place, (self.times * side for side in self._box)
+    def outline(self, place: Point) -> list[Loop]:
+        """The box [m] around the part in its present size."""
+        (x, y), (width, height) = place, (self.times * side for side in self._box)
         corners = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5))
         return [[(x + dx * width, y + dy * height) for dx, dy in corners]]
 

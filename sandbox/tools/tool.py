@@ -111,6 +111,16 @@ class Tool(ABC):
         return []
 
     @property
+    def landing(self) -> Point | None:
+        """Where [m] a click would put what it adds; None: nowhere."""
+        return self.place
+
+    @property
+    def fits(self) -> bool:
+        """Whether what it adds has room there."""
+        return True
+
+    @property
     def preview(self) -> DropPicture | None:
         """A picture of what a click would add at `place`."""
         return None

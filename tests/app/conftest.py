@@ -14,11 +14,16 @@ import pytest
 from sandbox.app.base.display import Display
 from sandbox.app.base.idle import REST
 from sandbox.app.base.start_request import StartRequest
+from sandbox.app.panel.panel import MORE
+from sandbox.app.play.play_screen import FOLD
 from sandbox.app.window.app import App
+from sandbox.editor.storage.preferences import set_preference
 from sandbox.level.reading.files import parse_level
 from tests.support.person import VirtualScreen
 
 FRAME = 1 / 60
+# In so many frames all is measured.
+MOST_FRAMES = 3_000
 
 
 def small_level(**changes):
@@ -94,9 +99,16 @@ class Driver:
     def _frame(self):
         self.app.frame(FRAME)
 
+    def measure(self):
+        """Let frames pass until the panel has measured what was asked, and all else that it shows."""
+        for _ in range(MOST_FRAMES):
+            self.pass_unseen(1)
+            if not self.panel.firmness.is_measuring:
+                break
+        self.frames(20)
+
     def take_sliders(self):
         """Have the whole panel in sight, with sliders in place of the pad."""
-        self.app.play.shape.open.update(engineers=True, world=True)
         self.app.play._set_by("sliders")
         self.frames(2)
 
@@ -161,8 +173,16 @@ class Driver:
             self.post(pygame.KEYUP, key=ord(letter), mod=0, unicode=letter, scancode=0)
         self.frames(2)
 
+    def click_in_panel(self, widget):
+        """Scroll the panel to a widget, and click it."""
+        area = self.panel.area
+        area.scroll_to(widget.relative_rect.top - area.view.rect.height / 2)
+        self.frames(2)
+        self.click_widget(widget)
+
     def fill(self, field, text):
-        """Focus a field, replace its text and press Enter."""
+        """Focus a field that is there, replace its text and press Enter."""
+        assert field.entry.visible
         self.app.ui.focus_on(field.entry)
         self.type(text)
         self.key(pygame.K_RETURN)
@@ -220,10 +240,15 @@ def documents(tmp_path, monkeypatch):
 
 @pytest.fixture
 def open_app(documents):
-    """Open the app on a level, a replay, or (None) its gallery; edit: in the editor, None = an empty sheet."""
+    """Open the app on a level, a replay, or (None) its gallery; edit: in the editor, None = an empty sheet.
+
+    more: whether the person has the whole panel open.
+    """
     drivers = []
 
-    def open_(level=None, replay=None, edit=False):
+    def open_(level=None, replay=None, edit=False, more=True):
+        if more and not edit:
+            set_preference(f"{FOLD}{MORE}", True)
         drivers.append(Driver(level, replay, edit))
         return drivers[-1]
 

@@ -16,6 +16,7 @@ from sandbox.app.base.start_request import StartRequest
 from sandbox.app.contracts.screen import Figures
 from sandbox.app.widgets.scroll import BAR_WIDTH
 from sandbox.app.window.opening import open_app
+from sandbox.editor.storage.preferences import preference
 from sandbox.level.reading.files import shipped_levels
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
@@ -155,8 +156,8 @@ def test_a_recording_on_a_full_disk_is_refused_in_plain_words_and_leaves_no_file
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr("sandbox.session.replay.writer.Recorder.write_tick", full)
-    for key in (pygame.K_r, pygame.K_s):
-        driver.key(key, CTRL)
+    for key, mods in ((pygame.K_r, CTRL), (pygame.K_s, CTRL | pygame.KMOD_SHIFT)):
+        driver.key(key, mods)
         path = documents / "small.replay.jsonl"
         assert driver.notices == [f"The recording cannot be written to {path}: No space left on device."]
         assert driver.playback.session.recording is None and not list(documents.iterdir())
@@ -196,24 +197,24 @@ def test_a_recording_holds_what_was_done_before_it_ended_though_no_frame_came_be
 def test_a_replays_name_that_exists_is_refused_and_nothing_is_overwritten(driver, documents):
     documents.mkdir()
     (documents / "taken.replay.jsonl").write_text("mine")
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.type("taken")
     driver.key(pygame.K_RETURN)
     assert driver.app.ui.has_sheet
     assert (documents / "taken.replay.jsonl").read_text() == "mine"
     driver.key(pygame.K_ESCAPE)
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_ESCAPE)
     assert len(list(documents.iterdir())) == 3
 
 
 def test_a_saved_run_can_be_discarded_and_escape_keeps_it(driver, documents):
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     for _ in range(2):
         driver.key(pygame.K_TAB)
     driver.key(pygame.K_RETURN)
     assert not driver.app.ui.has_sheet and list(documents.iterdir()) == []
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_ESCAPE)
     assert [path.name for path in documents.iterdir()] == ["small.replay.jsonl"]
 
@@ -221,7 +222,7 @@ def test_a_saved_run_can_be_discarded_and_escape_keeps_it(driver, documents):
 def recording(driver, documents):
     driver.fill(driver.panel.damping_field, "0.2")
     driver.frames(30)
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_RETURN)
     (path,) = documents.iterdir()
     return path
@@ -403,6 +404,15 @@ def test_a_window_that_holds_next_to_nothing_is_laid_out_smaller_and_cut_off(ope
     driver.frames(2)
     driver.key(pygame.K_MINUS, CTRL)
     assert driver.app.ui.scale == pytest.approx(440 / 360 / 1.125)
+
+
+def test_a_key_makes_widgets_as_large_as_they_are_by_themselves(driver):
+    own = driver.app.ui.scale
+    for key in (pygame.K_MINUS, pygame.K_MINUS):
+        driver.key(key, CTRL)
+    assert driver.app.ui.scale < own and preference("scale") is not None
+    driver.key(pygame.K_0, CTRL)
+    assert driver.app.ui.scale == own and preference("scale") is None
 
 
 def test_a_window_made_smaller_and_larger_again_shows_what_it_showed(driver):

@@ -21,28 +21,21 @@ def padded(open_app):
     return driver
 
 
-@pytest.fixture
-def unfolded(padded):
-    """The same with the section for engineers open."""
-    padded.app.play.fold("engineers")
-    padded.frames(2)
-    return padded
-
-
 def pair(driver, name="rope:0"):
     slot = driver.world.spring_slot(name)
     return float(driver.world.stiffness[slot]), float(driver.world.damping[slot])
 
 
 def test_the_curve_tells_springs_that_differ_from_none_at_all(padded, open_app):
-    assert padded.panel.curve.words == ""
+    curve = padded.panel.engineers.curve
+    assert curve.words == ""
     padded.panel.choose_material(None)
     padded.frames(2)
-    assert "differ" in padded.panel.curve.words
+    assert "differ" in curve.words
     bare = open_app(small_level(bodies=[], particles=[{"id": "ball", "position": [0, 0]}]))
     bare.click_widget(bare.panel.ways.buttons["pad"])
     bare.frames(2)
-    assert "none" in bare.panel.curve.words and bare.panel.note.text == "There are no springs."
+    assert "no spring" in bare.panel.engineers.curve.words and bare.panel.note.text == "There are no springs."
 
 
 def test_a_drag_over_the_pad_sets_both_in_one_gesture_that_is_undone_at_once(padded):
@@ -70,8 +63,8 @@ def test_arrow_keys_move_the_focused_pad_along_one_axis_alone(padded):
     assert pair(padded) == (padded.panel.pad.state.scale.lowest, damping)
 
 
-def test_numbers_hz_and_pad_show_the_same_pair(unfolded):
-    padded, panel = unfolded, unfolded.panel
+def test_numbers_hz_and_pad_show_the_same_pair(padded):
+    panel = padded.panel
     padded.fill(panel.engineers.frequency, "3")
     padded.fill(panel.engineers.ratio, "0.5")
     assert (panel.pad.state.stiffness, panel.pad.state.damping) == pair(padded)
@@ -98,11 +91,13 @@ def test_the_pad_is_whole_in_the_smallest_window_and_the_world_folds(padded):
         padded.app.act("panel")
         padded.frames(2)
     panel = padded.panel
-    assert not panel.is_open("engineers") and not panel.engineers.solving.solver.buttons["direct"].visible
+    assert panel.is_open("engineers") and panel.engineers.solving.solver.buttons["direct"].visible
+    padded.app.ui.focus_on(panel.pad)
+    padded.frames(2)
     assert panel.area.view.rect.contains(panel.pad.rect)
     padded.app.play.fold("engineers")
     padded.frames(2)
-    assert padded.panel.engineers.solving.solver.buttons["direct"].visible
+    assert not padded.panel.engineers.solving.solver.buttons["direct"].visible
 
 
 def test_who_chose_the_pad_finds_it_in_the_next_run(padded):

@@ -117,12 +117,6 @@ def test_coefficients_cuts_and_pins_are_kept_together(driver):
     assert driver.editor.history.index == len(driver.editor.history.labels) - 1
 
 
-def test_only_a_document_can_keep_something(open_app):
-    driver = open_app(small_level())
-    driver.key(pygame.K_k, CTRL)
-    assert not driver.app.ui.has_sheet and driver.notices
-
-
 def test_what_is_drawn_plays_and_its_recording_verifies(edit, documents):
     driver = edit()
     driver.key(pygame.K_r)

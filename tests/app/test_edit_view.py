@@ -173,7 +173,16 @@ def test_no_action_fails_with_nothing_or_something_selected(driver):
 
 def test_everything_that_is_done_by_key_is_done_by_a_button_too(driver):
     by_gesture = {"press", "finish", "cancel", "zoom_in", "zoom_out", "next_item", "previous_item", "numbers"}
-    by_other_means = {"fullscreen", "larger", "smaller", "quit", "recordings", "next_page", "previous_page"}
+    by_other_means = {
+        "fullscreen",
+        "larger",
+        "smaller",
+        "usual_size",
+        "quit",
+        "recordings",
+        "next_page",
+        "previous_page",
+    }
     shown = (
         set(driver.editor.bar.buttons.by_action) | {f"tool_{name}" for name in driver.editor.palette.tools} | set(MENU)
     )

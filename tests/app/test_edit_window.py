@@ -205,17 +205,18 @@ def draw_bridge(maker):
 
 def draw_wheel(maker):
     maker.take("ground")
-    maker.outline((-4.0, -2.5), (4.0, -2.5), (4.0, -1.0), (-4.0, -1.5))
+    maker.outline((-4.0, -0.5), (4.0, -0.5), (4.0, 1.0), (-4.0, 0.5))
     maker.take("circle")
     maker.choose_material("rubber")
-    maker.draw((0.0, 1.0), (1.0, 1.0), (1.5, 1.0))
+    maker.draw((0.0, 3.0), (1.0, 3.0), (1.5, 3.0))
     maker.take("pin")
-    maker.person.click(maker.twin.at(0.0, 1.0))
-    maker.twin.click_at(0.0, 1.0)
+    maker.person.click(maker.twin.at(0.0, 3.0))
+    maker.twin.click_at(0.0, 3.0)
     (wheel,) = maker.twin.editor.document.level.bodies
     assert (wheel.type, wheel.material, len(wheel.pinned)) == ("jelly", "rubber", 1)
-    (ground,) = maker.twin.editor.document.level.terrain
-    assert len(ground.polygon) == 4
+    # A new place has ground already.
+    below, ground = maker.twin.editor.document.level.terrain
+    assert below.id == "ground" and len(ground.polygon) == 4
     scene = maker.twin.editor.scene
     return scene.names(int(scene.position[:, 0].argmax()))
 

@@ -60,6 +60,19 @@ def test_faults_without_an_end_end_the_program(open_app):
         guard.take(ValueError("again"))
 
 
+def test_a_screen_that_cannot_be_laid_out_again_ends_the_program_in_one_line(open_app, monkeypatch):
+    driver = open_app(small_level())
+    guard = FrameGuard(driver.app)
+
+    def fail() -> None:
+        raise IndexError("no such body")
+
+    monkeypatch.setattr(driver.app, "rebuild", fail)
+    with pytest.raises(SystemExit, match=r"closes. Your work is kept. A report is in .*txt"):
+        guard.take(ValueError("first"))
+    assert "no such body" in guard.report
+
+
 @pytest.mark.parametrize("letter", ["\u00df", "\u0149", "\u0131", "\u0130", "\u01f0", "\u00e4", "\u044f"])
 def test_a_letter_of_any_alphabet_can_be_a_shortcut(letter):
     name = combination_of(ord(letter), 0)

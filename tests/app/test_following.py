@@ -94,25 +94,3 @@ def test_the_panel_opens_on_the_material_that_the_level_names(open_app):
     )
     assert open_app(named).panel.menu.selected_option[0] == "rubber"
     assert build_world(named).particle_count == build_world(level).particle_count
-
-
-def test_what_has_left_the_picture_is_brought_back_at_rest_and_that_is_undone(open_app):
-    driver = open_app(flying())
-    driver.frames(10)
-    assert not driver.app.play.lost.visible
-    driver.frames(200)
-    assert driver.app.play.lost.visible
-    before = driver.world.position.copy()
-    driver.app.act("bring_back")
-    driver.frames(2)
-    there = np.stack(list(places(driver).values()))
-    assert (np.abs(there) <= [5.0, 3.0]).all() and np.abs(driver.world.velocity).max() < 1e-9
-    driver.frames(40)
-    assert not driver.app.play.lost.visible
-    driver.key(pygame.K_z, pygame.KMOD_CTRL)
-    driver.frames(60)
-    assert np.abs(driver.world.position - before).max() < 20.0 and places(driver)["right"][0] > 15.0
-    driver.app.act("reset")
-    driver.frames(2)
-    driver.app.act("bring_back")
-    assert driver.notices[-1] == "Nothing has left the picture."

@@ -69,7 +69,7 @@ def test_without_a_run_escape_leaves_the_gallery_open(open_app):
 
 def test_saved_replays_are_listed_and_open(driver: Driver, documents):
     driver.frames(5)
-    driver.key(pygame.K_s, pygame.KMOD_CTRL)
+    driver.key(pygame.K_s, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_RETURN)
     driver.key(pygame.K_l, pygame.KMOD_CTRL)
     (card,) = driver.app.gallery.cards
@@ -80,7 +80,7 @@ def test_saved_replays_are_listed_and_open(driver: Driver, documents):
 
 def test_a_replay_has_a_picture_its_level_and_its_length_and_a_broken_one_its_fault(driver: Driver, documents):
     driver.frames(30)
-    driver.key(pygame.K_s, pygame.KMOD_CTRL)
+    driver.key(pygame.K_s, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_RETURN)
     (whole,) = documents.iterdir()
     ticks = read_replay(whole).ticks
@@ -102,7 +102,7 @@ def test_the_picture_of_a_replay_has_the_ground_of_its_level(open_app, documents
     for name, terrain in (("bare", []), ("on ground", ground)):
         driver = open_app(small_level(view=[-4, -4, 4, 4], name=name, terrain=terrain))
         driver.frames(5)
-        driver.key(pygame.K_s, pygame.KMOD_CTRL)
+        driver.key(pygame.K_s, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
         driver.key(pygame.K_RETURN)
         driver.app.open_gallery("recordings")
         card = next(card for card in driver.app.gallery.cards if card.name.startswith(name.split()[0]))
@@ -184,6 +184,6 @@ def test_enter_opens_the_first_hit_which_is_then_played_lately(open_app):
     driver.key(pygame.K_RETURN)
     assert driver.playback.level.name == "Girder"
     driver.app.open_gallery()
-    lately = driver.app.gallery.groups[0]
+    lately = next(group for group in driver.app.gallery.groups if group.title == "Recently played")
     assert [card.name for card in lately.cards] == ["Girder"] and lately.is_shortcut
     assert not any(card.badge for card in driver.app.gallery.cards)

@@ -40,9 +40,7 @@ def test_a_key_makes_the_hand_gentle_normal_or_strong_and_the_next_hold_is_so(dr
 
 def test_the_panel_shows_and_sets_the_strength_which_later_runs_and_starts_keep(driver, open_app):
     driver.take_sliders()
-    driver.app.play.fold("engineers")
-    driver.frames(2)
-    driver.click_widget(driver.panel.world.hand.buttons["gentle"])
+    driver.click_in_panel(driver.panel.world.hand.buttons["gentle"])
     assert driver.stage.drag.strength == "gentle"
     driver.key(pygame.K_r)
     assert driver.stage.drag.strength == "gentle"

@@ -155,15 +155,13 @@ def test_the_legend_stays_in_its_room_smaller_or_with_fewer_rows(size, scale):
 
 def test_keys_and_buttons_show_overlays_with_their_legend_and_take_them_away(driver):
     driver.take_sliders()
-    driver.app.play.fold("engineers")
-    driver.frames(2)
     shown = driver.stage.renderer.overlays.shown
     keys = dict(zip(NAMES, (pygame.K_l, *range(pygame.K_F3, pygame.K_F8)), strict=True))
     for name, key in keys.items():
         driver.key(key)
         driver.frames(1)
         assert shown == {name}
-        driver.click_widget(driver.panel.world.views.buttons[name])
+        driver.click_in_panel(driver.panel.world.views.buttons[name])
         driver.frames(1)
         assert shown == set()
     before = pygame.surfarray.array3d(driver.app.display.surface).astype(int)

@@ -3,6 +3,7 @@
 import pygame
 import pytest
 
+from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.toolbar import LEAST_NAME, LEFT, RIGHT, fitting
 from tests.app.conftest import small_level
 
@@ -106,7 +107,6 @@ def test_the_panel_folds_in_a_narrow_window_comes_back_with_room_and_obeys_the_p
 
 def test_what_the_panel_has_no_room_for_is_scrolled_to_by_the_keyboard(driver):
     driver.app.display.window.size = (900, 480)
-    driver.app.play.fold("world")
     driver.frames(2)
     area = driver.panel.area
     assert area.bar.needed
@@ -137,13 +137,15 @@ def test_again_is_offered_once_things_have_left_the_view_and_begins_anew(open_ap
     again = driver.app.play.again
     assert not again.visible
     driver.frames(90)
-    assert again.visible and any("out of sight" in text for text in driver.notices)
+    assert again.visible and LEFT_VIEW in driver.notices
     driver.playback.clock.paused = True
     driver.playback.seek(1)
     driver.frames()
-    assert not again.visible and not any("out of sight" in text for text in driver.notices)
+    assert not again.visible and LEFT_VIEW not in driver.notices
+    # How long it has been away is counted anew.
     driver.playback.seek(90)
-    driver.frames()
-    driver.click_widget(again)
     driver.playback.clock.paused = False
+    driver.frames(90)
+    assert again.visible
+    driver.click_widget(again)
     assert driver.playback.session.tick < 20 and not again.visible

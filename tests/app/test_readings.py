@@ -6,6 +6,7 @@ import pytest
 
 from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words, seconds, with_unit
 from sandbox.physics.analysis.spring_motion import motion_of
+from sandbox.physics.analysis.stance import Support
 
 
 @pytest.mark.parametrize(
@@ -47,7 +48,13 @@ def test_motions_are_said_by_what_is_seen(pair, words):
 
 
 def test_sags_of_one_and_of_several():
-    assert sag_words(0.02, 0.02) == "Sags by 2 % of its height"
-    assert sag_words(0.003, 0.2) == "They sag by 0.3 % to 20 % of their heights"
-    assert sag_words(0.003, 3.0) == "They sag by 0.3 % to more than half of their heights"
-    assert sag_words(0.7, 3.0) == "Lies flat under its own weight"
+    floor = {Support.FLOOR}
+    assert sag_words(0.02, 0.02, "jelly", floor) == "The jelly sags by 2 % of its height"
+    assert sag_words(0.7, 0.7, "cube 1", floor) == "Cube 1 lies flat under its own weight"
+    assert sag_words(0.25, 0.25, "girder", {Support.ARM}) == "The girder's end drops by 25 % of its length"
+    assert sag_words(0.1, 0.1, "bed", {Support.SPANNED}) == "The bed's middle drops by 10 % of its length"
+    assert sag_words(0.6, 0.6, "cloth", {Support.HANGING}) == "The cloth stretches by more than half its height"
+    assert sag_words(0.003, 0.2, None, floor) == "They sag by 0.3 % to 20 % of their heights"
+    assert sag_words(0.003, 3.0, None, floor) == "They sag by 0.3 % to more than half of their heights"
+    assert sag_words(0.003, 0.2, None, {Support.FLOOR, Support.ARM}) == "They sag by 0.3 % to 20 % of their size"
+    assert sag_words(0.7, 3.0, None, floor) == "They lie flat under their own weight"

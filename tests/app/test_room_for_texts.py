@@ -23,8 +23,9 @@ def show_panel(app):
 PLAYED = {
     "pad": lambda app: (show_panel(app), app.play._set_by("pad")),
     "sliders": lambda app: app.play._set_by("sliders"),
-    "engineers": lambda app: app.play.fold("engineers"),
-    "world": lambda app: app.play.fold("world"),
+    "toy": lambda app: app.play.fold("more"),
+    "engineers": lambda app: (app.play.fold("more"), app.play.fold("springs")),
+    "world": lambda app: app.play.fold("engineers"),
     "everything": lambda app: [app.act(name) for name in ("graphs", "timeline", "palette")],
     "catalogue": lambda app: app.act("catalogue"),
     "compare": lambda app: app.act("compare"),

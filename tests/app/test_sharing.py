@@ -415,16 +415,17 @@ def test_the_last_picture_goes_to_the_clipboard_where_a_tool_takes_it(sharing, f
         assert picture.format == "PNG" and picture.size == (160, 90)
 
 
-def test_the_path_is_copied_and_the_folder_opened_on_request(sharing, folder, monkeypatch):
+def test_the_path_is_copied_and_file_and_folder_are_opened_on_request(sharing, folder, monkeypatch):
     opened = []
-    monkeypatch.setattr("sandbox.app.share.sharing.open_folder", lambda path: opened.append(path) or True)
+    monkeypatch.setattr("sandbox.app.share.sharing.open_path", lambda path: opened.append(path) or True)
     sharing.choose(kind="png")
     sharing.save()
     work_off(sharing)
     COPIED.clear()
+    sharing.open_it()
     sharing.open_folder()
     sharing.copy_path()
-    assert (opened, COPIED) == ([folder], [str(folder / "small.png")])
+    assert (opened, COPIED) == ([folder / "small.png", folder], [str(folder / "small.png")])
     assert sharing.note == "The file's path is on the clipboard."
 
 

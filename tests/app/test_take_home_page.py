@@ -1,12 +1,17 @@
-"""Take home: from a jelly that feels right to its numbers for another engine, in a few deeds."""
+"""Take home: which engine, and then the lines to paste there with the numbers of a jelly that feels right."""
 
 import pygame
 import pytest
 from pygame_gui.elements import UIDropDownMenu
 
-from sandbox.app.panel.take_home_page import TARGETS
+from sandbox.app.panel.take_home_page import ALL, ENGINES, LANGUAGES, QUESTION, TARGETS
+from sandbox.app.widgets.code_block import CodeBlock, _broken
+from sandbox.app.widgets.fonts import code_font
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.level.reading.files import load_level
+from tests.app.test_room_for_texts import faults
+
+WINDOWS = [((640, 480), 1.0), ((1280, 720), 1.0), ((1280, 720), 1.5)]
 
 
 @pytest.fixture
@@ -15,31 +20,63 @@ def page(open_app):
     driver.app.display.window.size = (1280, 860)
     driver.frames(2)
     driver.panel.choose_body("cube 1")
-    driver.click_widget(driver.panel.take_home)
+    driver.click_widget(driver.panel.play.take_home)
     driver.frames(2)
     return driver
 
 
+@pytest.fixture
+def clipboard(monkeypatch):
+    copied = []
+    monkeypatch.setattr("sandbox.app.panel.take_home_page.copy_text", lambda text: copied.append(text) or True)
+    return copied
+
+
+def blocks(driver, kind):
+    sprites = driver.app.ui.manager.get_sprite_group().sprites()
+    return [
+        each.text for each in sprites if isinstance(each, kind) and each.ui_container is not driver.panel.area.content
+    ]
+
+
 def shown(driver):
-    texts = [each for each in driver.app.ui.manager.get_sprite_group().sprites() if isinstance(each, TextBlock)]
-    return max((each.text for each in texts), key=len)
+    return max(blocks(driver, TextBlock), key=len)
 
 
-def test_the_page_opens_on_the_body_that_is_spoken_of_with_all_numbers(page):
-    text = shown(page)
-    assert text.startswith('"cube 1" of "Jelly pile": 72 springs of jelly.')
-    for name in ("Box2D", "Unity", "Godot", "Rapier", "pymunk", "Chipmunk", "single pass"):
-        assert name in text
+def test_it_asks_for_the_engine_first_and_shows_no_numbers_yet(page):
+    assert QUESTION in blocks(page, TextBlock) and not blocks(page, CodeBlock)
+    assert {button.text for button in page.app.ui.buttons()} >= set(TARGETS)
+    page.choose("Unity 2D")
+    (code,) = blocks(page, CodeBlock)
+    assert "joint.frequency = 9.55f;" in code and "joint.dampingRatio = 0.25f;" in code
+    page.choose("Another engine")
+    assert QUESTION in blocks(page, TextBlock)
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_every_target_has_a_text_that_can_be_copied(page, target):
-    menus = [widget for widget in page.app.ui._ring() if isinstance(widget, UIDropDownMenu)]
-    page.app.ui._choosers[menus[1]](target)
-    page.frames(2)
-    assert len(shown(page)) > 200
+def test_every_target_has_lines_that_are_copied_as_they_stand(page, clipboard, target):
+    page.choose(target)
     page.key(pygame.K_RETURN)
     assert any("clipboard" in notice for notice in page.notices)
+    if target == ALL:
+        assert clipboard == [shown(page)] and all(name in shown(page) for name in ("Box2D", "Godot", "single pass"))
+        return
+    assert clipboard == blocks(page, CodeBlock)
+    # What is said below is not the code again.
+    assert shown(page).startswith('"cube 1" of "Jelly pile": 72 springs of jelly.') and clipboard[0] not in shown(page)
+    if target in LANGUAGES:
+        assert any(line.startswith(("    ", "\t", "  ")) for line in clipboard[0].splitlines())
+        assert "What it prints" in shown(page)
+
+
+def test_the_body_can_be_another_one_on_either_page(page):
+    for target in (None, "Godot"):
+        if target is not None:
+            page.choose(target)
+        (menu,) = [widget for widget in page.app.ui._ring() if isinstance(widget, UIDropDownMenu)]
+        page.app.ui._choosers[menu]("plank 7")
+        page.frames(2)
+    assert shown(page).startswith('"plank 7"') and "joint.stiffness" in blocks(page, CodeBlock)[0]
 
 
 def test_it_says_what_the_springs_are_now(page):
@@ -47,7 +84,28 @@ def test_it_says_what_the_springs_are_now(page):
     page.frames(1)
     page.fill(page.panel.stiffness_field, "0.05")
     page.fill(page.panel.damping_field, "0.07")
-    page.click_widget(page.panel.take_home)
+    page.click_widget(page.panel.play.take_home)
     page.frames(2)
+    page.choose("Python")
     assert "Here: Cs 0.05, Cd 0.07 in a tick of 1/60 s" in shown(page)
     assert "the level's own numbers are inside" in shown(page)
+
+
+def test_code_is_of_one_width_and_long_lines_go_on_moved_in(page):
+    font = code_font(13)
+    widths = [font.size(40 * letter)[0] for letter in "iW{.0 "]
+    assert max(widths) - min(widths) <= 2
+    line = "    total = first + second + third"
+    assert _broken(line, 20) == ["    total = first +", "        second +", "        third"]
+    assert "".join(_broken("x" * 50, 20)).replace(" ", "") == "x" * 50
+
+
+@pytest.mark.parametrize(("size", "scale"), WINDOWS)
+@pytest.mark.parametrize("target", [None, *list(ENGINES)[:1], "Python", ALL])
+def test_each_page_has_room_for_its_texts_in_every_window(page, size, scale, target):
+    page.app.chosen.choose("scale", scale)
+    page.app.display.window.size = size
+    page.frames(2)
+    if target is not None:
+        page.choose(target)
+    assert not faults(page)

@@ -160,7 +160,7 @@ def test_while_it_is_recorded_the_run_stays_where_it_is(timeline, documents):
 
 
 def test_a_replay_hurries_ahead_is_taken_over_there_and_the_new_run_is_saved(timeline, documents, open_app):
-    timeline.key(pygame.K_s, CTRL)
+    timeline.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     timeline.key(pygame.K_RETURN)
     (path,) = documents.iterdir()
     replay = read_replay(path)
@@ -178,14 +178,14 @@ def test_a_replay_hurries_ahead_is_taken_over_there_and_the_new_run_is_saved(tim
     playback.submit(Pin(2))
     watching.frames(20)
     assert "took over" in playback.verdict and len(playback.session.branches) == 1
-    watching.key(pygame.K_s, CTRL)
+    watching.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     watching.key(pygame.K_RETURN)
     (new,) = [each for each in documents.iterdir() if each != path]
     assert verify(read_replay(new)) is None
 
 
 def test_a_replay_that_was_watched_to_its_end_can_be_gone_back_in_and_ends_there_again(timeline, documents, open_app):
-    timeline.key(pygame.K_s, CTRL)
+    timeline.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     timeline.key(pygame.K_RETURN)
     (path,) = documents.iterdir()
     watching = open_app(replay=read_replay(path))
@@ -250,7 +250,7 @@ def test_what_is_saved_in_the_past_leaves_the_run_and_what_follows_as_they_are(t
     playback = timeline.playback
     end, last = state_hash(playback.session.world), playback.session.last_tick
     playback.seek(45)
-    timeline.key(pygame.K_s, CTRL)
+    timeline.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     timeline.key(pygame.K_RETURN)
     (path,) = documents.iterdir()
     saved = read_replay(path)
@@ -261,7 +261,7 @@ def test_what_is_saved_in_the_past_leaves_the_run_and_what_follows_as_they_are(t
 
 
 def test_a_recording_begun_in_a_replays_past_ends_the_watching_of_it(timeline, documents, open_app):
-    timeline.key(pygame.K_s, CTRL)
+    timeline.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     timeline.key(pygame.K_RETURN)
     (path,) = documents.iterdir()
     watching = open_app(replay=read_replay(path))
@@ -276,7 +276,7 @@ def test_a_replay_is_taken_over_in_the_middle_of_a_drag_and_the_hand_is_free(dri
     driver.press(driver.pixel_of("rope.4"))
     driver.move(driver.stage.camera.to_pixels((4.0, 1.0)))
     driver.frames(60)
-    driver.key(pygame.K_s, CTRL)
+    driver.key(pygame.K_s, CTRL | pygame.KMOD_SHIFT)
     driver.key(pygame.K_RETURN)
     (path,) = documents.iterdir()
     watching = open_app(replay=read_replay(path))

@@ -17,8 +17,6 @@ DISCS = [
 def driver(open_app):
     """The app on a disc that falls on a pinned one, in a level without contacts."""
     driver = open_app(small_level(bodies=[], particles=DISCS, settings={"gravity": [0, -9.81]}, view=[-3, -3, 3, 5]))
-    driver.app.play.fold("world")
-    driver.frames(2)
     return driver
 
 
@@ -31,7 +29,7 @@ def test_off_falls_through_and_on_is_caught(driver):
     assert rows.touch.chosen == "off" and rows.friction.text == "\u2013"
     driver.frames(120)
     assert height(driver) < -5.0
-    driver.click_widget(rows.touch.buttons["on"])
+    driver.click_in_panel(rows.touch.buttons["on"])
     driver.frames(2)
     assert driver.world.tick < 10 and driver.panel.world.touch.chosen == "on"
     driver.frames(100)

@@ -149,3 +149,13 @@ def test_preferences_are_kept_side_by_side_and_a_damaged_file_is_an_empty_one(tm
     assert preference("one", tmp_path) is None
     set_preference("one", 3, tmp_path)
     assert preference("one", tmp_path) == 3
+
+
+def test_the_offer_is_about_the_sheet_and_goes_while_its_level_is_played(driver):
+    assert driver.app.guide._panel is not None
+    driver.key(pygame.K_e)
+    driver.frames(2)
+    assert driver.app.mode == "play" and driver.app.guide._panel is None
+    driver.key(pygame.K_e)
+    driver.frames(2)
+    assert driver.app.guide._panel is not None

@@ -20,9 +20,11 @@ def test_a_person_drags_slides_pauses_records_and_saves_and_the_replay_verifies(
     level = small_level()
     write_level(level, tmp_path / "small.json")
     # The same app without a display says where things are on the screen.
-    twin: Driver = open_app(level)
+    twin: Driver = open_app(level, more=False)
     twin.app.display.window.size = WINDOW_SIZE
     twin.frames(2)
+    more = next(each for each in twin.panel.area.content.elements if getattr(each, "text", "") == "More").rect.center
+    twin.click(more)
     start = twin.pixel_of("rope.4")
     pad = twin.panel.pad
     places = [pygame.Vector2(pad.rect.topleft) + pad._at(value, 0.3) for value in (0.1, 0.05, 0.01)]
@@ -30,6 +32,7 @@ def test_a_person_drags_slides_pauses_records_and_saves_and_the_replay_verifies(
     person = Person(screen, ["play", str(tmp_path / "small.json")], tmp_path)
     try:
         person.wait_for("Small", "playing")
+        person.click(more)
         person.do("key", "ctrl+r")
         person.wait_for("recording")
         person.drag([start, *((start[0] - 9 * k, start[1] - 15 * k) for k in range(8))], while_held="holding 1")

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.reading.files import read_level, shipped_levels
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
@@ -150,7 +151,7 @@ def inflate(person: Person, ticks: int) -> Iterator[None]:
 
 def firm(person: Person, ticks: int) -> Iterator[None]:
     """Make a body of the level softer than it was, by its firmness, and then firmer."""
-    names = [body.name for body in person.session.world.forms if lowest_mode_of(body.shape) > 0.0]
+    names = [body.name for body in firm_bodies(person.session.world) if lowest_mode_of(body.shape) > 0.0]
     for hz, ratio in ((1.5, 0.2), (4.0, 0.5)) if names else ():
         person.do_once(type="set_firmness", body=names[-1], hz=hz, ratio=ratio)
         for _ in range(ticks // 3):

@@ -135,7 +135,7 @@ def on_ground(tool, start, end, load):
     ("tool", "size", "load", "least"),
     [
         ("box", 0.5, 0, 0.93), ("box", 2.0, 0, 0.93), ("box", 1.0, 1, 0.85), ("circle", 0.5, 0, 0.85),
-        ("circle", 2.0, 0, 0.85), ("circle", 1.0, 1, 0.7), ("wheel", 0.6, 0, 0.98), ("wheel", 1.0, 10, 0.9),
+        ("circle", 2.0, 0, 0.85), ("circle", 1.0, 1, 0.7), ("wheel", 0.6, 0, 0.97), ("wheel", 1.0, 10, 0.9),
         ("ring", 1.0, 0, 0.95),
     ],
 )  # fmt: skip

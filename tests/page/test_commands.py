@@ -41,12 +41,12 @@ GOOD: dict[str, dict[str, Any]] = {
     "pin": {"particle": "FREE.3"},
     "unpin": {"particle": "FREE.1"},
     "cut_springs": {"springs": ["SPRING.1", "SPRING.2", "SPRING.1"]},
-    "set_coefficients": {"stiffness": 0.25, "damping": 0.75, "material": "MATERIAL.0"},
+    "set_coefficients": {"stiffness": 0.25, "damping": 0.75, "material": "MATERIAL.0", "duration": 7},
     "set_drive": {"part": "PART.1", "value": -1},
     "push": {"position": [0, 0], "radius": 500, "impulse": [1, 2], "outward": 3},
     "shake": {"acceleration": [1, -2]},
-    "set_gravity": {"gravity": [0, -3]},
-    "set_air": {"wind": [1, 0], "drag": 0.125},
+    "set_gravity": {"gravity": [0, -3], "duration": 5},
+    "set_air": {"wind": [1, 0], "drag": 0.125, "duration": 4},
 }
 # Bad values of a field of each kind of command that kernels carry out: eight and more.
 BAD: dict[str, list[dict[str, Any]]] = {
@@ -70,10 +70,12 @@ BAD: dict[str, list[dict[str, Any]]] = {
         for value in (["SPRING.1", "no"], ["SPRING.1", "SPRING.0"], ["+hand.1"], [0], "SPRING.1", None, [None], NAN)
     ],
     "break_springs": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
+    "part_bodies": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
     "set_coefficients": [
         *({"stiffness": value} for value in (5, -1, NAN, INF, "1", True, [], 1.0000001)),
         *({"damping": value} for value in (5, -1, NAN, INF, "1", True, {}, -1e-300)),
         *({"material": value} for value in ("no", 0, -1, NAN, True, [], ["MATERIAL.0"], {})),
+        *({"duration": value} for value in (-1, 1.5, NAN, INF, None, "1", True, 1_000_001)),
     ],
     "set_drive": [
         *({"part": value} for value in ("no", 0, -1, None, NAN, True, [], {})),
@@ -84,6 +86,15 @@ BAD: dict[str, list[dict[str, Any]]] = {
         *({"radius": value} for value in (0, -1, NAN, INF, None, "1", 2e6, True)),
         *({"impulse": value} for value in ([NAN, 0], [0], [0, 0, 0], None, 5, ["a", 1], [2e15, 0], "ab")),
         *({"outward": value} for value in (NAN, INF, None, "1", 2e15, True, [], {})),
+    ],
+    "set_gravity": [
+        *({"gravity": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], None, 5, ["a", 1], [-1e30, 0])),
+        *({"duration": value} for value in (-1, 1.5, NAN, INF, None, "1", True, 1_000_001)),
+    ],
+    "set_air": [
+        *({"wind": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], 5, ["a", 1], [-1e30, 0], "ab")),
+        *({"drag": value} for value in (-1, NAN, INF, "1", True, [], {}, 1e30)),
+        *({"duration": value} for value in (-1, 1.5, NAN, INF, None, "1", True, 1_000_001)),
     ],
     "shake": [{"acceleration": value} for value in ([NAN, 0], [0, INF], [0], [0, 0, 0], None, 5, ["a", 1], [-1e30, 0])],
 }  # fmt: skip
@@ -125,7 +136,8 @@ def wrong_records() -> list[dict[str, Any]]:
 def any_records(count: int) -> list[Any]:
     """Records of all types: right ones, ones with fields left out, changed or added, and what is no record."""
     chance, found = random.Random(5), []
-    types = [*GOOD, *GOOD, *COMMAND_TYPES, "freeze", "break_springs", "nothing", "Grab", "constructor", "toString"]
+    inner = ("freeze", "break_springs", "part_bodies")
+    types = [*GOOD, *GOOD, *COMMAND_TYPES, *inner, "nothing", "Grab", "constructor", "toString"]
     found += [None, [], {}, 5, NAN, "grab", True, {"type": None}, {"type": 5}, {"type": ["grab"]}, {"kind": "grab"}]
     while len(found) < count:
         name = chance.choice(types)
@@ -201,12 +213,14 @@ def test_the_kernel_itself_refuses_slots_that_are_not_there_in_pages(tmp_path):
         *({"type": "set_drive", "part": part, "value": 1} for part in (-1, len(world.actuators.names), 10**6)),
         *(
             {"type": kind, "springs": [1, 2, slot]}
-            for kind in ("cut_springs", "break_springs")
+            for kind in ("cut_springs", "break_springs", "part_bodies")
             for slot in (-1, world.grab_spring, world.spring_count, 10**6)
         ),
         {"type": "shake", "acceleration": [NAN, 0]},
         {"type": "push", "position": [0, 0], "radius": INF, "impulse": [0, 0], "outward": 0},
         {"type": "set_coefficients", "stiffness": NAN},
+        {"type": "set_gravity", "gravity": [NAN, 0]},
+        {"type": "set_air", "drag": NAN},
     ]
     told = tried_in_node(tmp_path, world, names_in(BEFORE, world), tried, are_slots=True)
     for record, page in zip(tried, told, strict=True):
@@ -216,4 +230,4 @@ def test_the_kernel_itself_refuses_slots_that_are_not_there_in_pages(tmp_path):
 
 def test_there_are_eight_bad_values_and_more_of_every_kind():
     assert all(len(each) >= 8 for each in BAD.values())
-    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {"freeze", "break_springs"}
+    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {"freeze", "break_springs", "part_bodies"}

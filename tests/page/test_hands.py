@@ -187,9 +187,12 @@ def test_sliders_and_words_set_cs_and_cd(browser: Browser, tmp_path: Path) -> No
         _steps(tab, 30)
     tab.evaluate("document.querySelector('.words button').click()")
     _steps(tab, 30)
+    # Shown at once, and in force a little later.
+    assert tab.evaluate("page.toy.world.view('state.ramp_ticks').some((ticks) => ticks === 45)")
     replay = _saved(tab, tmp_path)
     assert verify(replay) is None
     assert (set(_types(replay)), len({line.gesture for line in replay.script})) == ({"set_coefficients"}, 3)
+    assert {line.record["duration"] for line in replay.script} == {75}
 
 
 def test_after_an_undo_the_run_goes_on_from_where_it_was(browser: Browser, tmp_path: Path) -> None:

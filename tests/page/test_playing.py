@@ -66,7 +66,9 @@ _DONE = {
     ],
     "breaking_bridge": [
         (5, {"type": "grab", "grab": 0, "particle": 12, "target": [0.0, -9.0], "strength": 900.0, "radius": 0.0}),
-        (30, {"type": "set_coefficients", "stiffness": 0.2, "damping": 0.4, "material": None}),
+        (30, {"type": "set_coefficients", "stiffness": 0.2, "damping": 0.4, "material": None, "duration": 45}),
+        (50, {"type": "set_gravity", "gravity": [2.0, -3.0], "duration": 30}),
+        (60, {"type": "set_air", "wind": [5.0, 0.0], "drag": 0.5, "duration": 100}),
     ],
 }
 

@@ -45,7 +45,7 @@ def _drive(session: Session, tick: int) -> None:
     if tick == 10:
         session.submit(SetDrive(0, 1.0))
     if tick == 40:
-        session.submit(SetCoefficients(stiffness=0.4, damping=0.7, material=1))
+        session.submit(SetCoefficients(stiffness=0.4, damping=0.7, material=1, duration=90))
     if tick == 60:
         session.submit(SetGravity((1.0, -5.0)))
     if tick == 80:
@@ -55,9 +55,9 @@ def _drive(session: Session, tick: int) -> None:
 def _soften_and_shake(session: Session, tick: int) -> None:
     cube = [form.name for form in session.world.forms].index("cube 1")
     if tick in (10, 70):
-        session.submit(SetFirmness(cube, sag=0.1 if tick == 10 else 0.0))
+        session.submit(SetFirmness(cube, sag=0.1 if tick == 10 else 0.0, duration=45))
     if tick == 30:
-        session.submit(SetInflation(session.world.area_names.index("cube 1"), 1.4))
+        session.submit(SetInflation(session.world.area_names.index("cube 1"), 1.4, 40))
     if 50 <= tick < 60:
         session.submit(Shake((30.0 * (-1) ** tick, 12.0)), 999)
     if tick == 100:
@@ -82,7 +82,7 @@ def _change_the_solver(session: Session, tick: int) -> None:
         session.submit(Grab(0, middle, (1.0, 2.0)), 50)
     if tick in (30, 60, 90):
         solver = {30: "iterative", 60: "single_pass", 90: "direct"}[tick]
-        session.submit(SetSolver(solver=solver, iterations=12, substeps="auto" if tick == 30 else 4))
+        session.submit(SetSolver(solver, 12, "auto" if tick == 30 else 4, duration=20))
     if tick == 55:
         session.submit(SetCoefficients(stiffness=0.2, damping=0.2))
     if tick == 80:

@@ -14,13 +14,14 @@ from sandbox.physics.actuators import Actuators
 from sandbox.physics.analysis.firmness import set_firmness
 from sandbox.physics.changing.freeing import free_body
 from sandbox.physics.changing.moving import move_body
+from sandbox.physics.changing.ramping import inflate
 from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.command import carry_out, lend
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.state import Family, good_of, state_of
 from sandbox.physics.step import step
 from tests.support import bad_commands
-from tests.support.bad_commands import CALLS, INF, NAN, made, outcome, wrong_calls
+from tests.support.bad_commands import CALLS, INF, NAN, call, made, outcome, wrong_calls
 
 ROOT = Path(__file__).resolve().parents[2]
 ARGUMENTS = {
@@ -32,7 +33,10 @@ ARGUMENTS = {
     "freeze": ("particle",),
     "cut_springs": ("springs",),
     "break_springs": ("springs",),
-    "set_coefficients": ("stiffness", "damping", "material"),
+    "part_bodies": ("springs",),
+    "set_coefficients": ("stiffness", "damping", "material", "duration"),
+    "set_gravity": ("gravity", "duration"),
+    "set_air": ("wind", "drag", "duration"),
     "set_drive": ("part", "value"),
     "push": ("place", "impulse", "outward", "radius"),
     "shake": ("acceleration",),
@@ -73,7 +77,7 @@ OTHERS = {
     "add a bend, stiffness": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], stiffness=INF), "constraint_"),
     "add a bend, material": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], material=7), "material 7: "),
     "name areas": (lambda world: world.name_areas("balloon", range(1)), "constraints 0: a world without constraints"),
-    "inflate": (lambda world: world.inflate(0, 1.0), "body 0: a world without bodies that keep areas"),
+    "inflate": (lambda world: inflate(world, 0, 1.0), "body 0: a world without bodies that keep areas"),
     "fit, too many": (lambda world: world.fit(Actuators(("a",)), [0.0, 0.0]), "values of 2 parts"),
     "fit, too fast": (lambda world: world.fit(Actuators(("a",)), [2.0]), "values 2.0: "),
     "rest lengths, beyond": (lambda world: world.set_rest_lengths([0, 13], [1, 1]), "springs 13: "),
@@ -104,7 +108,7 @@ def test_a_wrong_argument_of_any_command_raises_and_changes_no_byte(kind, has_ha
     # It is as good as new.
     method, right, _ = CALLS[kind]
     if has_hands or kind not in ("move_grab", "release"):
-        getattr(world, method)(*right)
+        call(world, method, right)
     step(world)
     assert np.isfinite(world.position).all()
 
@@ -138,7 +142,7 @@ def test_interpreted_kernels_say_the_same_of_each():
 def test_a_number_that_is_not_finite_is_refused_by_the_kernel_itself():
     world = made()
     lent, given = (
-        lend(state_of(world), good_of(world)),
+        lend(state_of(world), good_of(world), np.zeros(6)),
         {"first_cursor": 4, "acceleration": (NAN, 0.0), "tick_rate": 60},
     )
     assert outcome(world, lambda world: carry_out(lent, "shake", given, world)) == (

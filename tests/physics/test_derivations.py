@@ -65,7 +65,7 @@ def test_edges_of_one_owner_lie_together_with_the_solid_on_their_left(seed):
     edges = int(outline.dynamic[0])
     slots = outline.number[:edges]
     assert sorted(slots.tolist()) == np.flatnonzero(world.spring_active & (world.edge != NO_EDGE)).tolist()
-    owners = world.owner[world.particle_a[slots]].tolist()
+    owners = outline.owner[outline.edge_a[:edges]].tolist()
     assert sorted(zip(owners, slots.tolist(), strict=True)) == list(zip(owners, slots.tolist(), strict=True))
     swapped = world.edge[slots] == SOLID_RIGHT
     assert np.array_equal(outline.edge_a[:edges], np.where(swapped, world.particle_b[slots], world.particle_a[slots]))

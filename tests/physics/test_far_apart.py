@@ -88,13 +88,13 @@ def submit(session, **record):
     session.submit(from_record(record, session.world))
 
 
-def motion(level, ticks):
+def motion(level, ticks, drive=1.0):
     """Places and velocities of all that is near, tick by tick, as bytes; wheels are driven, the far jelly is held."""
     session = Session(level)
     world = session.world
     near = [k for k, name in enumerate(world.particle_names) if name and not name.startswith(("far", "+hand"))]
     for part in world.actuators.names:
-        submit(session, type="set_drive", part=part, value=1.0)
+        submit(session, type="set_drive", part=part, value=drive)
     if "far held.0" in world.particle_names:
         submit(session, type="grab", grab=0, particle="far held.0", target=[FAR + 6.0, 3.0])
     frames = []
@@ -117,6 +117,14 @@ def test_a_body_moves_as_if_nothing_were_far_away(near, solver, far_first):
     here = {"terrain": [ground("ground", 0.0)], **near()}
     alone = motion(level_of(here, {}, False, solver), TICKS)
     beside = motion(level_of(here, far_things(), far_first, solver), TICKS)
+    assert [tick for tick in range(TICKS) if alone[tick] != beside[tick]] == []
+
+
+@pytest.mark.parametrize("drive", [0.7, 0.5])
+def test_far_terrain_changes_nothing_of_a_cart_on_bumps(drive):
+    here = {"terrain": [ground("ground", 0.0)], **cart()}
+    alone = motion(level_of(here, {}, False, "direct"), TICKS, drive)
+    beside = motion(level_of(here, {"terrain": far_things()["terrain"]}, False, "direct"), TICKS, drive)
     assert [tick for tick in range(TICKS) if alone[tick] != beside[tick]] == []
 
 

@@ -6,10 +6,9 @@ FOLDER = DOCS / "sharing"
 WIDTH = 720
 # What is drawn on the sheet: a tool, and from where to where it is dragged [m].
 DRAWN = (
-    ("tool_walls", (-6.5, -4.0), (6.5, 4.5)),
-    ("tool_box", (-4.5, -3.5), (-2.0, -1.5)),
-    ("tool_circle", (0.5, -2.5), (1.3, -2.0)),
-    ("tool_box", (3.0, -3.5), (5.0, -2.5)),
+    ("tool_box", (-4.5, 0.5), (-2.0, 2.5)),
+    ("tool_circle", (0.5, 1.5), (1.3, 2.0)),
+    ("tool_box", (3.0, 0.5), (5.0, 1.5)),
 )
 
 
@@ -20,6 +19,7 @@ def draw() -> None:
     driver.wait_for_gallery()
     driver.take(FOLDER / "1-gallery.png")
     driver.choose("New")
+    driver.app.act("edit")
     for tool, start, end in DRAWN:
         driver.app.act(tool)
         driver.drag(start, end)

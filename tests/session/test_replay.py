@@ -127,7 +127,7 @@ def _outcome(replay, start: int) -> str | None:
 
 # Of another topology a world is no longer the same machine; driven parts and contacts: see test_touching.py.
 SPARED = {"particle_a", "particle_b", "law", "element_kind", "element_first", "element_corners", "corner_particle"}
-SPARED |= {column.stored for family in (Family.ACTUATOR, Family.CONTACT) for column in FAMILIES[family]}
+SPARED |= {column.stored for family in (Family.ACTUATOR, Family.CONTACT, Family.SETTING) for column in FAMILIES[family]}
 
 
 @pytest.mark.parametrize("array", [name for name in BY_STORED if name not in SPARED])

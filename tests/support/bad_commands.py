@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.physics.actuators import Actuators
+from sandbox.physics.changing.dividing import part_bodies
 from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.command import KINDS
 from sandbox.physics.jit import way
@@ -38,8 +39,11 @@ POINTS = (
     *((0.0, each) for each in _NO_NUMBERS), *((each, 0.0) for each in _NO_NUMBERS), (0.0,), (0.0, 1.0, 2.0), (), 1.0,
     None, "ab", np.zeros((2, 2)), NAN,
 )  # fmt: skip
-# Of every kind: the method of World, arguments that are right, and for each of these what is wrong in its place.
-CALLS: dict[str, tuple[str, tuple[Any, ...], tuple[tuple[Any, ...], ...]]] = {
+DURATIONS = (-1, 1_000_001, 10**30, *_NO_WHOLE_NUMBER)
+_GIVEN_POINTS, _GIVEN_NUMBERS = (tuple(each for each in values if each is not None) for values in (POINTS, NOT_BELOW_0))
+# Of every kind: the method of World, or a function of one, arguments that are right, and for each of these what is
+# wrong in its place.
+CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[Any, ...], ...]]] = {
     "grab": ("hold", (1, 0, (0.0, 1.0), 100.0, 0.1), (HANDS, PARTICLES, POINTS, NOT_BELOW_0, NOT_BELOW_0)),
     "move_grab": ("move_grab", (0, (0.0, 1.0)), (HANDS, POINTS)),
     "release": ("release", (0,), (HANDS,)),
@@ -48,9 +52,13 @@ CALLS: dict[str, tuple[str, tuple[Any, ...], tuple[tuple[Any, ...], ...]]] = {
     "freeze": ("freeze", (0,), ((14, *_BEYOND, *_NO_WHOLE_NUMBER),)),
     "cut_springs": ("cut", ([0, 1],), (LISTS,)),
     "break_springs": ("break_springs", ([0, 1],), (LISTS,)),
+    "part_bodies": (part_bodies, ([0, 1],), (LISTS,)),
     "set_coefficients": (
-        "set_coefficients", (0.5, 0.5, 0), (SHARES, SHARES, tuple(each for each in PARTS if each is not None)),
+        "set_coefficients", (0.5, 0.5, 0, 3),
+        (SHARES, SHARES, tuple(each for each in PARTS if each is not None), DURATIONS),
     ),
+    "set_gravity": ("set_gravity", ((1.0, 0.0), 3), (POINTS, DURATIONS)),
+    "set_air": ("set_air", ((1.0, 0.0), 0.5, 3), (_GIVEN_POINTS, _GIVEN_NUMBERS, DURATIONS)),
     "set_drive": ("drive", (0, 0.5), (PARTS, DRIVES)),
     "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),
     "shake": ("shake", ((1.0, 0.0),), (POINTS,)),
@@ -79,7 +87,12 @@ def wrong_calls(kind: str) -> Iterator[tuple[str, Callable[[World], Any]]]:
         for value in values:
             given = (*right[:place], value, *right[place + 1 :])
             label = f"{kind} {place}: {value!r}"
-            yield label, lambda world, given=given: getattr(world, method)(*given)
+            yield label, lambda world, given=given: call(world, method, given)
+
+
+def call(world: World, method: str | Callable[..., Any], given: tuple[Any, ...]) -> Any:
+    """Call a method of a world, or a function of one."""
+    return getattr(world, method)(*given) if isinstance(method, str) else method(world, *given)
 
 
 def memory_of(world: World) -> list[bytes]:

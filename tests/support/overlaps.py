@@ -46,6 +46,18 @@ def _crossings(w: World, outline: Outline, e: int, solid: NDArray[np.bool_]) -> 
     return f, np.min(ends, axis=0) if len(f) else np.zeros(0)
 
 
+def crossed_by_itself(w: World) -> dict[int, float]:
+    """How deep [m] the solid outlines of shapes cross themselves, by shape; lines that hang from them do not count."""
+    outline = outline_of(w)
+    depth: dict[int, float] = {}
+    for e in np.flatnonzero(outline.side[: outline.dynamic[0]] == 1).tolist():
+        s = int(outline.shape[outline.edge_a[e]])
+        for f, deep in zip(*_crossings(w, outline, e, outline.solid_of >= 0), strict=True):
+            if outline.side[f] == 1 and outline.shape[outline.edge_a[f]] == s:
+                depth[s] = max(depth.get(s, 0.0), float(deep))
+    return depth
+
+
 def overlaps(w: World) -> Found:
     """All overlaps: crossings of edges, and particles of solid bodies inside others."""
     outline = outline_of(w)

@@ -67,17 +67,20 @@ def copy_text(text: str) -> bool:
     return True
 
 
-def open_folder(folder: Path) -> bool:
-    """Show a folder in the system's file manager; whether there is one."""
+def open_path(path: Path) -> bool:
+    """Open a folder in the system's file manager, or a file in what the system has for it; whether there is that."""
     if sys.platform == "win32":
-        os.startfile(folder)
+        try:
+            os.startfile(path)
+        except OSError:  # no program has its kind
+            return False
         return True
     opener = shutil.which("open" if sys.platform == "darwin" else "xdg-open")
     if opener is None:
         return False
     try:
         subprocess.Popen(
-            [opener, str(folder)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            [opener, str(path)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             start_new_session=True,
         )  # fmt: skip
     except OSError:

@@ -1,5 +1,6 @@
-"""Recordings, and pictures of runs: the folders that they are kept in, and names that overwrite nothing."""
+"""Recordings, scenes and pictures of runs: the folders that they are kept in, and names that overwrite nothing."""
 
+import datetime
 import os
 import re
 from pathlib import Path
@@ -11,6 +12,8 @@ SUFFIX = ".replay.jsonl"
 LISTED = 60
 # Longest name [characters] that every file system takes with the suffix.
 NAME_LIMIT = 120
+# What no name of a file has in it.
+FORBIDDEN = r'[\\/:*?"<>|\x00-\x1f]'
 
 
 def recordings_folder() -> Path:
@@ -41,6 +44,18 @@ def plain_name(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:60] or "run"
 
 
+def readable_name(text: str) -> str:
+    """A file name made of a level's name, as it is read, without what no file may have in its name."""
+    return re.sub(rf"{FORBIDDEN}+", " ", text).strip(". ")[:60].strip() or "Scene"
+
+
+def told_time(when: datetime.datetime) -> str:
+    """A time as a person says it today: the day is left out where it is this one."""
+    here = when.astimezone()
+    is_today = here.date() == datetime.datetime.now(datetime.UTC).astimezone().date()
+    return f"{here:%H:%M}" if is_today else f"{here:%d %b, %H:%M}"
+
+
 def free_path(folder: Path, name: str, suffix: str = SUFFIX) -> Path:
     """A path in the folder that nothing has: name, then name-2, name-3, ..."""
     count = 1
@@ -56,7 +71,7 @@ def chosen_path(folder: Path, typed: str, suffix: str = SUFFIX) -> Path:
     name = typed.removesuffix(suffix).strip()
     if not name:
         raise ValueError("Type a name.")
-    if len(name) > NAME_LIMIT or re.search(r'[\\/:*?"<>|\x00-\x1f]', name) or name.startswith("."):
+    if len(name) > NAME_LIMIT or re.search(FORBIDDEN, name) or name.startswith("."):
         raise ValueError(
             'A name has no / \\ : * ? " < > | in it, does not begin with a dot and is not longer than 120.'
         )

@@ -59,8 +59,6 @@ class CompareScreen(PlayScreen):
         # The beginning is the same in both: they show the same part of it.
         self.stage.place(self.viewport, app.ui.scale)
         app.follow(other, self.can_cancel)
-        if self.welcome:
-            app.say(self.welcome)
 
     @property
     def other(self) -> TwinPlayback:
@@ -77,11 +75,11 @@ class CompareScreen(PlayScreen):
 
     def _actions(self) -> dict[str, Callable[[], object]]:
         of_one, files = super()._actions(), self._app.files
-        recorders = {"record": files.toggle_recording, "save": files.save_run}
-        return {**of_one, **{name: partial(self._record_one, do) for name, do in recorders.items()}}
+        keepers = {"record": files.toggle_recording, "save_recording": files.save_run, "save": files.save_scene}
+        return {**of_one, **{name: partial(self._keep_one, do) for name, do in keepers.items()}}
 
-    def _record_one(self, do: Callable[[], object]) -> None:
-        self._app.say(f"A recording is of one run: it holds {SIDES[0]} alone.")
+    def _keep_one(self, do: Callable[[], object]) -> None:
+        self._app.say(f"A recording, and what is saved, is of one run: it holds {SIDES[0]} alone.")
         do()
 
     # Where the halves are.
@@ -128,7 +126,7 @@ class CompareScreen(PlayScreen):
         return Panel(
             ui,
             playback,
-            self._app.say,
+            self.say,
             {**choices, "side": self.choose_side},
             BAR_HEIGHT,
             height,

@@ -13,16 +13,23 @@ from sandbox.app.contracts.screen import Screen
 from sandbox.app.film.film import Film
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.run.playback import Playback
+from sandbox.app.run.scene_keeping import SceneKeeping
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.sound.sounds import Sounds
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.document.model import Level
+from sandbox.session.scene import RunScene
 
 
 class Run(Screen, Protocol):
-    """A run on the screen; of_document: of the level that the editor has open."""
+    """A run on the screen; of_document: of the level that the editor has open; source: the file of its level.
+
+    saved: where in My levels it is saved, and how it stood then.
+    """
 
     of_document: bool
+    source: Path | None
+    saved: tuple[Path, RunScene] | None
 
     @property
     def playback(self) -> Playback:
@@ -46,8 +53,16 @@ class Documents(Protocol):
         """Its screen."""
         ...
 
-    def new(self, then: Callable[[], object] = ...) -> None:
-        """Begin an empty level, once it is clear what becomes of the present one."""
+    def new(self, then: Callable[[], object] = ..., level: Level | None = ...) -> None:
+        """Begin an empty level, or the one given, once it is clear what becomes of the present one."""
+        ...
+
+    def new_place(self) -> None:
+        """Begin with a place to play in, on the sheet."""
+        ...
+
+    def play_new(self) -> None:
+        """Play in a new place, with the parts at hand."""
         ...
 
     def open(self, path: str | Path) -> None:
@@ -60,6 +75,10 @@ class Documents(Protocol):
 
     def edit_level(self, level: Level, label: str = ...) -> None:
         """Edit a level that has no file."""
+        ...
+
+    def take_over(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
+        """Edit the level of a run, in the file that it is from, and go on."""
         ...
 
     def save(self) -> None:
@@ -116,6 +135,14 @@ class Files(Protocol):
 
     def save_run(self) -> None:
         """Save the run so far as a recording."""
+        ...
+
+    def save_scene(self) -> None:
+        """Save how the run stands, in My levels."""
+        ...
+
+    def open_scene(self, path: Path) -> bool:
+        """Open a scene as it stood; whether it could be."""
         ...
 
 
@@ -185,16 +212,25 @@ class Application(Protocol):
         ...
 
     @property
+    def scenes(self) -> SceneKeeping:
+        """What keeps the runs."""
+        ...
+
+    @property
     def files(self) -> Files:
         """Opening, recording, saving."""
         ...
 
-    def say(self, text: str) -> None:
-        """Show a line to the person for some seconds."""
+    def say(self, text: str, screen: Screen | None = None) -> None:
+        """Show a line to the person for some seconds; screen: what it is about, and ends with."""
         ...
 
     def take_back(self, text: str) -> None:
         """Take away a line that no longer holds."""
+        ...
+
+    def end_messages(self, screen: Screen) -> None:
+        """Take away all lines about a screen."""
         ...
 
     def show_faults(self, title: str, faults: list[str]) -> None:

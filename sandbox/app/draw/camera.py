@@ -1,7 +1,7 @@
 """Camera: world metres, y up, to pixels, y down, and back."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,11 +105,23 @@ class Camera:
         times = min(wide / max(right - left, 1e-9), tall / max(top - bottom, 1e-9), 1.0)
         self.zoom = max(self.zoom * times, ZOOM_RANGE[0])
 
-    def shows(self, box: Box) -> bool:
-        """Whether all of a box [m] is seen."""
+    @property
+    def picture(self) -> Box:
+        """What is seen [m]."""
         left, top, width, height = self.viewport
         x0, y1 = self.to_world((left, top))
         x1, y0 = self.to_world((left + width, top + height))
+        return x0, y0, x1, y1
+
+    def picture_of(self, box: Box) -> Box:
+        """What is seen [m] once a box [m] is shown as large as it goes."""
+        fitted = replace(self)
+        fitted.fit(box)
+        return fitted.picture
+
+    def shows(self, box: Box) -> bool:
+        """Whether all of a box [m] is seen."""
+        x0, y0, x1, y1 = self.picture
         return x0 <= box[0] and y0 <= box[1] and box[2] <= x1 and box[3] <= y1
 
     def reveal(self, box: Box) -> None:

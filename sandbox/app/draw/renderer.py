@@ -20,7 +20,7 @@ from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import THEMES, Theme, theme_now
 from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame, strain_of
-from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of
+from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
@@ -56,7 +56,7 @@ CHANGING = frozenset({"contacts", "forces", "velocities", "stability"})
 class Overlay:
     """What a person is doing, drawn over the world: the particle under the pointer, a cut [m], a cursor [m], pulls.
 
-    ghost: lines [m] of what a click would do.
+    ghost: lines [m] of what a click would do; is_refused: it would do nothing, as there is no room.
     lit (m,): springs that are pointed at in a panel.
     stability (m,): how near springs are to the limit of what is proven stable, 1 = at it; None = not known.
     """
@@ -66,6 +66,7 @@ class Overlay:
     cursor: tuple[float, float] | None = None
     pulls: list[Pull] = field(default_factory=list)
     ghost: list[list[tuple[float, float]]] = field(default_factory=list)
+    is_refused: bool = False
     # And a picture of it, with the place of its middle [m].
     ghost_picture: tuple[pygame.Surface, tuple[float, float]] | None = None
     stability: NDArray[np.float64] | None = None
@@ -173,7 +174,7 @@ class Renderer:
                     )  # fmt: skip
             with profile.part("things"):
                 if self.level is not None:
-                    drawables = self._drawables_of(frame, particles, springs)
+                    drawables = self._drawables_of(frame, current, particles, springs)
                     self._draw_things(drawables, frame, camera)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
@@ -198,6 +199,7 @@ class Renderer:
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
             (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost)),
+             overlay.is_refused,
              None if overlay.ghost_picture is None else (id(overlay.ghost_picture[0]), overlay.ghost_picture[1]),
              b"" if overlay.lit is None else overlay.lit.tobytes()),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
@@ -237,13 +239,16 @@ class Renderer:
             self._joined, self._drawables = joined, None
         return self._level_slots
 
-    def _drawables_of(self, frame: Frame, particles: NDArray[np.bool_], springs: NDArray[np.bool_]) -> Drawables:
+    def _drawables_of(
+        self, frame: Frame, state: Snapshot, particles: NDArray[np.bool_], springs: NDArray[np.bool_]
+    ) -> Drawables:
         held = frame.state.inverse_mass == 0.0
         key = particles, springs, held
         is_same = len(self._key) == 3 and all(map(np.array_equal, key, self._key))
         if self._drawables is None or not is_same:
             assert self._level_slots is not None
-            self._drawables, self._key = Drawables(self._level_slots, frame.state, particles, springs), key
+            whole = whole_triangles(state)
+            self._drawables, self._key = Drawables(self._level_slots, frame.state, particles, springs, whole), key
         return self._drawables
 
     def _draw_lattice(
@@ -325,7 +330,7 @@ class Renderer:
         for line in overlay.ghost:
             points = camera.project(np.array(line))
             ends = np.ascontiguousarray(np.concatenate([points[:-1], points[1:]], axis=1))
-            canvas.lines(ends, np.full(len(ends), packed(ACCENT)), 2.0 * scale)
+            canvas.lines(ends, np.full(len(ends), packed(DANGER if overlay.is_refused else ACCENT)), 2.0 * scale)
         if overlay.cursor is not None:
             self._draw_cursor(canvas, camera.to_pixels(overlay.cursor))
 

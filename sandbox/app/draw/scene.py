@@ -16,10 +16,10 @@ from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme, outline_of
 from sandbox.app.draw.things.balls import added_balls
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
-from sandbox.app.draw.things.faces import spot_of
+from sandbox.app.draw.things.faces import LEAST_KEPT, LEAST_OWN, spot_of
 from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots, joined_slots, level_slots_of
 from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
-from sandbox.app.draw.things.soft import ROUNDING, USUAL_ROUNDING, Shape, shape_of
+from sandbox.app.draw.things.soft import CRUMB, FLAT, ROUNDING, USUAL_ROUNDING, Shape, shape_of
 from sandbox.app.draw.things.springs import CYLINDER
 from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
@@ -52,6 +52,7 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
             {"slot": ball.slot, "kind": ball.kind, "colour": None if ball.colour is None else _hex(ball.colour)}
             for ball in [*slots.balls, *added_balls(balls, snapshot)]
         ],
+        "pieces": {"own": LEAST_OWN, "kept": LEAST_KEPT, "crumb": CRUMB, "flat": _lighting(FLAT)},
         "ground": ground,
         "pictures": _pictures(slots, ground),
     }
@@ -105,14 +106,16 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
     if look.skin == "lattice":
         return made
     if actor.body.type == "jelly":
-        _, left, loops, _ = actor.filling(there)
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
+        made["keeps_area"] = actor.body.__dict__["area"]
         made["spacing"] = float(actor.body.__dict__.get("spacing", actor.cell))
+        loops = [loop for piece in actor.filling(there).pieces for loop in piece.loops]
         made["shapes"] = [_shape(shape_of(actor, loops, there, radius))]
-        if look.face and look.skin in SOFT_SKINS and len(left):
-            place, room = spot_of(actor, max(loops, key=len))
-            made["face"] = [round(float(value), DIGITS) for value in (*place, room)]
+        if len(triangles):
+            place, room = actor.spot(spot_of)
+            made["spot"] = [round(float(value), DIGITS) for value in (*place, room)]
+            made["face"] = look.face and look.skin in SOFT_SKINS
     elif actor.body.type == "ring":
         made["shapes"], made["needs"] = [_shape(shape_of(actor, [actor.slots], there, radius))], actor.springs.tolist()
         # Where something is, or will be, tied to it.

@@ -68,6 +68,7 @@ _SKINS = {
     "jelly": SkinLook(0.62, (90, 10, 110), 0.40, 0.75, 0.13), "balloon": SkinLook(0.5, (60, 0, 70), 0.42, 0.0, 0.14),
     "tyre": SkinLook(0.30, BLACK, 0.6, 0.15, 0.0), "window": SkinLook(0.7, (60, 110, 150), 0.4, 0.5, 0.1),
     "lattice": SkinLook(0.25, BLACK, 0.2, 0.0, 0.66), "wood": _LAID, "stone": _LAID, "brick": _LAID,
+    "flat": SkinLook(0.0, BLACK, 0.0, 0.0, 0.0),
 }  # fmt: skip
 _RUBBER = SkinLook(0.32, (20, 0, 40), 0.38, 0.15, 0.0)
 
@@ -189,7 +190,7 @@ _TILES: dict[str, Callable[[], Packed]] = {
     "steel": lambda: _bar(STEEL), "paint": lambda: _bar(0xFFFFFF, 0.3), "brass": lambda: _bar(BRASS, 0.5),
     "rope": lambda: _twist(0xDEB276, 0x80542C, 0.16, 2), "cable": lambda: _twist(0xBEC8D8, 0x5C667A, 0.12, 3),
     "chain": _chain, "deck": _deck, "wood": _grained, "rubber": lambda: _bar(0xEB605C, 0.25),
-    "thread": lambda: _bar(0xCED2DA, 0.0), "silk": lambda: _bar(0xE8EEF6, 0.0), "bone": lambda: _bar(0xF0E4CC, 0.15),
+    "thread": lambda: _bar(0xCED2DA, 0.0), "silk": lambda: _bar(0x8C9BB2, 0.0), "bone": lambda: _bar(0xF0E4CC, 0.15),
     "muscle": _muscle,
 }  # fmt: skip
 # Tiles of strips by name; the bars of bare colours come after them.

@@ -46,7 +46,7 @@ DARK = Theme(
     "dark", stage=_pair(0x202A3E, 0x10141D), lamp=(34, 40, 52), vignette=0.42,
     shadow=_rgb(0x04060A), shadow_strength=0.50, soil=_pair(0x463C42, 0x2A262E), turf=_pair(0x6CC58B, 0x2F7A5C),
     rock=_pair(0x59627A, 0x2A2F3D), metal=_pair(0x7D8AA5, 0x39425A), text=_rgb(0xE8ECF4), accent=_rgb(0x5ED0B2),
-    card=_rgb(0x1A202C), line=_rgb(0x2E384A), tyre=_rgb(0x343842), dust=_rgb(0xCDBFA6),
+    card=_rgb(0x1A202C), line=_rgb(0x2E384A), tyre=_rgb(0x4C5362), dust=_rgb(0xCDBFA6),
     strain=(_rgb(0x4D8DFF), _rgb(0xC9CFDA), _rgb(0xFFB03A)),
     contact=_rgb(0xFF6AD5), force=_rgb(0xFFE45C), velocity=_rgb(0x6FF2E0), past=_rgb(0xFF4D8B),
 )  # fmt: skip

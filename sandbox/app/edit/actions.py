@@ -60,7 +60,7 @@ def edit_actions(screen: Editing, app: Application, clipboard: Clipboard) -> dic
             "play": documents.play,
             "undo": lambda: _step(screen, -1),
             "redo": lambda: _step(screen, 1),
-            "new": documents.new,
+            "new": documents.new_place,
             "open": app.open_gallery,
             "open_file": app.files.ask_to_open,
             "recent": lambda: app.open_gallery("mine"),

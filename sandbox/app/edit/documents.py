@@ -11,7 +11,7 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import ask, choose, show_lines
-from sandbox.editor.document import UNTITLED, Document, empty_level
+from sandbox.editor.document import UNTITLED, Document, empty_level, new_level
 from sandbox.editor.history import History
 from sandbox.editor.storage.autosave import Autosave, Orphan, orphans
 from sandbox.editor.storage.level_file import ChangedOnDisk, FileExists, LevelFile, LevelInUse, StorageError
@@ -23,6 +23,8 @@ from sandbox.level.reading.files import load_level
 
 # Longest name of a level's file [characters].
 NAME_LIMIT = 200
+# What is said where a new place is played in.
+NEW_PLACE = "Click a part at the left, then the world. Ctrl+S saves the scene. E leads to the sheet of this place."
 # Autosaves that are offered at once.
 OFFERED = 5
 
@@ -50,18 +52,45 @@ class DocumentActions:
             except LevelError as error:
                 show_lines(self.app.ui, f"{name} cannot be opened", error.faults)
 
-    def new(self, then: Callable[[], object] = lambda: None) -> None:
-        """Begin with an empty sheet; then: what is done once it is there."""
+    def new(self, then: Callable[[], object] = lambda: None, level: Level | None = None) -> None:
+        """Begin with a level that has no file, else an empty sheet; then: what is done once it is there."""
 
         def begin() -> None:
-            self._show(empty_level(), LevelFile(), "New")
+            self._show(level or empty_level(), LevelFile(), "New")
             then()
 
         self.if_saved(begin)
 
+    def new_place(self) -> None:
+        """Begin with a place to play in, on the sheet."""
+        self.new(level=new_level())
+
+    def play_new(self) -> None:
+        """Play in a new place, with the parts at hand; it lies on the sheet as well."""
+
+        def begin() -> None:
+            self.play()
+            self.app.act("palette")
+            self.app.say(NEW_PLACE)
+
+        self.new(begin, new_level())
+
     def edit_level(self, level: Level, label: str = "Open") -> None:
         """Edit a level that has no file of its own."""
         self.if_saved(lambda: self._show(level, LevelFile(), label))
+
+    def take_over(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
+        """Edit the level of a run, in the file that it is from where that still holds it, and go on."""
+
+        def show() -> None:
+            self._show(level, _file_of(level, source), "Open")
+            then()
+
+        if self.editor is not None and self.editor.document.level == level:
+            self.back()
+            then()
+        else:
+            self.if_saved(show)
 
     def open(self, path: str | Path) -> None:
         """Edit a level file; the one that is open already is shown as it is."""
@@ -381,6 +410,18 @@ class DocumentActions:
             if play is not None:
                 self.editor.watch.remember(play.playback.session)
             self.app.show_screen(self.editor)
+
+
+def _file_of(level: Level, source: Path | None) -> LevelFile:
+    """The file that a level is from, or none where it now holds another one."""
+    try:
+        level_file, there = LevelFile.open(source) if source is not None else (LevelFile(), None)
+    except (StorageError, LevelError):
+        return LevelFile()
+    if there != level:
+        level_file.close()
+        return LevelFile()
+    return level_file
 
 
 def _called(path: Path) -> str:

@@ -100,7 +100,9 @@ class Guide:
         """Follow what the person does, and show the step."""
         self._seconds += frame_time
         situation = self._situation()
-        if (self.tour is None and not self._offers) or situation is None:
+        # The offer is about the sheet: over a run of the level it has no place.
+        offers = self._offers and self._app.mode == "edit"
+        if (self.tour is None and not offers) or situation is None:
             if self._panel is not None:
                 self._take_away()
             return

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pygame
 
-from sandbox.app.base.recordings import saved_recordings
+from sandbox.app.base.recordings import recordings_folder, saved_recordings
 from sandbox.app.base.slice_queue import SliceQueue
 from sandbox.app.compare.lesson_picture import lesson_picture, twice
 from sandbox.app.contracts.application import Application
@@ -26,14 +26,17 @@ from sandbox.app.gallery.card import PICTURE_RATIO, TEXT_HEIGHT, Card, draw_shad
 from sandbox.app.gallery.header import Header
 from sandbox.app.gallery.preview import Preview
 from sandbox.app.gallery.replay_card import date_of, fill_replay
+from sandbox.app.gallery.scene_card import fill_scene
 from sandbox.app.gallery.sections import FIRST, in_sections, is_found, search_rank
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.recent import played_levels, recent_levels
+from sandbox.editor.storage.scene_shelf import scenes_in
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.reading.files import parse_level, read_bytes, shipped_folder, shipped_levels
 from sandbox.physics import jit
+from sandbox.session.replay.scene_file import SUFFIX
 
 # Sizes in layout units.
 LEAST_WIDTH, MOST_WIDTH = 218.0, 420.0
@@ -49,8 +52,13 @@ FILL_BUDGET = 0.02
 TITLES = {"levels": "Levels", "mine": "My levels", "recordings": "Replays"}
 # The level that a lesson plays twice.
 COMPARED = "jelly_cube"
-NO_LEVELS = "You have no levels yet. Draw one in the editor (New, or press E in any level) and save it with Ctrl+S."
-NO_REPLAYS = "No recordings yet. Record a run with Ctrl+R, or save what you did with Ctrl+S."
+NO_LEVELS = (
+    "You have no levels yet. Ctrl+S saves what you play, as it stands, and what you draw in the editor: press New, or "
+    "E in any level."
+)
+NO_REPLAYS = "No recordings yet. Record a run with Ctrl+R, or save what you did with Ctrl+Shift+S."
+SAVED, KEPT, GO_ON = "Saved", "Not saved, and kept", "Go on where you were"
+KEPT_LINE = "What you played, as it stood. The newest come first, and the oldest go some day."
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
 
@@ -96,7 +104,8 @@ class Gallery:
         self._nothing = TextBlock(ui, ui.rect(6, 12, self._width, 60), "", self.area.content, 13.0)
         self._build_groups_of[section]()
         titles = [group.title for group in self.groups if group.cards and not group.is_shortcut]
-        self.header.show_sections(titles, self._show_section)
+        if section == "levels":
+            self.header.show_sections(titles, self._show_section)
         self._arrange()
 
     @property
@@ -133,6 +142,8 @@ class Gallery:
         return group
 
     def _add_shipped(self) -> None:
+        if self._app.mode == "play":
+            self._add_kept(self._group(GO_ON, is_shortcut=True))
         played = played_levels()
         shortcuts = self._group("Recently played", is_shortcut=True)
         for path in played[: shortcuts.columns]:
@@ -174,9 +185,30 @@ class Gallery:
                 card.show_picture(twice(picture))
 
     def _add_own(self) -> None:
-        group = self._group("")
-        for path in recent_levels():
-            self._add_level(group, path)
+        group = self._group(SAVED)
+        try:
+            saved = scenes_in(recordings_folder())
+        except OSError:
+            saved = []
+        levels = recent_levels()
+        times = {path: when for path in (*saved, *levels) if (when := _written(path)) is not None}
+        for path in sorted(times, key=lambda path: times[path], reverse=True):
+            if path in levels:
+                self._add_level(group, path)
+            else:
+                self._add_scene(group, path, is_kept=False)
+        self._add_kept(self._group(KEPT, KEPT_LINE))
+
+    def _add_kept(self, group: Group) -> None:
+        """Add the runs that were kept by themselves, but the one on the screen: in a row as many as fit."""
+        kept = self._app.scenes.shelf.others()
+        for path in kept[: group.columns if group.is_shortcut else None]:
+            self._add_scene(group, path, is_kept=True)
+
+    def _add_scene(self, group: Group, path: Path, is_kept: bool) -> None:
+        name = one_line(path.name.removesuffix(SUFFIX))
+        card = self._add_card(group, "" if is_kept else name, "", partial(self._app.files.open_scene, path))
+        self._unfilled.add(fill_scene(card, path, is_kept))
 
     def _add_level(self, group: Group, path: Path, line: str = "") -> None:
         is_shipped = path.parent == shipped_folder("levels")
@@ -387,6 +419,14 @@ class Gallery:
     def scroll(self, notches: float) -> None:
         """Move the cards by notches of the wheel."""
         self.area.turn(notches)
+
+
+def _written(path: Path) -> float | None:
+    """When a file was written, None where it is gone by now."""
+    try:
+        return path.stat().st_mtime
+    except OSError:
+        return None
 
 
 def _beside(cards: Sequence[Card], card: Card, dx: int, dy: int) -> Card | None:

@@ -20,7 +20,7 @@ GAP = 8.0
 PAGES_WIDTH, SEARCH_WIDTH = 260.0, 240.0
 # Narrower windows have two rows and no line of sections.
 ROOM_FOR_ONE_ROW = 980.0
-NEW_TIP = "Draw your own level on an empty sheet"
+NEW_TIP = "A place of your own: ground, walls and parts to play with"
 PAGES = (("levels", "Levels"), ("mine", "My levels"), ("recordings", "Replays"))
 SEARCH = "Type to search"
 
@@ -61,7 +61,9 @@ class Header:
         """New, Open file and Settings, up to the right; where they begin."""
         ui, sheet = self._ui, self._sheet
         icon = painted_icon(ICONS["settings"], ui.px(18), TEXT)
-        buttons = [(58.0, "New", app.documents.new), (94.0, "Open file", app.files.ask_to_open)]
+        documents = app.documents
+        new = documents.new_place if app.mode == "edit" else documents.play_new
+        buttons = [(58.0, "New", new), (94.0, "Open file", app.files.ask_to_open)]
         left = right - BUTTON - sum(width + GAP for width, _, _ in buttons)
         x = left
         for width, text, action in buttons:

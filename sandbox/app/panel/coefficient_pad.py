@@ -7,14 +7,15 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
+from sandbox.app.base.sag_map import WORD_SHARE, SagMap
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.panel.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
-from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.widgets.painted import Draggable, wrapped
 from sandbox.app.widgets.slider import FINE_KEY_STEP, KEY_STEP
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.analysis.body_motion import BodyMotion, word_edges
+from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones
 from sandbox.physics.analysis.spring_motion import swings_back
 from sandbox.physics.arrays import Floats
@@ -27,8 +28,6 @@ HATCH = 7.0
 UP_NAME, ACROSS_NAME = "Cd  damping", "Cs  stiffness"
 # Numbers of an axis are at least so far apart.
 NUMBER_GAP = 6.0
-# A word is written where it has at least this share of the map.
-WORD_SHARE = 0.015
 # Values of Cs that zones are worked out for.
 STIFFNESSES = CoefficientScale(1e-5, 0.003).values(81)
 
@@ -38,7 +37,7 @@ Mask = NDArray[np.bool_]
 class PadState(NamedTuple):
     """What the pad shows: Cs and Cd, whether springs differ in them, and whether there are any.
 
-    own: what the level itself has; scale: of both axes; body: that of which words are.
+    own: what the level itself has; scale: of both axes; body: that of which words are, and subject: what of it sags.
     """
 
     stiffness: float
@@ -48,6 +47,7 @@ class PadState(NamedTuple):
     own: tuple[float, float] | None = None
     scale: CoefficientScale = PLAIN
     body: BodyMotion | None = None
+    subject: str = ""
 
 
 class CoefficientPad(Draggable):
@@ -258,6 +258,8 @@ class CoefficientPad(Draggable):
             texts = [f"Cs {cs:.2g}, Cd {cd:.2g}: {self._sweep.text_at(cs, cd)}"]
         elif self._sweep is not None:
             texts.append(self._sweep.text_at(self.state.stiffness, self.state.damping))
+        elif self.state.subject and self.state.enabled:
+            texts = [self._note or f"sag of {self.state.subject}"]
         font, inside = self.ui.font(NUMBER_SIZE), self._inside
         widest = inside.width - self.ui.font(NUMBER_SIZE, True).size(UP_NAME)[0] - self.ui.px(6)
         picture = font.render(wrapped(", ".join(filter(None, texts)), font, widest, 1)[0], True, TEXT)
@@ -341,9 +343,8 @@ class CoefficientPad(Draggable):
         else:
             pair = body.of_substep(stiffness.reshape(-1), damping.reshape(-1))
             swings = swings_back(*body.whole(*pair)).reshape(stiffness.shape)
-            sag = body.sag(*pair)
-            if sag is not None:
-                self._paint_sags(pixels, sag.reshape(stiffness.shape))
+            if body.tells_sag:
+                self._paint_sags(pixels, SagMap.of(body, self.state.scale))
         x, y = np.nonzero(_border(swings))
         dashed = (x + y) // max(2, self.ui.px(4)) % 2 == 0
         alpha = pygame.surfarray.pixels_alpha(pixels)
@@ -357,11 +358,11 @@ class CoefficientPad(Draggable):
             for words, mask in (("swings", swings), ("creeps back", ~swings)):
                 self._paint_in(surface, inside, mask, words, self.ui.font(LABEL_SIZE), MUTED, 0.72)
 
-    def _paint_sags(self, pixels: pygame.Surface, sag: Floats) -> None:
-        words, edges = word_edges()
-        number = np.searchsorted(-np.array(edges), -sag)
-        border = np.zeros(sag.shape, np.bool_)
-        for k in range(len(words)):
+    def _paint_sags(self, pixels: pygame.Surface, sags: SagMap) -> None:
+        width, height = pixels.get_size()
+        number = sags.number(width, height)[:, ::-1]
+        border = np.zeros(number.shape, np.bool_)
+        for k in range(int(number.max()) + 1):
             border |= _border(number == k)
         alpha = pygame.surfarray.pixels_alpha(pixels)
         alpha[border] = 110
@@ -369,9 +370,12 @@ class CoefficientPad(Draggable):
         colours = pygame.surfarray.pixels3d(pixels)
         colours[border] = ACCENT
         del colours
-        if self.state.enabled:
-            for k, word in enumerate(words):
-                self._paint_in(pixels, pixels.get_rect(), number == k, word, self.ui.font(WORD_SIZE, True), TEXT, 0.34)
+        if not self.state.enabled:
+            return
+        for word, (across, up) in sags.places.items():
+            picture = self.ui.font(WORD_SIZE, True).render(word, True, TEXT)
+            place = picture.get_rect(center=(across * width, (1.0 - up) * height))
+            pixels.blit(picture, place.clamp(pixels.get_rect().inflate(-4, -2)))
 
     def _paint_in(
         self, surface: pygame.Surface, inside: pygame.Rect, mask: Mask, words: str, font: pygame.font.Font,

@@ -7,11 +7,15 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.panel.firmness_rows import FirmnessRows
 from sandbox.app.panel.panel_rows import PanelRows
 from sandbox.app.panel.readings import number
+from sandbox.app.panel.response_curve import ResponseCurve
 from sandbox.app.panel.solver_rows import SolverRows
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import DASH, MIXED, typed_number
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
+
+# Layout units.
+CURVE_HEIGHT = 78.0
 
 
 class EngineersRows:
@@ -36,6 +40,7 @@ class EngineersRows:
     def build(self, rows: PanelRows) -> None:
         """Make the widgets."""
         ui, firmness = rows.ui, self._firmness
+        self.solving.build(rows)
         if firmness.shown:
             ui.label(rows.row(16, 2), "Of the body", rows.back)
             firmness.frequency, firmness.ratio = rows.beside(
@@ -47,7 +52,7 @@ class EngineersRows:
             ("Frequency [Hz]", "Swings a second of one spring, undamped", self._type_frequency),
             ("Damping ratio", "Below 1 one spring swings, above 1 it creeps back", self._type_ratio),
         )
-        self.solving.build(rows)
+        self.curve = ResponseCurve(ui, rows.row(CURVE_HEIGHT, 8), rows.back)
 
     def refresh(self, is_look: bool) -> None:
         """Show how ticks are solved now."""
@@ -57,10 +62,13 @@ class EngineersRows:
         """Show what Cs and Cd of the chosen springs mean for one of them; None: no spring is chosen."""
         if coefficients is None:
             texts = DASH, DASH
+            self.curve.show_none("There is no spring here.")
         elif any(values.min() != values.max() for values in coefficients):
             texts = MIXED, MIXED
+            self.curve.show_none("The springs differ in Cs or Cd.")
         else:
             stiffness, damping = (float(values[0]) for values in coefficients)
+            self.curve.show_spring((stiffness, damping), self.playback.session.world.settings.tick_rate)
             frequency, ratio = frequency_from_coefficients(stiffness, damping, self._tick_time())
             texts = number(frequency), number(ratio)
         self.frequency.show(texts[0])

@@ -2,31 +2,53 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict
-from typing import Any
+from dataclasses import asdict, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.panel.readings import DIGITS, motion_words, number, per_cent, sag_words
+from sandbox.app.base.sag_map import Pairs, word_pairs
+from sandbox.app.base.sag_sentences import subject_words
+from sandbox.app.base.sentences import capitalised
+from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.fields import DASH, MIXED, Choice, Field, typed_number
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
-from sandbox.physics.analysis.body_motion import BodyMotion, BodyReading, present_coefficients, read_body, word_for
-from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, lowest_mode_of
+from sandbox.physics.analysis.body_motion import BodyMotion, present_coefficients, read_body, word_for
+from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach
+from sandbox.physics.analysis.sag_curve import SagCurve
+from sandbox.physics.analysis.sag_meter import SagMeter
+from sandbox.physics.analysis.spring_motion import SpringMotion
 from sandbox.physics.analysis.stability import BOUND, spring_loads
-from sandbox.physics.analysis.standing import StandingRun
+from sandbox.physics.analysis.subjects import Meters, Subject, pair_of, subjects_of
+from sandbox.physics.arrays import Floats
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.solvers import SOLVERS
-from sandbox.session.commands import SetFirmness
+from sandbox.session.commands import SetCoefficients, SetFirmness
 
 ALL_BODIES = "All bodies"
-# Where only a run tells how far a body sags: ticks of it in a frame, and particles of the largest body that has one.
-TICKS_A_FRAME, LARGEST_RUN = 12, 400
+# Seconds of work on what is measured: in a frame; in one while somebody waits for it; and at once.
+WORK, HASTE, AT_ONCE = 0.006, 0.02, 0.1
+# What is reached of an asked sag within this share is as asked.
+AS_ASKED = 0.1
+# What is so many times as much or as little as asked is not set in its place.
+FAR = 10.0
 TOO_STIFF = "Too stiff for the single pass: it melts or explodes."
+# Significant digits of a sag.
+DIGITS = 2
+
+
+class Reading(NamedTuple):
+    """What is shown of a body: its sag, None: not measured yet, NaN: it cannot be; its wobble, None: it has none."""
+
+    subject: Subject
+    sag: float | None
+    motion: SpringMotion | None
+    is_rigid: bool
 
 
 class FirmnessRows:
@@ -47,20 +69,23 @@ class FirmnessRows:
         self.body = ALL_BODIES
         self._find_bodies()
         # A panel that was laid out without bodies has no rows.
-        self.shown = bool(self._slots)
+        self.shown = bool(self._subjects)
         self._shown_of: tuple[object, ...] = ()
-        # Runs that measure sags, by body and by what it is made of.
-        self._runs: dict[tuple[object, ...], StandingRun] = {}
+        self._meters = Meters()
+        # Sags that were asked for and are looked for, by the name of the body, and the gesture that asked.
+        self._asked: dict[str, tuple[float, int]] = {}
+        # Those of them that have about that by now.
+        self._answered: set[str] = set()
+        self._seen: dict[str, object] = {}
 
     @property
     def bodies(self) -> list[str]:
         """Names of the bodies whose firmness can be set here."""
-        return list(self._slots)
+        return list(self._subjects)
 
     def _find_bodies(self) -> None:
-        forms = self.playback.session.world.forms
-        self._slots = {body.name: k for k, body in enumerate(forms) if len(body.shape.mass) <= LARGEST_READ}
-        if self.body not in self._slots:
+        self._subjects = subjects_of(self.playback.session.world)
+        if self.body not in self._subjects:
             self.body = ALL_BODIES
 
     def offer_bodies(self, ui: Ui) -> None:
@@ -69,6 +94,12 @@ class FirmnessRows:
         if self.shown:
             ui.offer(self.menu, [ALL_BODIES, *self.bodies], self.body)
 
+    def speak_of(self, material: int | None) -> None:
+        """Begin with the one body of several that is of a material, if there is one: the level's text speaks of it."""
+        names = [name for name in self._subjects if self.material_of(name) == material]
+        if len(names) == 1 < len(self._subjects):
+            self.body = names[0]
+
     def choose_body(self, name: str) -> None:
         """Show and change that body, or all."""
         self.body = name
@@ -76,64 +107,94 @@ class FirmnessRows:
 
     def material_of(self, name: str) -> int | None:
         """The material (index) of a body's springs; None: of all bodies, or of none that is known."""
-        slot = self._slots.get(name)
-        world = self.playback.session.world
-        return None if slot is None else int(world.material[world.forms[slot].springs[0]])
+        subject = self._subjects.get(name)
+        return None if subject is None else int(self.playback.session.world.material[subject.body.springs[0]])
 
     def body_at(self, particle: int) -> str | None:
         """The name of the body of which a particle is; None: of none that is offered."""
         world = self.playback.session.world
-        for name, slot in self._slots.items():
-            springs = world.forms[slot].springs
+        for name, subject in self._subjects.items():
+            springs = subject.body.springs
             if particle in world.particle_a[springs] or particle in world.particle_b[springs]:
                 return name
         return None
 
     def springs_of(self, name: str) -> NDArray[np.bool_]:
         """The springs (m,) of a body, or of all."""
-        world = self.playback.session.world
-        chosen = np.zeros(world.spring_count, np.bool_)
-        for slot in self._slots.values() if name == ALL_BODIES else [self._slots[name]]:
-            chosen[world.forms[slot].springs] = True
+        chosen = np.zeros(self.playback.session.world.spring_count, np.bool_)
+        for subject in self._subjects.values() if name == ALL_BODIES else [self._subjects[name]]:
+            chosen[subject.body.springs] = True
         return chosen
 
-    def body_of(self, material: int | None) -> int | None:
+    def body_of(self, material: int | None) -> str | None:
         """The body of which what is said of a material is said: the chosen one, else the largest of the material."""
-        world = self.playback.session.world
-        if self.body in self._slots and material in (None, self.material_of(self.body)):
-            slots = [self._slots[self.body]]
-        else:
-            slots = [slot for name, slot in self._slots.items() if material in (None, self.material_of(name))]
-        slots = [slot for slot in slots if self._mode(slot) > 0.0]
-        return max(slots, key=lambda slot: len(world.forms[slot].springs), default=None)
+        if self.body in self._subjects and material in (None, self.material_of(self.body)):
+            return self.body
+        names = [name for name in self._subjects if material in (None, self.material_of(name))]
+        return max(names, key=lambda name: len(self._subjects[name].body.springs), default=None)
 
-    def motion_of(self, slot: int) -> BodyMotion:
-        """What a body, by its place in the world's `forms`, makes of Cs and Cd."""
-        world = self.playback.session.world
-        return BodyMotion.of(world.forms[slot].shape, world.settings, self._mode(slot))
+    def curve_of(self, material: int | None) -> SagCurve | None:
+        """What runs have told by now of the body that is spoken of; what is not known is asked for."""
+        name = self.body_of(material)
+        meter = None if name is None else self._meter(self._subjects[name])
+        if meter is None:
+            return None
+        meter.trace()
+        return meter.curve
+
+    def motion_of(self, name: str) -> BodyMotion | None:
+        """What a body makes of Cs and Cd, as far as runs have told by now; None: nothing is known."""
+        world, subject = self.playback.session.world, self._subjects[name]
+        meter = self._meter(subject)
+        curve = None if meter is None else meter.curve
+        if curve is None and subject.slot is None:
+            return None
+        # A net moves as its springs do.
+        motion = BodyMotion.of(subject.body.shape, world.settings, subject.lowest_mode or 1.0)
+        return replace(motion, curve=curve)
+
+    def word_pairs(self, name: str, body: BodyMotion) -> Pairs:
+        """Cs and Cd of each word for a body, where runs have told."""
+        meter = self._meter(self._subjects[name])
+        return {} if meter is None or meter.curve is None else word_pairs(meter, body)
+
+    def subject_of(self, name: str) -> str:
+        """Of what the words for a body are, as a part of a sentence: "the girder's end"."""
+        return subject_words(name, self._meters.of(self.playback.session.world, self._subjects[name]).stance.support)
 
     def refresh(self, look: bool) -> None:
         """Show what the bodies have now; look: also where no command of the person's has changed them."""
         if not self.shown:
             return
+        if self._asked:
+            self._settle(HASTE)
+        news = self._meters.advance(HASTE if self._is_waited_for() else WORK)
         key = (self.playback.revision, self.body, jit.COMPILED)
-        if key == self._shown_of and not look and not self._advance():
+        if key == self._shown_of and not look and not news:
             return
         self._shown_of = key
-        world = self.playback.session.world
-        present = present_coefficients(world)
-        found = {slot: read_body(world, slot, self._mode(slot), present) for slot in self._chosen()}
-        readings = {slot: reading for slot, reading in found.items() if reading is not None}
-        sags = {slot: self._sag(slot, reading) for slot, reading in readings.items()}
-        known = [sag for sag in sags.values() if sag is not None]
-        whole = len(readings) == len(found) and len(known) == len(sags) and bool(found)
-        self.sag.show(self._one([per_cent(sag, DIGITS).removesuffix(" %") for sag in known], whole))
-        self.frequency.show(self._one([number(each.motion.hz) for each in readings.values()], whole))
-        self.ratio.show(self._one([number(each.motion.ratio) for each in readings.values()], whole))
-        words = {word_for(sag, readings[slot].is_rigid) for slot, sag in sags.items() if sag is not None}
+        present = present_coefficients(self.playback.session.world)
+        found = [self._read(subject, present) for subject in self._chosen()]
+        readings = [reading for reading in found if reading is not None]
+        sags = [reading.sag for reading in readings if reading.sag is not None and math.isfinite(reading.sag)]
+        whole = len(readings) == len(found) and len(sags) == len(readings) and bool(found)
+        self.sag.show(self._one([per_cent(sag, DIGITS).removesuffix(" %") for sag in sags], whole))
+        motions = [reading.motion for reading in readings if reading.motion is not None]
+        has_motions = len(motions) == len(found) and bool(found)
+        self.frequency.show(self._one([number(motion.hz) for motion in motions], has_motions))
+        self.ratio.show(self._one([number(motion.ratio) for motion in motions], has_motions))
+        words = {word_for(each.sag, each.is_rigid) for each in readings if each.sag is not None}
         explodes = self._may_explode()
         self.words.show(words.pop() if whole and len(words) == 1 and not explodes else "")
-        self.text.show_text(TOO_STIFF if explodes else self._text(list(readings.values()), known, whole))
+        self.text.show_text(TOO_STIFF if explodes else self._text(readings, sags, whole))
+
+    @property
+    def is_measuring(self) -> bool:
+        """Whether something that was asked for is not set yet, or runs still tell of the bodies."""
+        return bool(self._asked or self._meters.busy)
+
+    def _is_waited_for(self) -> bool:
+        return not self._shown_of or self.text.text.startswith("Measuring")
 
     def _may_explode(self) -> bool:
         """Whether springs of a chosen body are past what a single pass is proven to bear."""
@@ -141,105 +202,181 @@ class FirmnessRows:
         if not SOLVERS[world.settings.solver].proven_limit:
             return False
         loads = spring_loads(world)
-        return any(bool(np.any(loads[world.forms[slot].springs] >= BOUND)) for slot in self._chosen())
+        return any(bool(np.any(loads[subject.body.springs] >= BOUND)) for subject in self._chosen())
 
     def _one(self, texts: list[str], whole: bool) -> str:
         return DASH if not texts else texts[0] if whole and len(set(texts)) == 1 else MIXED
 
-    def _text(self, readings: list[BodyReading], sags: list[float], whole: bool) -> str:
+    def _text(self, readings: list[Reading], sags: list[float], whole: bool) -> str:
         if not self._chosen():
-            return "No body here keeps its form without pins."
+            return "There is no body here whose firmness can be set."
         if not readings:
             return "The springs of a body differ in Cs or Cd."
-        if not sags:
+        if any(reading.sag is None for reading in readings) and jit.COMPILED:
             return "Measuring how far it sags ..."
-        sag = sag_words(min(sags), max(sags))
-        motions = {motion_words(reading.motion) for reading in readings}
+        if not sags:
+            return "How far it sags cannot be measured here: it does not come to rest, or is too large."
+        stances = {reading.subject.name: self._meters.of(self.playback.session.world, reading.subject).stance
+                   for reading in readings}  # fmt: skip
+        supports = {stance.support for stance in stances.values()}
+        name = readings[0].subject.name if len(readings) == 1 else None
+        sag = sag_words(min(sags), max(sags), name, supports)
+        motions = {motion_words(reading.motion) for reading in readings if reading.motion is not None}
         return f"{sag}; {motions.pop()}." if whole and len(motions) == 1 else f"{sag}."
 
-    # Where only a run can tell.
+    # Measuring.
 
-    def _sag(self, slot: int, reading: BodyReading) -> float | None:
-        """How far a body sags; None while it is measured."""
-        if reading.sag is not None:
-            return reading.sag
+    def _meter(self, subject: Subject) -> SagMeter | None:
+        """What measures a body; None while kernels are interpreted, which takes too long."""
+        return self._meters.of(self.playback.session.world, subject) if jit.COMPILED else None
+
+    def _read(self, subject: Subject, present: tuple[Floats, Floats]) -> Reading | None:
+        """What there is to show of a body; None where its springs differ."""
         world = self.playback.session.world
-        body = world.forms[slot]
-        if len(body.shape.mass) > LARGEST_RUN:
+        pair, meter = pair_of(world, subject.body), self._meter(subject)
+        if pair is None:
             return None
-        pair = float(world.stiffness[body.springs[0]]), float(world.damping[body.springs[0]])
-        key = (body.shape, world.settings, *pair)
-        if key not in self._runs:
-            self._runs = {each: run for each, run in self._runs.items() if run.sag is not None}
-            self._runs[key] = StandingRun(body.shape, world.settings, *pair)
-        return self._runs[key].sag
-
-    def _advance(self) -> bool:
-        """Go on with a run that is not at its end; whether one came to it."""
-        run = next((run for run in self._runs.values() if run.sag is None), None)
-        return run is not None and run.advance(TICKS_A_FRAME)
+        found = None if subject.slot is None else read_body(world, subject.body, subject.lowest_mode, present)
+        motion = None if found is None else found.motion
+        is_rigid = pair[:2] == (1.0, 1.0)
+        if meter is None:
+            return Reading(subject, None if found is None else found.sag, motion, is_rigid)
+        # What changes from tick to tick is not measured again each time.
+        is_steady, self._seen[subject.name] = self._seen.get(subject.name) in (None, pair), pair
+        sag = meter.sag_known(pair)
+        if sag is None and is_steady:
+            sag = meter.sag(pair)
+        if sag is None:
+            sag = meter.estimate(pair)
+        return Reading(subject, sag, motion, is_rigid)
 
     # Changing.
 
     def choose_word(self, word: str) -> None:
         """Make the chosen bodies as soft as the word says."""
-        self._set(lambda slot: Firmness(sag=WORDS[word]))
+        self._ask(WORDS[word])
 
     def type_sag(self, text: str) -> bool:
         """The sag of the chosen bodies [%]."""
         sag = typed_number(self._say, text, "Sag", 0.0, 100.0 * SAG_LIMIT, unit="%")
-        return sag is not None and self._set(lambda slot: Firmness(sag=sag / 100.0))
+        return sag is not None and self._ask(sag / 100.0)
+
+    def _ask(self, sag: float) -> bool:
+        """Make the chosen bodies sag so far as runs tell, at once or as soon as it is known."""
+        if not self._can_set():
+            return False
+        gesture = self.playback.session.new_gesture()
+        self._asked = {subject.name: (sag, gesture) for subject in self._chosen()}
+        self._answered = set()
+        if jit.COMPILED and sag > 0.0:
+            self._settle(AT_ONCE)
+        else:
+            for subject in self._chosen():
+                self._give(subject, Firmness(sag=sag), gesture)
+            self._asked = {}
+        return True
+
+    def _settle(self, seconds: float) -> None:
+        """Set what is known by now of the sags that were asked for, after so much work on them."""
+        self._asked = {name: asked for name, asked in self._asked.items() if name in self._subjects}
+        for name, (sag, _) in self._asked.items():
+            self._meters.of(self.playback.session.world, self._subjects[name]).firmness(sag)
+        self._meters.advance(seconds)
+        others: dict[str, list[str]] = {}
+        for name, (sag, gesture) in list(self._asked.items()):
+            subject = self._subjects[name]
+            meter = self._meters.of(self.playback.session.world, subject)
+            is_known, firmness = meter.firmness(sag)
+            if not is_known:
+                self._answer_first(subject, meter, sag, gesture)
+                continue
+            del self._asked[name]
+            self._answered.discard(name)
+            fault = self._take(subject, meter, sag, firmness, gesture)
+            if fault:
+                others.setdefault(fault, []).append(name)
+        for fault, names in others.items():
+            more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+            self._say(f"{capitalised(names[0])}{more}: {fault}")
+
+    def _answer_first(self, subject: Subject, meter: SagMeter, sag: float, gesture: int) -> None:
+        """Give a large body at once, and once, about what is looked for."""
+        firmness = meter.first_answer(sag)
+        if firmness is not None and subject.name not in self._answered:
+            self._answered.add(subject.name)
+            self._give(subject, firmness, gesture)
+
+    def _take(self, subject: Subject, meter: SagMeter, sag: float, firmness: Firmness | None, gesture: int) -> str:
+        """Give a body what was found for a sag; what is to be said of it, if it is not that."""
+        if firmness is None:
+            return f"a sag of {per_cent(sag)} cannot be had or measured here. Set Cs and Cd."
+        reached = meter.sag_known(meter.springs_of(firmness))
+        if reached is not None and not sag / FAR <= reached <= sag * FAR:
+            return f"a sag of {per_cent(sag)} is far out of reach here; {per_cent(reached)} is the nearest."
+        self._give(subject, firmness, gesture)
+        if reached is None or abs(reached / sag - 1.0) <= AS_ASKED:
+            return ""
+        return f"a sag of {per_cent(sag)} is not possible here. It has the nearest value now: {per_cent(reached)}."
+
+    def _give(self, subject: Subject, firmness: Firmness, gesture: int) -> None:
+        if subject.slot is not None:
+            self._set_one(subject, firmness, gesture)
+            return
+        stiffness, damping, _ = self._meters.of(self.playback.session.world, subject).springs_of(firmness)
+        material = self.material_of(subject.name)
+        self.playback.submit(SetCoefficients(stiffness=stiffness, damping=damping, material=material), gesture)
 
     def type_frequency(self, text: str) -> bool:
         """The frequency of their slowest wobble [Hz]; each keeps its damping ratio."""
         hz = typed_number(self._say, text, "Wobble", *FREQUENCY_RANGE)
-        return hz is not None and self._set(lambda slot: Firmness(hz=hz, ratio=self._kept(slot)[1]))
+        return hz is not None and self._set(lambda subject: Firmness(hz=hz, ratio=self._kept(subject)[1]))
 
     def type_ratio(self, text: str) -> bool:
         """The damping ratio of that wobble; each keeps its frequency."""
         ratio = typed_number(self._say, text, "Ratio", 0.0, RATIO_LIMIT)
         if ratio is None:
             return False
-        if any(self._kept(slot)[0] is None for slot in self._chosen()):
+        if any(self._kept(subject)[0] is None for subject in self._chosen()):
             self._say("These bodies have no frequency to keep. Set the frequency first.")
             return False
-        return self._set(lambda slot: Firmness(hz=self._kept(slot)[0], ratio=ratio))
+        return self._set(lambda subject: Firmness(hz=self._kept(subject)[0], ratio=ratio))
 
-    def _chosen(self) -> list[int]:
-        slots = list(self._slots.values()) if self.body == ALL_BODIES else [self._slots[self.body]]
-        return [slot for slot in slots if self._mode(slot) > 0.0]
+    def _chosen(self) -> list[Subject]:
+        return list(self._subjects.values()) if self.body == ALL_BODIES else [self._subjects[self.body]]
 
-    def _mode(self, slot: int) -> float:
-        """The lowest mode of a body; while kernels are interpreted, which takes long, only where it is known."""
-        world = self.playback.session.world
-        body = world.forms[slot]
-        known = float(world.lowest_mode[body.springs[0]])
-        return known if known > 0.0 or not jit.COMPILED else lowest_mode_of(body.shape)
-
-    def _kept(self, slot: int) -> tuple[float | None, float | None]:
+    def _kept(self, subject: Subject) -> tuple[float | None, float | None]:
         """Frequency [Hz] and damping ratio of a body, those that can be asked for again."""
-        reading = read_body(self.playback.session.world, slot, self._mode(slot))
+        world = self.playback.session.world
+        reading = None if subject.slot is None else read_body(world, subject.body, subject.lowest_mode)
         if reading is None or not math.isfinite(reading.motion.hz):
             return None, None
         hz, ratio = (float(f"{value:.3g}") for value in (reading.motion.hz, reading.motion.ratio))
         return hz, min(ratio, RATIO_LIMIT)
 
-    def _set(self, asked: Callable[[int], Firmness]) -> bool:
-        """Give the chosen bodies what is asked of each, or the nearest in reach, and say so."""
-        chosen, gesture = self._chosen(), self.playback.session.new_gesture()
-        if not chosen:
+    def _can_set(self) -> bool:
+        if not self._chosen():
             self._say("No body here can have a firmness: each collapses without its pins.")
+        return bool(self._chosen())
+
+    def _set(self, asked: Callable[[Subject], Firmness]) -> bool:
+        """Give the chosen bodies what is asked of each, or the nearest in reach, and say so."""
+        if not self._can_set():
             return False
-        for slot in chosen:
-            wanted, world = asked(slot), self.playback.session.world
-            name = world.forms[slot].name
-            reach = FirmnessRange.of(world.forms[slot].shape, world.settings.gravity, world.settings.tick_rate)
-            try:
-                given = reach.nearest(wanted)
-            except OutOfReach as error:
-                self._say(f"{name}: {error}.")
-                continue
-            if given != wanted:
-                self._say(f"{name}: {wanted} is not possible here. It has the nearest value now: {given}.")
-            self.playback.submit(SetFirmness(slot, **asdict(given)), gesture)
+        gesture = self.playback.session.new_gesture()
+        for subject in self._chosen():
+            if subject.slot is not None:
+                self._set_one(subject, asked(subject), gesture)
         return True
+
+    def _set_one(self, subject: Subject, wanted: Firmness, gesture: int) -> None:
+        settings = self.playback.session.world.settings
+        reach = FirmnessRange.of(subject.body.shape, settings.gravity, settings.tick_rate)
+        try:
+            given = reach.nearest(wanted)
+        except OutOfReach as error:
+            self._say(f"{subject.name}: {error}.")
+            return
+        if given != wanted:
+            self._say(f"{subject.name}: {wanted} is not possible here. It has the nearest value now: {given}.")
+        assert subject.slot is not None
+        self.playback.submit(SetFirmness(subject.slot, **asdict(given)), gesture)

@@ -1,49 +1,52 @@
 """Panel: how firm bodies are, Cs and Cd by a pad or sliders and what is proven of them; solver, gravity, settings."""
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 
-from sandbox.app.base.shortcuts import tip_of
+from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
+from sandbox.app.base.sag_map import own_of, scale_of
+from sandbox.app.base.sag_sentences import SAG_TIP
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
 from sandbox.app.panel.engineers_rows import EngineersRows
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
 from sandbox.app.panel.panel_section import PanelSection
+from sandbox.app.panel.play_rows import PlayRows
 from sandbox.app.panel.readings import number, stability_words
-from sandbox.app.panel.response_curve import ResponseCurve
 from sandbox.app.panel.sweeps.pad_maps import PadMaps
 from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale, scale_for
 from sandbox.app.widgets.fields import DASH, MIXED, typed_number
 from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.ui import Ui
-from sandbox.level.document.model import NissenMaterial
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import WORDS
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
-from sandbox.physics.arrays import Floats
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.session.commands import Command, SetCoefficients
 
 # Sizes in layout units.
-# From this height of the panel on Cs and Cd are set by the pad.
-PAD_FROM = 470.0
-PAD_HEIGHT, CURVE_HEIGHT = 214.0, 84.0
+PAD_HEIGHT = 214.0
+# Cs and Cd are set by the pad where so much of the panel's height is left for their rows.
+PAD_ROOM = 334.0
 SPRINGS_CHOICE = 118.0
+HEADING = 26.0
 SIDES_HEIGHT = 38.0
 # Frames between two looks at all springs for changes that no command of the person's made: those of a replay.
 LOOK_EVERY = 15
 ALL_MATERIALS = "All springs"
+# What all is under that play does without, and that the level's text does not ask for.
+MORE, MORE_TITLE = "more", "More"
 CS_TIP = "Cs: part of its error that a spring takes back in a tick; more is stiffer. 0 to 1"
 CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calmer. 0 to 1"
 
@@ -52,7 +55,7 @@ CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calm
 class PanelShape:
     """How a person has the panel: springs by "pad" or "sliders", None: as room allows; which sections are open.
 
-    open: by name; those that are not in it are as room allows.
+    open: by name, MORE too; of those that are not in it all but MORE are open.
     """
 
     springs: str | None = None
@@ -77,7 +80,6 @@ class Panel:
     ) -> None:  # fmt: skip
         self._ui, self.playback, self.say, self.choose = ui, playback, say, choose
         self.pad: CoefficientPad | None = None
-        self.curve: ResponseCurve | None = None
         self.maps: PadMaps | None = None
         self._sweeps = shape.sweeps
         self._zones: CoefficientZones | None = None
@@ -89,19 +91,20 @@ class Panel:
         self._refreshes = -1
         self._refreshed_at: tuple[object, ...] = ()
         self.firmness = FirmnessRows(playback, say)
+        if playback.level.look is not None and playback.level.look.material is not None:
+            self.firmness.speak_of(self.material)
         self.engineers = EngineersRows(playback, say, choose["rate"], self.firmness, self._set_both)
         self.world = WorldRows(playback, say, choose, touch)
+        self.play = PlayRows(playback, lambda: choose["melt"](""), self._take_home)
+        self.springs = _SpringsSection(self)
         self._offered = self._present()
         self._scale_of: tuple[object, ...] = ()
         self._scale: CoefficientScale = PLAIN
         self._body: BodyMotion | None = None
-        self.by_pad = height >= PAD_FROM if shape.springs is None else shape.springs == "pad"
-        # What the level's text points at is open, unless the person has folded it.
-        self._open = {
-            name: section.title in playback.level.description
-            or (section.open_from is not None and height >= section.open_from)
-            for name, section in SECTIONS.items()
-        } | shape.open
+        self.by_pad = shape.springs == "pad"
+        # Without a choice of the person's the pad is taken where this height has room for it.
+        self._height = height if shape.springs is None else 0.0
+        self._open = dict.fromkeys(SECTIONS, True) | {MORE: False} | shape.open
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         # What does not fit is scrolled to.
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
@@ -110,19 +113,25 @@ class Panel:
             self._build_sides(shape.side)
         if self.firmness.shown:
             self._build_firmness()
-        self._build_springs()
+        self.play.build(rows)
         self.sections = {name: section.make(self) for name, section in SECTIONS.items()}
-        for name, made in self.sections.items():
-            fold = partial(choose["fold"], name)
-            rows.section(SECTIONS[name].title, self._open[name], fold, partial(made.build, rows))
+        asked = [name for name, section in SECTIONS.items() if section.is_asked_for(playback.level.description)]
+        self._build_sections(asked)
+        others = [name for name in SECTIONS if name not in asked]
+        rows.section(MORE_TITLE, self._open[MORE], partial(choose["fold"], MORE), lambda: self._build_sections(others))
         self.area.set_height(ui.px(rows.y))
         self.refresh()
 
     # Building.
 
     def is_open(self, name: str) -> bool:
-        """Whether a section, by its name in SECTIONS, is unfolded."""
+        """Whether a section, by its name in SECTIONS, or MORE is unfolded."""
         return self._open[name]
+
+    def _build_sections(self, names: Iterable[str]) -> None:
+        for name in names:
+            fold, made = partial(self.choose["fold"], name), self.sections[name]
+            self.rows.section(SECTIONS[name].title, self._open[name], fold, partial(made.build, self.rows))
 
     def _build_sides(self, side: str) -> None:
         """Which of two runs all below is of."""
@@ -133,7 +142,7 @@ class Panel:
 
     def follow(self, playback: Playback) -> None:
         """Show and change another run of the same level."""
-        self.playback = self.firmness.playback = playback
+        self.playback = self.firmness.playback = self.play.playback = playback
         for section in self.sections.values():
             section.playback = playback
 
@@ -142,22 +151,23 @@ class Panel:
         ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "@heading")
         names = [ALL_BODIES, *firmness.bodies]
         place = rows.row(ROW, 6, MARGIN + 90, INSIDE - 90)
-        firmness.menu = ui.menu(place, names, ALL_BODIES, self.choose_body, rows.back)
+        firmness.menu = ui.menu(place, names, firmness.body, self.choose_body, rows.back)
         words = [(word, word.capitalize(), _word_tip(sag)) for word, sag in WORDS.items()]
         firmness.words = ui.choice(rows.row(ROW + 4, 6), words, firmness.choose_word, rows.back)
         width = ENTRY_WIDTH - 20
-        firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 42), "", rows.back, 13.0, TEXT)
+        firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 52), "", rows.back, 13.0, TEXT)
         x = MARGIN + INSIDE - width
         ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "@muted")
         firmness.sag = ui.field(rows.place(x, 14, width, ROW - 2), "", firmness.type_sag, rows.back, 24)
-        firmness.sag.entry.set_tooltip("Part of its height by which the body sags where it stands; 0 is rigid")
-        rows.row(42, 8)
+        firmness.sag.entry.set_tooltip(SAG_TIP)
+        rows.row(52, 6)
 
-    def _build_springs(self) -> None:
+    def build_springs(self) -> None:
+        """Make the rows that set Cs and Cd, by the pad where it is whole in sight."""
         ui, rows = self._ui, self.rows
-        ui.label(rows.place(MARGIN, 2, INSIDE - SPRINGS_CHOICE, 18), "SPRINGS", rows.back, "@heading")
+        self.by_pad = self.by_pad or self._height - rows.y >= PAD_ROOM
         ways = [("pad", "Pad", "Cs and Cd on a map of what they do"), ("sliders", "Sliders", "Cs and Cd one by one")]
-        place = rows.row(22, 6, MARGIN + INSIDE - SPRINGS_CHOICE, SPRINGS_CHOICE)
+        place = rows.place(MARGIN + INSIDE - SPRINGS_CHOICE, -HEADING - 2, SPRINGS_CHOICE, 22)
         self.ways = ui.choice(place, ways, self.choose["springs"], rows.back)
         self.ways.show("pad" if self.by_pad else "sliders")
         names = [ALL_MATERIALS, *self._material_names()]
@@ -165,19 +175,13 @@ class Panel:
         width = INSIDE / 2 - 4 if self.by_pad else INSIDE
         if self.by_pad:
             place = rows.place(MARGIN + INSIDE - width, 0, width, 30)
-        self.menu = ui.menu(rows.row(30, 10, width=width), names, chosen, self._choose_material, rows.back)
+        self.menu = ui.menu(rows.row(30, 6, width=width), names, chosen, self._choose_material, rows.back)
         if self.by_pad:
             self.maps = PadMaps(ui, place, self.playback, self._sweeps, rows.back)
             self._build_pad()
         else:
             self._build_sliders()
-        self.note = TextBlock(ui, rows.row(30, 4), "", rows.back)
-        tip, half = tip_of("melt", "play"), (INSIDE - 8) / 2
-        place = rows.place(MARGIN, 0, half, ROW)
-        self.melt = ui.button(place, "Melt", lambda: self.choose["melt"](""), rows.back, tip=tip)
-        tip = "What these springs are in your own loop or engine: numbers and code to copy"
-        place = rows.row(ROW, 10, MARGIN + half + 8, half)
-        self.take_home = ui.button(place, "Take home", self._take_home, rows.back, tip=tip)
+        self.note = TextBlock(ui, rows.row(28, 2), "", rows.back)
 
     def _build_sliders(self) -> None:
         rows = self.rows
@@ -194,7 +198,6 @@ class Panel:
         rows = self.rows
         place = rows.row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
         self.pad = CoefficientPad(self._ui, place, self._move, self._end_gesture, rows.back)
-        self.curve = ResponseCurve(self._ui, rows.row(CURVE_HEIGHT - 6, 6), rows.back)
         self.stiffness_field, self.damping_field = rows.beside(
             ("Cs  stiffness", CS_TIP, lambda text: self._type_coefficient(text, True)),
             ("Cd  damping", CD_TIP, lambda text: self._type_coefficient(text, False)),
@@ -230,9 +233,7 @@ class Panel:
         world = self.playback.session.world
         settings = world.settings
         self._follow_what_joins()
-        words = "Make whole" if settings.solver == "single_pass" else "Melt"
-        if words != self.melt.text:
-            self.melt.set_text(words)
+        self.play.refresh()
         is_look = self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused
         for section in self.sections.values():
             section.refresh(is_look)
@@ -245,7 +246,8 @@ class Panel:
             return
         self._refreshed_at = fresh
         inputs = (world.stiffness, world.damping, world.spring_active, world.inverse_mass)
-        key = (settings, self.material, self.firmness.body, *(array.tobytes() for array in inputs))
+        told = self.firmness.curve_of(self.material)
+        key = (settings, self.material, self.firmness.body, told, *(array.tobytes() for array in inputs))
         if key != self._limits_of:
             self._limits_of = key
             self._limits = coefficient_limits(world, self.material)
@@ -298,21 +300,18 @@ class Panel:
         """Cs and Cd that the level itself gives the material."""
         if self.material is None:
             return None
-        own = self.playback.level.materials.get(self._material_names()[self.material])
-        return (own.stiffness, own.damping) if isinstance(own, NissenMaterial) else None
+        return own_of(self.playback.level, self._material_names()[self.material])
 
     def _find_scale(self) -> None:
         """Find the axes on which most is seen of the body that is spoken of; they stay while something is dragged."""
-        world, slot = self.playback.session.world, self.firmness.body_of(self.material)
-        key = (world.forms, world.settings, slot, self.material)
+        name = self.firmness.body_of(self.material)
+        body = None if name is None else self.firmness.motion_of(name)
+        key = (body, name, self.material)
         if self._gesture is not None or key == self._scale_of:
             return
-        self._scale_of = key
-        self._body = body = None if slot is None else self.firmness.motion_of(slot)
-        self._scale = PLAIN
-        if body is not None and body.solver != "iterative":
-            own = self._own() or ()
-            self._scale = scale_for(lambda cs, cd: _sag(body, cs, cd), own)
+        self._scale_of, self._body, self._scale = key, body, PLAIN
+        if name is not None and body is not None and body.tells_sag:
+            self._scale = scale_of(body, self.firmness.word_pairs(name, body), self._own() or ())
 
     def _find_zones(self) -> None:
         """Find the pad's zones again, where what they depend on has changed: not the chosen springs' own Cs and Cd."""
@@ -326,18 +325,17 @@ class Panel:
             self._zones_of, self._zones = key, coefficient_zones(world, self.material, STIFFNESSES)
 
     def _show_on_pad(self, stiffness: np.ndarray, damping: np.ndarray) -> None:
-        assert self.pad is not None and self.curve is not None
+        assert self.pad is not None
         if not len(stiffness):
             self.pad.show_state(self.pad.state._replace(enabled=False), self._zones)
-            self.curve.show_none("One spring: there is none")
             return
         is_mixed = bool(stiffness.min() != stiffness.max() or damping.min() != damping.max())
         pair = float(np.median(stiffness)), float(np.median(damping))
-        self.pad.show_state(PadState(*pair, is_mixed, True, self._own(), self._scale, self._body), self._zones)
-        if is_mixed:
-            self.curve.show_none("One spring: the chosen ones differ")
-        else:
-            self.curve.show_spring(pair, self.playback.session.world.settings.tick_rate)
+        name = None if self._body is None else self.firmness.body_of(self.material)
+        subject = "" if name is None else self.firmness.subject_of(name)
+        self.pad.show_state(
+            PadState(*pair, is_mixed, True, self._own(), self._scale, self._body, subject), self._zones
+        )  # fmt: skip
 
     def _no_spring_note(self) -> str:
         world = self.playback.session.world
@@ -360,13 +358,18 @@ class Panel:
     def _submit(self, command: Command, gesture: int | None = None) -> None:
         self.playback.submit(command, gesture)
 
+    @property
+    def lacks_rows(self) -> bool:
+        """Whether a body has joined a run that had none, so that it is to be laid out anew."""
+        return not self.firmness.shown and bool(self.firmness.bodies)
+
     def _present(self) -> tuple[object, object]:
         world = self.playback.session.world
-        return world.material_names, world.forms
+        return world.material_names, tuple(body.name for body in firm_bodies(world))
 
     def _follow_what_joins(self) -> None:
         """Offer the materials and bodies that there are: some join a run with what is dropped, and go again."""
-        if all(now is then for now, then in zip(self._present(), self._offered, strict=True)):
+        if self._present() == self._offered:
             return
         self._offered, names = self._present(), self._material_names()
         if self.material is not None and self.material >= len(names):
@@ -388,8 +391,9 @@ class Panel:
         # What works out the numbers of other engines, which a window does without until then.
         from sandbox.app.panel.take_home_page import show_take_home
 
-        world, slot = self.playback.session.world, self.firmness.body_of(self.material)
-        show_take_home(self._ui, world, self.say, None if slot is None else world.forms[slot].name)
+        world, name = self.playback.session.world, self.firmness.body_of(self.material)
+        has_form = name in {body.name for body in world.forms}
+        show_take_home(self._ui, world, self.say, name if has_form else None)
 
     def choose_body(self, name: str) -> None:
         """Show and change a body, by its name, or all, and the springs that it is made of."""
@@ -469,18 +473,27 @@ class Panel:
         return True
 
 
-def _sag(body: BodyMotion, stiffness: Floats, damping: Floats) -> Floats:
-    sag = body.sag(*body.of_substep(stiffness, damping))
-    assert sag is not None
-    return sag
-
-
 def _word_tip(sag: float) -> str:
-    return f"Sags by {100.0 * sag:g} % of its height" if sag else "Perfectly rigid: it gives way to nothing"
+    return f"Sags by {100.0 * sag:g} % as it stands or hangs" if sag else "Perfectly rigid: it gives way to nothing"
 
 
-# Sections that fold, in the order in which the panel shows them.
+class _SpringsSection:
+    """The section of springs, whose rows are the panel's own."""
+
+    def __init__(self, panel: Panel) -> None:
+        self.playback, self._panel = panel.playback, panel
+
+    def build(self, rows: PanelRows) -> None:
+        """Make the widgets."""
+        self._panel.build_springs()
+
+    def refresh(self, is_look: bool) -> None:
+        """Nothing: the panel shows what has changed in them."""
+
+
+# Sections that fold, in the order in which the panel shows them: first those that the level's text asks for.
 SECTIONS = {
+    "springs": PanelSection("Springs", lambda panel: panel.springs, ("Cs", "Cd")),
     "engineers": PanelSection("For engineers", lambda panel: panel.engineers),
-    "world": PanelSection("World", lambda panel: panel.world, open_from=840.0),
+    "world": PanelSection("World", lambda panel: panel.world),
 }

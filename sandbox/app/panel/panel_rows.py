@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.widgets.fields import Field
-from sandbox.app.widgets.fold import FoldHeading
+from sandbox.app.widgets.fold import TEXT_SIZE, FoldHeading
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -17,6 +17,8 @@ TOP = 14.0
 ROW = 28.0
 ENTRY_WIDTH = 82.0
 GAP = 12.0
+# Of a heading's row, what is beside its words; the rest is free for what belongs there.
+HEADING_ROOM = 34.0
 
 
 class PanelRows:
@@ -58,7 +60,8 @@ class PanelRows:
 
     def section(self, title: str, is_open: bool, toggle: Callable[[], None], build: Callable[[], None]) -> None:
         """A heading, and what `build` makes under it, which is seen where the section is open."""
-        FoldHeading(self.ui, self.row(18, 8), title, not is_open, toggle, self.back)
+        width = self.ui.font(TEXT_SIZE, True).size(title.upper())[0] / self.ui.scale + HEADING_ROOM
+        FoldHeading(self.ui, self.row(18, 8, width=width), title, not is_open, toggle, self.back)
         before, y = len(self.back.elements), self.y
         build()
         if not is_open:

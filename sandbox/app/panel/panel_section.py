@@ -1,5 +1,6 @@
 """Sections of the panel that fold: what each has, and what the panel asks of it."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -29,6 +30,11 @@ class SectionOwner(Protocol):
     say: Callable[[str], None]
 
     @property
+    def springs(self) -> SectionRows:
+        """Rows that the panel itself makes, for springs."""
+        ...
+
+    @property
     def engineers(self) -> SectionRows:
         """Rows that the panel itself needs, for engineers."""
         ...
@@ -43,10 +49,13 @@ class SectionOwner(Protocol):
 class PanelSection:
     """A section: its heading, and what makes its rows for a panel.
 
-    open_from: from this height of the panel on [layout units] it is open at first; None: it is folded at first. Where
-    the level's description names the heading, it is open at first in any case.
+    words: what a level's description asks for it by, beside its heading.
     """
 
     title: str
     make: Callable[[SectionOwner], SectionRows]
-    open_from: float | None = None
+    words: tuple[str, ...] = ()
+
+    def is_asked_for(self, description: str) -> bool:
+        """Whether a level's description speaks of what is in it."""
+        return any(re.search(rf"\b{re.escape(word)}\b", description) for word in (self.title, *self.words))

@@ -1,12 +1,15 @@
 """Readings in words: numbers, lengths of time, motions and sags as a person says them."""
 
 import math
+from collections.abc import Collection
 
 import numpy as np
 
+from sandbox.app.base.sag_sentences import sag_sentence, size_word
 from sandbox.physics.analysis.body_motion import FLAT
 from sandbox.physics.analysis.spring_motion import SpringMotion
 from sandbox.physics.analysis.stability import CoefficientLimits
+from sandbox.physics.analysis.stance import Support
 from sandbox.physics.arrays import Floats
 from sandbox.physics.solvers import SOLVERS
 
@@ -69,13 +72,19 @@ def motion_words(motion: SpringMotion) -> str:
     return f"creeps back, half in {seconds(motion.half)}"
 
 
-def sag_words(least: float, most: float) -> str:
-    """How far what stands sags, from the least to the most of several bodies."""
-    if least >= FLAT:
-        return "Lies flat under its own weight"
+def sag_words(least: float, most: float, name: str | None, supports: Collection[Support]) -> str:
+    """How far bodies sag that are held so, from the least to the most; name: of the one that it is, None: several."""
+    if name is not None:
+        (support,) = supports
+        said = sag_sentence(name, support)
+        return said.flat if most >= FLAT else said.sag.format(per_cent(most))
+    if least >= FLAT and set(supports) == {Support.FLOOR}:
+        return "They lie flat under their own weight"
+    sizes = {size_word(support) for support in supports}
+    of = f"{sizes.pop()}s" if len(sizes) == 1 else "size"
     if per_cent(least) == per_cent(most):
-        return f"Sags by {per_cent(most)} of its height"
-    return f"They sag by {per_cent(least)} to {'more than half' if most > FLAT else per_cent(most)} of their heights"
+        return f"They sag by {per_cent(most)} of their {of}"
+    return f"They sag by {per_cent(least)} to {'more than half' if most > FLAT else per_cent(most)} of their {of}"
 
 
 def stability_words(solver: str, limits: CoefficientLimits, stiffness: Floats, damping: Floats) -> str:

@@ -1,71 +1,163 @@
-"""The page of what a body takes home: its numbers for another loop or engine, as text to be read and copied."""
+"""The page of what a body takes home: it asks which engine, and shows what to paste there, all else below it."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pygame
 
 from sandbox.app.base.desktop import copy_text
-from sandbox.app.draw.colours import TEXT
-from sandbox.app.widgets.painted import TextBlock, line_height, wrapped
-from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.draw.colours import MUTED, TEXT
+from sandbox.app.widgets.code_block import CodeBlock, code_height
+from sandbox.app.widgets.painted import TextBlock, text_height
+from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.export.chosen_body import NoSuchBody, body_names
-from sandbox.export.take_home_text import take_home_text
+from sandbox.export.paste import pasted
+from sandbox.export.take_home import TakeHome, take_home
+from sandbox.export.take_home_text import as_text
 from sandbox.physics.world import World
 
 # What it can be for, by what a person calls it.
-TARGETS = {
-    "All numbers": "all", "Python": "python", "C#": "csharp", "GDScript": "gdscript", "C++": "cpp",
-    "JavaScript": "javascript", "Box2D": "box2d", "Unity 2D": "unity", "Godot": "godot", "Rapier": "rapier",
-    "pymunk": "pymunk", "Chipmunk": "chipmunk",
+ENGINES = {
+    "Box2D": "box2d", "Unity 2D": "unity", "Godot": "godot", "Rapier": "rapier", "pymunk": "pymunk",
+    "Chipmunk": "chipmunk",
 }  # fmt: skip
+LANGUAGES = {"Python": "python", "C#": "csharp", "GDScript": "gdscript", "C++": "cpp", "JavaScript": "javascript"}
+ALL = "All numbers"
+TARGETS = {**ENGINES, **LANGUAGES, ALL: "all"}
 # Sizes in layout units.
-WIDTH, HEIGHT, MARGIN, ROW, TEXT_SIZE = 760.0, 620.0, 28.0, 32.0, 13.0
+WIDTH, HEIGHT, MARGIN, ROW, GAP, TEXT_SIZE = 820.0, 620.0, 28.0, 34.0, 10.0, 13.0
+TOP, BETWEEN = 66.0, 14.0
+COLUMNS, MENU_WIDTH, ASKING_HEIGHT = 3, 200.0, 392.0
+QUESTION, OWN_LOOP = "Which engine?", "Or a loop of your own, in"
 
 
 def show_take_home(
-    ui: Ui, world: World, say: Callable[[str], None], body: str | None = None, target: str = "All numbers"
+    ui: Ui, world: World, say: Callable[[str], None], body: str | None = None, target: str | None = None
 ) -> None:
-    """Cover the window by what a body (None: the first) takes home, for one of TARGETS, until it is closed."""
+    """Cover the window by what a body (None: the first) takes home, for one of TARGETS (None: it asks for which)."""
     names = body_names(world)
     if not names:
         say("This level has no springs to take home.")
         return
     body = body if body in names else names[0]
     try:
-        text = take_home_text(world, body, TARGETS[target])
+        take = take_home(world, body)
     except NoSuchBody as error:
         say(f"{error}.")
         return
-    width, height = min(WIDTH, ui.units[0] - 16), min(HEIGHT, ui.units[1] - 16)
-
-    def close() -> None:
-        ui.close_sheet(sheet)
-
-    def other(new_body: str | None = None, new_target: str | None = None) -> None:
-        close()
-        show_take_home(ui, world, say, new_body or body, new_target or target)
-
-    def copy() -> None:
-        say("It is on the clipboard." if copy_text(text) else "The clipboard is not available here.")
-
-    sheet = ui.open_sheet(close, is_page=True, again=lambda there: show_take_home(there, world, say, body, target))
-    box = ui.panel(ui.rect((ui.units[0] - width) / 2, (ui.units[1] - height) / 2, width, height), sheet, "@dialog")
-    ui.label(ui.rect(MARGIN, 18, 160, 28), "Take it home", box, "@title")
-    copied = ui.button(ui.rect(width - MARGIN - 204, 16, 100, ROW), "Copy", copy, box, style="@primary")
-    ui.button(ui.rect(width - MARGIN - 90, 16, 90, ROW), "Close", close, box)
-    half = (width - 2 * MARGIN - 12) / 2
-    ui.menu(ui.rect(MARGIN, 60, half, ROW), names, body, lambda name: other(new_body=name), box)
-    place = ui.rect(MARGIN + half + 12, 60, half, ROW)
-    ui.menu(place, list(TARGETS), target, lambda name: other(new_target=name), box)
-    area = ScrollArea(ui, ui.rect(MARGIN, 106, width - 2 * MARGIN + 12, height - 106 - 16), box)
-    _write(ui, area, text)
-    ui.focus_on(copied)
+    _TakeHomePage(ui, world, say, take, names, target)
 
 
-def _write(ui: Ui, area: ScrollArea, text: str) -> None:
-    font, wide = ui.font(TEXT_SIZE), area.view.rect.width
-    lines = [line for paragraph in text.split("\n") for line in wrapped(paragraph, font, wide, 99) or [""]]
-    tall = len(lines) * line_height(font)
-    area.set_height(tall)
-    TextBlock(ui, pygame.Rect(0, 0, wide, tall), "\n".join(lines), area.content, TEXT_SIZE, TEXT)
+class _TakeHomePage:
+    """The page, for a body and a target, until it is closed or another one is chosen."""
+
+    def __init__(
+        self, ui: Ui, world: World, say: Callable[[str], None], take: TakeHome, names: list[str], target: str | None
+    ) -> None:  # fmt: skip
+        self._ui, self._world, self._say, self._take, self._target = ui, world, say, take, target
+        self._width = min(WIDTH, ui.units[0] - 16)
+        self._code, self._about = ("", "") if target is None else _texts(take, TARGETS[target])
+        high = ASKING_HEIGHT if target is None else TOP + self._content_height() / ui.scale + ROW + 36
+        self._height = min(high, HEIGHT, ui.units[1] - 16)
+        self._sheet = ui.open_sheet(self._close, is_page=True, again=self._again)
+        left, top = (ui.units[0] - self._width) / 2, (ui.units[1] - self._height) / 2
+        self._box = ui.panel(ui.rect(left, top, self._width, self._height), self._sheet, "@dialog")
+        ui.label(ui.rect(MARGIN, 18, 220, 28), "Take it home" if target is None else target, self._box, "@title")
+        menu = ui.rect(self._width - MARGIN - MENU_WIDTH, 18, MENU_WIDTH, ROW)
+        ui.menu(menu, names, take.body, lambda name: self._go(target, name), self._box)
+        (self._ask if target is None else self._answer)()
+
+    def _close(self) -> None:
+        self._ui.close_sheet(self._sheet)
+
+    def _again(self, ui: Ui) -> None:
+        show_take_home(ui, self._world, self._say, self._take.body, self._target)
+
+    def _go(self, target: str | None, body: str | None = None) -> None:
+        self._close()
+        show_take_home(self._ui, self._world, self._say, body or self._take.body, target)
+
+    def _button(self, place: pygame.Rect, text: str, do: Callable[[], None], style: str = "") -> Any:
+        return self._ui.button(place, text, do, self._box, style=style)
+
+    # The question.
+
+    def _ask(self) -> None:
+        ui = self._ui
+        y = 70.0
+        for question, names in ((QUESTION, ENGINES), (OWN_LOOP, LANGUAGES)):
+            TextBlock(ui, ui.rect(MARGIN, y, self._width - 2 * MARGIN, 22), question, self._box, 15.0, TEXT)
+            y = self._choices(list(names), y + 30) + 12
+        wide = (self._width - 2 * MARGIN - GAP) / 2
+        place = ui.rect(MARGIN, self._height - 16 - ROW, wide, ROW)
+        self._button(place, ALL, lambda: self._go(ALL))
+        self._button(ui.rect(MARGIN + wide + GAP, self._height - 16 - ROW, wide, ROW), "Close", self._close)
+
+    def _choices(self, names: list[str], y: float) -> float:
+        """A button for each name, in rows; where these end."""
+        wide = (self._width - 2 * MARGIN - (COLUMNS - 1) * GAP) / COLUMNS
+        for number, name in enumerate(names):
+            row, column = divmod(number, COLUMNS)
+            place = self._ui.rect(MARGIN + column * (wide + GAP), y + row * (ROW + GAP), wide, ROW)
+            button = self._button(place, name, lambda name=name: self._go(name))  # type: ignore[misc]
+            if number == 0 and name in ENGINES:
+                self._ui.focus_on(button)
+        return y + -(-len(names) // COLUMNS) * (ROW + GAP)
+
+    # The answer.
+
+    @property
+    def _wide(self) -> int:
+        """How wide what is written is [pixels]."""
+        return self._ui.px(self._width - 2 * MARGIN)
+
+    def _content_height(self) -> int:
+        """How high code and text are [pixels]."""
+        ui = self._ui
+        high = code_height(ui, self._code, self._wide) + ui.px(BETWEEN) if self._code else 0
+        return high + text_height(self._about, ui.font(TEXT_SIZE), self._wide)
+
+    def _go_back(self) -> None:
+        self._go(None)
+
+    def _copy(self) -> None:
+        copied = copy_text(self._code or self._about)
+        self._say("It is on the clipboard." if copied else "The clipboard is not available here.")
+
+    def _answer(self) -> None:
+        """What to paste, and below it what is to be known about it."""
+        ui = self._ui
+        wide = (self._width - 2 * MARGIN - 2 * GAP) / 3
+        actions = (
+            ("Copy", self._copy, "@primary"),
+            ("Another engine", self._go_back, ""),
+            ("Close", self._close, ""),
+        )
+        for number, (text, do, style) in enumerate(actions):
+            place = ui.rect(MARGIN + number * (wide + GAP), self._height - 16 - ROW, wide, ROW)
+            button = self._button(place, text, do, style)
+            if number == 0:
+                ui.focus_on(button)
+        room = ui.rect(MARGIN, TOP, self._width - 2 * MARGIN, self._height - TOP - ROW - 32)
+        room.width = self._wide + ui.px(BAR_WIDTH)
+        area = ScrollArea(ui, room, self._box)
+        high = self._content_height()
+        tall = text_height(self._about, ui.font(TEXT_SIZE), self._wide)
+        if self._code:
+            place = pygame.Rect(0, 0, self._wide, code_height(ui, self._code, self._wide))
+            CodeBlock(ui, place, self._code, area.content)
+        place = pygame.Rect(0, high - tall, self._wide, tall)
+        TextBlock(ui, place, self._about, area.content, TEXT_SIZE, MUTED if self._code else TEXT)
+        area.set_height(high)
+
+
+def _texts(take: TakeHome, to: str) -> tuple[str, str]:
+    """What is pasted, "" where that is nothing, and what is to be known about it."""
+    about = as_text(take, to)
+    if to == "all":
+        return "", about
+    # Of a program the text has its listing as well.
+    before, _, listed = about.partition("\n----")
+    printed = listed.partition("\nWhat it prints")[2]
+    return pasted(take, to), f"{before}\nWhat it prints{printed}" if printed else before

@@ -6,12 +6,13 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
 from sandbox.editor.edits.adopt_dropped import keep_added
-from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_pins, keep_pose
+from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_pins, keep_pose, keep_settings
 from sandbox.physics.world import World
 
 Keeper = Callable[[Document, World], Document]
 KEEPERS: tuple[tuple[str, Keeper], ...] = (
     ("Cs and Cd of the materials", keep_coefficients),
+    ("Settings: gravity, solver, air", keep_settings),
     ("Pose: the present positions", keep_pose),
     ("Pins", keep_pins),
     # Late, as the springs have other numbers then.
@@ -22,23 +23,31 @@ KEEPERS: tuple[tuple[str, Keeper], ...] = (
 
 
 def ask_to_keep(app: Application) -> None:
-    """Ask what of the run the document takes over; each is a step of its history."""
-    play, editor = app.play, app.documents.editor
-    if play is None or editor is None or not play.of_document:
-        app.say("Open the level in the editor first: press E.")
+    """Ask what of the run the editor takes over, which opens the level where it has not; each is a step of history."""
+    play = app.play
+    if play is None:
         return
-    world = play.playback.session.world
+    playback, source, of_document = play.playback, play.source, play.of_document
+    world = playback.session.world
 
-    def keep(label: str, keepers: tuple[Keeper, ...]) -> None:
+    def edit(label: str, keepers: tuple[Keeper, ...]) -> None:
         def kept(document: Document) -> Document:
             for keeper in keepers:
                 document = keeper(document, world)
             return document
 
+        editor = app.documents.editor
+        assert editor is not None
         before = editor.document.level
         if editor.edit(label, kept):
             same = editor.document.level is before
             app.say("The level has all of that already." if same else f"{label}. Undo takes it back in the editor.")
+
+    def keep(label: str, keepers: tuple[Keeper, ...]) -> None:
+        if of_document:
+            edit(label, keepers)
+        else:
+            app.documents.take_over(playback.level, source, lambda: edit(label, keepers))
 
     choices: list[tuple[str, Callable[[], object]]] = [
         (name, lambda name=name, keeper=keeper: keep(f"Keep {name[0].lower()}{name[1:]}", (keeper,)))  # type: ignore[misc]
@@ -46,4 +55,4 @@ def ask_to_keep(app: Application) -> None:
     ]
     everything = tuple(keeper for _, keeper in KEEPERS)
     choices.append(("All of it", lambda: keep("Keep all of the run", everything)))
-    choose(app.ui, "Keep in the level", "What should the level take over from this run?", choices)
+    choose(app.ui, "Keep in the level", "What should the sheet take over from this run?", choices)

@@ -1,6 +1,6 @@
 """The melt: the same Cs and Cd, solved one spring after another as in the article's loop, or all at once."""
 
-from sandbox.app.run.playback import Playback
+from sandbox.app.run.playback import RAMP_TIME, Playback
 from sandbox.session.commands import SetSolver
 
 MELTED = "One spring after another, as in the article's loop: what is stiff melts or explodes."
@@ -15,5 +15,6 @@ def is_melted(playback: Playback) -> bool:
 def toggle_melt(playback: Playback) -> str:
     """Solve the springs the other way from now on; what is to be said of it."""
     before = is_melted(playback)
-    playback.submit(SetSolver(solver="direct" if before else "single_pass"))
+    duration = round(RAMP_TIME * playback.session.world.settings.tick_rate)
+    playback.submit(SetSolver(solver="direct" if before else "single_pass", duration=duration))
     return WHOLE if before else MELTED

@@ -1,83 +1,102 @@
-"""OutOfView: whether what moves in a run has left what is seen of it at first, so that it can be begun again."""
+"""OutOfView: which bodies of a run have left the picture, and how they are brought back into it."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.app.draw.camera import Box
 from sandbox.app.run.playback import Playback
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import Slots
-from sandbox.physics.components import body_of
+from sandbox.physics.components import label_bodies
 from sandbox.physics.world import World
-from sandbox.session.commands import MoveBody
+from sandbox.session.commands import Free, MoveBody
 
-Mask = NDArray[np.bool_]
-
-NOTICE = "Everything fell out of sight. R restarts; Ctrl+Z undoes."
+NOTICE = "Nearly everything has left the picture. Shift+J brings it back; R restarts."
 # A run is over once this part of the mass that moves has left; stubs may stay where something broke.
 GONE = 0.75
-# So far around what is seen at first something still counts as near, as a part of its width and height.
-MARGIN = 0.25
 # Ticks between two looks; after each step back in time there is one.
 EVERY = 20
-
-# What is brought back is put so far below the top of what is seen at first, as a part of its height.
+# A body has left once it has been out for so long [s]: one above the picture, where it falls back from, for longer.
+AWAY, ABOVE = 1.0, 5.0
+# What is brought back is put so far below the top of its box, as a part of that height.
 FROM_TOP = 0.2
 
 
 class OutOfView:
-    """Looks at a world after its ticks; is_over: whether nearly nothing that moves is near any more.
+    """Looks at a world after its ticks.
 
-    has_lost: whether something that moves is out of sight.
+    lost: how many bodies have left the picture. is_over: whether they are nearly all that moves.
     """
 
     def __init__(self) -> None:
-        self.is_over = self.has_lost = False
+        self.lost, self.is_over = 0, False
         self._tick = -EVERY
+        # Since which tick a body is out of the picture, by its first particle.
+        self._since: dict[int, int] = {}
 
-    def update(self, world: World, box: Box) -> None:
-        """Look at a world; box [m]: what is seen at first."""
+    def update(self, world: World, pictures: list[Box]) -> None:
+        """Look at a world; pictures [m]: what is seen at first, and what is seen now."""
         if 0 <= world.tick - self._tick < EVERY:
             return
-        self._tick = world.tick
-        moving, is_gone = _gone(world, box)
-        mass = world.mass[moving]
-        self.has_lost = bool(is_gone.any())
-        self.is_over = bool(mass[is_gone[moving]].sum() > GONE * mass.sum())
+        if world.tick < self._tick:
+            self._since.clear()
+        self._tick, rate = world.tick, world.settings.tick_rate
+        bodies = {int(body[0]): body for body in bodies_beyond(world, pictures)}
+        self._since = {first: self._since.get(first, world.tick) for first in bodies}
+        gone = [
+            body for first, body in bodies.items()
+            if world.tick - self._since[first] >= rate * (ABOVE if _falls_back(world, body, pictures[0]) else AWAY)
+        ]  # fmt: skip
+        self.lost = len(gone)
+        moving = float(world.mass[shown_particles(world) & (world.inverse_mass > 0.0)].sum())
+        self.is_over = sum(float(world.mass[body].sum()) for body in gone) > GONE * moving
 
 
-def put_back(playback: Playback, box: Box) -> bool:
-    """Put all that is out of sight back into a box [m], in one gesture; whether there is anything."""
-    found, gesture = _ways_back(playback.session.world, box), playback.session.new_gesture()
-    for command in found:
-        playback.submit(command, gesture)
-    return bool(found)
-
-
-def _ways_back(world: World, box: Box) -> list[MoveBody]:
-    # Side by side near the top of the box, at rest.
-    _, is_gone = _gone(world, box)
-    bodies: list[Slots] = []
-    left_over = set(np.flatnonzero(is_gone).tolist())
-    while left_over:
-        body = body_of(world, min(left_over))
-        # What hangs on something that is in sight, such as the end of a torn rope, stays.
-        if is_gone[body].all() and np.isfinite(world.position[body]).all():
-            bodies.append(body)
-        left_over -= set(body.tolist()) or {min(left_over)}
+def put_back(playback: Playback, box: Box, pictures: list[Box]) -> int:
+    """Put every body that is beyond the pictures [m] into a box [m], in one gesture; how many there are."""
+    world, gesture = playback.session.world, playback.session.new_gesture()
+    bodies = bodies_beyond(world, pictures)
     left, bottom, right, top = box
-    found = []
     for number, body in enumerate(bodies):
+        # Side by side near the top, at rest.
         wanted = left + (right - left) * (number + 1) / (len(bodies) + 1), top - FROM_TOP * (top - bottom)
         x, y = world.position[body].mean(axis=0).tolist()
-        found.append(MoveBody(int(body[0]), (wanted[0] - x, wanted[1] - y), at_rest=True))
-    return found
+        playback.submit(MoveBody(int(body[0]), (wanted[0] - x, wanted[1] - y), at_rest=True), gesture)
+    if world.has_contacts:
+        # Where another body or the ground is, they are put beside it.
+        for body in bodies:
+            playback.submit(Free(int(body[0])), gesture)
+    return len(bodies)
 
 
-def _gone(world: World, box: Box) -> tuple[Mask, Mask]:
-    """What moves (n,), and what of it is out of sight (n,)."""
+def bodies_beyond(world: World, pictures: list[Box]) -> list[Slots]:
+    """The bodies, by their particles, that move freely and whose middle is in none of the pictures [m].
+
+    What hangs on something that is pinned, such as the end of a torn rope, stays where it is.
+    """
     moving = shown_particles(world) & (world.inverse_mass > 0.0)
-    left, bottom, right, top = box
-    wide, tall = MARGIN * (right - left), MARGIN * (top - bottom)
-    low, high = np.array([left - wide, bottom - tall]), np.array([right + wide, top + tall])
-    return moving, moving & ~((world.position >= low) & (world.position <= high)).all(axis=1)
+    if not _is_beyond(world.position[moving], pictures).any():
+        return []
+    joined = np.flatnonzero(world.spring_active & (world.material >= 0))
+    label = np.arange(len(world.particle_active))
+    label_bodies(world.particle_a[joined].astype(np.int64), world.particle_b[joined].astype(np.int64), label)
+    shown = np.flatnonzero(shown_particles(world))
+    order = shown[np.argsort(label[shown], kind="stable")]
+    bodies = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
+    free = [body for body in bodies if moving[body].all() and np.isfinite(world.position[body]).all()]
+    return [body for body in free if _is_beyond(world.position[body].mean(axis=0)[None], pictures)[0]]
+
+
+def _is_beyond(points: np.ndarray, pictures: list[Box]) -> np.ndarray:
+    """Which points [m] (n, 2) are in none of the pictures (n,)."""
+    inside = [((points >= box[:2]) & (points <= box[2:])).all(axis=1) for box in pictures]
+    return ~np.logical_or.reduce(inside)
+
+
+def _falls_back(world: World, body: Slots, picture: Box) -> bool:
+    """Whether gravity pulls a body back into a picture [m]: it is on the side that gravity comes from, and no other."""
+    gravity, at = np.array(world.settings.gravity), world.position[body].mean(axis=0)
+    along = int(np.argmax(np.abs(gravity)))
+    low, high = np.array(picture[:2]), np.array(picture[2:])
+    across = 1 - along
+    is_before = at[along] > high[along] if gravity[along] < 0.0 else at[along] < low[along]
+    return bool(gravity[along] != 0.0 and is_before and low[across] <= at[across] <= high[across])

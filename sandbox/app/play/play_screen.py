@@ -19,7 +19,7 @@ from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.graphs.graph_dock import GraphDock
-from sandbox.app.panel.panel import SECTIONS, Panel, PanelShape
+from sandbox.app.panel.panel import MORE, SECTIONS, Panel, PanelShape
 from sandbox.app.panel.panel_rows import PANEL_WIDTH
 from sandbox.app.panel.rate_choice import ask_for_pace
 from sandbox.app.panel.side_panel import ROOM_FOR_PANEL, SidePanel
@@ -27,19 +27,19 @@ from sandbox.app.panel.touching import Touching, begin_touching
 from sandbox.app.parts.part_page import PartPage
 from sandbox.app.play.bake_choice import ask_to_keep
 from sandbox.app.play.drive_keys import DriveKeys
+from sandbox.app.play.earlier_runs import EarlierRuns
 from sandbox.app.play.hand_labels import draw_labels
+from sandbox.app.play.hand_strength import keep_strength, kept_strength, next_strength
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
 from sandbox.app.play.melting import toggle_melt
-from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
-from sandbox.app.play.out_of_view import OutOfView, put_back
 from sandbox.app.play.palette import NAMES, PartsPalette
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import HAND_TOOL, Stage
-from sandbox.app.play.status import STATUS_HEIGHT, motor_parts, status_parts
-from sandbox.app.play.stuck import NOTICE, StuckBodies
+from sandbox.app.play.status import NO_LOADS, STATUS_HEIGHT, counted_parts, motor_parts, rate_parts, warnings
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
+from sandbox.app.play.troubles import Troubles
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -47,19 +47,17 @@ from sandbox.level.document.model import Level
 from sandbox.physics.analysis.motor_readings import motor_readings
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.solvers import SOLVERS
-from sandbox.tools.drag import STRENGTHS
+from sandbox.session.scene import RunScene
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.play_tools import PLAY_TOOLS
 
-# Where the button is that frees what is stuck, below the bar, and its size [layout units].
-FREE_PLACE, FREE_SIZE = (16.0, 12.0), (110.0, 34.0)
+# Where buttons are for what went wrong, below the bar [layout units].
+REMEDIES_PLACE = (16.0, 12.0)
 # The button that begins again, in the middle [layout units].
 AGAIN_SIZE = (150.0, 40.0)
 # Graphs and timeline have that much room beside a panel, or are as wide as the window [layout units].
 ROOM_BESIDE_PANEL = 340.0
-# Under what the strength of the hand is remembered.
-HAND = "hand"
-# And how springs are set: "pad" or "sliders".
+# Under what it is remembered how springs are set: "pad" or "sliders".
 SPRINGS = "springs"
 # And, with the name of a section of the panel behind it, whether that is open.
 FOLD = "open_"
@@ -97,21 +95,29 @@ class PlayScreen:
         self.stage.place(self.viewport, app.ui.scale)
         kept = preference(SPRINGS)
         self.shape = PanelShape(kept if kept in ("pad", "sliders") else None)
-        for section in SECTIONS:
-            is_open = preference(f"{FOLD}{section}")
-            if isinstance(is_open, bool):
-                self.shape.open[section] = is_open
-        kept = preference(HAND)
-        if isinstance(kept, str) and kept in STRENGTHS:
-            self.stage.drag.strength = kept
+        for name in (MORE, *SECTIONS):
+            is_open = preference(f"{FOLD}{name}")
+            # What the level's text asks for is in sight, whatever was folded elsewhere.
+            is_asked_for = name != MORE and SECTIONS[name].is_asked_for(playback.level.description)
+            if isinstance(is_open, bool) and not is_asked_for:
+                self.shape.open[name] = is_open
+        self.stage.drag.strength = kept_strength(self.stage.drag.strength)
         self._keys = DriveKeys(playback)
-        self.stuck = StuckBodies()
-        self.out_of_view = OutOfView()
+        self.troubles = Troubles(app, lambda: self.stage, self.say)
         self._legend = Legend()
-        # What was last said of what broke.
-        self.told = ""
         self.actions = self._actions()
         app.follow(playback, self.can_cancel)
+        before = app.scenes.begin(playback, source)
+        # Of a pair one run alone could be brought back.
+        self.earlier = EarlierRuns(before if self.can_cancel else None, self._show_run, self.say)
+        # Where in My levels it is saved, and how it stood then.
+        self.saved: tuple[Path, RunScene] | None = None
+        if self.welcome:
+            self.say(self.welcome)
+
+    def say(self, text: str) -> None:
+        """Show a line about the run, which ends with it."""
+        self._app.say(text, self)
 
     @property
     def camera(self) -> Camera:
@@ -144,7 +150,7 @@ class PlayScreen:
     @property
     def has_contacts(self) -> bool:
         """Whether things touch in the run."""
-        return self.playback.session.world.has_contacts
+        return self.playback.level.has_contacts
 
     @property
     def viewport(self) -> tuple[int, int, int, int]:
@@ -186,18 +192,13 @@ class PlayScreen:
         if self.show_palette:
             wide, tall = (side / ui.scale for side in self.area[2:])
             self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall)
-        left = FREE_PLACE[0] if self.palette is None else self.palette.right + FREE_PLACE[1]
-        place = ui.rect(left, BAR_HEIGHT + FREE_PLACE[1], *FREE_SIZE)
-        self.free = ui.button(place, "Free it", self._free, tip=tip_of("free", "play"))
-        self.free.hide()
+        left, below = REMEDIES_PLACE
+        left = left if self.palette is None else self.palette.right + below
+        self.troubles.build(ui, left, BAR_HEIGHT + below)
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
         place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
         self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
         self.again.hide()
-        left, top = self.free.relative_rect.bottomleft
-        place = pygame.Rect((left, top + ui.px(FREE_PLACE[1] / 2)), self.free.relative_rect.size)
-        self.lost = ui.button(place, "Bring back", self._bring_back, tip=tip_of("bring_back", "play"))
-        self.lost.hide()
         # Beside a panel in a narrow window they have no room: they lie below it.
         wide, below_panel = self.area[2] / ui.scale, 0.0
         if wide < ROOM_BESIDE_PANEL:
@@ -217,7 +218,7 @@ class PlayScreen:
                 self.panel.choose_material(before.material)
 
     def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
-        return Panel(ui, self.playback, self._app.say, choices, BAR_HEIGHT, height, self.shape, self.touch)
+        return Panel(ui, self.playback, self.say, choices, BAR_HEIGHT, height, self.shape, self.touch)
 
     def touch(self, touching: Touching) -> None:
         """Begin the run again with things that touch so."""
@@ -240,11 +241,11 @@ class PlayScreen:
             self.panel.choose_material(None if material is None else names.index(material))
 
     def _follow(self) -> None:
-        self._app.say(self.stage.follow(next(reversed(self.graphs.picked), None)))
+        self.say(self.stage.follow(next(reversed(self.graphs.picked), None)))
 
     def toggle_melt(self) -> None:
         """Solve springs one by one, or all at once again."""
-        self._app.say(toggle_melt(self.playback))
+        self.say(toggle_melt(self.playback))
 
     def _ask_rate(self, typed: str) -> None:
         """Ask how to start over at another tick rate."""
@@ -274,10 +275,9 @@ class PlayScreen:
             "melt": self.toggle_melt,
             "follow": self._follow,
             "touching": lambda: self.touch(Touching.of(self.playback.level).other),
-            "free": self._free,
-            "bring_back": self._bring_back,
-            "undo": lambda: self.playback.submit_undo(),
-            "redo": lambda: self.playback.submit_redo(),
+            **self.troubles.actions,
+            "undo": lambda: self.earlier.undo(self.playback),
+            "redo": lambda: self.earlier.redo(self.playback),
             "pause": lambda: self.playback.toggle_pause(),
             "step": lambda: self.playback.clock.step_once(),
             "slow": lambda: self.playback.clock.next_speed(SPEEDS),
@@ -289,7 +289,8 @@ class PlayScreen:
             "zoom_out": lambda: self._zoom(-2),
             "fit": stage.fit,
             "record": files.toggle_recording,
-            "save": files.save_run,
+            "save": files.save_scene,
+            "save_recording": files.save_run,
             "press": lambda: stage.press_cursor(pygame.key.get_mods()),
             "next_particle": lambda: stage.visit_particle(1),
             "previous_particle": lambda: stage.visit_particle(-1),
@@ -342,14 +343,12 @@ class PlayScreen:
             self._ui.blur()
             self.stage.move_cursor(0, 0, 0)
         deeds = "a click drops it, a drag throws it, the wheel makes it larger"
-        self._app.say(f"{part.name}: {deeds}. U has other parts, Escape ends it.")
+        self.say(f"{part.name}: {deeds}. U has other parts, Escape ends it.")
         self._say_what_touches()
 
     def _say_what_touches(self) -> None:
         if not self.has_contacts:
-            self._app.say(
-                "Things pass through each other in this level. Shift+T switches contacts on; the run starts over."
-            )
+            self.say("Things pass through each other in this level. Shift+T switches contacts on; the run starts over.")
 
     def _zoom(self, steps: int) -> None:
         if not self.stage.resize(steps):
@@ -366,39 +365,52 @@ class PlayScreen:
     def choose_strength(self, name: str) -> None:
         """Let the hand be gentle, normal or strong from its next hold on, in later runs too."""
         self.stage.drag.strength = name
-        set_preference(HAND, name)
+        keep_strength(name)
         if self.stage.drag.holds:
-            self._app.say(f"The present hold keeps its strength; the next one is {name}.")
+            self.say(f"The present hold keeps its strength; the next one is {name}.")
 
     def _next_strength(self) -> None:
-        names = list(STRENGTHS)
-        name = names[(names.index(self.stage.drag.strength) + 1) % len(names)]
+        name, line = next_strength(self.stage.drag.strength)
         self.choose_strength(name)
-        self._app.say(f"Hand: {name}, at most {STRENGTHS[name] / 10.0:g} times the weight of what it holds.")
-
-    def _free(self) -> None:
-        """Free what is stuck, all in one gesture."""
-        if not self.stuck.free(self.playback):
-            self._app.say("Nothing is stuck.")
+        self.say(line)
 
     def _reset(self) -> None:
-        self.leave()
+        self._app.end_messages(self)
+        self._stop()
+        left = self._app.scenes.set_aside(self.playback, self.source)
+        self.earlier.begin_again(self.playback, left if self.can_cancel else None)
+        self.saved = None
         self._begin_again()
-        self.stuck = StuckBodies()
-        self.out_of_view = OutOfView()
-        self._app.follow(self.playback, self.can_cancel)
-        if self.panel is not None:
-            self.panel.follow(self.playback)
+        self._follow_run()
 
     def _begin_again(self) -> None:
         self.stage.replace_playback(self.playback.reset())
+
+    def _show_run(self, playback: Playback) -> None:
+        """Show another run of the same level."""
+        self._stop()
+        self.stage.replace_playback(playback)
+        self._follow_run()
+
+    def _follow_run(self) -> None:
+        """Let all that is about the run be about the one that is shown now."""
+        self.troubles.begin()
+        self._app.follow(self.playback, self.can_cancel)
+        self._app.scenes.begin(self.playback, self.source)
+        if self.panel is not None:
+            self.panel.follow(self.playback)
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
         self._app.rebuild()
 
     def leave(self) -> None:
-        """End a recording that is being made, whose file is complete, and what is measured for the pad."""
+        """Keep how the run stands; end a recording that is being made, whose file is complete."""
+        self._stop()
+        self._app.scenes.set_aside(self.playback, self.source)
+
+    def _stop(self) -> None:
+        """End a recording that is being made, and what is measured for the pad."""
         self.shape.sweeps.stop()
         path = self.playback.stop_recording()
         if path is not None:
@@ -450,12 +462,15 @@ class PlayScreen:
         """Let time pass, where no page is open."""
         before = self.playback.session.tick
         self.stage.update(frame_time if not self._ui.has_sheet else 0.0, pointer, profile)
+        self._app.scenes.follow(self.playback, self.source, frame_time)
         self._measure(self.playback.session.tick - before, profile)
-        self._show_stuck()
-        self._show_again()
         self._tell()
+        self.troubles.update()
+        self._show_again()
         if self.panel is not None:
             self.panel.refresh()
+            if isinstance(self.panel, Panel) and self.panel.lacks_rows:
+                self._app.rebuild()
             self.panel.show_choices(self.stage.drag.strength, self.stage.renderer.overlays.shown)
         self.stage.lit = self.panel.pointed_springs() if isinstance(self.panel, Panel) else None
         self.time.show()
@@ -470,8 +485,8 @@ class PlayScreen:
                 self.playback.clock.paused,
                 self.playback.clock.speed,
                 self.playback.session.recording is not None,
-                self.playback.session.can_undo,
-                self.playback.session.can_redo,
+                self.earlier.can_undo(self.playback),
+                self.earlier.can_redo(self.playback),
                 self.show_panel,
                 self.show_palette,
                 self._app.chosen["sound"] == "on",
@@ -492,44 +507,13 @@ class PlayScreen:
     def _tell(self) -> None:
         """Say what the run has to say."""
         for message in self.playback.messages:
-            self._app.say(message)
+            self.say(message)
         self.playback.messages.clear()
-        self._tell_breaks()
-
-    def _tell_breaks(self) -> None:
-        """Say what broke; a line that has grown takes the place of what it was."""
-        text = self.playback.breaks.text
-        if text != self.told:
-            self._app.take_back(self.told)
-            self.told = text
-            if text:
-                self._app.say(text)
-
-    def _show_stuck(self) -> None:
-        before = len(self.stuck.particles)
-        self.stuck.update(self.playback.session.world)
-        found = len(self.stuck.particles)
-        if found > before:
-            self._app.say(NOTICE)
-        if bool(found) != bool(self.free.visible):
-            (self.free.show if found else self.free.hide)()
-
-    def _bring_back(self) -> None:
-        """Put what has left the picture back into it, at rest."""
-        self.out_of_view = OutOfView()
-        if not put_back(self.playback, self.stage.first_box):
-            self._app.say("Nothing has left the picture.")
 
     def _show_again(self) -> None:
-        was_over = self.out_of_view.is_over
-        self.out_of_view.update(self.playback.session.world, self.stage.first_box)
-        is_over = self.out_of_view.is_over
-        if is_over != was_over:
-            (self._app.say if is_over else self._app.take_back)(LEFT_VIEW)
+        is_over = self.troubles.out_of_view.is_over
         if is_over != bool(self.again.visible):
             (self.again.show if is_over else self.again.hide)()
-        if self.out_of_view.has_lost != bool(self.lost.visible):
-            (self.lost.show if self.out_of_view.has_lost else self.lost.hide)()
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""
@@ -538,7 +522,7 @@ class PlayScreen:
         self.stage.renderer.has_effects = chosen["motion"] == "full"
         self.stage.draw(surface, profile)
         surface.set_clip(self.viewport)
-        self.stuck.draw(surface, self._ui, self.camera, self.playback.current)
+        self.troubles.draw(surface)
         draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
         surface.set_clip(None)
@@ -554,18 +538,23 @@ class PlayScreen:
         return pygame.Rect(self.viewport)
 
     def status(self, figures: Figures) -> list[tuple[str, Colour]]:
-        """State, recording, tick and figures of the run."""
+        """State and recording of the run, and for who has opened the whole panel tick and figures."""
         playback, current = self.playback, self.playback.current
         parts: list[tuple[str, Colour]] = [(self._state(), ACCENT if not playback.clock.paused else WARNING)]
         if playback.session.recording is not None:
             parts.append((f"recording {playback.session.recording.name}", DANGER))
         if playback.replay is not None:
             parts.append((playback.outcome or f"recording, {playback.replay.ticks:,} ticks", TEXT))
-        parts.append((f"tick {playback.session.tick:,}", MUTED))
-        counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
         world = playback.session.world
-        parts += motor_parts(motor_readings(world), SOLVERS[world.settings.solver].joints_bear_load)
-        return parts + status_parts(*counts, figures, self.stage.renderer.non_finite, playback.behind)
+        readings = motor_readings(world)
+        if readings and not SOLVERS[world.settings.solver].joints_bear_load:
+            parts.append((NO_LOADS, WARNING))
+        parts += warnings(self.stage.renderer.non_finite, playback.behind)
+        if not self.shape.open.get(MORE, False):
+            return parts
+        counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
+        parts.append((f"tick {playback.session.tick:,}", MUTED))
+        return [*parts, *motor_parts(readings), *counted_parts(*counts), *rate_parts(figures)]
 
     def _state(self) -> str:
         """The state of the run in a word, as status line and window title show it."""

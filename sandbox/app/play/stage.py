@@ -26,7 +26,7 @@ from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
 from sandbox.session.session import Session
 from sandbox.tools.drag import DRAG, DragTool
-from sandbox.tools.dropping import CatalogueTool
+from sandbox.tools.dropping import CatalogueTool, ThrowTool
 from sandbox.tools.play_tools import PLAY_TOOLS
 from sandbox.tools.tool import PointerEvent, Tool
 
@@ -79,6 +79,9 @@ class Stage:
         self.drag = DragTool(new_gesture, strength)
         self.tools: dict[str, Tool] = {name: tool.make(new_gesture) for name, tool in PLAY_TOOLS.items()}
         self.tools[HAND_TOOL] = self.drag
+        for tool in self.tools.values():
+            if isinstance(tool, ThrowTool):
+                tool.touches = self.playback.level.has_contacts
         self.tool_name = HAND_TOOL
         if self.part is not None:
             self.tools[CATALOGUE] = self._catalogue_tool(self.part)
@@ -92,7 +95,9 @@ class Stage:
             at = place[0] - times * (left + right) / 2, place[1] - times * (bottom + top) / 2
             return joining_commands(sized(part, times), self.playback.session.world, at, velocity)
 
-        return CatalogueTool(self.playback.session.new_gesture, part, make, size)
+        tool = CatalogueTool(self.playback.session.new_gesture, part, make, size)
+        tool.touches = self.playback.level.has_contacts
+        return tool
 
     def take_part(self, part: Level) -> None:
         """Have a part of the catalogue in hand."""
@@ -316,12 +321,12 @@ class Stage:
         playback = self.playback
         tool = self.tool
         overlay = Overlay(self._hovered, tool.trail, self.cursor, self.pulls(), lit=self.lit)
-        overlay.ghost = tool.ghost
+        overlay.ghost, overlay.is_refused = tool.ghost, not tool.fits
         if tool.place is not None and tool.preview is not None:
             picture = self._ghost.picture(tool.preview, self.camera.zoom, self.renderer)
             if picture is not None:
-                overlay.ghost_picture = picture, tool.place
-                overlay.ghost = [] if tool.preview.replaces_ghost else overlay.ghost
+                overlay.ghost_picture = picture, tool.landing or tool.place
+                overlay.ghost = [] if tool.preview.replaces_ghost and tool.fits else overlay.ghost
         if "stability" in self.renderer.overlays.shown:
             overlay.stability = self._paint.shares(playback.session.world, playback.revision)
         alpha = playback.clock.alpha(playback.session.world.settings.tick_rate)

@@ -25,15 +25,20 @@ LEAST_PART = 60.0
 FADING, SOON = 0.4, 0.6
 # Motors that are named one by one; of more the line says how many are at their limit.
 NAMED_MOTORS = 2
+NO_LOADS = "the single pass cannot carry loaded wheels: choose another solver"
 
 
 @dataclass
 class Notice:
-    """A line for the person, that goes after some seconds; of_page: it was said while a page lay over the screen."""
+    """A line for the person, that goes after some seconds; of_page: it was said while a page lay over the screen.
+
+    screen: what it was said on, and ends with.
+    """
 
     text: str
     left: float = NOTICE_SECONDS
     of_page: bool = False
+    screen: object = None
 
 
 class StatusLine:
@@ -46,13 +51,20 @@ class StatusLine:
         self._one_by_one = False
         self._texts: dict[tuple[str, Colour], pygame.Surface] = {}
 
-    def say(self, text: str) -> None:
-        """Show a line for some seconds."""
-        for notice in self.notices:
+    def say(self, text: str, screen: object = None) -> None:
+        """Show a line for some seconds, as long as a screen lasts (None: whatever is on it)."""
+        said = Notice(text, max(NOTICE_SECONDS, len(text) * SECONDS_A_LETTER), self.ui.has_sheet, screen)
+        for place, notice in enumerate(self.notices):
             if notice.text == text:
-                notice.left, notice.of_page = NOTICE_SECONDS, self.ui.has_sheet
+                self.notices[place] = said
                 return
-        self.notices.append(Notice(text, max(NOTICE_SECONDS, len(text) * SECONDS_A_LETTER), self.ui.has_sheet))
+        self.notices.append(said)
+
+    def end_with(self, screen: object) -> None:
+        """Show no longer what was said on a screen."""
+        for notice in list(self.notices):
+            if notice.screen is screen:
+                self.notices.remove(notice)
 
     def take_back(self, text: str) -> None:
         """Show a line no longer."""
@@ -187,36 +199,33 @@ def counted_parts(particles: int, springs: int) -> list[tuple[str, Colour]]:
     return [(f"{count:,} {thing}{'' if count == 1 else 's'}", MUTED) for thing, count in counts.items()]
 
 
-def status_parts(
-    particles: int, springs: int, figures: Figures, non_finite: int, behind: bool
-) -> list[tuple[str, Colour]]:
-    """The figures of the status line, warnings first in warning colours."""
+def warnings(non_finite: int, behind: bool) -> list[tuple[str, Colour]]:
+    """What is wrong with a run; non_finite: particles that are nowhere."""
     parts: list[tuple[str, Colour]] = []
     if non_finite:
         verb = "particle is" if non_finite == 1 else "particles are"
         parts.append((f"{non_finite:,} {verb} left the world and are not drawn: undo or reset", DANGER))
     if behind:
         parts.append(("slower than real time", WARNING))
-    parts += [
-        *counted_parts(particles, springs),
+    return parts
+
+
+def rate_parts(figures: Figures) -> list[tuple[str, Colour]]:
+    """How fast ticks and frames come, and how long one takes."""
+    return [
         (f"{figures.ticks:.0f} ticks/s", MUTED),
         (f"{figures.frames:.0f} frames/s", MUTED),
         (f"{figures.work:.1f} ms of work a frame", MUTED),
     ]
-    return parts
 
 
-def motor_parts(readings: list[MotorReading], carries: bool) -> list[tuple[str, Colour]]:
-    """What motors give, in figures; carries: whether the solver can carry wheels at all."""
-    if not readings:
-        return []
-    parts: list[tuple[str, Colour]] = []
-    if not carries:
-        parts.append(("the single pass cannot carry loaded wheels: choose another solver", WARNING))
+def motor_parts(readings: list[MotorReading]) -> list[tuple[str, Colour]]:
+    """What motors give, in figures."""
     if len(readings) > NAMED_MOTORS:
         full = sum(reading.at_limit for reading in readings)
         told = f"{full} at their limit" if full else "none at its limit"
-        return [*parts, (f"{len(readings)} motors, {told}", WARNING if full else MUTED)]
+        return [(f"{len(readings)} motors, {told}", WARNING if full else MUTED)]
+    parts: list[tuple[str, Colour]] = []
     for reading in readings:
         if reading.pushes:
             text = f"motor {reading.name}: {number(abs(reading.torque))} of {number(reading.limit)} N m"

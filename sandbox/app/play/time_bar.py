@@ -201,5 +201,5 @@ class TimeBar:
 
 def _told(branch: Branch, rate: float) -> str:
     gestures = len({entry.gesture for entry in branch.history if entry.tick >= branch.tick})
-    deeds = {0: "nothing done", 1: "1 deed"}.get(gestures, f"{gestures} deeds")
-    return f"From {branch.tick / rate:.1f} s to {branch.last_tick / rate:.1f} s, {deeds}"
+    done = {0: "nothing changed by hand", 1: "1 change by hand"}.get(gestures, f"{gestures} changes by hand")
+    return f"From {branch.tick / rate:.1f} s to {branch.last_tick / rate:.1f} s: {done}"

@@ -34,7 +34,7 @@ LEFT = (
     (("undo", "undo"), ("redo", "redo")),
     (("reset", "reset"), ("pause", "pause"), ("step", "step"), ("slow", ""), ("timeline", "timeline")),
     (("keep", "keep"),),
-    (("record", "record"), ("save", "save")),
+    (("save", "save"), ("record", "record")),
 )  # fmt: skip
 RIGHT = (
     ("share", "share"),
@@ -54,7 +54,6 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 # What goes into the menu where the window is too narrow, first what is missed least.
 LEAVING = (
     "toy",
-    "save",
     "compare",
     "graphs",
     "settings",
@@ -68,6 +67,7 @@ LEAVING = (
     "slow",
     "keep",
     "share",
+    "save",
     "panel",
     "palette",
     "tool_pin",
@@ -93,11 +93,14 @@ class BarState:
     graphs: bool
 
 
-def fitting(actions: Sequence[str], width: float) -> list[str]:
-    """Those of the actions whose buttons fit side by side into a width [layout units], with that of the menu."""
+def fitting(actions: Sequence[str], width: float, is_wide: bool = False) -> list[str]:
+    """Those of the actions whose buttons fit side by side into a width [layout units], with that of the menu.
+
+    is_wide: with words on them and wider gaps between the groups.
+    """
     left, shown = width - BUTTON - GAP, list(actions)
     for action in LEAVING:
-        needed = sum(_width(each) + GAP for each in shown) + NARROW_GAP * len(LEFT)
+        needed = sum(_width(each, is_wide) + GAP for each in shown) + (WIDE_GAP if is_wide else NARROW_GAP) * len(LEFT)
         if needed <= (width if len(shown) == len(actions) else left):
             break
         if action in shown:
@@ -119,10 +122,10 @@ class Toolbar:
         self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
         self._pictures = dict(entry for group in (*LEFT, RIGHT) for entry in group)
         wanted = [action for action in self._pictures if action != "keep" or of_document]
-        shown = fitting(wanted, width - 2 * MARGIN)
+        is_wide = self._is_wide = width >= ROOM_FOR_NAME
+        shown = fitting(wanted, width - 2 * MARGIN, is_wide)
         self.left_out = [action for action in wanted if action not in shown]
         self.buttons: dict[str, Any] = {}
-        is_wide = self._is_wide = width >= ROOM_FOR_NAME
         self._x = MARGIN
         for group in LEFT:
             for action, _ in group:

@@ -1,6 +1,7 @@
 """Playback: the run on the screen: a session, the clock that drives it and the two snapshots that are drawn."""
 
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 from sandbox.app.base.loop import TickClock
 from sandbox.app.run.breaks import Breaks
 from sandbox.app.run.liveliness import Liveliness
+from sandbox.app.run.stopped import Stopped
 from sandbox.app.run.travel import Travel
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
@@ -18,9 +20,19 @@ from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.step import precompute
 from sandbox.physics.world import World
 from sandbox.session.breaks import break_lines
-from sandbox.session.commands import Command, CommandError, Redo, Undo
+from sandbox.session.commands import (
+    Command,
+    CommandError,
+    Redo,
+    SetCoefficients,
+    SetFirmness,
+    SetGravity,
+    SetInflation,
+    Undo,
+)
 from sandbox.session.log import Branch
 from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.scene import RunScene, SceneTaker
 from sandbox.session.session import Session
 from sandbox.session.transaction import Interrupted
 from sandbox.tools.tool import Response
@@ -28,8 +40,14 @@ from sandbox.tools.tool import Response
 # Wall time [s] that the ticks of one frame may take; the ticks beyond it are lost and the run falls behind real time,
 # but the window goes on answering.
 TICK_BUDGET = 0.05
+# What is set here comes about in this time [s], rather than at once: in half of it a heap of soft jellies that is made
+# rigid leaps as high as its bodies are.
+RAMPED = (SetCoefficients, SetFirmness, SetGravity, SetInflation)
+RAMP_TIME = 1.25
 # Frames without a tick after something has joined the run: the one that adds it, and the one that lays out its ticks.
 FRAMES_TO_JOIN = 2
+# What stood for so long [s] before an undo, or before another command in the past, is kept.
+LOOKED_AT = 1.0
 # What is said where playing a run again was given up.
 GIVEN_UP = "Cancelled. The run did not change."
 
@@ -47,15 +65,28 @@ class Listener(Protocol):
 
 
 class Playback:
-    """A level being played, or a replay being watched; `previous` and `current` are what the renderer draws between."""
+    """A level being played, or a replay being watched; `previous` and `current` are what the renderer draws between.
 
-    def __init__(self, level: Level, replay: Replay | None = None, start: Snapshot | None = None) -> None:
-        self.session = Session(level, replay.script if replay else (), start)
+    first: the scene that it goes on from. cut: is told how the run stands before some of its history is cut off.
+    """
+
+    def __init__(
+        self, level: Level, replay: Replay | None = None, start: Snapshot | None = None, first: RunScene | None = None
+    ) -> None:
+        self.session = first.session() if first else Session(level, replay.script if replay else (), start)
+        self.first = first
+        self.cut: Callable[[RunScene], None] = lambda scene: None
+        self._taker = SceneTaker(self.session)
+        # How the run stands at its end, while it is in its past.
+        self._end: RunScene | None = None
+        # How long the last undo or redo is ago [s]: what stood for a moment between two of them is not kept.
+        self._stood = LOOKED_AT
         self.level = level
         self.replay = replay
         self.clock = TickClock()
         self.dissipation = Dissipation()
         self.breaks = Breaks(level)
+        self.stopped = Stopped()
         self.liveliness = Liveliness()
         self.behind = False
         self.verdict = ""
@@ -104,6 +135,28 @@ class Playback:
         fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span
         return fresh
 
+    def scene(self) -> RunScene | None:
+        """How the run stands at its end; None: nothing was done in it, or nothing since the scene that it began as."""
+        if self.watching:
+            return None
+        self.apply_pending()
+        scene = self._end if self.session.tick < self.session.last_tick else self._taker.take()
+        if scene is None or not scene.script:
+            return None
+        return None if self.first is not None and self.first.is_done_by(scene.script) else scene
+
+    def present_scene(self) -> RunScene:
+        """How the run stands on the screen."""
+        self.apply_pending()
+        return self._taker.take()
+
+    def _tell_cut(self) -> None:
+        self.apply_pending()
+        has_stood, self._stood = self._stood >= LOOKED_AT, 0.0
+        scene = self.scene() if has_stood else None
+        if scene is not None:
+            self.cut(scene)
+
     def submit(self, command: Command, gesture: int | None = None) -> None:
         """Queue a command of the person's; while a replay is watched, or in the past, the person takes over from it."""
         session = self.session
@@ -114,14 +167,23 @@ class Playback:
         if self.watching:
             self.take_over()
         if is_past and not self._submitted:
+            self._tell_cut()
             self.messages.append("The run goes on from here. Shift+Y goes back to the old one.")
         if self.clock.speed < 0.0:
             self.clock.speed, self.clock.accumulator = 1.0, 0.0
         self.travel.target = None
         self._submitted = True
-        if self.listener is not None and isinstance(command, (Undo, Redo)):
-            self.listener.forget()
-        session.submit(command, gesture)
+        if isinstance(command, (Undo, Redo)):
+            self.stopped = Stopped()
+            if self.listener is not None:
+                self.listener.forget()
+        session.submit(self._taking_time(command), gesture)
+
+    def _taking_time(self, command: Command) -> Command:
+        """The command, which takes its time if it is one of RAMPED without a duration of its own."""
+        if not isinstance(command, RAMPED) or command.duration:
+            return command
+        return replace(command, duration=round(RAMP_TIME * self.session.world.settings.tick_rate))
 
     def respond(self, response: Response) -> None:
         """Queue what a tool answered."""
@@ -132,12 +194,12 @@ class Playback:
 
     def submit_undo(self) -> None:
         """Take the last gesture back, also one of this frame."""
-        self.apply_pending()
+        self._tell_cut()
         self._submit_if(self.session.can_undo, Undo(), "There is nothing to undo.")
 
     def submit_redo(self) -> None:
         """Make the gesture again that was undone last, also in this frame."""
-        self.apply_pending()
+        self._tell_cut()
         self._submit_if(self.session.can_redo, Redo(), "There is nothing to redo.")
 
     def _submit_if(self, possible: bool, command: Command, otherwise: str) -> None:
@@ -178,6 +240,8 @@ class Playback:
             self.clock.speed = abs(self.clock.speed)
             return
         self.apply_pending()
+        if session.tick == session.last_tick:
+            self._end = self._taker.take()
         here = session.snapshot()
         self._jump(tick)
         self.travel.target = tick if tick > session.last_tick else None
@@ -212,6 +276,7 @@ class Playback:
         if self.session.recording is not None:
             self.messages.append("Stop the recording before you go back in time.")
             return
+        self._tell_cut()
         try:
             with np.errstate(over="ignore", invalid="ignore"):
                 self.session.return_to(branch)
@@ -264,6 +329,7 @@ class Playback:
 
     def advance(self, frame_time: float) -> int:
         """Let frame_time [s] of wall time pass; returns the ticks that were made."""
+        self._stood += frame_time
         if self._making_room and not self.clock.paused:
             self._make_room()
             return 0
@@ -331,7 +397,7 @@ class Playback:
                 self.dissipation.before(self.session.world)
                 self.session.advance()
                 self.dissipation.after(self.session.world)
-                self._note_breaks()
+                self._note_events()
                 if self.listener is not None and self.travel.target is None:
                     self.listener.hear(self.session.world)
         except CommandError as error:
@@ -344,13 +410,14 @@ class Playback:
             self._compare()
         return True
 
-    def _note_breaks(self) -> None:
-        """Tell what broke in words of its own, in place of the session's."""
+    def _note_events(self) -> None:
+        """Tell what broke, and what was stopped, in words for a person, in place of the session's."""
         world, messages = self.session.world, self.session.messages
         # Of a past that is played again the session says nothing.
-        said = break_lines(world)
+        said = {*break_lines(world), *map(str, world.contained)}
         messages[:] = [line for line in messages if line not in said]
         self.breaks.note(world)
+        self.stopped.note(world)
 
     def _compare(self) -> None:
         assert self.replay is not None

@@ -185,11 +185,13 @@ class ShareForm:
     def _build_outcome(self) -> None:
         sharing, ui = self._sharing, self._ui
         self._build_note(TOP - 2)
-        top = self._height - MARGIN - 2 * BUTTON - 14
+        top = self._height - MARGIN - 3 * BUTTON - 24
+        ui.button(ui.rect(self._right, top, self._side, BUTTON), "Open it", sharing.open_it, self._box)
         half = (self._side - 10) / 2
         actions = ("Open folder", sharing.open_folder), ("Copy path", sharing.copy_path)
         for index, (text, action) in enumerate(actions):
-            ui.button(ui.rect(self._right + index * (half + 10), top, half, BUTTON), text, action, self._box)
+            place = ui.rect(self._right + index * (half + 10), top + BUTTON + 10, half, BUTTON)
+            ui.button(place, text, action, self._box)
         self.note.set_dimensions((ui.px(self._side), ui.px(top - TOP - 8)))
         self.note.repaint()
         self._add_button("Close", self._leave, 0, "@primary")

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 from sandbox import __version__
 from sandbox.app.draw.scene import scene_of
+from sandbox.app.run.playback import RAMP_TIME
+from sandbox.app.share.firmness_table import material_rows
 from sandbox.app.share.recorded import recorded
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
@@ -18,22 +20,16 @@ from sandbox.level.plan.actuators import driving_keys
 from sandbox.page.page import page_text, toy_content
 from sandbox.page.room import make_room, row_counts
 from sandbox.page.start import start_of
-from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange
-from sandbox.physics.equation import of_springs
-from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.snapshot import take
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import header, seal
 
-# Cs and Cd for the words of firmness where no body's form says what they mean.
-USUAL = {"jelly": (0.01, 0.1), "soft": (0.05, 0.2), "firm": (0.3, 0.5), "hard": (0.8, 0.9), "rigid": (1.0, 1.0)}
-ALL = "All"
 # Metrics that need the energies of areas and bends, which a page does not have.
 NOT_MEASURED = ("energy", "potential_energy")
-# Digits, and decimals at most, of Cs and Cd.
-DIGITS, DECIMALS = 4, 12
+# Digits of what a sound is made of.
+DIGITS = 4
 
 
 class Playable(NamedTuple):
@@ -77,8 +73,9 @@ def playable_in_slices(
         "name": level.name,
         "scene": scene_of(level, take(world)),
         "sounds": _sounds(world),
-        "materials": _materials(world),
+        "materials": (yield from material_rows(world, level, played is not None)),
         "gravity_limit": GRAVITY_LIMIT,
+        "ramp_ticks": round(RAMP_TIME * world.settings.tick_rate),
         "checks": _checks(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
@@ -120,41 +117,6 @@ def _header(level: Level) -> str:
     """The first line of a recording, without its end."""
     line, _ = seal(header(level, PHYSICS_VERSION, __version__), "")
     return line.decode().rpartition(', "chain"')[0]
-
-
-def _materials(world: World) -> list[dict[str, Any]]:
-    """Materials that springs have, with Cs and Cd by the words of firmness; before several of them, all as one."""
-    used = [slot for slot in range(len(world.material_names)) if (world.material == slot).any()]
-    rows: list[tuple[str, int | None]] = [(world.material_names[slot], slot) for slot in used]
-    if len(rows) > 1:
-        rows.insert(0, (ALL, None))
-    return [{"name": name, "slot": slot, "words": _words(world, slot)} for name, slot in rows]
-
-
-def _words(world: World, material: int | None) -> dict[str, tuple[float, float]]:
-    """Cs and Cd of springs by the words of firmness, for the largest body of a material."""
-    forms = [form for form in world.forms if material in (None, int(world.material[form.springs[0]]))]
-    for form in sorted(forms, key=lambda form: -len(form.springs)):
-        if len(form.shape.mass) > LARGEST_READ:
-            continue
-        reach = FirmnessRange.of(form.shape, world.settings.gravity, world.settings.tick_rate)
-        if reach.lowest_mode > 0.0 and reach.height > 0.0:
-            return {word: _pair(reach, sag) for word, sag in WORDS.items()}
-    return USUAL
-
-
-def _pair(reach: FirmnessRange, sag: float) -> tuple[float, float]:
-    stiffness, damping = reach.coefficients(reach.nearest(Firmness(sag=sag)))
-    if stiffness < 1.0:
-        stiffness, damping = of_springs(stiffness, damping, reach.lowest_mode)
-    return _coefficient(stiffness), _coefficient(damping)
-
-
-def _coefficient(value: float) -> float:
-    """In few digits, or with few digits of what it is below 1 by: that says how firm a stiff body is."""
-    if value < 0.5:
-        return float(f"{value:.{DIGITS}g}")
-    return round(1.0 - float(f"{1.0 - value:.{DIGITS}g}"), DECIMALS)
 
 
 def _sounds(world: World) -> dict[str, Any]:

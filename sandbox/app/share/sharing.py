@@ -11,7 +11,7 @@ from typing import Literal
 
 import pygame
 
-from sandbox.app.base.desktop import copy_text, copying_picture, open_folder
+from sandbox.app.base.desktop import copy_text, copying_picture, open_path
 from sandbox.app.base.recordings import chosen_path, free_path, move_new, pictures_folder, plain_name
 from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import ACCENT, Colour
@@ -242,8 +242,13 @@ class Sharing:
 
     def open_folder(self) -> None:
         """Show the file in its folder."""
-        if self.saved is not None and not open_folder(self.saved.parent):
+        if self.saved is not None and not open_path(self.saved.parent):
             self._tell(f"No file manager was found. The folder is {_shown(self.saved.parent)}")
+
+    def open_it(self) -> None:
+        """Open the file in what the system has for it: a page in the browser."""
+        if self.saved is not None and not open_path(self.saved):
+            self._tell(f"Nothing was found that opens it. The file is {_shown(self.saved)}")
 
     def copy_path(self) -> None:
         """Put the file's path on the clipboard."""

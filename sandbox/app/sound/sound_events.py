@@ -91,6 +91,7 @@ class SoundEvents:
         self._before: _Before | None = None
         self._bodies: Timbres | None = None
         self._key: tuple[object, ...] = ()
+        self._owners: tuple[int, bytes] | None = None
 
     def forget(self) -> None:
         """Compare with nothing: time has jumped."""
@@ -109,9 +110,11 @@ class SoundEvents:
 
     def hear(self, world: World) -> None:
         """Take in a tick of the world."""
-        key = (world.particle_count, world.joined)
+        key = (world.particle_count, world.joined, self._owners_of(world))
         if self._bodies is None or self._key != key:
-            self._bodies, self._key, self._before = timbres_of(world), key, None
+            # Pieces go on as the whole was, and the cut is heard.
+            self._before = self._before if self._key[:2] == key[:2] else None
+            self._bodies, self._key = timbres_of(world), key
             count, self.has_new_bodies = len(self._bodies.mass), True
             self._blows, self._rubs, self._jerks = (_Onsets(count) for _ in range(3))
         before = self._before
@@ -127,6 +130,12 @@ class SoundEvents:
         else:
             active = before.spring_active
         self._before = _Before(world.tick, world.velocity.copy(), active, world.topology_version, held)
+
+    def _owners_of(self, world: World) -> bytes:
+        # Looked at only where something was cut, or may be whole again.
+        if self._owners is None or self._owners[0] != world.topology_version:
+            self._owners = world.topology_version, world.owner.tobytes()
+        return self._owners[1]
 
     def _add(self, kind: str, pitch: float, stuff: str, loudness: float, place: Floats, body: int) -> None:
         assert self._bodies is not None

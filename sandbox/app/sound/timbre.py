@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.looks import GRAINS, STRANDS, Look, ball_look, body_looks
+from sandbox.app.draw.things.level_slots import level_slots_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.document.model import Level
+from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.world import World
 
@@ -72,7 +74,10 @@ def timbres_of(world: World) -> Timbres:
         held > 0, np.bincount(first, world.stiffness, count) / np.maximum(held, 1), USUAL_STIFFNESS
     )  # fmt: skip
     kinds = dict(_kinds(world))
-    found = [kinds.get(int(owner), ("rubber", False)) for owner in owners]
+    # The number of a piece that was cut off says its first particle alone.
+    is_cut = bool(np.any(world.owner[shown_particles(world)] < 0))
+    wholes = np.where(owners < 0, _wholes(world)[-1 - np.minimum(owners, -1)], owners) if is_cut else owners
+    found = [kinds.get(int(owner), ("rubber", False)) for owner in wholes]
     stuff = [kind for kind, _ in found]
     pitch = np.array([STUFFS[kind].pitch for kind in stuff])
     with np.errstate(all="ignore"):
@@ -93,6 +98,17 @@ def _kinds(world: World) -> Iterator[tuple[int, tuple[str, bool]]]:
     for joined in world.joined:
         if isinstance(joined.source, Level) and joined.first_particle < len(world.owner):
             yield from enumerate(_of_level(joined.source), int(world.owner[joined.first_particle]))
+
+
+def _wholes(world: World) -> Slots:
+    """The numbers (n,) that the bodies of particles had before anything was cut; -1: it is of no body of a level."""
+    found = np.full(len(world.owner), -1, dtype=np.int64)
+    parts = [(0, 0, world.source)]
+    parts += [(each.first_particle, int(world.owner[each.first_particle]), each.source) for each in world.joined]
+    for first, owner, source in parts:
+        for number, actor in enumerate(level_slots_of(source).actors if isinstance(source, Level) else ()):
+            found[first + actor.slots] = owner + number
+    return found
 
 
 def _of_level(level: Level) -> Iterator[tuple[str, bool]]:

@@ -15,8 +15,10 @@ from sandbox.level.format.shipped import shipped_folder
 # The font in assets/fonts with its licence, by the name that the theme of the widgets calls it.
 FONT = "atkinson"
 _FILES = {False: "AtkinsonHyperlegible-Regular.ttf", True: "AtkinsonHyperlegible-Bold.ttf"}
-# All letters below are in the font; a character that no font has, as which it draws others that it lacks.
-_LATIN, _NONE = "\u017f", "\uffff"
+# Its sister for code, whose letters are all of one width.
+_MONO = "AtkinsonHyperlegibleMono-Regular.ttf"
+# All letters up to these are in the font, and in its sister; a character that no font has, as which they draw others.
+_LATIN, _ASCII, _NONE = "\u017f", "\u007f", "\uffff"
 # What is painted uses a dozen sizes at one scale of the window; each takes 0.1 to 0.3 MB with its letters.
 FONTS_HELD = 24
 # Marks of Unicode Standard Annex 9 that turn text, their own name's and any after it.
@@ -36,6 +38,7 @@ class SafeFont(pygame.font.Font):
     def __init__(self, file: Any, size: int) -> None:
         super().__init__(file, size)
         self._size, self._is_bold = size, str(file).endswith(_FILES[True])
+        self._last_known = _ASCII if str(file).endswith(_MONO) else _LATIN
         self._lacks: dict[str, bool] = {}
 
     # pygame raises errors for texts that it cannot show, and names in files that people open may be such texts.
@@ -71,7 +74,7 @@ class SafeFont(pygame.font.Font):
         return not isinstance(text, str) or text.isascii() or not any(map(self._lacks_letter, text))
 
     def _lacks_letter(self, letter: str) -> bool:
-        if letter <= _LATIN:
+        if letter <= self._last_known:
             return False
         if letter not in self._lacks:
             if len(self._lacks) > 5_000:
@@ -125,6 +128,12 @@ def _side_by_side(
 def plain_font(size: int, bold: bool) -> SafeFont:
     """The font in a size of pixels, for what is painted."""
     return SafeFont(str(font_file(bold)), size)
+
+
+@functools.lru_cache(FONTS_HELD)
+def code_font(size: int) -> SafeFont:
+    """The font for code in a size of pixels."""
+    return SafeFont(str(shipped_folder("assets") / "fonts" / _MONO), size)
 
 
 def _clean(text: Any) -> Any:

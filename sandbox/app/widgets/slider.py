@@ -6,8 +6,8 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.draw.colours import ACCENT, DECADE, LINE, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
-from sandbox.app.widgets.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.widgets.painted import Draggable
 from sandbox.app.widgets.ui import Ui
 

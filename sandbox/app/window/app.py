@@ -27,10 +27,10 @@ from sandbox.app.edit.tour import Guide
 from sandbox.app.gallery.gallery import Gallery
 from sandbox.app.gallery.sections import FIRST
 from sandbox.app.play.melt_lesson import MeltLesson
-from sandbox.app.play.out_of_view import NOTICE as LEFT_VIEW
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine
 from sandbox.app.run.playback import Playback
+from sandbox.app.run.scene_keeping import SceneKeeping
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.settings.settings_sheet import SettingsSheet
 from sandbox.app.settings.system_theme import theme_of
@@ -76,6 +76,7 @@ class App:
         # What was on it when a frame ended last.
         self._seen: Screen | None = None
         self.input = Input(self)
+        self.scenes = SceneKeeping()
         self.files = FileActions(self)
         self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
@@ -131,13 +132,17 @@ class App:
         self.ui.take_over(before)
         self._collector.expect_old_garbage()
 
-    def say(self, text: str) -> None:
-        """Show a line to the person for some seconds."""
-        self.status.say(text)
+    def say(self, text: str, screen: Screen | None = None) -> None:
+        """Show a line to the person for some seconds; screen: what it is about, and ends with."""
+        self.status.say(text, screen)
 
     def take_back(self, text: str) -> None:
         """Take away a line that no longer holds."""
         self.status.take_back(text)
+
+    def end_messages(self, screen: Screen) -> None:
+        """Take away all lines about a screen."""
+        self.status.end_with(screen)
 
     def offer_tour(self) -> None:
         """Offer the tour of the editor to who has not seen it."""
@@ -152,6 +157,7 @@ class App:
         self.close_gallery()
         self._describe("")
         if self.screen is not None and self.screen is not screen:
+            self.end_messages(self.screen)
             self.screen.leave()
         self.screen = screen
         before = self.ui
@@ -191,8 +197,8 @@ class App:
         """Choose a level or a recording; query: what is searched."""
         self.close_gallery()
         self._describe("")
-        for said in (LEFT_VIEW, *(() if self.play is None else (self.play.told, self.play.welcome))):
-            self.status.take_back(said)
+        if self.screen is not None:
+            self.end_messages(self.screen)
         self.gallery = Gallery(self.ui, self, section, self.close_gallery, query)
 
     def close_gallery(self) -> None:
@@ -210,6 +216,7 @@ class App:
             "fullscreen": self.display.toggle_fullscreen,
             "larger": lambda: self._rescale(1.125),
             "smaller": lambda: self._rescale(1 / 1.125),
+            "usual_size": lambda: self.chosen.choose("scale", None),
             "settings": self._open_settings,
             "help": lambda: show_help(self.ui, self.mode, self.guide.begin),
             "tour": self.guide.begin,
@@ -236,7 +243,6 @@ class App:
     def start_melt(self) -> None:
         """Begin the lesson on springs that are solved one by one."""
         self.show_screen(MeltLesson(self, Playback(load_level(FIRST))))
-        self.say(MeltLesson.welcome)
 
     def start_pair(self, path: Path) -> None:
         """Play the level of a file twice side by side, with the pad in the panel."""
@@ -256,7 +262,6 @@ class App:
             return
         level, source = play.playback.level, play.source
         if isinstance(play, CompareScreen):
-            self.take_back(play.welcome)
             self.start(play.single or Playback(level), source)
         elif play.of_document:
             self.say("This run belongs to the editor. Save the level and open its file to compare two settings.")
@@ -292,6 +297,7 @@ class App:
         self.sounds.close()
         self.sharing.close()
         self.documents.close()
+        self.scenes.shelf.close()
         self.display.close()
         self._collector.close()
 
@@ -344,6 +350,8 @@ class App:
         with self.profile.part("ui"):
             self.status.update(frame_time)
             self.documents.update()
+            if fault := self.scenes.fault():
+                self.say(fault)
             if self.gallery is not None:
                 self.gallery.update(frame_time)
             self.guide.update(frame_time)

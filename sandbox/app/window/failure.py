@@ -37,13 +37,15 @@ class FrameGuard:
         """Write a fault down and tell of it. Raises SystemExit where one follows another: then nothing else helps."""
         now = time.monotonic()
         self._times = [*(each for each in self._times if now - each < WITHIN), now]
-        self.report = _report(error)
-        path = _kept(self.report)
-        where = f" A report is in {path}." if path is not None else ""
+        where = self._write_down(error)
         if len(self._times) >= MOST:
             raise SystemExit(f"Too many things failed, so the program closes. Your work is kept.{where}") from error
-        # What the frame was at may be half done.
-        self._app.rebuild()
+        try:
+            # What the frame was at may be half done.
+            self._app.rebuild()
+        except Exception as again:
+            told = f"The program cannot go on, and closes. Your work is kept.{self._write_down(again)}"
+            raise SystemExit(told) from again
         text = (
             f"Something in the program failed ({one_line(f'{type(error).__name__}: {error}')[:120]}). "
             f"Your work is kept.{where}"
@@ -52,6 +54,12 @@ class FrameGuard:
             ("Go on", lambda: None), ("Copy the report", self._copy), ("Close the program", self._app.quit),
         ]  # fmt: skip
         choose(self._app.ui, "Something went wrong", text, choices)
+
+    def _write_down(self, error: Exception) -> str:
+        """Write a report; a sentence that says where it is."""
+        self.report = _report(error)
+        path = _kept(self.report)
+        return f" A report is in {path}." if path is not None else ""
 
     def _copy(self) -> None:
         copied = copy_text(self.report)

@@ -4,16 +4,30 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from sandbox.app.base.recordings import SUFFIX, chosen_path, free_path, move_new, plain_name, recordings_folder
+from sandbox.app.base.recordings import (
+    SUFFIX,
+    chosen_path,
+    free_path,
+    move_new,
+    plain_name,
+    readable_name,
+    recordings_folder,
+    told_time,
+)
 from sandbox.app.contracts.application import Application
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import ask
+from sandbox.editor.document import UNTITLED
 from sandbox.editor.storage.recent import remember_played
 from sandbox.level.format.level_error import LevelError, one_line
-from sandbox.level.format.writing import refusal_of
+from sandbox.level.format.writing import refusal_of, write_file
 from sandbox.level.reading.files import load_level, read_level, shipped_folder
+from sandbox.session.commands import CommandError
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.scene_file import SUFFIX as SCENE
+from sandbox.session.replay.scene_file import begins_as_scene, read_scene, scene_lines
+from sandbox.session.scene import RunScene
 from sandbox.session.sweep.grid import SweepError
 from sandbox.session.transaction import Interrupted
 
@@ -30,10 +44,12 @@ class FileActions:
     # Opening.
 
     def open_path(self, path: str | Path) -> bool:
-        """Open a level or a recording, whichever the file is; True where it could be."""
+        """Open a level, a recording or a scene, whichever the file is; True where it could be."""
         if Path(path).suffix.lower() == TABLE:
             return self.open_sweep(Path(path))
         try:
+            if begins_as_scene(path):
+                return self.open_scene(Path(path))
             is_replay = begins_as_replay(path)
         except OSError as error:
             self._refuse(path, [one_line(f"{path}: cannot be read: {refusal_of(error)}")])
@@ -84,6 +100,23 @@ class FileActions:
         self.app.say(f"Watching {one_line(Path(path).name)}. Touch anything to take over.")
         return True
 
+    def open_scene(self, path: Path) -> bool:
+        """Open a scene as it stood, paused; where a level is edited now, that waits in the editor."""
+        try:
+            scene, about = read_scene(path)
+            playback = Playback(scene.level, first=scene)
+        except (ReplayError, CommandError) as error:
+            self._refuse(path, error.faults)
+            return False
+        playback.clock.paused = True
+        source = about.source if about.source is not None and about.source.is_file() else None
+        self.app.start(playback, source)
+        play = self.app.play
+        if play is not None and path.parent != self.app.scenes.shelf.folder:
+            play.saved = path, scene
+        self.app.say(f"As it stood {told_time(about.when)}. Space lets it go on.")
+        return True
+
     def ask_to_open(self) -> None:
         """Ask for the path of a level or replay, or a shipped level's name."""
         hint = "A path, or the name of a shipped level. Files can be dropped on the window too."
@@ -118,6 +151,48 @@ class FileActions:
 
     def _refuse(self, path: str | Path, faults: list[str]) -> None:
         self.app.show_faults(f"{one_line(Path(path).name)} cannot be opened", [one_line(fault) for fault in faults])
+
+    # Scenes.
+
+    def save_scene(self) -> None:
+        """Save how the run stands in My levels, at once, and ask for a name; once more where it has gone on."""
+        play = self.app.play
+        if play is None:
+            return
+        scene = play.playback.present_scene()
+        again = play.saved is not None and scene.follows(play.saved[1])
+        try:
+            if again and play.saved is not None:
+                path = play.saved[0]
+            else:
+                path = free_path(recordings_folder(), _proposed_name(scene), SCENE)
+            write_file(path, b"".join(scene_lines(scene, play.source)))
+        except OSError as error:
+            self.app.say(f"The scene cannot be saved: {error.strerror or error}.")
+            return
+        play.saved = path, scene
+        self.app.scenes.is_saved(scene)
+        if again:
+            self.app.say(_in_my_levels(path))
+        else:
+            self._name_scene(path, scene)
+
+    def _name_scene(self, path: Path, scene: RunScene) -> None:
+        def rename(typed: str) -> str | None:
+            wanted, fault = self._renamed(path, typed, SCENE, _in_my_levels)
+            if wanted is not None and self.app.play is not None:
+                self.app.play.saved = wanted, scene
+            return fault
+
+        def discard() -> None:
+            self._discard(path)
+            self.app.scenes.is_saved(None)
+            if self.app.play is not None:
+                self.app.play.saved = None
+
+        self.app.say(_in_my_levels(path))
+        hint = "It is in My levels, as it stands now. Escape keeps the name."
+        ask(self.app.ui, "Name the scene", hint, path.name.removesuffix(SCENE), "Save", rename, ("Discard", discard))
 
     # Recording.
 
@@ -181,18 +256,24 @@ class FileActions:
         )
 
     def _rename(self, path: Path, typed: str) -> str | None:
-        if typed.removesuffix(SUFFIX) == path.name.removesuffix(SUFFIX):
-            return None
+        return self._renamed(path, typed, SUFFIX, _saved)[1]
+
+    def _renamed(
+        self, path: Path, typed: str, suffix: str, told: Callable[[Path], str]
+    ) -> tuple[Path | None, str | None]:
+        """Give a file that was saved another name: its path then, or else why not; told: the line about it."""
+        if typed.removesuffix(suffix) == path.name.removesuffix(suffix):
+            return path, None
         try:
-            wanted = chosen_path(path.parent, typed)
+            wanted = chosen_path(path.parent, typed, suffix)
             move_new(path, wanted)
         except ValueError as error:
-            return str(error)
+            return None, str(error)
         except OSError as error:
-            return f"It stays {path.name}: {error.strerror or error}."
-        self.app.take_back(_saved(path))
-        self.app.say(_saved(wanted))
-        return None
+            return None, f"It stays {path.name}: {error.strerror or error}."
+        self.app.take_back(told(path))
+        self.app.say(told(wanted))
+        return wanted, None
 
     def _discard(self, path: Path) -> None:
         try:
@@ -200,12 +281,22 @@ class FileActions:
         except OSError as error:
             self.app.say(f"{path} cannot be removed: {error.strerror or error}.")
         else:
-            self.app.take_back(_saved(path))
+            for told in (_saved, _in_my_levels):
+                self.app.take_back(told(path))
             self.app.say(f"Removed {path.name}.")
 
 
 def _recording(path: Path) -> str:
     return f"Recording to {path}, from the beginning of the run."
+
+
+def _proposed_name(scene: RunScene) -> str:
+    name = scene.level.name
+    return readable_name(name) if name != UNTITLED else "Scene"
+
+
+def _in_my_levels(path: Path) -> str:
+    return f"Saved in My levels as {path.name.removesuffix(SCENE)}."
 
 
 def _saved(path: Path) -> str:

@@ -9,6 +9,7 @@ from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, taken_ids
 from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
+from sandbox.level.format.look import look_when_added
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.physics.keeping.equipment import Joined
@@ -22,7 +23,7 @@ ADDED_PARTICLE = "+."
 def keep_added(document: Document, world: World) -> Document:
     """Take over the bodies and balls that joined the played world and are still there. Raises EditError.
 
-    They start at rest about where they are now, in their own form and direction; what was pinned and cut stays so.
+    They start at rest as they stand now, in their looks; what was pinned and cut stays so.
     """
     level = document.level
     for joined in world.joined:
@@ -45,7 +46,7 @@ def _with_joined(level: Level, world: World, joined: Joined) -> Level:
     ids = free_ids(taken_ids(level), [_base(body) for body, _, _ in staying])
     new = {body.id: free for (body, _, _), free in zip(staying, ids, strict=True)}
     bodies = tuple(
-        _kept(replaced(body, id=new[body.id]), (x, y), _held(world, own), _cut(world, name, body))
+        _kept(replaced(body, id=new[body.id]), (x, y), world.position[own], _held(world, own), _cut(world, name, body))
         for body, name, own in staying
     )
     rewire = renamed(new)
@@ -102,18 +103,17 @@ def _cut(world: World, name: str, body: BodyDef) -> tuple[int, ...]:
     return tuple(sorted(numbers))
 
 
-def _kept(body: BodyDef, shift: Shift, pinned: tuple[int, ...], cut: tuple[int, ...]) -> BodyDef:
-    """A body at rest and moved by [m], with these particles held and these springs cut."""
+def _kept(body: BodyDef, shift: Shift, pose: Any, pinned: tuple[int, ...], cut: tuple[int, ...]) -> BodyDef:
+    """A body at rest and moved by [m], its particles at the places pose [m] (n, 2), some held, some springs cut."""
     changes: dict[str, Any] = {"velocity": (0.0, 0.0), "pinned": pinned, "cut": cut}
     for name in ("position", "start", "end"):
         if name in type(body).model_fields:
             x, y = getattr(body, name)
             changes[name] = (x + shift[0], y + shift[1])
-    for name in ("particles", "pose"):
-        points = getattr(body, name, None)
-        if points is not None:
-            changes[name] = tuple((x + shift[0], y + shift[1]) for x, y in points)
-    return replaced(body, **changes)
+    points = getattr(body, "particles", None)
+    if points is not None:
+        changes["particles"] = tuple((x + shift[0], y + shift[1]) for x, y in points)
+    return replaced(body, **changes, pose=tuple((x, y) for x, y in pose.tolist()))
 
 
 def _with_balls(level: Level, world: World) -> Level:
@@ -134,7 +134,8 @@ def _with_balls(level: Level, world: World) -> Level:
             pinned=bool(world.inverse_mass[slot] == 0.0),
             friction=float(world.friction[slot]) if level.has_contacts else None,
             restitution=float(world.restitution[slot]) if level.has_contacts else None,
+            look=look_when_added(number, float(world.radius[slot])),
         )
-        for name, slot in zip(ids, slots, strict=True)
+        for number, (name, slot) in enumerate(zip(ids, slots, strict=True))
     )
     return replaced(level, particles=(*level.particles, *balls))

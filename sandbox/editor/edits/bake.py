@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 
 from sandbox.editor.document import Document, EditError, checked
+from sandbox.editor.edits.fields import set_setting
 from sandbox.editor.edits.materials import set_material
 from sandbox.editor.edits.placing import repinned, without_springs
 from sandbox.editor.items import Definition, Selection, changed, items_of, with_same
 from sandbox.editor.scene import Mask, Scene, Slots, make_scene
 from sandbox.editor.tools.snap import PLACE_DECIMALS, SHOWN_DECIMALS
-from sandbox.level.document.model import NissenMaterial, ParticleDef, SpringDef
+from sandbox.level.document.model import CHANGEABLE_SETTINGS, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import AnyBody
@@ -40,6 +41,15 @@ def keep_coefficients(document: Document, world: World) -> Document:
         played = replaced(material, stiffness=stiffness, damping=damping)
         if played != material:
             document = set_material(document, name, played)
+    return document
+
+
+def keep_settings(document: Document, world: World) -> Document:
+    """Take over gravity, solver and whatever else was set of the whole world while it ran. Raises EditError."""
+    for name in CHANGEABLE_SETTINGS:
+        played = getattr(world.settings, name)
+        if played != getattr(document.level.settings, name):
+            document = set_setting(document, name, played)
     return document
 
 

@@ -14,6 +14,7 @@ from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.state import FAMILIES, Family
 from sandbox.physics.world import World
 
 
@@ -50,7 +51,9 @@ def _network(level: Level, scene: Scene) -> World:
     materials = {name: level.materials.get(name, NissenMaterial()) for name in scene.materials}
     for name, values in coefficients(scene.material, materials).items():
         setattr(world, name, values)
-    world.lowest_mode = np.zeros(len(scene.rest_length))
+    for column in FAMILIES[Family.SPRING]:
+        if column.sparse:
+            setattr(world, column.name, np.full(len(scene.rest_length), column.usual, column.dtype))
     world.position, world.energy_bank, world.spin = scene.position, *np.zeros((2, count))
     made = scene.parts.bodies.made
     firsts = add_constraints(world, scene.parts.names.layout, level, made, first, materials)

@@ -15,6 +15,7 @@ from sandbox.level.plan.materials import coefficients, strain_limits
 from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.plan.welds import Slots
+from sandbox.physics.changing.dividing import part_bodies
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ROLLING_RESISTANCE
 from sandbox.physics.world import World
@@ -41,10 +42,21 @@ def build_world(level: Level) -> World:
     add_actuators(world, level, plan, slots)
     world.reserve_grabs()
     firsts = add_constraints(world, plan.layout, level, plan.bodies, slots, materials)
+    _part_cut_bodies(world, level, plan)
     add_forms(world, level, plan.bodies, materials, firsts)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
     world.source = level
     return world
+
+
+def _part_cut_bodies(world: World, level: Level, plan: Plan) -> None:
+    """What falls into pieces without its cut springs is several bodies, as if it had been cut in a run."""
+    first, springs = 0, []
+    for body, made in zip(level.bodies, plan.bodies, strict=True):
+        springs += [first] if body.cut and len(made.pairs) else []
+        first += len(made.pairs)
+    if springs:
+        part_bodies(world, springs)
 
 
 def _add_particles(world: World, level: Level, plan: Plan, slots: Slots, stays: NDArray[np.bool_]) -> None:

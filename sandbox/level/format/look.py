@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.format.quantities import Description, Id, Index, Line, Name, empty
 
 # Names of skins, lines, balls and grounds. A name that is not listed counts as automatic.
@@ -105,4 +106,12 @@ class ParticleLook(Description):
         default=None,
         description='Colour: a name of the palette, or "#RRGGBB".',
         json_schema_extra=empty("automatic"),
+    )
+
+
+def look_when_added(number: int, radius: float) -> ParticleLook:
+    """How a loose particle of a radius [m] looks that was added to a run, the number-th of those that are there."""
+    colours = list(PALETTE)
+    return ParticleLook(
+        ball="stripe" if radius > 2.0 * BODY_RADIUS else "marble", colour=colours[number % len(colours)]
     )

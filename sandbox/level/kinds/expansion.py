@@ -178,8 +178,21 @@ class Expansion(Generic[Body]):
         polygons = self.polygons()
         if not len(polygons):
             return polygons
+        whole = self._have_sides(polygons)
+        if not self.body.cut or polygons.shape[1] != 3:
+            return polygons[whole]
+        # As after a cut in a run: a cell that lost a corner keeps its other half.
+        made = polygons.copy()
+        for k in np.flatnonzero(~whole[:-1] & ~whole[1:]).tolist():
+            halves = np.array(_halved_other_way(*made[k : k + 2].tolist()) or made[k : k + 2])
+            if not whole[k : k + 2].any() and (are_whole := self._have_sides(halves)).any():
+                made[k : k + 2], whole[k : k + 2] = halves, are_whole
+        return made[whole]
+
+    def _have_sides(self, polygons: Pairs) -> NDArray[np.bool_]:
+        """Whether springs that are not cut lie along all sides of polygons (t, k)."""
         sides = np.stack([polygons, np.roll(polygons, -1, axis=1)], axis=-1)
-        return polygons[np.isin(_keys(sides), _keys(self.pairs)).all(axis=1)]
+        return np.asarray(np.isin(_keys(sides), _keys(self.pairs)).all(axis=1))
 
     @cached_property
     def bending_constraints(self) -> Pairs:
@@ -232,6 +245,15 @@ def round_outline_faults(path: str, kind: str, position: tuple[float, float], ra
     """Faults of a disc about a position [m] that leaves the world."""
     if max(map(abs, position)) + radius > COORDINATE_LIMIT:
         yield f"{path}.radius", f"takes the {kind} beyond the limit {COORDINATE_LIMIT:.15g}"
+
+
+def _halved_other_way(one: list[int], other: list[int]) -> list[list[int]]:
+    """Two triangles with a common side, b x y and d y x, as b x d and b d y; empty where they have none."""
+    beyond, beside = [p for p in one if p not in other], [p for p in other if p not in one]
+    if len(beyond) != 1:
+        return []
+    at, (b,), (d,) = one.index(beyond[0]), beyond, beside
+    return [[b, one[(at + 1) % 3], d], [b, d, one[(at + 2) % 3]]]
 
 
 def _keys(pairs: Pairs) -> Pairs:

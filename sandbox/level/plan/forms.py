@@ -7,9 +7,10 @@ import numpy as np
 
 from sandbox.level.document.model import HookeMaterial, Level, Material
 from sandbox.level.kinds.expansion import Expansion
-from sandbox.physics.analysis.firmness import FirmnessRange, set_firmness
+from sandbox.physics.analysis.firmness import FirmnessRange, give_firmness
+from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.keeping.forms import FirmBody
-from sandbox.physics.world import TRIANGLE, World
+from sandbox.physics.world import World
 
 
 def add_forms(
@@ -31,7 +32,8 @@ def add_forms(
             continue
         if body.firmness is None and not made.may_be_stiff:
             continue
-        world.forms += (FirmBody(body.id, made.stiff_form, springs, narrow),)
+        form = FirmBody(body.id, made.stiff_form, springs, narrow)
+        world.forms += (form,)
         if body.firmness is not None:
             reach = FirmnessRange.of(made.stiff_form, level.settings.gravity, level.settings.tick_rate)
-            set_firmness(world, len(world.forms) - 1, *reach.coefficients(body.firmness.asked))
+            give_firmness(world, form, *reach.coefficients(body.firmness.asked))

@@ -75,7 +75,7 @@ export class Picture {
     const there = [this.#state('spring_active'), this.#state('particle_active')];
     if (!this.#things || there.some((array, n) => array.some((value, k) => value !== this.#there[n][k]))) {
       this.#there = there.map((array) => array.slice());
-      this.#things = thingsOf(this.#scene, ...this.#there);
+      this.#things = thingsOf(this.#scene, this.#world, ...this.#there);
     }
     const things = this.#things, { shapes } = things;
     shapes.forEach((shape) => {
@@ -95,7 +95,7 @@ export class Picture {
     things.wheels.forEach((wheel) => this.#drawWheel(wheel));
     shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
     things.balloons.forEach((body) => this.#drawGleams(body));
-    things.faces.forEach((body, k) => this.#drawFace(body, k));
+    things.faces.forEach((face, k) => this.#drawFace(face, k));
     this.#drawBalls();
   }
 
@@ -375,9 +375,9 @@ export class Picture {
   }
 
   // Eyes that look where it moves, cheeks, and a mouth that says how it feels.
-  #drawFace(body, number) {
-    const { slots, springs } = body, { at, camera: { zoom } } = this, count = slots.length, context = this.#context;
-    const [spotX, spotY, room] = body.face, size = Math.min(2 * room * zoom, 120 * this.scale);
+  #drawFace(face, number) {
+    const { slots, springs, angle } = face, { at, camera: { zoom } } = this, count = slots.length, context = this.#context;
+    const [spotX, spotY, room] = face.spot, size = Math.min(2 * room * zoom, 120 * this.scale);
     if (size < SMALLEST_FACE * this.scale) return;
     const origin = this.#state('origin'), velocity = this.#state('velocity');
     const middle = (values, k) => slots.reduce((sum, slot) => sum + values[2 * slot + k], 0) / count;
@@ -397,10 +397,10 @@ export class Picture {
     context.translate(x, y);
     context.rotate(turn);
     context.translate(spotX * zoom, -spotY * zoom);
-    context.rotate(-body.angle);
+    context.rotate(-angle);
     context.scale(size, size);
     // What is seen of a face turns with it, but for where it looks and where the light is.
-    const back = body.angle - turn;
+    const back = angle - turn;
     const seen = (across, below) => [across * Math.cos(back) - below * Math.sin(back),
       across * Math.sin(back) + below * Math.cos(back)];
     const wide = (0.05 * Math.min(1, 0.3 + speed / 4)) / (speed || 1);

@@ -19,7 +19,12 @@ class Page {
     this.#addDriveKeys();
     this.#theme(this.toy.theme.name);
     this.#makeRoom();
-    addEventListener('resize', () => this.#makeRoom());
+    addEventListener('resize', () => {
+      this.#makeRoom();
+      this.panel.show();
+    });
+    // Who turns a phone has another picture, whatever was pinched before.
+    matchMedia('(orientation: portrait)').addEventListener('change', () => this.toy.fit());
     if (level.recording) this.#verify();
     this.#say(level.recording ? 'A recording. Touch it to take over.' : '');
     byId('picture').focus({ preventScroll: true });
@@ -137,10 +142,8 @@ class Page {
 
   async #verify() {
     const { fresh, level: { recording } } = this.toy, count = recording.hashes.length - 1;
-    const progress = (done) => done % 60 === 0
-      && this.#say(`Comparing each tick: ${Math.round((100 * done) / count)} %`);
     try {
-      const wrong = await verified(fresh(), recording, progress);
+      const wrong = await verified(fresh(), recording);
       if (wrong === null) this.#say(`Verified: every bit of ${count} ticks is that of the recording.`, 'good');
       else this.#say(`This browser comes to other bits at tick ${wrong}.`, 'bad');
     } catch (error) {

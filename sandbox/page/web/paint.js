@@ -198,7 +198,7 @@ export function fillSkin(context, { fill, path }) {
 // Of each kind of line: the line around it and its own colour.
 const LINES = {
   rope: ['#5b3d20', '#c89b62'], cable: ['#3a4252', '#a3adbf'], deck: ['#4a2e16', '#c48e58'], chain: [],
-  wood: ['#3a2614', '#c99258'], thread: [null, '#aeb5c2'], silk: [null, '#ccd4e0'], steel: ['#161b26', '#96a3ba'],
+  wood: ['#3a2614', '#c99258'], thread: [null, '#aeb5c2'], silk: [null, '#8c9bb2'], steel: ['#161b26', '#96a3ba'],
   brass: ['#3a2a10', '#e2b04e'], rubber: ['#3a1418', '#eb605c'], bone: ['#4a3a28', '#f0e4cc'],
 };
 const ALONG = 32, HALF_TILE = 8;

@@ -1,15 +1,15 @@
 // Panel: Cs and Cd of each material by a pad, sliders and words, and the gravity of the world.
 
-// The axes of the pad: softest value, and how wide the last tenth is.
-const LOWEST = 0.003, REST = 0.02, STEP = 0.02, MARGIN = 14;
-const height = (value) => Math.log10(value / (1 - value + REST)), LOW = height(LOWEST), HIGH = -Math.log10(REST);
-const placeOf = (value) => (value <= LOWEST ? 0 : Math.min((height(Math.min(value, 1)) - LOW) / (HIGH - LOW), 1));
+import { PLAIN, SagMap, Scale } from './sag_map.js';
 
-function valueAt(place) {
-  if (place >= 0.9995) return 1;
-  const power = 10 ** (LOW + Math.max(place, 0) * (HIGH - LOW)),
-    value = Math.min(1, (power * (1 + REST)) / (1 + power));
-  return value < 0.9 ? Number(value.toPrecision(3)) : 1 - Number((1 - value).toPrecision(2));
+// Step of an arrow key, and around the pad's map [px].
+const STEP = 0.02, MARGIN = 14;
+// Sags that are said to be nothing.
+const UNSEEN = 1e-5;
+
+// A share in per cent, of two digits.
+function perCent(share) {
+  return share < UNSEEN ? '0 %' : `${Number((100 * share).toPrecision(2))} %`;
 }
 
 export const element = (name, attributes = {}, ...children) => {
@@ -22,9 +22,14 @@ export class Panel {
   #gesture = null;
   #shown = '';
 
-  // materials: [{ name, slot, words }], slot null for all; words: Cs and Cd by the words of firmness.
+  // materials: [{ name, slot, is_first, words, subject, says, map }], slot null for all; words: Cs and Cd by the words of
+  // firmness; what sags, the sentence that says how far, and the map of the pad, where something sags.
   constructor(root, run, materials, level) {
-    Object.assign(this, { run, materials, level, chosen: materials[0] });
+    Object.assign(this, { run, materials, level, chosen: materials.find((each) => each.is_first) ?? materials[0] });
+    for (const each of materials) {
+      each.sags = each.map ? new SagMap(each.map) : null;
+      each.scale = each.map ? new Scale(each.map.lowest, each.map.rest) : PLAIN;
+    }
     this.choice = element('select', { id: 'material' });
     materials.forEach((each, k) => this.choice.append(new Option(each.name, k)));
     this.choice.addEventListener('change', () => {
@@ -36,19 +41,20 @@ export class Panel {
     this.words = element('div', { className: 'words' });
     this.words.setAttribute('role', 'group');
     this.words.setAttribute('aria-label', 'Firmness');
+    this.says = element('p', { className: 'says' });
     this.pad = element('canvas', { tabIndex: 0, className: 'pad' });
     this.pad.setAttribute('role', 'img');
     this.sliders = ['Stiffness Cs', 'Damping Cd'].map((text, k) => {
       const slider = element('input', { type: 'range', min: 0, max: 1, step: 'any', id: `slider${k}` }),
         output = element('output');
       slider.addEventListener('input',
-        () => this.#set(...this.pair.map((old, n) => (n === k ? valueAt(Number(slider.value)) : old))));
+        () => this.#set(...this.pair.map((old, n) => (n === k ? this.chosen.scale.valueAt(Number(slider.value)) : old))));
       slider.addEventListener('change', () => this.#end());
       return { row: element('label', { htmlFor: slider.id, className: 'slider' },
         element('span', { textContent: text }), slider, output), slider, output };
     });
     this.gravity = ['x', 'y'].map((axis, k) => this.#gravityField(axis, k));
-    this.springs.append(all, this.words, this.pad, ...this.sliders.map(({ row }) => row));
+    this.springs.append(all, this.words, this.says, this.pad, ...this.sliders.map(({ row }) => row));
     root.append(this.springs, element('h2', { textContent: 'World' }), element('div', { className: 'fields' }, ...this.gravity.map((field) => field.parentElement)));
     for (const name of ['pointerdown', 'pointermove']) this.pad.addEventListener(name, (event) => this.#drag(event));
     this.pad.addEventListener('lostpointercapture', () => this.#end());
@@ -65,7 +71,7 @@ export class Panel {
       // What is wrong with it, the browser says.
       if (!field.reportValidity()) field.value = gravity[k];
       else if (value !== gravity[k]) this.run.submit({ type: 'set_gravity', gravity: gravity.map((old, n) => (n === k
-        ? value : old)) }, this.run.newGesture());
+        ? value : old)), duration: this.level.ramp_ticks }, this.run.newGesture());
     });
     return field;
   }
@@ -79,7 +85,8 @@ export class Panel {
 
   #set(stiffness, damping) {
     this.#gesture ??= this.run.newGesture();
-    const record = { type: 'set_coefficients', stiffness, damping, material: this.chosen.slot };
+    const { slot: material } = this.chosen, { ramp_ticks: duration } = this.level;
+    const record = { type: 'set_coefficients', stiffness, damping, material, duration };
     this.run.submit(record, this.#gesture);
     this.show();
   }
@@ -94,7 +101,8 @@ export class Panel {
     this.pad.setPointerCapture(event.pointerId);
     const { clientWidth: width, clientHeight: tall } = this.pad,
       inside = (at, size) => Math.min(Math.max((at - MARGIN) / (size - 2 * MARGIN), 0), 1);
-    this.#set(valueAt(inside(event.offsetX, width)), valueAt(1 - inside(event.offsetY, tall)));
+    const { scale } = this.chosen;
+    this.#set(scale.valueAt(inside(event.offsetX, width)), scale.valueAt(1 - inside(event.offsetY, tall)));
   }
 
   #key(event) {
@@ -102,15 +110,27 @@ export class Panel {
     if (!way) return;
     event.preventDefault();
     event.stopPropagation();
-    this.#set(...this.pair.map((value, k) => valueAt(Math.min(placeOf(value) + way[k], 1))));
+    const { scale } = this.chosen;
+    this.#set(...this.pair.map((value, k) =>
+      (way[k] ? scale.valueAt(Math.min(scale.placeOf(value) + way[k], 1)) : value)));
     this.#end();
   }
 
-  // The word whose stiffness k = Cs / (1 - Cd) is nearest.
+  // The word for how far it sags; where nothing is known of that, the word whose stiffness Cs / (1 - Cd) is nearest.
   #wordFor([stiffness, damping]) {
+    if (stiffness === 1 && damping === 1) return 'rigid';
+    if (this.chosen.sags) return this.chosen.sags.wordAt(stiffness, damping);
     const firmness = ([cs, cd]) => Math.log(Math.max(cs, 1e-9) / (1 - cd + 1e-9)), own = firmness([stiffness, damping]);
     return Object.entries(this.chosen.words).reduce((best, each) =>
       (Math.abs(firmness(each[1]) - own) < Math.abs(firmness(best[1]) - own) ? each : best))[0];
+  }
+
+  // The sentence that says how far it sags.
+  #sentence(pair) {
+    const { says, sags } = this.chosen;
+    if (!says) return '';
+    const sag = pair.every((value) => value === 1) ? 0 : sags.at(...pair);
+    return `${sag >= says.flat_from ? says.flat : says.sag.replace('{}', perCent(sag))}.`;
   }
 
   // Materials that there are by now: a recording may bring more.
@@ -152,51 +172,69 @@ export class Panel {
         this.#end();
       } })));
     }
+    this.says.textContent = this.#sentence(pair);
     for (const button of this.words.children) button.setAttribute('aria-pressed', button.textContent === word);
     this.sliders.forEach(({ slider, output }, k) => {
-      if (document.activeElement !== slider || !this.#gesture) slider.value = placeOf(pair[k]);
+      if (document.activeElement !== slider || !this.#gesture) slider.value = this.chosen.scale.placeOf(pair[k]);
       slider.setAttribute('aria-valuetext', String(pair[k]));
       output.textContent = Number(pair[k].toPrecision(3));
     });
     this.pad.setAttribute('aria-label', `Cs ${pair[0]} across, Cd ${pair[1]} up: ${word}. Arrow keys change them.`);
-    this.#draw(pair, word);
+    this.#draw(pair);
   }
 
-  #draw(pair, word) {
-    const context = this.pad.getContext('2d'), ratio = devicePixelRatio || 1,
+  #draw(pair) {
+    const context = this.pad.getContext('2d'), ratio = devicePixelRatio || 1, { scale, sags } = this.chosen,
       { clientWidth: width, clientHeight: tall } = this.pad;
     if (!width) return;
     this.pad.width = width * ratio;
     this.pad.height = tall * ratio;
     context.scale(ratio, ratio);
-    const style = getComputedStyle(this.pad), across = (place) => MARGIN + place * (width - 2 * MARGIN),
-      up = (place) => tall - MARGIN - place * (tall - 2 * MARGIN);
+    const style = getComputedStyle(this.pad), wide = width - 2 * MARGIN, high = tall - 2 * MARGIN,
+      across = (place) => MARGIN + place * wide, up = (place) => tall - MARGIN - place * high;
     context.strokeStyle = style.getPropertyValue('--line');
     context.fillStyle = style.getPropertyValue('--muted');
     context.font = '11px system-ui, sans-serif';
+    context.textAlign = 'center';
     context.beginPath();
-    for (const value of [0.01, 0.1, 0.5, 0.9, 1]) {
-      context.moveTo(across(placeOf(value)), up(0));
-      context.lineTo(across(placeOf(value)), up(1));
-      context.moveTo(across(0), up(placeOf(value)));
-      context.lineTo(across(1), up(placeOf(value)));
-      context.fillText(value, across(placeOf(value)) - 8, tall - 2);
+    let last = -Infinity;
+    for (const value of scale.numbers()) {
+      const place = scale.placeOf(value);
+      context.moveTo(across(place), up(0));
+      context.lineTo(across(place), up(1));
+      context.moveTo(across(0), up(place));
+      context.lineTo(across(1), up(place));
+      if (across(place) - last < 28 || (value !== 1 && across(1) - across(place) < 14)) continue;
+      context.fillText(value, across(place), tall - 2);
+      last = across(place);
     }
     context.stroke();
-    // Words where there is room for them; what is chosen comes first.
-    const taken = [];
-    for (const [name, own] of Object.entries(this.chosen.words).sort(([name]) => (name === word ? -1 : 1))) {
-      const x = Math.min(across(placeOf(own[0])) + 12, width - 36), y = Math.max(up(placeOf(own[1])) - 8, 11);
-      if (taken.some(([tx, ty]) => Math.abs(x - tx) < 34 && Math.abs(y - ty) < 12)) continue;
-      taken.push([x, y]);
-      context.fillText(name, x, y);
-    }
+    if (sags) this.#drawWords(context, sags, style, { across, up, wide, high });
     context.fillStyle = style.getPropertyValue('--accent');
     context.strokeStyle = style.getPropertyValue('--surface');
     context.lineWidth = 3;
     context.beginPath();
-    context.arc(across(placeOf(pair[0])), up(placeOf(pair[1])), 9, 0, 7);
+    context.arc(across(scale.placeOf(pair[0])), up(scale.placeOf(pair[1])), 9, 0, 7);
     context.stroke();
     context.fill();
+  }
+
+  // Lines between the words for how far it sags, and the words, as the window draws them.
+  #drawWords(context, sags, style, { across, up, wide, high }) {
+    context.fillStyle = style.getPropertyValue('--accent');
+    context.globalAlpha = 0.45;
+    for (const [x, y] of sags.borders(Math.round(wide), Math.round(high)))
+      context.fillRect(across(0) + x, up(0) - y - 1, 1.2, 1.2);
+    context.globalAlpha = 1;
+    context.fillStyle = style.getPropertyValue('--text');
+    context.font = 'bold 12px system-ui, sans-serif';
+    for (const [word, [x, y]] of Object.entries(sags.places)) {
+      const half = context.measureText(word).width / 2 + 2;
+      context.fillText(word, Math.min(Math.max(across(x), across(0) + half), across(1) - half), up(y) + 4);
+    }
+    context.textAlign = 'right';
+    context.font = '11px system-ui, sans-serif';
+    context.fillStyle = style.getPropertyValue('--muted');
+    context.fillText(`sag of ${this.chosen.subject}`, across(1), up(1) - 3);
   }
 }

@@ -24,11 +24,10 @@ async function* repeated(world, commands, ticks) {
   }
 }
 
-// Whether every tick of a recording has the hash that it says; progress is told of each tick.
-export async function verified(world, { commands, hashes }, progress) {
+// The first tick of a recording that has not the hash that it says; null: each has.
+export async function verified(world, { commands, hashes }) {
   for await (const { hash } of repeated(world, commands, hashes.length - 1)) {
     if (!hash.whole.startsWith(hashes[world.time])) return world.time;
-    progress(world.time, hashes.length - 1);
   }
   return null;
 }

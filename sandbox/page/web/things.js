@@ -1,10 +1,11 @@
 // Things: the springs of a level, grouped into what is drawn; grouped again where one breaks.
+import { piecesOf, wholeTriangles, withFaces } from './pieces.js';
 
 const STRANDS = ['rope', 'cable', 'chain', 'deck', 'thread', 'silk'];
 const WORKING = ['coil', 'muscle', 'piston'];
 const LAID = ['wood', 'stone', 'brick'];
 // Half widths of bars: as a part of their body's cells, from [pixels], to [pixels].
-const TRUSS = [0.11, 1.6, 4.2], MESH = [0.075, 1.0, 3.4], LOOSE = [0.1, 1.2, 2.6];
+const TRUSS = [0.11, 1.6, 4.2], MESH = [0.075, 1.0, 3.4], LOOSE = [0.1, 1.2, 2.6], THREADS = [...MESH];
 const BRACE = 0.62, HANGER = 0.62, DECK = 0.95;
 
 // The scene with the slots of each body's particles and its springs as [spring, first end, second end].
@@ -25,10 +26,11 @@ export function unfolded(scene, world) {
 }
 
 // What there is to draw of an unfolded scene, where active (m,) and present (n,) say which springs and particles there
-// are.
-export function thingsOf(scene, active, present) {
+// are in a world.
+export function thingsOf(scene, world, active, present) {
+  const now = { scene, world, active, whole: wholeTriangles(world) };
   const things = { shapes: [], lines: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
-  for (const body of scene.bodies) if (body.slots.some((slot) => present[slot])) addBody(things, body, active);
+  for (const body of scene.bodies) if (body.slots.some((slot) => present[slot])) addBody(things, body, now);
   // Joins of one look may be strands together.
   const looks = new Map();
   for (const join of scene.joins.filter(({ spring }) => active[spring])) {
@@ -50,9 +52,10 @@ function tieBalloons(things, { bodies, joins }, active) {
     there.filter(([, a, b]) => a === slot || b === slot).length > 2) }));
 }
 
-function addBody(things, body, active) {
+function addBody(things, body, now) {
+  const { active } = now;
   const springs = body.springs.filter(([spring]) => active[spring]);
-  if (body.triangles) addFilled(things, body, springs, active);
+  if (body.triangles) addFilled(things, body, springs, now);
   else if (body.shapes.length && body.needs.every((spring) => active[spring])) {
     for (const shape of body.shapes) things.shapes.push({ ...shape, springs, cell: body.cell });
     if (body.skin === 'balloon') things.balloons.push(body);
@@ -85,48 +88,22 @@ function addLines(things, look, springs, size) {
   } else bars(springs, 1, { bolts: size === MESH ? bolts : [] });
 }
 
-// A body of triangles, each of which is there while the springs along its sides are.
-function addFilled(things, body, springs, active) {
-  const left = [], filled = new Set();
-  for (let k = 0; k < body.triangles.length; k += 3) {
-    if (!body.sides.slice(k, k + 3).every((spring) => active[spring])) continue;
-    const triangle = body.triangles.slice(k, k + 3);
-    left.push(triangle);
-    triangle.forEach((slot) => filled.add(slot));
-  }
-  const inside = ([, a, b]) => filled.has(a) && filled.has(b), loops = bordersOf(left), isCloth = body.skin === 'cloth';
-  if (left.length) {
-    const [shape] = body.shapes, isLaid = LAID.includes(body.skin);
-    if (!isCloth) things.shapes.push({ ...shape, loops, springs: springs.filter(inside), cell: body.cell });
+// A body of triangles, in the pieces that are left of it.
+function addFilled(things, body, springs, { scene, world, active, whole }) {
+  const found = piecesOf(body, active, whole), inside = new Set(), isCloth = body.skin === 'cloth';
+  const isLaid = LAID.includes(body.skin), [shape] = body.shapes;
+  for (const piece of found.length ? withFaces(body, found, world.view('state.origin'), scene.pieces) : []) {
+    const { left, loops, face } = piece, flat = piece.isCrumb && { look: flatOf(shape, scene), shows_strain: false };
+    piece.inside.forEach(([spring]) => inside.add(spring));
+    if (!isCloth) things.shapes.push({ ...shape, ...flat, loops, springs: piece.inside, cell: body.cell });
     if (isCloth || isLaid) things.sheets.push({ body, triangles: left, loops, isCloth });
-    if (body.face) things.faces.push(body);
+    if (face) things.faces.push(face);
   }
-  addLines(things, body, springs.filter((spring) => !inside(spring)), MESH);
+  addLines(things, body, springs.filter(([spring]) => !inside.has(spring)), THREADS);
 }
 
-// Loops of particles around triangles of one winding: sides of one of them alone.
-function bordersOf(triangles) {
-  const sides = new Map(), key = (a, b) => a * 0x4000000 + b, follow = new Map(), loops = [];
-  for (const corners of triangles) {
-    corners.forEach((a, k) => {
-      const b = corners[(k + 1) % 3];
-      if (!sides.delete(key(b, a))) sides.set(key(a, b), [a, b]);
-    });
-  }
-  for (const [a, b] of sides.values()) follow.set(a, [...(follow.get(a) ?? []), b]);
-  while (follow.size) {
-    const [first] = follow.keys(), loop = [];
-    let at = first;
-    do {
-      loop.push(at);
-      const onward = follow.get(at), after = onward.pop();
-      if (!onward.length) follow.delete(at);
-      at = after;
-    } while (at !== first && follow.has(at));
-    if (loop.length > 2) loops.push(loop);
-  }
-  return loops;
-}
+// The look of a shape with its colour alone.
+const flatOf = ({ look }, { pieces: { flat } }) => [...look.slice(0, 2), ...flat, ...look.slice(2 + flat.length)];
 
 // Ways along springs through particles that just two of them meet in.
 function chainsOf(springs) {

@@ -178,11 +178,6 @@ export class World {
 
   // Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
   command(record) {
-    const places = this.#about.places[record.type];
-    if (places) {
-      this.#set(record, places);
-      return;
-    }
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
     const { code, slots, numbers, changes } = packed, { buffer } = this.#kernels.memory;
@@ -197,13 +192,6 @@ export class World {
   // Whether what a command would end goes on: a hand holds something, or a part is driven.
   isGoing({ type, grab, part }) {
     return type === 'release' ? this.isHeld(grab) : this.view('state.actuator_value')[part] !== 0;
-  }
-
-  // Gravity and air are numbers that a tick reads, each from a place on.
-  #set(record, places) {
-    const numbers = this.view('numbers');
-    for (const [name, place] of Object.entries(places)) if (record[name] != null) numbers.set([record[name]].flat(),
-      place);
   }
 
   // Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.physics.analysis.firmness import STANDING, WORDS, lowest_mode_of
+from sandbox.physics.analysis.sag_curve import SagCurve
 from sandbox.physics.analysis.spring_motion import SpringMotion, motion_of
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
-from sandbox.physics.keeping.forms import StiffForm, strength_of
+from sandbox.physics.keeping.forms import FirmBody, StiffForm, strength_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import divide, halve, substep_coefficients, substep_time
@@ -30,7 +31,7 @@ _RANKED = sorted(WORDS.items(), key=lambda item: -item[1])
 class BodyMotion:
     """A form by its lowest mode and height [m], under gravity [m/s^2], in steps of h [s], some a tick, by a solver.
 
-    iterations: of the iterative solver.
+    iterations: of the iterative solver; curve: what runs have told of its sag, None: nothing.
     """
 
     lowest_mode: float
@@ -40,6 +41,7 @@ class BodyMotion:
     substeps: int
     solver: str
     iterations: int
+    curve: SagCurve | None = None
 
     @classmethod
     def of(cls, shape: StiffForm, settings: WorldSettings, lowest_mode: float | None = None) -> "BodyMotion":
@@ -72,12 +74,19 @@ class BodyMotion:
         limited = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
         return limited * shares, capped * shares
 
+    @property
+    def tells_sag(self) -> bool:
+        """Whether a sag is known without a run of its own."""
+        return self.curve is not None or (self.solver != "iterative" and self.lowest_mode > 0.0)
+
     def sag(self, stiffness: Floats, damping: Floats) -> Floats | None:
         """Part of its height by which it sags where it stands (k,), from Cs and Cd of its springs in a substep.
 
-        None: only a run can tell, in the iterative solver.
+        None: only a run can tell.
         """
-        if self.solver == "iterative":
+        if self.curve is not None:
+            return self.curve.of(stiffness, damping)
+        if not self.tells_sag:
             return None
         whole, damp = self.whole(stiffness, damping)
         # k / m of the wobble [1/s^2]: Cs_a / ((1 - Cd_a) h^2), in a single pass Cs_a / h^2
@@ -85,6 +94,12 @@ class BodyMotion:
         square = rate / (4.0 * math.pi * math.pi) * self.height
         with np.errstate(divide="ignore"):
             return np.asarray(np.where(square > 0.0, STANDING * self.gravity / square, np.inf))
+
+    def sag_of_tick(self, stiffness: Floats, damping: Floats) -> Floats:
+        """The same (k,) from Cs and Cd of its springs in a tick; only where `tells_sag`."""
+        sag = self.sag(*self.of_substep(stiffness, damping))
+        assert sag is not None
+        return sag
 
     def motion(self, stiffness: float, damping: float) -> SpringMotion:
         """How its slowest wobble goes on, from Cs and Cd of its springs in a substep."""
@@ -112,13 +127,12 @@ def present_coefficients(world: World) -> tuple[Floats, Floats]:
 
 
 def read_body(
-    world: World, slot: int, lowest_mode: float, present: tuple[Floats, Floats] | None = None
+    world: World, body: FirmBody, lowest_mode: float, present: tuple[Floats, Floats] | None = None
 ) -> BodyReading | None:
-    """The reading of a body, by its place in the world's `forms`; None where its springs have several Cs or Cd.
+    """The reading of a body of `firm_bodies`; None where its springs have several Cs or Cd.
 
     lowest_mode: of its form; 0: no wobble is shown. present: see present_coefficients, None: found anew.
     """
-    body = world.forms[slot]
     springs = body.springs[world.spring_active[body.springs]]
     differ = not len(springs) or np.ptp(world.stiffness[springs]) or np.ptp(world.damping[springs])
     if differ or not lowest_mode > 0.0:

@@ -2,14 +2,15 @@
 
 import numpy as np
 
+from sandbox.physics.analysis.last_tick import of_last_tick
 from sandbox.physics.arrays import Floats
-from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, constraint_values
+from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, TRIANGLE, constraint_values
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.marks import GRAB_MATERIAL, LAW_HOOKE
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
-from sandbox.physics.world import TRIANGLE, World
+from sandbox.physics.world import World
 
 # The energy of what blew up is inf or NaN, and no fault.
 _unbounded = np.errstate(over="ignore", invalid="ignore")
@@ -45,6 +46,7 @@ def spring_forces(state: World | Snapshot) -> Floats:
     F = k x + c u, with the speed u at which the ends part once gravity has acted. Where the solver bounds the energy
     it is k x alone: its k has the damping in it.
     """
+    state = of_last_tick(state)
     constant, h = _spring_constants(state), substep_time(state.settings)
     separation = state.position[state.particle_b] - state.position[state.particle_a]
     length = spring_lengths(state)
@@ -76,6 +78,7 @@ def spring_energy(world: World) -> float:
 
     With substeps "auto" that is the k of a tick in one part, however many parts the last tick had.
     """
+    world = of_last_tick(world)
     error = spring_lengths(world) - world.rest_length
     constant = _spring_constants(world)
     springs = np.sum((constant * error * error)[world.spring_active & (world.material != GRAB_MATERIAL)])
@@ -88,6 +91,7 @@ def constraint_energies(world: World) -> Floats:
 
     With that of the floor under a triangle, where the solver has them.
     """
+    world = of_last_tick(world)
     value, mass, _ = measure_constraints(world)
     solver, h = SOLVERS[world.settings.solver], substep_time(world.settings)
     constant = solver.spring_constant(*constraint_coefficients(world, highest=solver.highest), mass, h)
@@ -112,6 +116,7 @@ def measure_constraints(world: World) -> tuple[Floats, Floats, Floats]:
 @_unbounded
 def gravity_energy(world: World) -> float:
     """Sum of -m g . x over the free particles [J], g times each one's gravity scale; zero at the origin's height."""
+    world = of_last_tick(world)
     free = world.particle_active & (world.inverse_mass > 0.0)
     return float(
         -np.sum(

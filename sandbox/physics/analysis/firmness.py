@@ -13,6 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
+from sandbox.physics.analysis.firm_bodies import firm_bodies
+from sandbox.physics.changing.ramping import set_rows
 from sandbox.physics.equation import (
     HIGHEST_COEFFICIENT,
     coefficients_from_frequency,
@@ -20,8 +22,8 @@ from sandbox.physics.equation import (
     of_springs,
 )
 from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.forms import Firmness, StiffForm, strength_of
-from sandbox.physics.marks import BANK_UNOPENED
+from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, strength_of
+from sandbox.physics.ramps import CONSTRAINTS, SPRINGS
 from sandbox.physics.world import World
 
 # F^2 sag H / g of a box that stands on the floor, which holds its foot: 0.75 of that of a free column.
@@ -155,26 +157,29 @@ class FirmnessRange:
         return of_springs(stiffness, damping, self.lowest_mode)[1] <= HIGHEST_COEFFICIENT
 
 
-def set_firmness(world: World, body: int, stiffness: float, damping: float) -> None:
-    """Give a body, by its place in the world's `forms`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
+def set_firmness(world: World, body: int, stiffness: float, damping: float, duration: int = 0) -> None:
+    """Give a body, by its place among `firm_bodies`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
 
-    They are shared out over its springs, areas and bends. Raises IndexError and ValueError.
+    They are shared out over its springs, areas and bends, in force in so many ticks (ramps.py); 0: at once.
+    Raises IndexError and ValueError.
     """
-    body = arguments.slot("body", body, "bodies that may be stiff by their form", len(world.forms))
+    bodies = firm_bodies(world)
+    body = arguments.slot("body", body, "bodies that may be stiff by their form", len(bodies))
+    give_firmness(world, bodies[body], stiffness, damping, duration)
+
+
+def give_firmness(world: World, body: FirmBody, stiffness: float, damping: float, duration: int = 0) -> None:
+    """Give a body of a world, or a piece of one, Cs and Cd as `set_firmness` does. Raises ValueError."""
     stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
     damping = arguments.number("damping", damping, 0.0, 1.0)
-    form = world.forms[body]
-    lowest_mode = lowest_mode_of(form.shape)
+    lowest_mode = lowest_mode_of(body.shape)
     if stiffness == damping == 1.0:
         # All of them rigid, which they are alone as well.
         lowest_mode = 0.0
     else:
         stiffness, damping = of_springs(stiffness, damping, lowest_mode)
-    for family, slots in (("", form.springs), ("constraint_", form.constraints)):
-        for name, value in (("stiffness", stiffness), ("damping", damping), ("lowest_mode", lowest_mode)):
-            world.change(f"{family}{name}", value, slots)
-    for ends in (world.particle_a, world.particle_b):
-        world.change("energy_bank", BANK_UNOPENED, ends[form.springs])
+    for family, slots in ((SPRINGS, body.springs), (CONSTRAINTS, body.constraints)):
+        set_rows(world, family, slots, (stiffness, damping, lowest_mode), duration)
 
 
 def usual_ratio(hz: float, h: float) -> float:

@@ -147,6 +147,8 @@ def slot_name(world: World, array: str, slot: int) -> str:
             return f"corner at {world.particle_names[world.corner_particle[slot]]}"
         case Family.HAND:
             return f"hand {slot}"
+        case Family.SETTING:
+            return ("gravity x", "gravity y", "wind x", "wind y", "drag", "warm start")[slot]
     bend = world.constraint_kind[slot] == BEND
     middle = world.corner_particle[world.constraint_first[slot] + bend]
     return f"{'bend' if bend else 'area'} at {world.particle_names[middle]}"

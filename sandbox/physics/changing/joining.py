@@ -113,7 +113,7 @@ def append_state(world: World, other: World, place: Place, group: Slots, collide
     particles, springs = other.grab_particle, other.grab_spring
     owners = other.owner[:particles]
     given: dict[str, Any] = {
-        "owner": np.where(owners >= 0, owners + place.owner, -1 - place.particle - np.arange(particles)),
+        "owner": np.where(owners >= 0, owners + place.owner, owners - place.particle),
         "group": group,
         "collides": collides,
         "particle_a": other.particle_a[:springs] + place.particle,

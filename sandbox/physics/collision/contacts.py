@@ -29,6 +29,7 @@ from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, N
 from sandbox.physics.geometry.segment import closest_on_segment, doubled_area_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.terrain import Terrain, cells_between
+from sandbox.physics.topology.sorting import sort_ascending
 
 # A particle that is near no edge of a solid body is looked for deep inside it once in so many ticks; one that is found
 # there is pushed in every step until it is out.
@@ -124,6 +125,8 @@ def find_terrain(boxes: Boxes, terrain: Terrain, pairs: Pairs) -> int:
                         if count < other.shape[0]:
                             other[count] = e
                         count += 1
+        # Cells are as the whole of the terrain has them.
+        sort_ascending(other, min(start[p], other.shape[0]), min(count, other.shape[0]))
     start[particles] = count
     return count
 

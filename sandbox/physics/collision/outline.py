@@ -115,7 +115,9 @@ def _choose_edges(state: State, owners: int, outline: Outline, work: OutlineScra
         work.other[s] = -1
         if state.spring_active[s] and state.edge[s] != NO_EDGE:
             work.one[chosen] = s
-            work.other[s] = work.rank[state.particle_a[s]]
+            # By where the edge begins, as its owner is found.
+            begins = state.particle_b[s] if state.edge[s] == SOLID_RIGHT else state.particle_a[s]
+            work.other[s] = work.rank[begins]
             chosen += 1
     sort_by_key(work.other, work.one, chosen, owners, work.start, outline.number)
     for e in range(chosen):

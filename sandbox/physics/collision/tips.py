@@ -131,13 +131,34 @@ def _first_root(c: float, b: float, a: float) -> float:
     return 2.0
 
 
-@inlined_kernel
+@inner_kernel
+def _next_tip(last: int, k: int, box: Floats, terrain: Terrain) -> int:
+    # The tip of the lowest number above `last` in a box, -1: there is none. Cells are as the whole of the terrain has
+    # them.
+    per_cell = 1.0 / terrain.cell[0]
+    found = -1
+    left, right = cells_between(box[k, 0], box[k, 2], terrain.corner[0], per_cell, terrain.size[0])
+    bottom, top = cells_between(box[k, 1], box[k, 3], terrain.corner[1], per_cell, terrain.size[1])
+    for row in range(bottom, top + 1):
+        cell = row * terrain.size[0]
+        # Tips of a row of cells lie together.
+        for entry in range(terrain.tip_start[cell + left], terrain.tip_start[cell + right + 1]):
+            i = terrain.cell_tip[entry]
+            if i <= last or (found >= 0 and i >= found):
+                continue
+            x = terrain.vertex[terrain.tip[i], 0]
+            y = terrain.vertex[terrain.tip[i], 1]
+            if box[k, 0] <= x <= box[k, 2] and box[k, 1] <= y <= box[k, 3]:
+                found = i
+    return found
+
+
+@inner_kernel
 def find_tips(
     p: int, h: float, box: FloatRows, terrain: Terrain, colliders: Colliders, contacts: Contacts, dynamic: int,
     particles: int, count: int,
 ) -> int:  # fmt: skip
     """Contacts of the edges that begin at particle p with tips of terrain; the number of contacts then."""
-    per_cell = 1.0 / terrain.cell[0]
     for at in range(colliders.edge_start[p], colliders.edge_start[p + 1]):
         e = colliders.edge_of[at]
         k = particles + e
@@ -145,15 +166,8 @@ def find_tips(
             continue
         if colliders.inverse_mass[p] + colliders.inverse_mass[colliders.edge_b[e]] == 0.0:
             continue
-        left, right = cells_between(box[k, 0], box[k, 2], terrain.corner[0], per_cell, terrain.size[0])
-        bottom, top = cells_between(box[k, 1], box[k, 3], terrain.corner[1], per_cell, terrain.size[1])
-        for row in range(bottom, top + 1):
-            cell = row * terrain.size[0]
-            # Tips of a row of cells lie together.
-            for entry in range(terrain.tip_start[cell + left], terrain.tip_start[cell + right + 1]):
-                i = terrain.cell_tip[entry]
-                x = terrain.vertex[terrain.tip[i], 0]
-                y = terrain.vertex[terrain.tip[i], 1]
-                if box[k, 0] <= x <= box[k, 2] and box[k, 1] <= y <= box[k, 3]:
-                    count = collide_tip(e, i, particles, h, terrain, colliders, contacts, count)
+        i = _next_tip(-1, k, box, terrain)
+        while i >= 0:
+            count = collide_tip(e, i, particles, h, terrain, colliders, contacts, count)
+            i = _next_tip(i, k, box, terrain)
     return count

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.marks import LONGEST_RAMP
 from sandbox.physics.state import FAMILIES, Column, Family, StateArrays
 
 # Words for the rows of families, where a slot of one is asked for.
@@ -37,6 +38,14 @@ def whole(argument: str, value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, _WHOLE):
         raise ValueError(f"{argument} {shown(value)}: a whole number is needed")
     return int(value)
+
+
+def ticks(argument: str, value: Any) -> int:
+    """A number of ticks, none or more."""
+    found = whole(argument, value)
+    if not 0 <= found <= LONGEST_RAMP:
+        raise ValueError(f"{argument} {found}: 0 to {LONGEST_RAMP} ticks are needed")
+    return found
 
 
 def slot(argument: str, value: Any, rows: str, count: int) -> int:

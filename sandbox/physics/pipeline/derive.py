@@ -20,6 +20,7 @@ from sandbox.physics.arena import (
 from sandbox.physics.collision.broad_phase import Candidates, new_boxes, new_grid, new_pairs
 from sandbox.physics.collision.outline import new_colliders, new_outline
 from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
+from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.flight import new_flight
 from sandbox.physics.jit import contents, inner_kernel, kernel, put
 from sandbox.physics.joints.hands import label_bodies, new_grips
@@ -63,7 +64,6 @@ from sandbox.physics.untangling.crossing_candidates import new_shape_bounds
 from sandbox.physics.untangling.inversion import new_inversions
 from sandbox.physics.untangling.overlaps import new_overlaps
 from sandbox.physics.untangling.triangle_clamp import lay_out_world_triangles
-from sandbox.physics.world import TRIANGLE
 
 # Places in `wanted`: those of the counts of collisions, then numbers and columns of blocks of bodies.
 BLOCK_NUMBERS, BLOCK_COLUMNS, WANTED = BOUND, BOUND + 1, BOUND + 2

@@ -37,6 +37,7 @@ from sandbox.physics.pipeline.collide import (
     solve_free,
     store_impulses,
 )
+from sandbox.physics.ramps import begin_ramps, end_ramps
 from sandbox.physics.sanitise import are_sound, keep_if_sound
 from sandbox.physics.settings import (
     DIRECT,
@@ -130,8 +131,9 @@ def _find_broken(world: WorldBlock) -> int:
 
 @inner_kernel
 def _begin_tick(world: WorldBlock) -> None:
-    # Drive springs, choose the substeps, and bring Cs, Cd and kept impulses to those.
+    # Begin ramps, drive springs, choose the substeps, and bring Cs, Cd and kept impulses to those.
     state, choices, progress, drives = world.state, world.choices, world.progress, world.drives
+    begin_ramps(state, world.numbers, choices[SOLVER])
     if drives.muscle.shape[0] + drives.hydraulic.shape[0] > 0:
         for s in range(state.rest_length.shape[0]):
             world.start_length[s] = state.rest_length[s]
@@ -278,7 +280,7 @@ def _begin_flight(world: WorldBlock, touches: bool, h: float) -> None:
 
 @inner_kernel
 def _end_tick(world: WorldBlock) -> None:
-    # Bring kept impulses back to those of a tick, and stop every cursor.
+    # Bring kept impulses back to those of a tick, stop every cursor, and put the goals of ramps back.
     progress, velocity, first = world.progress, world.state.velocity, world.plan[GRAB_PARTICLE]
     if world.choices[IS_AUTO] != 0 and progress[COUNT] > 1:
         _scale_impulses(world, 1.0 * progress[COUNT])
@@ -286,3 +288,4 @@ def _end_tick(world: WorldBlock) -> None:
         for p in range(first, first + GRAB_COUNT):
             velocity[p, 0] = 0.0
             velocity[p, 1] = 0.0
+    end_ramps(world.state, world.numbers)

@@ -6,11 +6,13 @@ from typing import Annotated
 from pydantic import Field
 
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, set_firmness
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import FormSlot
+from sandbox.session.commands.ramping import Duration
 
 
 @dataclass(frozen=True)
@@ -19,6 +21,7 @@ class SetFirmness(Command):
 
     For bodies whose form is stiff without pins. sag: part of its height by which it sags where it stands, 0 = rigid;
     hz, ratio: frequency [Hz] and damping ratio of its slowest wobble, ratio null = 0.15 or the least possible.
+    It becomes so in `duration` ticks.
     """
 
     type = "set_firmness"
@@ -26,11 +29,12 @@ class SetFirmness(Command):
     sag: Annotated[float, Field(ge=0.0, le=SAG_LIMIT)] | None = None
     hz: Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])] | None = None
     ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = None
+    duration: Duration = 0
 
     def carry_out(self, world: World) -> None:
         if (self.sag is None) == (self.hz is None) or (self.hz is None and self.ratio is not None):
             raise CommandError("say sag, or hz with or without ratio")
-        body = world.forms[self.body]
+        body = firm_bodies(world)[self.body]
         reach = FirmnessRange.of(body.shape, world.settings.gravity, world.settings.tick_rate)
         if reach.lowest_mode == 0.0:
             raise CommandError(f"the form of {body.name} is not stiff without pins: it has no firmness")
@@ -38,4 +42,4 @@ class SetFirmness(Command):
             coefficients = reach.coefficients(Firmness(self.sag, self.hz, self.ratio))
         except OutOfReach as error:
             raise CommandError(f"{body.name}: {error}") from None
-        set_firmness(world, self.body, *coefficients)
+        set_firmness(world, self.body, *coefficients, self.duration)

@@ -3,18 +3,24 @@
 from dataclasses import dataclass
 
 from sandbox.level.format.quantities import Inflation
+from sandbox.physics.changing.ramping import inflate
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import BodySlot
+from sandbox.session.commands.ramping import Duration
 
 
 @dataclass(frozen=True)
 class SetInflation(Command):
-    """Let a body's areas, the one of a ring or those of a jelly, want this multiple of their own."""
+    """Let a body's areas, the one of a ring or those of a jelly, want this multiple of their own.
+
+    They come to it in `duration` ticks.
+    """
 
     type = "set_inflation"
     body: BodySlot
     value: Inflation
+    duration: Duration = 0
 
     def carry_out(self, world: World) -> None:
-        world.inflate(self.body, self.value)
+        inflate(world, self.body, self.value, self.duration)

@@ -8,6 +8,7 @@ from typing import Annotated, Any, get_args, get_type_hints
 from pydantic import Field
 
 from sandbox.level.format.level_error import shown, suggestion
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.world import World
 from sandbox.session.commands.faults import NO_NAME, NO_SLOT, CommandError
 
@@ -61,7 +62,7 @@ def _bodies(world: World) -> Sequence[str]:
 
 
 def _forms(world: World) -> Sequence[str]:
-    return [body.name for body in world.forms]
+    return [body.name for body in firm_bodies(world)]
 
 
 def _materials(world: World) -> Sequence[str]:

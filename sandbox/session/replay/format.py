@@ -34,6 +34,7 @@ from sandbox.level.reading.files import level_data
 from sandbox.physics.constraints import AREA
 from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
+from sandbox.physics.settings import NUMBER_COUNT
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, FAMILIES, Column, Family
 from sandbox.physics.terrain import NO_TERRAIN
@@ -95,17 +96,17 @@ def header(level: Level, physics_version: int, sandbox_version: str) -> dict[str
     }
 
 
-def encode_state(world: World, names: Iterable[str] = tuple(BY_STORED)) -> dict[str, Any]:
+def encode_state(state: World | Snapshot, names: Iterable[str] = tuple(BY_STORED)) -> dict[str, Any]:
     """State arrays of those names as base64 of zlib of their little-endian bytes, and the settings."""
     arrays = {
-        name: base64.b64encode(zlib.compress(canonical_bytes(getattr(world, BY_STORED[name].name)), 6)).decode()
+        name: base64.b64encode(zlib.compress(canonical_bytes(getattr(state, BY_STORED[name].name)), 6)).decode()
         for name in names
     }
     joined = [
         {"particle": each.first_particle, "spring": each.first_spring, "definition": each.definition}
-        for each in world.joined
+        for each in state.equipment.joined
     ]
-    return {"state": arrays, "settings": asdict(world.settings)} | ({"joined": joined} if joined else {})
+    return {"state": arrays, "settings": asdict(state.settings)} | ({"joined": joined} if joined else {})
 
 
 def _equipment(level: Level, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int]) -> Equipment:
@@ -157,6 +158,8 @@ def decode_state(
         raise ValueError("state.particle_a: a hand has no particle of its own")
     if len(arrays["hand_force"]) != len(hands):
         raise ValueError("state.hand_force: there is one of each hand")
+    if len(arrays["setting_ticks"]) != NUMBER_COUNT:
+        raise ValueError(f"state.setting_ticks: there are {NUMBER_COUNT}, one of each number of the settings")
     return Snapshot(
         {BY_STORED[name].name: array for name, array in arrays.items()},
         settings=settings,

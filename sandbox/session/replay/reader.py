@@ -30,11 +30,15 @@ STATE_BYTES, STATE_BYTES_A_SLOT = 2**20, 400
 SLICE_LINES = 100
 
 
-class _Sealed(Line):
+class Sealed(Line):
+    """A line that ends in a chain."""
+
     chain: Digest
 
 
-class _Header(_Sealed):
+class FirstLine(Sealed):
+    """The first line."""
+
     format: str
     version: int
     physics_version: int
@@ -43,11 +47,13 @@ class _Header(_Sealed):
     level: dict[str, Any]
 
 
-class _SealedCommand(_Sealed, CommandLine):
-    pass
+class SealedCommand(Sealed, CommandLine):
+    """A command at a tick, of a gesture."""
 
 
-class _TickLine(_Sealed):
+class TickLine(Sealed):
+    """The hashes of a tick."""
+
     tick: Tick
     hash: Annotated[Digest, Field(min_length=TICK_DIGITS)]
     arrays: dict[str, Digest | None]
@@ -59,7 +65,9 @@ class _JoinedLine(Line):
     definition: dict[str, Any]
 
 
-class _StateLine(_Sealed):
+class StateLine(Sealed):
+    """A stored state."""
+
     tick: Tick
     state: dict[str, str]
     settings: Settings
@@ -73,20 +81,22 @@ class _StateLine(_Sealed):
         return settings
 
 
-class _EndLine(_Sealed):
+class EndLine(Sealed):
+    """The last line."""
+
     end: bool
     tick: Tick
     hash: Digest
 
 
-_SealedLine = _SealedCommand | _TickLine | _StateLine | _EndLine
+SealedLine = SealedCommand | TickLine | StateLine | EndLine
 # By the key that a Recorder writes behind the tick.
-_KINDS: dict[bytes, type[_SealedLine]] = {
-    b"gesture": _SealedCommand,
-    b"command": _SealedCommand,
-    b"hash": _TickLine,
-    b"state": _StateLine,
-    b"end": _EndLine,
+_KINDS: dict[bytes, type[SealedLine]] = {
+    b"gesture": SealedCommand,
+    b"command": SealedCommand,
+    b"hash": TickLine,
+    b"state": StateLine,
+    b"end": EndLine,
 }
 
 
@@ -110,28 +120,28 @@ class _Gathered:
     @property
     def state_limit(self) -> int:
         """The most bytes of a line that stores a state."""
-        return STATE_BYTES + STATE_BYTES_A_SLOT * self.slots
+        return state_limit_of(self.slots)
 
-    def add(self, line: "_SealedLine", number: int, where: str) -> None:
+    def add(self, line: "SealedLine", number: int, where: str) -> None:
         """Add one line to the recording that is read. Raises ReplayError where it does not fit there."""
         tick = len(self.hashes) - 1
-        expected = tick + 1 if isinstance(line, _TickLine) else tick
+        expected = tick + 1 if isinstance(line, TickLine) else tick
         if line.tick != expected:
             raise ReplayError(f"{where}: is of tick {line.tick}, where tick {expected} belongs")
-        if isinstance(line, _TickLine):
+        if isinstance(line, TickLine):
             self._add_hashes(line, where)
-        elif isinstance(line, _SealedCommand):
+        elif isinstance(line, SealedCommand):
             self.script.append(ScriptLine(line.tick, line.gesture, line.command, number))
             kind = line.command.get("type")
             self.slots += PARTICLE_LIMIT + SPRING_LIMIT if kind == "add_body" else 1
-        elif isinstance(line, _StateLine):
+        elif isinstance(line, StateLine):
             self._state_now = {**self._state_now, **{self._once(name): text for name, text in line.state.items()}}
             joined = tuple(each.model_dump() for each in line.joined)
             self.states[tick] = StoredState(self._state_now, WorldSettings(**dict(line.settings)), joined, number)
         else:
             self.end_hash = line.hash
 
-    def _add_hashes(self, line: "_TickLine", where: str) -> None:
+    def _add_hashes(self, line: "TickLine", where: str) -> None:
         before = {} if self.version == 1 else self._hashes_now
         now = {name: digest for name, digest in {**before, **line.arrays}.items() if digest is not None}
         if not self.retold and not ALWAYS_STORED <= now.keys() <= BY_STORED.keys():
@@ -144,6 +154,11 @@ class _Gathered:
     def _once(self, text: str) -> str:
         """The text itself, or the equal one that is kept already."""
         return self.texts.setdefault(text, text)
+
+
+def state_limit_of(slots: int) -> int:
+    """The most bytes of a line that stores a state of this many particles and springs."""
+    return STATE_BYTES + STATE_BYTES_A_SLOT * slots
 
 
 def begins_as_replay(path: str | os.PathLike[str]) -> bool:
@@ -176,8 +191,8 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
     if first is None:
         raise ReplayError(f"{source}: the file is empty, not a replay")
     head, digest = _read_header(source, first, retold)
-    level = _read_level(source, head)
-    gathered = _Gathered(head.version, _slots(level), retold)
+    level = level_of(source, head)
+    gathered = _Gathered(head.version, slots_of(level), retold)
     number = 1
     lines.state_limit = gathered.state_limit
     for number, line in enumerate(each, 2):
@@ -190,7 +205,7 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
         if sealed is None:
             raise ReplayError(f"{where}: changed or damaged: its chain does not fit; record the run again")
         digest = sealed
-        gathered.add(_parse(where, line), number, where)
+        gathered.add(parse_line(where, line), number, where)
         lines.state_limit = gathered.state_limit
         if number % SLICE_LINES == 0:
             yield
@@ -209,7 +224,7 @@ def _check_end(source: str, gathered: _Gathered, number: int, cut: bool, partial
         raise ReplayError(f"{source}: its last bytes are cut off; --partial verifies what is there")
 
 
-def _read_header(source: str, line: bytes, retold: bool) -> tuple[_Header, str]:
+def _read_header(source: str, line: bytes, retold: bool) -> tuple[FirstLine, str]:
     where = f"{source}: line 1"
     if line.count(b",") > FILE_LIMIT // 2:
         raise ReplayError(f"{where}: holds more than a level may; it is no recording")
@@ -232,10 +247,11 @@ def _read_header(source: str, line: bytes, retold: bool) -> tuple[_Header, str]:
     digest = unseal(line, "", version)
     if digest is None:
         raise ReplayError(f"{where}: changed or damaged: its chain does not fit; record the run again")
-    return checked(where, _Header, line), digest
+    return checked(where, FirstLine, line), digest
 
 
-def _read_level(source: str, head: _Header) -> Level:
+def level_of(source: str, head: FirstLine) -> Level:
+    """The level of a first line. Raises ReplayError."""
     if level_digest(head.level) != head.level_sha256:
         raise ReplayError(f"{source}: line 1: the level is not the one that was recorded: its sha256 differs")
     try:
@@ -249,13 +265,14 @@ def _compact(level: dict[str, Any]) -> bytes:
     return json.dumps(level, ensure_ascii=False, separators=(",", ":")).encode(errors="surrogatepass")
 
 
-def _slots(level: Level) -> int:
+def slots_of(level: Level) -> int:
     """Particles and springs of a level that was read."""
     counts = [body.count for body in (kept_plan(level) or Plan(level)).bodies]
     return len(level.particles) + len(level.springs) + sum(particles + springs for particles, springs in counts)
 
 
-def _parse(where: str, line: bytes) -> _SealedLine:
+def parse_line(where: str, line: bytes) -> SealedLine:
+    """A line behind the first. Raises ReplayError."""
     kind = _KINDS.get(kind_of(line))
     if kind is None:
         raise ReplayError(f"{where}: neither a command, a tick, a state nor the end")

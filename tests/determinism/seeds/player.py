@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.session.commands import CommandError
@@ -132,7 +133,7 @@ class Player:
         self._do(record | self.chance.choice([{}, {"material": self._chosen(world.material_names)}]))
 
     def _firmness(self) -> None:
-        record = {"type": "set_firmness", "body": self._chosen([form.name for form in self.session.world.forms])}
+        record = {"type": "set_firmness", "body": self._chosen([form.name for form in firm_bodies(self.session.world)])}
         softness = {"sag": number(self.chance, 0.0, 0.35)}
         self._do(record | self.chance.choice([softness, {"hz": number(self.chance, 0.5, 6.0)}]))
 

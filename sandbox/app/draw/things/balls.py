@@ -9,7 +9,7 @@ from sandbox.app.draw.themes import SANDS
 from sandbox.app.draw.things.frame import Frame, Seen
 from sandbox.app.draw.things.level_slots import Ball, LevelSlots
 from sandbox.level.format.limits import BODY_RADIUS
-from sandbox.level.format.look import PALETTE
+from sandbox.level.format.look import colour_of, look_when_added
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -24,11 +24,8 @@ SCREW, SCREW_RIM, SCREW_SLOT = 0xB4BCC9, 0x141924, 0x4A5363
 
 def added_balls(slots: Slots, state: Seen) -> list[Ball]:
     """Particles that joined the world while it ran."""
-    colours = list(PALETTE.values())
-    return [
-        Ball(slot, "stripe" if state.radius[slot] > 2.0 * BODY_RADIUS else "marble", colours[k % len(colours)])
-        for k, slot in enumerate(slots.tolist())
-    ]
+    looks = [(slot, look_when_added(k, float(state.radius[slot]))) for k, slot in enumerate(slots.tolist())]
+    return [Ball(slot, look.ball or "", colour_of(look.colour or "")) for slot, look in looks]
 
 
 class Balls:

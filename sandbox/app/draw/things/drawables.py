@@ -10,12 +10,12 @@ from sandbox.app.draw.raster.shadows import Thrown
 from sandbox.app.draw.themes import dark_edge, outline_of
 from sandbox.app.draw.things.balls import Balls
 from sandbox.app.draw.things.borders import hull_of
-from sandbox.app.draw.things.faces import Faces
+from sandbox.app.draw.things.faces import DrawnFace, Faces, faces_of
 from sandbox.app.draw.things.frame import Frame, Seen
-from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots
+from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots, Piece
 from sandbox.app.draw.things.members import Members
 from sandbox.app.draw.things.sheets import Sheets
-from sandbox.app.draw.things.soft import Shape, Soft, shape_of
+from sandbox.app.draw.things.soft import Shape, Soft, shape_of, shapes_of
 from sandbox.app.draw.things.springs import Working
 from sandbox.app.draw.things.strands import Strands
 from sandbox.app.draw.things.wheels import DrawnWheel
@@ -41,16 +41,18 @@ def _strangers(there: Mask, own: Slots) -> Slots:
 
 
 class Drawables:
-    """All things of a world whose particles (n,) and springs (m,) are there."""
+    """All things of a world whose particles (n,) and springs (m,) are there; whole: see Actor.filling."""
 
-    def __init__(self, level_slots: LevelSlots, state: Seen, particles: Mask, springs: Mask) -> None:
-        self._state = state
+    def __init__(
+        self, level_slots: LevelSlots, state: Seen, particles: Mask, springs: Mask, whole: Slots | None = None
+    ) -> None:  # fmt: skip
+        self._state, self._whole = state, whole
         self._triangles: dict[int, tuple[Slots, Slots]] = {}
         self.members, self.strands, self.sheets = Members(), Strands(), Sheets()
         self.wheels: list[DrawnWheel] = []
         self._balloons: list[tuple[int, Actor]] = []
         self._shapes: list[Shape] = []
-        self._faces: list[tuple[Actor, Slots]] = []
+        self._faces: list[DrawnFace] = []
         joins = [join for join in level_slots.joins if springs[join.spring]]
         for actor in level_slots.actors:
             there = springs[actor.springs]
@@ -110,18 +112,20 @@ class Drawables:
         return []
 
     def _add_filled(self, actor: Actor, there: Mask) -> list[Join]:
-        _, left, loops, inside = actor.filling(there)
-        if len(left):
-            if actor.look.skin != CLOTH:
-                self._shapes.append(
-                    actor.flesh(there, lambda: shape_of(actor, loops, there & inside, self._radius(actor)))
-                )
-            if actor.look.skin == CLOTH or actor.look.skin in CRATES:
-                self.sheets.add(actor, left, loops, there)
-            if actor.look.face and actor.look.skin in SOFT_SKINS:
-                self._faces.append((actor, max(loops, key=len)))
-        bare = there & ~inside
+        look, filling = actor.look, actor.filling(there, self._whole)
+        shapes, faces = actor.flesh(filling.key, lambda: self._skin(actor, filling.pieces))
+        self._shapes += shapes
+        self._faces += faces
+        if look.skin == CLOTH or look.skin in CRATES:
+            for piece in filling.pieces:
+                self.sheets.add(actor, piece.left, piece.loops, there)
+        bare = there & ~filling.inside
         return self._add_lines(actor, bare) if bare.any() else []
+
+    def _skin(self, actor: Actor, pieces: list[Piece]) -> tuple[list[Shape], list[DrawnFace]]:
+        look = actor.look
+        shapes = shapes_of(actor, pieces, self._radius(actor)) if look.skin != CLOTH else []
+        return shapes, faces_of(actor, pieces) if look.face and look.skin in SOFT_SKINS and pieces else []
 
     def _add_joins(self, joins: list[Join], ends: Slots) -> None:
         self.working = Working([join for join in joins if join.look.line in WORKING])

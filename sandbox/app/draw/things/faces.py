@@ -11,7 +11,8 @@ from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import CHEEK, EYE, INK
 from sandbox.app.draw.things.borders import starts_of
 from sandbox.app.draw.things.frame import Frame
-from sandbox.app.draw.things.level_slots import Actor
+from sandbox.app.draw.things.level_slots import Actor, Piece
+from sandbox.physics.geometry.segment import distances_from_segments
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -24,34 +25,66 @@ SQUEEZED, FAST = 0.10, 2.5
 BLINK, BLINK_EVERY = 0.13, 3.4
 GAP, EYE_SIZE, EYE_UP, MOUTH_DOWN, MOUTH_WIDE = 0.19, 0.118, -0.09, 0.125, 0.125
 MOUTH_PIECES = 8
+# A piece that was cut off has a face of its own if a circle of this part of the whole's largest one fits into it; the
+# face that was there stays where one of that part does.
+LEAST_OWN, LEAST_KEPT = 0.5, 0.3
+# Places and sides that are compared to find the largest circle, at most.
+MOST_COMPARED = 1_000_000
 TONGUE = 0xF0708A
 
 
-class Faces:
-    """Faces of bodies, given with the loops of slots that they lie in."""
+class DrawnFace(NamedTuple):
+    """A face: slots (n,) that it turns with, their places (n, 2) [m] about their middle at rest; springs whose strain
+    it shows; where it sits about that middle, how much room there is [m], how far [rad] its body was turned when made.
+    """
 
-    def __init__(self, rows: list[tuple[Actor, Slots]]) -> None:
+    slots: Slots
+    form: Floats
+    springs: Slots
+    spot: Floats
+    room: float
+    angle: float
+
+
+class Faces:
+    """Faces of bodies and of their pieces."""
+
+    def __init__(self, rows: list[DrawnFace]) -> None:
         self._count = len(rows)
         if not rows:
             return
-        self._slots = np.concatenate([actor.slots for actor, _ in rows])
-        self._start = starts_of([len(actor.slots) for actor, _ in rows])
+        self._slots = np.concatenate([row.slots for row in rows])
+        self._start = starts_of([len(row.slots) for row in rows])
         self._size = np.diff(self._start)
-        forms = [actor.form for actor, _ in rows]
         # As seen: pixels count downwards.
-        self._form = np.concatenate(forms) * np.array([1.0, -1.0])
-        spots = [actor.spot(loop, spot_of) for actor, loop in rows]
-        self._spot = np.array([place for place, _ in spots]) * np.array([1.0, -1.0])
-        self._inner = np.array([radius for _, radius in spots])
-        angle = np.array([actor.angle for actor, _ in rows])
+        self._form = np.concatenate([row.form for row in rows]) * np.array([1.0, -1.0])
+        self._spot = np.array([row.spot for row in rows]) * np.array([1.0, -1.0])
+        self._inner = np.array([row.room for row in rows])
+        angle = np.array([row.angle for row in rows])
         self._upright = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-        self._springs = np.concatenate([actor.springs for actor, _ in rows])
-        self._spring_start = starts_of([len(actor.springs) for actor, _ in rows])
+        self._springs = np.concatenate([row.springs for row in rows])
+        self._spring_start = starts_of([len(row.springs) for row in rows])
 
     def mark(self, marks: MarkList, frame: Frame) -> None:
         """Draw them."""
         if not self._count:
             return
+        centre, turn, size = self.placed(frame)
+        shown = np.isfinite(turn).all(axis=1) & (size >= SMALLEST * min(frame.scale, 1.0))
+        if not shown.any():
+            return
+        begins = self._start[:-1]
+        strain = np.abs(np.clip(np.nan_to_num(frame.strain[self._springs]), -9.0, 9.0))
+        load = np.add.reduceat(strain, self._spring_start[:-1]) / np.maximum(np.diff(self._spring_start), 1)
+        velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
+        velocity = np.nan_to_num(velocity * np.array([1.0, -1.0]))
+        shut = (self.blinks(frame.seconds) | frame.asleep)[shown]
+        centre, turn, size, load, velocity = (each[shown] for each in (centre, turn, size, load, velocity))
+        at_rest = None if frame.pointer is None else _towards(frame.pointer, centre, size)
+        _draw_faces(marks, centre, turn, size, load, velocity, shut, at_rest)
+
+    def placed(self, frame: Frame) -> tuple[Floats, Floats, Floats]:
+        """Centres (f, 2) and sizes (f,) [pixels] of faces; between, cosine and sine (f, 2) of their turn, nan: none."""
         size = np.minimum(2.0 * self._inner * frame.zoom, LARGEST * frame.scale)
         at, begins = frame.at[self._slots], self._start[:-1]
         mean = np.add.reduceat(at, begins, axis=0) / self._size[:, None]
@@ -60,10 +93,7 @@ class Faces:
         cosine = np.add.reduceat(x * off[:, 0] + y * off[:, 1], begins)
         sine = np.add.reduceat(x * off[:, 1] - y * off[:, 0], begins)
         length = np.sqrt(cosine * cosine + sine * sine)
-        shown = np.isfinite(length) & (length > 0.0) & (size >= SMALLEST * min(frame.scale, 1.0))
-        if not shown.any():
-            return
-        length = np.where(length > 0.0, length, 1.0)
+        length[~(np.isfinite(length) & (length > 0.0))] = np.nan
         cosine, sine = cosine / length, sine / length
         spot = self._spot * frame.zoom
         centre = mean + np.stack(
@@ -71,16 +101,7 @@ class Faces:
         )
         up = self._upright
         turn = np.stack([cosine * up[:, 0] - sine * up[:, 1], sine * up[:, 0] + cosine * up[:, 1]], axis=1)
-        strain = np.abs(np.clip(np.nan_to_num(frame.strain[self._springs]), -9.0, 9.0))
-        load = np.add.reduceat(strain, self._spring_start[:-1]) / np.maximum(np.diff(self._spring_start), 1)
-        velocity = np.add.reduceat(frame.state.velocity[self._slots], begins, axis=0) / self._size[:, None]
-        velocity = np.nan_to_num(velocity * np.array([1.0, -1.0]))
-        shut = self.blinks(frame.seconds) | frame.asleep
-        centre, turn, size, load, velocity, shut = (
-            each[shown] for each in (centre, turn, size, load, velocity, shut)
-        )  # fmt: skip
-        at_rest = None if frame.pointer is None else _towards(frame.pointer, centre, size)
-        _draw_faces(marks, centre, turn, size, load, velocity, shut, at_rest)
+        return centre, turn, size
 
     def blinks(self, seconds: float) -> NDArray[np.bool_]:
         """Which of them have their eyes shut at a time [s]."""
@@ -189,6 +210,54 @@ def _towards(pointer: tuple[float, float], centre: Floats, size: Floats) -> Floa
     return np.asarray(way / np.maximum(np.sqrt(np.sum(way * way, axis=1)), 1.0)[:, None])
 
 
+def faces_of(actor: Actor, pieces: list[Piece]) -> list[DrawnFace]:
+    """The faces of a body and of its pieces: that of the whole stays with the piece it lies on, where it fits."""
+    place, room = actor.spot(spot_of)
+    if len(pieces) == 1 and len(pieces[0].left) == len(actor.triangles()):
+        return [DrawnFace(actor.slots, actor.form, actor.springs, place, room, actor.angle)]
+    keeper = min(range(len(pieces)), key=lambda k: _away(actor.form[pieces[k].left], place))
+    found = []
+    for k, piece in enumerate(pieces):
+        own = np.unique(piece.left)
+        middle = actor.form[own].mean(axis=0)
+        spot, inner = _spot_in(actor, piece, place if k == keeper else middle)
+        if inner >= (LEAST_KEPT if k == keeper else LEAST_OWN) * room:
+            form, springs = actor.form[own] - middle, actor.springs[piece.inside]
+            found.append(DrawnFace(actor.slots[own], form, springs, spot - middle, min(inner, room), actor.angle))
+    return found
+
+
+def _away(triangles: Floats, place: Floats) -> float:
+    """How far [m] a place is from triangles (t, 3, 2), 0 inside of one."""
+    sides = np.roll(triangles, -1, axis=1) - triangles
+    beyond = place - triangles
+    if np.any(np.all(sides[..., 0] * beyond[..., 1] - sides[..., 1] * beyond[..., 0] >= 0.0, axis=1)):
+        return 0.0
+    return float(distances_from_segments(place, triangles, triangles + sides).min())
+
+
+def room_in(actor: Actor, piece: Piece) -> float:
+    """The radius [m] of the largest circle inside a piece at rest."""
+    return _spot_in(actor, piece, actor.form[np.unique(piece.left)].mean(axis=0))[1]
+
+
+def _spot_in(actor: Actor, piece: Piece, near: Floats) -> tuple[Floats, float]:
+    """Where in the form the largest circle inside a piece lies, rather near to a place, and its radius [m]."""
+    corners = actor.form[piece.left]
+    tries = np.concatenate([actor.form[np.unique(piece.left)], corners.mean(axis=1),
+                            0.5 * (corners + np.roll(corners, -1, axis=1)).reshape(-1, 2)])  # fmt: skip
+    order = np.argsort(actor.slots, kind="stable")
+    rings = [actor.form[order[np.searchsorted(actor.slots[order], loop)]] for loop in piece.loops]
+    start = np.concatenate(rings)
+    end = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
+    if len(tries) * len(start) > MOST_COMPARED:
+        tries = tries[:: 1 + len(tries) * len(start) // MOST_COMPARED]
+    room = distances_from_segments(tries[:, None], start, end).min(axis=1)
+    away = tries - near
+    best = int(np.argmax(room - 0.12 * np.sqrt(np.sum(away * away, axis=1))))
+    return tries[best], float(room[best])
+
+
 def spot_of(actor: Actor, loop: Slots) -> tuple[Floats, float]:
     """Where a face sits, about the middle of the form, and how much room there is [m]."""
     form = actor.form
@@ -196,7 +265,7 @@ def spot_of(actor: Actor, loop: Slots) -> tuple[Floats, float]:
     ring = form[[index[slot] for slot in loop.tolist()]]
     ring = np.concatenate([ring + (np.roll(ring, -1, axis=0) - ring) * k / 4 for k in range(4)])
     tries = np.concatenate([form, 0.5 * (form[:-1] + form[1:]), np.zeros((1, 2))])
-    if len(tries) * len(ring) > 1_000_000:
+    if len(tries) * len(ring) > MOST_COMPARED:
         return np.zeros(2), float(np.sqrt(np.sum(ring * ring, axis=1)).min())
     room = np.sqrt(np.sum((tries[:, None] - ring[None]) ** 2, axis=-1)).min(axis=1)
     best = int(np.argmax(room - 0.12 * np.sqrt(np.sum(tries * tries, axis=1))))

@@ -16,7 +16,11 @@ from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.plan.plan import Plan, kept_plan
+from sandbox.physics.components import label_bodies
+from sandbox.physics.constraints import AREA
 from sandbox.physics.keeping.equipment import Joined
+from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.world import World
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
@@ -27,15 +31,22 @@ Drawn = TypeVar("Drawn")
 METALS = ("steel", "paint", "brass", "chain", "cable", "piston")
 
 
-class Filling(NamedTuple):
-    """What of a filled body is left: triangles (t, 3) by index, loops of slots round them, springs (m,) inside.
+class Piece(NamedTuple):
+    """A connected part of what is filled: triangles (t, 3) by index, loops of slots round them, springs (m,) inside."""
 
-    key: which springs were there, as bytes.
+    left: Slots
+    loops: list[Slots]
+    inside: Mask
+
+
+class Filling(NamedTuple):
+    """What of a filled body is left: its pieces, the largest first, and the springs (m,) inside any of them.
+
+    key: which springs and triangles were there, as bytes.
     """
 
     key: bytes
-    left: Slots
-    loops: list[Slots]
+    pieces: list[Piece]
     inside: Mask
 
 
@@ -53,8 +64,8 @@ class Actor:
     springs: Slots
     pairs: Slots
     _filling: Filling | None = field(default=None, init=False)
-    _spot: tuple[bytes, tuple[Floats, float]] | None = field(default=None, init=False)
     _flesh: tuple[bytes, Any] | None = field(default=None, init=False)
+    _spot: tuple[Floats, float] | None = field(default=None, init=False)
 
     @property
     def ends(self) -> Slots:
@@ -76,33 +87,50 @@ class Actor:
         """Places (n, 2) [m] of its particles about their middle, as it was made."""
         return np.asarray(self.made.form - self.made.form.mean(axis=0))
 
-    def filling(self, there: Mask) -> Filling:
-        """What is left of it, where these springs (m,) are there: a triangle while those along all its sides are."""
-        key = there.tobytes()
+    def filling(self, there: Mask, whole: Slots | None = None) -> Filling:
+        """What is left of it, where these springs (m,) are there.
+
+        whole: triangles (t, 3) of the world that keep their areas, by slot. A body that keeps no areas, or of a world
+        that says nothing of them, has a triangle while the springs along all its sides are there.
+        """
+        left = self._whole(there, whole)
+        key = there.tobytes() + left.tobytes()
         if self._filling is None or self._filling.key != key:
-            triangles = self.triangles()
-            sides = sides_of(triangles, self.pairs)
-            left = triangles[((sides >= 0) & np.append(there, False)[sides]).all(axis=1)]
-            filled = np.zeros(len(self.slots), dtype=np.bool_)
-            filled[left] = True
-            loops = [self.slots[loop] for loop in traced(left)] if len(left) else []
-            self._filling = Filling(key, left, loops, np.asarray(filled[self.pairs].all(axis=1)))
+            pieces = [self._piece(part, there) for part in _parts(left, self.pairs[there], len(self.slots))]
+            inside = np.any([piece.inside for piece in pieces], axis=0) if pieces else np.zeros_like(there)
+            self._filling = Filling(key, pieces, inside)
         return self._filling
 
-    def flesh(self, there: Mask, make: Callable[[], Drawn]) -> Drawn:
-        """What `make` makes of it, where these springs (m,) are there."""
-        key = there.tobytes()
+    def _whole(self, there: Mask, whole: Slots | None) -> Slots:
+        triangles = self.triangles()
+        if there.all() and not self.body.cut:
+            return triangles
+        if whole is None or not self.body.__dict__.get("area", False):
+            sides = sides_of(triangles, self.pairs)
+            return np.asarray(triangles[((sides >= 0) & np.append(there, False)[sides]).all(axis=1)])
+        index = np.full(max(int(whole.max(initial=0)), int(self.slots.max(initial=0))) + 1, -1)
+        index[self.slots] = np.arange(len(self.slots))
+        own = index[whole]
+        return np.asarray(own[(own >= 0).all(axis=1)])
+
+    def _piece(self, left: Slots, there: Mask) -> Piece:
+        filled = np.zeros(len(self.slots), dtype=np.bool_)
+        filled[left] = True
+        loops = [self.slots[loop] for loop in traced(left)]
+        return Piece(left, loops, np.asarray(there & filled[self.pairs].all(axis=1)))
+
+    def flesh(self, key: bytes, make: Callable[[], Drawn]) -> Drawn:
+        """What `make` makes of it, as long as the key of its filling is this."""
         if self._flesh is None or self._flesh[0] != key:
             self._flesh = key, make()
         made: Drawn = self._flesh[1]
         return made
 
-    def spot(self, loop: Slots, find: Callable[["Actor", Slots], tuple[Floats, float]]) -> tuple[Floats, float]:
-        """What `find` finds of it inside a loop of slots."""
-        key = loop.tobytes()
-        if self._spot is None or self._spot[0] != key:
-            self._spot = key, find(self, loop)
-        return self._spot[1]
+    def spot(self, find: Callable[["Actor", Slots], tuple[Floats, float]]) -> tuple[Floats, float]:
+        """What `find` finds of it inside the longest loop of slots round the whole."""
+        if self._spot is None:
+            self._spot = find(self, self.slots[max(traced(self.triangles()), key=len)])
+        return self._spot
 
     def triangles(self) -> Slots:
         """Triangles (t, 3) of particles by index, that a jelly is filled with, whether or not they keep their area."""
@@ -112,6 +140,24 @@ class Actor:
             made = type(self.made)(replaced(body, area=True))
         found = made.polygons()
         return found if found.shape[1] == 3 else np.zeros((0, 3), dtype=np.int64)
+
+
+def _parts(triangles: Slots, links: Slots, count: int) -> list[Slots]:
+    """Triangles (t, 3) of `count` particles by what links (m, 2) join, the part of most triangles first."""
+    label = np.arange(count)
+    label_bodies(np.ascontiguousarray(links[:, 0]), np.ascontiguousarray(links[:, 1]), label)
+    part = label[triangles[:, 0]]
+    found = [triangles[part == each] for each in np.unique(part)]
+    return sorted(found, key=len, reverse=True)
+
+
+def whole_triangles(state: World | Snapshot) -> Slots:
+    """The triangles (t, 3) of a world that keep their areas, by slot, counter-clockwise in their form."""
+    chosen = state.constraint_active & (state.constraint_kind == AREA) & (state.constraint_corners == 3)
+    first, turned = state.constraint_first[chosen], state.constraint_rest[chosen, 1] < 0.0
+    corners = state.corner_particle[first[:, None] + np.arange(3)].astype(np.int64)
+    corners[turned] = corners[turned][:, ::-1]
+    return corners
 
 
 @dataclass(eq=False)

@@ -62,12 +62,12 @@ class Members:
         self.count += len(bars.pairs)
 
     def add_actor(self, actor: Actor, there: NDArray[np.bool_]) -> None:
-        """The springs of a body that are there (m,), as bars."""
+        """The springs of a body that are there (m,), as bars; what hangs from filled pieces has no bolts."""
         ends, springs, look = actor.ends[there], actor.springs[there], actor.look
         if not len(ends) or look.line == "hidden":
             return
         none = np.zeros(0, dtype=np.int64)
-        bolts = np.unique(ends)
+        bolts = none if actor.body.type == "jelly" and look.skin != "lattice" else np.unique(ends)
         if actor.body.type not in ("bridge", "girder"):
             self._add(_Bars(ends, springs, actor.cell, MESH, look.width, look.line, look.colour, bolts, none))
             return

@@ -12,8 +12,9 @@ from sandbox.app.draw.raster.painter import NO_GRAIN, BodyLayer, Painter
 from sandbox.app.draw.textures import grains, skin_table
 from sandbox.app.draw.themes import SQUEEZED_FLUSH, STRETCHED_FLUSH, outline_of
 from sandbox.app.draw.things.borders import starts_of
+from sandbox.app.draw.things.faces import room_in, spot_of
 from sandbox.app.draw.things.frame import FLUSH_FROM, FLUSH_RANGE, Frame
-from sandbox.app.draw.things.level_slots import Actor
+from sandbox.app.draw.things.level_slots import Actor, Piece
 from sandbox.level.kinds.jelly import CircleShape, JellyDef
 from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.geometry.segment import lengths
@@ -27,6 +28,8 @@ USUAL_ROUNDING, LEAST_ROUNDING, MOST_ROUNDING = 0.17, 6.0, 34.0
 LINE_HALF = 0.75
 # A corner is cut by this part of a side at each end, or by that of the body's breadth where that is less.
 CUT_OF_SIDE, CUT_OF_BREADTH = 0.25, 1.0 / 12.0
+# A piece into which no circle of this part of that of the whole fits is a crumb.
+CRUMB, FLAT = 0.2, "flat"
 # Widest that a skin stands out beyond the particles [pixels].
 MOST_GROWN = 40.0
 # Particles with less of a flush than this are not drawn with one.
@@ -86,6 +89,18 @@ def shape_of(actor: Actor, loops: list[Slots], springs: NDArray[np.bool_], radiu
     if is_laid:
         return Shape(loops, look.skin, look.colour, 0, radius, rounds=1, keep=0.12, line=False)
     return Shape(loops, look.skin, look.colour, 1, radius, keep=keep_of(actor, loops), flushed=flushed)
+
+
+def shapes_of(actor: Actor, pieces: list[Piece], radius: float) -> list[Shape]:
+    """The pieces of a soft body; crumbs, too small for a skin, have its colour alone."""
+    whole = actor.spot(spot_of)[1] if len(pieces) > 1 else 0.0
+    found = []
+    for piece in pieces:
+        shape = shape_of(actor, piece.loops, piece.inside, radius)
+        if room_in(actor, piece) < CRUMB * whole:
+            shape.skin, shape.flushed = FLAT, None
+        found.append(shape)
+    return found
 
 
 def keep_of(actor: Actor, loops: list[Slots]) -> float:

@@ -19,7 +19,7 @@ Mask = NDArray[np.bool_]
 RIM_FROM, LUGS_FROM = 14.0, 22.0
 LUG = 0.075
 MANY_SPOKES = 10
-TYRE = 0x343842
+TYRE = 0x565E70
 
 
 class DrawnWheel:

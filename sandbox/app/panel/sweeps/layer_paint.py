@@ -5,9 +5,9 @@ from collections.abc import Iterable
 import numpy as np
 import pygame
 
+from sandbox.app.base.coefficient_scale import CoefficientScale
 from sandbox.app.draw.colours import DECADE, MUTED, TEXT
 from sandbox.app.panel.sweeps.sweep_layer import BLOWN, SweepLayer
-from sandbox.app.widgets.coefficient_scale import CoefficientScale
 from sandbox.app.widgets.layout import WindowLayout
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones
 

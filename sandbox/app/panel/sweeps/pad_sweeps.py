@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import platformdirs
 
+from sandbox.app.base.coefficient_scale import PLAIN
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
 from sandbox.app.panel.sweeps.sweep_measures import measure_of
-from sandbox.app.widgets.coefficient_scale import PLAIN
 from sandbox.level.document.model import CHANGEABLE_SETTINGS, Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.physics.settings import WorldSettings

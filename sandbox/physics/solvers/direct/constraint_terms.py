@@ -10,14 +10,21 @@ where it is foreseen to push, and has the same strength whatever Cs and Cd are: 
 """
 
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, evaluate
+from sandbox.physics.constraints import (
+    AREA,
+    FLOOR,
+    FLOOR_RATE,
+    FLOOR_STRENGTH,
+    HIGHEST_OF_RING,
+    TRIANGLE,
+    evaluate,
+)
 from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
 from sandbox.physics.geometry.polygon import polygon_area
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.direct.system import Constraints, Span, System
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
-from sandbox.physics.world import HIGHEST_OF_RING, TRIANGLE
 
 # beta of the floor: the part of what is missing to it that a step wants back.
 FLOOR_BETA = 0.9

@@ -67,7 +67,7 @@ class CoefficientScale:
 # Where nothing is known of what is seen.
 PLAIN = CoefficientScale(0.003, 0.02)
 # Softest ends and widths of the last tenth that an axis may have.
-_LOWEST, _RESTS = (0.03, 0.01, 0.003, 0.001), (0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
+_LOWEST, _RESTS = (0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4), (0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
 # From 0.9 to 1 is this share of an axis at least: a thumb of a pad as wide as the panel.
 _THUMB = 0.13
 ALIVE = (0.005, 1.0)

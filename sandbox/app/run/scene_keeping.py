@@ -1,0 +1,72 @@
+"""SceneKeeping: the runs of the window are kept while they are played, and as they stood when they left the screen."""
+
+from pathlib import Path
+
+from sandbox.app.run.playback import Playback
+from sandbox.editor.storage.scene_shelf import SceneShelf
+from sandbox.level.document.model import Level
+from sandbox.session.scene import RunScene
+
+# A run that goes on is kept so often [s]; after something was done in it, so soon.
+EVERY, SOON = 2.0, 0.5
+
+
+class SceneKeeping:
+    """What becomes of runs; `before` is how the one stood that left the screen last."""
+
+    def __init__(self) -> None:
+        self.shelf = SceneShelf()
+        self.before: RunScene | None = None
+        self._told_fault: str | None = None
+        self._saved: RunScene | None = None
+        self._kept: tuple[Playback | None, int, int] = (None, 0, 0)
+        self._seconds = 0.0
+
+    def begin(self, playback: Playback, source: Path | None) -> RunScene | None:
+        """Keep what is cut off from the history of a run too; how the run of the same level stood that was there."""
+        playback.cut = lambda scene: self._set_aside(scene, source)
+        return self.of_level(playback.level)
+
+    def of_level(self, level: Level) -> RunScene | None:
+        """How the run stood that left the screen last, if it was of this level."""
+        return self.before if self.before is not None and self.before.level == level else None
+
+    def follow(self, playback: Playback, source: Path | None, frame_time: float) -> None:
+        """Keep the present run now and then; frame_time [s] since the last call."""
+        present = playback, playback.revision, playback.session.tick
+        self._seconds += frame_time
+        soon = SOON if present[:2] != self._kept[:2] else EVERY
+        if self._seconds < soon or present == self._kept:
+            return
+        self._seconds, self._kept = 0.0, present
+        scene = playback.scene()
+        if scene is not None and not self._is_saved(scene):
+            self.shelf.note(scene, source)
+
+    def set_aside(self, playback: Playback, source: Path | None) -> RunScene | None:
+        """Keep how a run stands that leaves the screen; None: nothing was done in it."""
+        scene = playback.scene()
+        if scene is not None:
+            self._set_aside(scene, source)
+            self.before = scene
+        return scene
+
+    def is_saved(self, scene: RunScene | None) -> None:
+        """Keep the present run no more while it is as the person saved it; None: it is not saved after all."""
+        self._saved, self._kept = scene, (None, 0, 0)
+        if scene is not None:
+            self.shelf.give_up(scene)
+
+    def _is_saved(self, scene: RunScene) -> bool:
+        saved = self._saved
+        return saved is not None and saved.is_done_by(scene.script) and saved.level == scene.level
+
+    def _set_aside(self, scene: RunScene, source: Path | None) -> None:
+        if not self._is_saved(scene):
+            self.shelf.set_aside(scene, source)
+
+    def fault(self) -> str | None:
+        """A line, once, where runs cannot be kept."""
+        fault, told = self.shelf.fault, self._told_fault
+        self._told_fault = fault
+        return fault if fault != told else None

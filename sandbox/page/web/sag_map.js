@@ -1,0 +1,92 @@
+// SagMap: what a body sags at every Cs and Cd of the pad, and the words for that, from the table that the window has.
+
+// Values that have a number on an axis, where there is room.
+const NUMBERED = [1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1];
+
+// An axis from its lowest value to 1; rest: what 1 - value fades out at, the less the wider the last tenth.
+export class Scale {
+  constructor(lowest, rest) {
+    this.lowest = lowest;
+    this.rest = rest;
+    this.low = this.#height(lowest);
+    this.high = -Math.log10(rest);
+  }
+
+  #height(value) {
+    return Math.log10(value / (1 - value + this.rest));
+  }
+
+  placeOf(value) {
+    if (value <= this.lowest) return 0;
+    return Math.min((this.#height(Math.min(value, 1)) - this.low) / (this.high - this.low), 1);
+  }
+
+  valueAt(place) {
+    if (place >= 0.997) return 1;
+    const power = 10 ** (this.low + Math.max(place, 0) * (this.high - this.low)),
+      value = Math.min(1, (power * (1 + this.rest)) / (1 + power));
+    return value < 0.9 ? Number(value.toPrecision(3)) : Number((1 - Number((1 - value).toPrecision(2))).toFixed(9));
+  }
+
+  numbers() {
+    return NUMBERED.filter((value) => value >= this.lowest * 0.999);
+  }
+}
+
+// Where nothing is known of what sags.
+export const PLAIN = new Scale(0.003, 0.02);
+
+export class SagMap {
+  #borders = [];
+  #bordersOf = '';
+
+  // See SagMap.as_data in Python: logarithms of sags in steps, column by column, on an axis both ways.
+  constructor({ lowest, rest, size, step, logs, names, edges, places }) {
+    this.scale = new Scale(lowest, rest);
+    this.size = size;
+    this.logs = logs.map((value) => value * step);
+    this.names = names;
+    this.edges = edges.map(Math.log);
+    this.places = places;
+  }
+
+  // The logarithm of the sag at places 0..1 across and up, between the values around it.
+  #log(across, up) {
+    const { size, logs } = this, x = across * (size - 1), y = up * (size - 1),
+      left = Math.min(Math.floor(x), size - 2), low = Math.min(Math.floor(y), size - 2), right = x - left, above = y - low,
+      side = (column) => logs[column * size + low] * (1 - above) + logs[column * size + low + 1] * above;
+    return side(left) * (1 - right) + side(left + 1) * right;
+  }
+
+  #number(log) {
+    return this.edges.filter((edge) => log < edge).length;
+  }
+
+  #logAt(stiffness, damping) {
+    return this.#log(this.scale.placeOf(stiffness), this.scale.placeOf(damping));
+  }
+
+  // The sag at Cs and Cd.
+  at(stiffness, damping) {
+    return Math.exp(this.#logAt(stiffness, damping));
+  }
+
+  wordAt(stiffness, damping) {
+    return this.names[this.#number(this.#logAt(stiffness, damping))];
+  }
+
+  // Pixels [x, y] of a map of that size between two words, y up.
+  borders(wide, high) {
+    if (this.#bordersOf === `${wide} ${high}`) return this.#borders;
+    this.#bordersOf = `${wide} ${high}`;
+    this.#borders = [];
+    const column = (x) => Array.from({ length: high }, (_, y) => this.#number(this.#log(x / (wide - 1), y / (high - 1))));
+    let before = column(0);
+    for (let x = 1; x < wide; x++) {
+      const now = column(x);
+      for (let y = 1; y < high; y++) if (now[y] !== before[y] || now[y] !== now[y - 1]) this.#borders.push([x, y]);
+      before = now;
+    }
+    return this.#borders;
+  }
+}

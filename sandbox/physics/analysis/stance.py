@@ -1,0 +1,204 @@
+"""Stance: how a body is held where one looks how far it sags: by its pins, by what hangs on pins, or by a floor."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.components import label_bodies
+from sandbox.physics.keeping.forms import FirmBody, strength_of
+from sandbox.physics.terrain import Terrain
+from sandbox.physics.world import World
+
+# A frame at least so many times as long as high, which nothing holds, lies on its two ends; elsewhere at its foot or at
+# its head is this share of its height, and held from end to end is what is held over this share of its length.
+SLENDER, EDGE, SPAN = 4.0, 0.12, 0.6
+# A body at one point hangs on it as a wheel does, where its centre lies within this share of its size from it.
+BALANCED = 0.05
+# Standing, its centre of mass lies above its foot by this share of its own height, so that it does not tip over.
+STEADY = 0.1
+# What is no farther from terrain than this share of the body's shortest spring lies on it.
+TOUCHING = 0.3
+
+
+class Support(Enum):
+    """What a body is held by, and so what one sees of it under its weight."""
+
+    FLOOR = "floor"  # it stands: its height becomes less
+    ENDS = "ends"  # it lies on its ends: its middle drops
+    HANGING = "hanging"  # held at its head: it becomes longer
+    SPANNED = "spanned"  # held from end to end: what is between drops
+    ARM = "arm"  # held at one end: the other drops
+    HUB = "hub"  # held at its middle, where it may turn: its rim drops
+
+
+@dataclass(frozen=True, eq=False)
+class Stance:
+    """A body alone, as it is held, upright: gravity goes down.
+
+    points [m] (n, 2); mass [kg], gravity_scale, radius [m], friction (n,); pairs (m, 2) with rest lengths [m] (m,);
+    areas, bends (t, 3); held (n,): what does not move; rests (n,): what lies on something, for ENDS; length [m]: of
+    what a sag is a share.
+    """
+
+    points: Floats
+    mass: Floats
+    gravity_scale: Floats
+    radius: Floats
+    friction: Floats
+    pairs: Slots
+    rest: Floats
+    areas: Slots
+    bends: Slots
+    held: Flags
+    rests: Flags
+    support: Support
+    length: float
+
+
+def stance_of(world: World, body: FirmBody) -> Stance:
+    """The stance of a body in its world."""
+    slots = slots_of(world, body)
+    turn = _upright(world.settings.gravity)
+    points, pairs = body.shape.points @ turn, body.shape.pairs
+    rest = world.natural_length[body.springs]
+    held = _is_held(world, body, slots)
+    rests = np.zeros(len(points), np.bool_)
+    weight = body.shape.mass * world.gravity_scale[slots]
+    support = Support.FLOOR
+    if held.any():
+        held, support = _support_of(points, weight, held, pairs)
+    if not held.any():
+        points = _stood_up(points, weight)
+        wide, tall = np.ptp(points, axis=0)
+        if not len(body.shape.areas) and wide >= SLENDER * tall:
+            support = Support.ENDS
+            rests = _resting(world, slots, float(rest.min()), points)
+    wide, tall = (float(size) for size in np.ptp(points, axis=0))
+    is_upright = support in (Support.FLOOR, Support.HANGING, Support.HUB)
+    length = tall if is_upright and tall > 0.0 else max(wide, tall)
+    return Stance(
+        points, body.shape.mass, world.gravity_scale[slots], world.radius[slots], world.friction[slots], pairs, rest,
+        body.shape.areas, body.shape.bends, held, rests, support, length,
+    )  # fmt: skip
+
+
+def slots_of(world: World, body: FirmBody) -> Slots:
+    """The particles (n,) of a world that a body's form is made of."""
+    slots = np.zeros(len(body.shape.mass), np.int64)
+    slots[body.shape.pairs[:, 0]] = world.particle_a[body.springs]
+    slots[body.shape.pairs[:, 1]] = world.particle_b[body.springs]
+    return slots
+
+
+def _upright(gravity: tuple[float, float]) -> Floats:
+    # Turns points (n, 2), from the right, so that gravity goes down.
+    strength = strength_of(gravity)
+    x, y = (gravity[0] / strength, gravity[1] / strength) if any(gravity) else (0.0, -1.0)
+    return np.array([[-y, -x], [x, -y]])
+
+
+def _is_held(world: World, body: FirmBody, slots: Slots) -> Flags:
+    """Which of its particles (n,) are pinned, or hang on pins by springs that are not its own."""
+    pinned = (world.inverse_mass == 0.0) & world.particle_active
+    foreign = world.spring_active & (world.material >= 0)
+    foreign[body.springs] = False
+    a, b = world.particle_a[foreign], world.particle_b[foreign]
+    own = np.zeros(world.particle_count, np.bool_)
+    own[slots] = True
+    # What other springs join, without going through the body.
+    beyond = ~own[a] & ~own[b]
+    label = np.arange(world.particle_count)
+    label_bodies(a[beyond].astype(np.int64), b[beyond].astype(np.int64), label)
+    leads_to_pin = np.zeros(world.particle_count, np.bool_)
+    leads_to_pin[label[pinned & ~own]] = True
+    held = pinned.copy()
+    for one, other in ((a, b), (b, a)):
+        tied = own[one] & ~own[other] & leads_to_pin[label[other]]
+        held[one[tied]] = True
+    return held[slots]
+
+
+def _support_of(points: Floats, weight: Floats, held: Flags, pairs: Slots) -> tuple[Flags, Support]:
+    """How a body is held that is held somewhere, and what does not move of it then."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    wide, tall = high - low
+    if np.ptp(points[held], axis=0).max() == 0.0:
+        centre = weight @ points / weight.sum() - points[held][0]
+        reach = BALANCED * max(wide, tall)
+        if abs(centre[0]) <= reach and centre[1] > reach:
+            # A cord from below carries nothing.
+            return np.zeros_like(held), Support.FLOOR
+        if abs(centre[0]) <= reach:
+            return held, Support.HUB if abs(centre[1]) <= reach else Support.HANGING
+        # It may turn there; what holds it up elsewhere is not its own.
+        beside = held.copy()
+        for one, other in ((0, 1), (1, 0)):
+            beside[pairs[held[pairs[:, one]], other]] = True
+        return beside, Support.ARM
+    if points[held, 1].min() >= high[1] - EDGE * tall and tall >= 0.5 * wide:
+        return held, Support.HANGING
+    if np.ptp(points[held], axis=0).max() >= SPAN * max(wide, tall):
+        return held, Support.SPANNED
+    return held, Support.ARM
+
+
+def _stood_up(points: Floats, weight: Floats) -> Floats:
+    """Points turned by the least angle that lets them stand on a side of their hull without tipping over."""
+    hull = _hull(points)
+    if len(hull) < 3:
+        return points
+    centre = weight @ points / weight.sum()
+    best, least = points, np.inf
+    for start, end in zip(hull, np.roll(hull, -1, axis=0), strict=True):
+        along = (end - start) / np.hypot(*(end - start))
+        at = float((centre - start) @ along)
+        height = float(along[0] * (centre - start)[1] - along[1] * (centre - start)[0])
+        margin = min(at, float((end - start) @ along) - at) / max(height, 1e-12)
+        angle = abs(np.arctan2(along[1], along[0]))
+        # One that would tip over comes after all that would not.
+        order = angle if margin >= STEADY else 10.0 - margin
+        if order < least:
+            least, best = order, points @ np.array([[along[0], -along[1]], [along[1], along[0]]])
+    return best
+
+
+def _hull(points: Floats) -> Floats:
+    """The convex hull of points, counter-clockwise, without what lies on its sides."""
+    rows = points[np.lexsort((points[:, 1], points[:, 0]))]
+    slack = 1e-9 * float(np.ptp(points)) ** 2
+    halves: list[Floats] = []
+    for order in (rows, rows[::-1]):
+        chain: list[Floats] = []
+        for point in order:
+            while len(chain) > 1:
+                (ax, ay), (bx, by) = chain[-1] - chain[-2], point - chain[-2]
+                if ax * by - ay * bx > slack:
+                    break
+                chain.pop()
+            chain.append(point)
+        halves += chain[:-1]
+    return np.array(halves)
+
+
+def _resting(world: World, slots: Slots, shortest: float, points: Floats) -> Flags:
+    """Which particles (n,) of a beam lie on the level's terrain; where none do, its two ends."""
+    reach = world.radius[slots] + TOUCHING * shortest
+    rests = _distance(world.terrain, world.origin[slots]) <= reach
+    low = points[:, 1] <= points[:, 1].min() + 1e-6 * float(np.ptp(points))
+    x = points[:, 0]
+    if rests.any() and np.ptp(x[rests]) >= SPAN * np.ptp(x):
+        return rests
+    return low & ((x <= x[low].min() + 1e-9) | (x >= x[low].max() - 1e-9))
+
+
+def _distance(terrain: Terrain, points: Floats) -> Floats:
+    """Distance [m] of points (n, 2) from the nearest line of a terrain; inf where there is none."""
+    found = np.full(len(points), np.inf)
+    for a, b in zip(terrain.vertex[terrain.edge_a], terrain.vertex[terrain.edge_b], strict=True):
+        along = b - a
+        square = float(along @ along)
+        share = np.clip((points - a) @ along / square, 0.0, 1.0) if square > 0.0 else np.zeros(len(points))
+        found = np.minimum(found, np.hypot(*(points - a - share[:, None] * along).T))
+    return found

@@ -1,0 +1,246 @@
+"""Pieces: what a cut leaves of a soft body. Each is a body of its own, with the outline of the triangles left to it.
+
+A soft body is one that keeps the areas of triangles, or has a solid outline. The piece of its first particle keeps the
+body's number as owner; any other has -1 - p, p = its own first particle. Where a body has a solid outline, that of a
+piece runs along the springs that have a whole triangle on one side alone; an edge without one is a line. Of a cell of a
+grid that lost a corner, the triangle of its other corners keeps its area from then on, though it was halved the other
+way. All of this is state, and nothing is kept beside it: what restores that joins the pieces again.
+"""
+
+from typing import NamedTuple
+
+from sandbox.physics.arena import Arena, new_flags, new_slots
+from sandbox.physics.arrays import Flags, Slots
+from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.physics.components import join, root_of
+from sandbox.physics.constraints import AREA
+from sandbox.physics.geometry.segment import doubled_area_of
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.state import GoodValues, State
+
+TRIANGLE_CORNERS = 3
+# A whole triangle of solid form lies to the left of a spring, to its right.
+AT_LEFT, AT_RIGHT = 1, 2
+
+
+class PieceScratch(NamedTuple):
+    """Scratch: torn (n,) = the first particle of a body that lost a spring, -1: of none; label (n,): see components.py.
+
+    has_triangles, has_solids (n,): by first particle of a torn body; beside (m,): AT_LEFT and AT_RIGHT, added up.
+    """
+
+    torn: Slots
+    label: Slots
+    has_triangles: Flags
+    has_solids: Flags
+    beside: Slots
+
+
+@inner_kernel
+def new_piece_scratch(state: State, arena: Arena) -> PieceScratch:
+    """Scratch for `part`."""
+    particles, springs = state.owner.shape[0], state.spring_active.shape[0]
+    return PieceScratch(
+        new_slots(arena, particles), new_slots(arena, particles), new_flags(arena, particles),
+        new_flags(arena, particles), new_slots(arena, springs),
+    )  # fmt: skip
+
+
+@inner_kernel
+def part(
+    state: State, good: GoodValues, springs: Slots, start: Slots, listed: Slots, work: PieceScratch
+) -> None:  # fmt: skip
+    """Make bodies of the pieces of soft bodies that have lost springs: those at which these springs (k,) are or were.
+
+    Springs of particle p, inactive ones too: listed[start[p]:start[p + 1]].
+    """
+    for p in range(work.torn.shape[0]):
+        work.torn[p] = -1
+    for k in range(springs.shape[0]):
+        _mark_torn(state, state.particle_a[springs[k]], work.torn)
+        _mark_torn(state, state.particle_b[springs[k]], work.torn)
+    _find_soft(state, work)
+    for k in range(state.constraint_kind.shape[0] - 1):
+        if _is_ended_triangle(state, k, work.torn) and _is_ended_triangle(state, k + 1, work.torn):
+            _halve_other_way(state, good, k, start, listed)
+    _find_sides(state, start, listed, work)
+    _outline_pieces(state, work)
+    _number_pieces(state, work)
+
+
+@inner_kernel
+def _mark_torn(state: State, end: int, torn: Slots) -> None:
+    # Mark the particles of the body of one.
+    if torn[end] >= 0:
+        return
+    first = -1
+    for p in range(torn.shape[0]):
+        if state.particle_active[p] and state.owner[p] == state.owner[end]:
+            first = p if first < 0 else first
+            torn[p] = first
+
+
+@inner_kernel
+def _find_soft(state: State, work: PieceScratch) -> None:
+    # Which of the torn bodies have triangles that keep their areas, whole or not, and which have solid edges.
+    for k in range(state.constraint_kind.shape[0]):
+        first = work.torn[state.corner_particle[state.constraint_first[k]]]
+        if first >= 0 and state.constraint_kind[k] == AREA and state.constraint_corners[k] == TRIANGLE_CORNERS:
+            work.has_triangles[first] = True
+    for s in range(state.edge.shape[0]):
+        first = work.torn[state.particle_a[s]]
+        if first >= 0 and (state.edge[s] == SOLID_LEFT or state.edge[s] == SOLID_RIGHT):
+            work.has_solids[first] = True
+
+
+@inner_kernel
+def _is_ended_triangle(state: State, k: int, torn: Slots) -> bool:
+    return (
+        not state.constraint_active[k]
+        and state.constraint_kind[k] == AREA
+        and state.constraint_corners[k] == TRIANGLE_CORNERS
+        and torn[state.corner_particle[state.constraint_first[k]]] >= 0
+    )
+
+
+@inner_kernel
+def _corner_beyond(state: State, k: int, other: int) -> int:
+    # The corner of triangle k that is none of another one's, which shares the other two; -1: it does not.
+    beyond, count = -1, 0
+    for c in range(state.constraint_first[k], state.constraint_first[k] + TRIANGLE_CORNERS):
+        is_shared = False
+        for d in range(state.constraint_first[other], state.constraint_first[other] + TRIANGLE_CORNERS):
+            is_shared = is_shared or state.corner_particle[c] == state.corner_particle[d]
+        if not is_shared:
+            beyond = c
+            count += 1
+    return beyond if count == 1 else -1
+
+
+@inner_kernel
+def _halve_other_way(state: State, good: GoodValues, k: int, start: Slots, listed: Slots) -> None:
+    # Two triangles with a common side, b x y and d y x, become b x d and b d y, and what of those is whole acts.
+    beyond, other = _corner_beyond(state, k, k + 1), _corner_beyond(state, k + 1, k)
+    if beyond < 0 or other < 0:
+        return
+    first = state.constraint_first[k]
+    after = first + (beyond - first + 1) % TRIANGLE_CORNERS
+    last = first + (beyond - first + 2) % TRIANGLE_CORNERS
+    particle, form, area = state.corner_particle, state.corner_form, state.constraint_rest[k, 1]
+    b, x, y, d = particle[beyond], particle[after], particle[last], particle[other]
+    one, two = doubled_area_of(beyond, after, other, form), doubled_area_of(beyond, other, last, form)
+    is_one = acts_between(state, b, x, start, listed) and acts_between(state, x, d, start, listed)
+    is_two = acts_between(state, d, y, start, listed) and acts_between(state, y, b, start, listed)
+    if not (one * area > 0.0 and two * area > 0.0 and (is_one or is_two)):
+        return
+    if not acts_between(state, b, d, start, listed):
+        return
+    bx, by, xx, xy = form[beyond, 0], form[beyond, 1], form[after, 0], form[after, 1]
+    yx, yy, dx, dy = form[last, 0], form[last, 1], form[other, 0], form[other, 1]
+    for t in range(2):
+        at, inflation = state.constraint_first[k + t], state.constraint_rest[k + t, 0] / state.constraint_rest[k + t, 1]
+        _place_corner(state, good, at, b, bx, by)
+        _place_corner(state, good, at + 1, x if t == 0 else d, xx if t == 0 else dx, xy if t == 0 else dy)
+        _place_corner(state, good, at + 2, d if t == 0 else y, dx if t == 0 else yx, dy if t == 0 else yy)
+        _keep_area(state, good, k + t, inflation)
+        state.constraint_active[k + t] = is_one if t == 0 else is_two
+
+
+@inner_kernel
+def acts_between(state: State, p: int, q: int, start: Slots, listed: Slots) -> bool:
+    """Whether a spring acts between two particles; those of p: listed[start[p]:start[p + 1]]."""
+    for at in range(start[p], start[p + 1]):
+        s = listed[at]
+        if state.spring_active[s] and q in (state.particle_a[s], state.particle_b[s]):
+            return True
+    return False
+
+
+@inner_kernel
+def _place_corner(state: State, good: GoodValues, corner: int, particle: int, x: float, y: float) -> None:
+    state.corner_particle[corner] = particle
+    state.corner_form[corner, 0] = good.corner_form[corner, 0] = x
+    state.corner_form[corner, 1] = good.corner_form[corner, 1] = y
+
+
+@inner_kernel
+def _keep_area(state: State, good: GoodValues, k: int, inflation: float) -> None:
+    # What a triangle keeps from now on, as its form has it; see rest_of_area.
+    first, form = state.constraint_first[k], state.corner_form
+    area = 0.5 * doubled_area_of(first, first + 1, first + 2, form)
+    state.constraint_rest[k, 0] = good.constraint_rest[k, 0] = inflation * area
+    state.constraint_rest[k, 1] = good.constraint_rest[k, 1] = area
+    for c in range(TRIANGLE_CORNERS):
+        one, two = first + (c + 1) % TRIANGLE_CORNERS, first + (c + 2) % TRIANGLE_CORNERS
+        dx, dy = form[one, 0] - form[two, 0], form[one, 1] - form[two, 1]
+        weight = 0.25 * (dx * dx + dy * dy)
+        state.corner_weight[first + c] = good.corner_weight[first + c] = weight
+
+
+@inner_kernel
+def _find_sides(state: State, start: Slots, listed: Slots, work: PieceScratch) -> None:
+    # On which sides of springs whole triangles lie.
+    for k in range(state.constraint_kind.shape[0]):
+        corner = state.constraint_first[k]
+        if (
+            state.constraint_active[k]
+            and state.constraint_kind[k] == AREA
+            and state.constraint_corners[k] == TRIANGLE_CORNERS
+            and work.torn[state.corner_particle[corner]] >= 0
+        ):
+            is_left = state.constraint_rest[k, 1] > 0.0
+            for c in range(TRIANGLE_CORNERS):
+                p = state.corner_particle[corner + c]
+                q = state.corner_particle[corner + (c + 1) % TRIANGLE_CORNERS]
+                _add_side(p if is_left else q, q if is_left else p, state, start, listed, work.beside)
+
+
+@inner_kernel
+def _add_side(p: int, q: int, state: State, start: Slots, listed: Slots, beside: Slots) -> None:
+    # A triangle lies to the left of the way from p to q: tell the first spring that acts along it.
+    for at in range(start[p], start[p + 1]):
+        s = listed[at]
+        if state.spring_active[s]:
+            if state.particle_a[s] == p and state.particle_b[s] == q:
+                beside[s] |= AT_LEFT
+                return
+            if state.particle_a[s] == q and state.particle_b[s] == p:
+                beside[s] |= AT_RIGHT
+                return
+
+
+@inner_kernel
+def _outline_pieces(state: State, work: PieceScratch) -> None:
+    for s in range(state.edge.shape[0]):
+        first = work.torn[state.particle_a[s]]
+        if first < 0 or work.torn[state.particle_b[s]] != first or not state.spring_active[s]:
+            continue
+        if not (work.has_triangles[first] and work.has_solids[first]):
+            continue
+        if work.beside[s] == AT_LEFT:
+            state.edge[s] = SOLID_LEFT
+        elif work.beside[s] == AT_RIGHT:
+            state.edge[s] = SOLID_RIGHT
+        elif work.beside[s] != 0:
+            state.edge[s] = NO_EDGE
+        elif state.edge[s] != NO_EDGE:
+            state.edge[s] = LINE
+
+
+@inner_kernel
+def _number_pieces(state: State, work: PieceScratch) -> None:
+    # Only what had one number falls into pieces; what else is tied to a body holds it together no more.
+    label, torn = work.label, work.torn
+    for p in range(label.shape[0]):
+        label[p] = p
+    for s in range(state.spring_active.shape[0]):
+        a, b = state.particle_a[s], state.particle_b[s]
+        if state.spring_active[s] and state.material[s] != GRAB_MATERIAL and torn[a] >= 0 and torn[a] == torn[b]:
+            join(label, a, b)
+    for p in range(label.shape[0]):
+        first = torn[p]
+        if first >= 0 and (work.has_triangles[first] or work.has_solids[first]):
+            root = root_of(label, p)
+            if root != root_of(label, first):
+                state.owner[p] = -1 - root

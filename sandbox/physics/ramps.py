@@ -1,0 +1,203 @@
+"""Ramps: Cs, Cd, wanted areas, gravity and air go from what they are to what is set, their goal, in so many ticks.
+
+Arrays and settings hold the goals, but for within a tick: it begins with what is in force then, which lies in arrays of
+its own between ticks, and puts the goals back at its end.
+
+With n ticks left, this one too, and r = (n - 1) / n, a tick leaves r^2 of the way: fast at first and gently at its end,
+from wherever a new goal finds it. That is the way of a wanted area, of gravity and air, and of what a spring gives way
+by under a load, y: in the direct solver (1 - Cd) / Cs, in the others 1 / Cs. So what sags sinks or rises evenly.
+
+What firms up gives back what its springs hold, which throws it. So a Cd that rises runs ahead, by r^8: at first the
+body becomes tough as honey. And Cs is at least Cd (1 - r^2), so that in each tick it takes back that part of what it
+lacks, and all of it in the last one. A heap of the softest jellies becomes rigid in 1.25 s without a leap.
+"""
+
+import numpy as np
+
+from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.equation import HIGHEST_COEFFICIENT
+from sandbox.physics.jit import inner_kernel, scalar_kernel
+from sandbox.physics.marks import BANK_UNOPENED
+from sandbox.physics.settings import DIRECT
+from sandbox.physics.state import GoodValues, State, StateArrays
+
+# Added to Cs and 1 - Cd, so that a spring of Cs 0 gives way by a number.
+LEAST_STIFFNESS, LEAST_GIVE = 1e-3, 1.0 - HIGHEST_COEFFICIENT
+# Rows that have Cs and Cd, by how the names of their arrays begin; and those names.
+SPRINGS, CONSTRAINTS = "", "constraint_"
+COEFFICIENTS = ("stiffness", "damping", "lowest_mode")
+
+
+@scalar_kernel
+def way_of_tick(ticks: int) -> float:
+    """The part of the rest of its way that a ramp goes in a tick, with so many ticks left, this one too."""
+    # 1 - ((n - 1) / n)^2
+    return (2.0 * ticks - 1.0) / (1.0 * ticks * ticks)
+
+
+@scalar_kernel
+def _nearer(now: float, goal: float, ticks: int) -> float:
+    return goal if ticks <= 1 else now + way_of_tick(ticks) * (goal - now)
+
+
+@scalar_kernel
+def next_pair(
+    stiffness: float, damping: float, stiffness_goal: float, damping_goal: float, ticks: int, solver: int
+) -> tuple[float, float]:
+    """Cs and Cd of a tick, from those of the tick before; ticks: left, this one too. Cs <= Cd stays so."""
+    if ticks <= 1:
+        return stiffness_goal, damping_goal
+    part = way_of_tick(ticks)
+    rest = (1.0 - part) * (1.0 - part)
+    ahead = 1.0 - rest * rest if damping_goal > damping else part
+    damps = damping + ahead * (damping_goal - damping)
+    here, there, after = 1.0, 1.0, 1.0
+    if solver == DIRECT:
+        here, there, after = 1.0 - damping + LEAST_GIVE, 1.0 - damping_goal + LEAST_GIVE, 1.0 - damps + LEAST_GIVE
+    gives, wanted = here / (stiffness + LEAST_STIFFNESS), there / (stiffness_goal + LEAST_STIFFNESS)
+    found = after / (gives + part * (wanted - gives)) - LEAST_STIFFNESS
+    found = min(max(found, min(stiffness, stiffness_goal)), max(stiffness, stiffness_goal))
+    return max(found, min(stiffness_goal, damps * part)), damps
+
+
+@inner_kernel
+def _disturb_ends(state: State, s: int) -> None:
+    state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
+
+
+@inner_kernel
+def _disturb_corners(state: State, k: int) -> None:
+    first = state.constraint_first[k]
+    for corner in range(first, first + state.constraint_corners[k]):
+        state.energy_bank[state.corner_particle[corner]] = BANK_UNOPENED
+
+
+@inner_kernel
+def _swap(goal: Floats, now: Floats, k: int) -> None:
+    kept = goal[k]
+    goal[k] = now[k]
+    now[k] = kept
+
+
+@inner_kernel
+def _swap_areas(rest: FloatRows, now: Floats, k: int) -> None:
+    kept = rest[k, 0]
+    rest[k, 0] = now[k]
+    now[k] = kept
+
+
+@inner_kernel
+def begin_ramps(state: State, numbers: Floats, solver: int) -> None:
+    """Put what is in force in the coming tick in place of goals; numbers: the settings; solver: see settings.py."""
+    ticks, cs, cd = state.ramp_ticks, state.stiffness_now, state.damping_now
+    for s in range(ticks.shape[0]):
+        if ticks[s] > 0:
+            cs[s], cd[s] = next_pair(cs[s], cd[s], state.stiffness[s], state.damping[s], ticks[s], solver)
+            _swap(state.stiffness, cs, s)
+            _swap(state.damping, cd, s)
+            _swap(state.lowest_mode, state.lowest_mode_now, s)
+            _disturb_ends(state, s)
+    ticks, cs, cd = state.constraint_ramp_ticks, state.constraint_stiffness_now, state.constraint_damping_now
+    firm, damps = state.constraint_stiffness, state.constraint_damping
+    for k in range(ticks.shape[0]):
+        if ticks[k] > 0:
+            cs[k], cd[k] = next_pair(cs[k], cd[k], firm[k], damps[k], ticks[k], solver)
+            _swap(firm, cs, k)
+            _swap(damps, cd, k)
+            _swap(state.constraint_lowest_mode, state.constraint_lowest_mode_now, k)
+            _disturb_corners(state, k)
+    ticks, area = state.constraint_area_ticks, state.constraint_area_now
+    for k in range(ticks.shape[0]):
+        if ticks[k] > 0:
+            area[k] = _nearer(area[k], state.constraint_rest[k, 0], ticks[k])
+            _swap_areas(state.constraint_rest, area, k)
+            _disturb_corners(state, k)
+    ticks, now = state.setting_ticks, state.setting_now
+    for k in range(ticks.shape[0]):
+        if ticks[k] > 0:
+            now[k] = _nearer(now[k], numbers[k], ticks[k])
+            _swap(numbers, now, k)
+
+
+@inner_kernel
+def end_ramps(state: State, numbers: Floats) -> None:
+    """Put goals back, and end the ramps that have come to theirs."""
+    ticks = state.ramp_ticks
+    for s in range(ticks.shape[0]):
+        if ticks[s] > 0:
+            _swap(state.stiffness, state.stiffness_now, s)
+            _swap(state.damping, state.damping_now, s)
+            _swap(state.lowest_mode, state.lowest_mode_now, s)
+            ticks[s] -= 1
+            if ticks[s] == 0:
+                state.stiffness_now[s] = state.damping_now[s] = state.lowest_mode_now[s] = 0.0
+    ticks, mode = state.constraint_ramp_ticks, state.constraint_lowest_mode_now
+    for k in range(ticks.shape[0]):
+        if ticks[k] > 0:
+            _swap(state.constraint_stiffness, state.constraint_stiffness_now, k)
+            _swap(state.constraint_damping, state.constraint_damping_now, k)
+            _swap(state.constraint_lowest_mode, mode, k)
+            ticks[k] -= 1
+            if ticks[k] == 0:
+                state.constraint_stiffness_now[k] = state.constraint_damping_now[k] = mode[k] = 0.0
+    ticks = state.constraint_area_ticks
+    for k in range(ticks.shape[0]):
+        if ticks[k] > 0:
+            _swap_areas(state.constraint_rest, state.constraint_area_now, k)
+            ticks[k] -= 1
+            if ticks[k] == 0:
+                state.constraint_area_now[k] = 0.0
+    ticks = state.setting_ticks
+    for k in range(ticks.shape[0]):
+        if ticks[k] > 0:
+            _swap(numbers, state.setting_now, k)
+            ticks[k] -= 1
+            if ticks[k] == 0:
+                state.setting_now[k] = 0.0
+
+
+@inner_kernel
+def set_spring(state: State, good: GoodValues, s: int, stiffness: float, damping: float, duration: int) -> None:
+    """Set Cs and Cd of a spring as its own, to be in force in so many ticks; 0: at once."""
+    if state.ramp_ticks[s] == 0 or duration == 0:
+        state.stiffness_now[s] = state.stiffness[s] if duration > 0 else 0.0
+        state.damping_now[s] = state.damping[s] if duration > 0 else 0.0
+        state.lowest_mode_now[s] = state.lowest_mode[s] if duration > 0 else 0.0
+    state.ramp_ticks[s] = duration
+    state.stiffness[s] = good.stiffness[s] = stiffness
+    state.damping[s] = good.damping[s] = damping
+    state.lowest_mode[s] = good.lowest_mode[s] = 0.0
+    _disturb_ends(state, s)
+
+
+@inner_kernel
+def set_constraint(state: State, good: GoodValues, k: int, stiffness: float, damping: float, duration: int) -> None:
+    """Set Cs and Cd of a constraint as its own, to be in force in so many ticks; 0: at once."""
+    if state.constraint_ramp_ticks[k] == 0 or duration == 0:
+        state.constraint_stiffness_now[k] = state.constraint_stiffness[k] if duration > 0 else 0.0
+        state.constraint_damping_now[k] = state.constraint_damping[k] if duration > 0 else 0.0
+        state.constraint_lowest_mode_now[k] = state.constraint_lowest_mode[k] if duration > 0 else 0.0
+    state.constraint_ramp_ticks[k] = duration
+    state.constraint_stiffness[k] = good.constraint_stiffness[k] = stiffness
+    state.constraint_damping[k] = good.constraint_damping[k] = damping
+    state.constraint_lowest_mode[k] = good.constraint_lowest_mode[k] = 0.0
+    _disturb_corners(state, k)
+
+
+@inner_kernel
+def set_number(state: State, numbers: Floats, place: int, value: float, duration: int) -> None:
+    """Set a number of the settings, to be in force in so many ticks; 0: at once."""
+    if state.setting_ticks[place] == 0 or duration == 0:
+        state.setting_now[place] = numbers[place] if duration > 0 else 0.0
+    state.setting_ticks[place] = duration
+    numbers[place] = value
+
+
+def in_force(state: StateArrays, family: str) -> tuple[Floats, Floats, Floats]:
+    """Cs, Cd and lowest mode of the last tick, of all SPRINGS or CONSTRAINTS; where none ramps, what is set."""
+    ramps = getattr(state, f"{family}ramp_ticks") > 0
+    stiffness, damping, mode = (
+        np.where(ramps, getattr(state, f"{family}{name}_now"), getattr(state, f"{family}{name}"))
+        for name in COEFFICIENTS
+    )
+    return stiffness, damping, mode

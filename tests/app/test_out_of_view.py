@@ -1,0 +1,96 @@
+"""What has left the picture is counted, brought back by one button, and only then said to be gone."""
+
+import numpy as np
+import pygame
+import pytest
+
+from sandbox.app.play.out_of_view import NOTICE
+from sandbox.level.reading.files import load_level, shipped_levels
+from sandbox.physics.changing.freeing import overlapping
+from sandbox.session.commands import MoveBody
+from tests.app.conftest import small_level
+from tests.app.test_following import flying, places
+
+# The ball of one throws bricks out of the picture.
+LEVELS = [path.stem for path in shipped_levels() if path.stem != "wrecking_ball"]
+
+
+def button(driver):
+    return driver.app.play.troubles.remedies.buttons["bring_back"]
+
+
+def in_picture(driver, body):
+    left, bottom, right, top = driver.app.play.troubles._pictures[0]
+    x, y = driver.world.position[body].mean(axis=0)
+    return left <= x <= right and bottom <= y <= top
+
+
+def test_what_has_left_the_picture_is_brought_back_at_rest_and_that_is_undone(open_app):
+    driver = open_app(flying())
+    driver.frames(10)
+    assert not button(driver).visible
+    driver.frames(200)
+    assert button(driver).visible and button(driver).text == "Bring back 2" and NOTICE in driver.notices
+    before = driver.world.position.copy()
+    driver.click_widget(button(driver))
+    driver.frames(2)
+    there = np.stack(list(places(driver).values()))
+    assert (np.abs(there) <= [5.0, 3.0]).all() and np.abs(driver.world.velocity).max() < 1e-9
+    assert not button(driver).visible and NOTICE not in driver.notices
+    assert "2 are back in the picture." in driver.notices
+    driver.key(pygame.K_z, pygame.KMOD_CTRL)
+    driver.frames(60)
+    assert np.abs(driver.world.position - before).max() < 20.0 and places(driver)["right"][0] > 15.0
+    driver.app.act("reset")
+    driver.frames(2)
+    driver.app.act("bring_back")
+    assert driver.notices[-1] == "Nothing has left the picture."
+
+
+def test_what_lies_beside_the_picture_comes_back_into_a_free_place_while_others_stay(open_app):
+    driver = open_app(load_level("jelly_pile"))
+    world = driver.world
+    bodies = [np.flatnonzero(world.owner == owner) for owner in np.unique(world.owner[world.owner >= 0])]
+    left, _, right, _ = driver.app.play.troubles._pictures[0]
+    gesture = driver.playback.session.new_gesture()
+    for number, body in enumerate(bodies[:3]):
+        way = right - left + 3.0 * number
+        driver.playback.submit(MoveBody(int(body[0]), (way, 4.0), at_rest=True), gesture)
+    driver.pass_unseen(90)
+    assert button(driver).text == "Bring back 3" and NOTICE not in driver.notices
+    others = world.position[bodies[5]].mean(axis=0)
+    driver.click_widget(button(driver))
+    driver.frames(2)
+    assert all(in_picture(driver, body) for body in bodies) and not button(driver).visible
+    assert np.abs(world.position[bodies[5]].mean(axis=0) - others).max() < 0.5
+    assert not overlapping(world)
+
+
+def test_what_was_thrown_up_and_falls_back_has_not_left(open_app):
+    ball = {"id": "ball", "position": [0, 0], "velocity": [0, 14], "radius": 0.3}
+    driver = open_app(small_level(bodies=[], particles=[ball], settings={"gravity": [0, -9.81]}, view=[-4, -3, 4, 3]))
+    highest, seen = 0.0, []
+    for _ in range(160):
+        driver.pass_unseen(1)
+        highest = max(highest, float(driver.world.position[driver.world.particle_slot("ball"), 1]))
+        seen.append(bool(button(driver).visible))
+    assert highest > 9.0 and not any(seen) and NOTICE not in driver.notices
+    driver.pass_unseen(150)
+    assert button(driver).visible
+
+
+def test_what_hangs_on_something_that_is_held_stays(open_app):
+    driver = open_app(small_level(view=[-1.0, -1.0, 1.0, 3.0]))
+    driver.app.display.window.size = (640, 640)
+    driver.pass_unseen(100)
+    driver.frames(1)
+    # The rope reaches out of the picture, and is pinned within it.
+    assert not button(driver).visible
+
+
+@pytest.mark.parametrize("name", LEVELS[::2])
+def test_no_level_has_lost_anything_by_itself_after_some_seconds(open_app, name):
+    driver = open_app(load_level(name))
+    driver.pass_unseen(240)
+    driver.frames(1)
+    assert not button(driver).visible and NOTICE not in driver.notices
