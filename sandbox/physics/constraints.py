@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, Int8s
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Int8s, Int32s
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.geometry.polygon import polygon_area
 from sandbox.physics.geometry.segment import doubled_areas
@@ -69,7 +69,7 @@ def constraints_of(state: State | StateArrays) -> ConstraintArrays:
 
 
 @inner_kernel
-def _area_slope(place: FloatRows, first: int, last: int, slope: Floats) -> None:
+def _area_slope(place: FloatRows, first: int, last: int, slope: FloatRows) -> None:
     # dA / dx_i = the vector between its two neighbours, turned, over 2
     for c in range(first, last):
         previous = c - 1 if c > first else last - 1
@@ -118,7 +118,7 @@ def _bend(place: FloatRows, first: int, cosine: float, sine: float, weight: Floa
 
 @inner_kernel
 def evaluate(
-    kind: int, place: FloatRows, first: int, last: int, rest: FloatRows, at: int, weight: Floats, slope: Floats
+    kind: int, place: FloatRows, first: int, last: int, rest: FloatRows, at: int, weight: Floats, slope: FloatRows
 ) -> float:
     """C of the constraint of rest[at] whose corners first..last are at place (q, 2); its gradient into slope (q, 2)."""
     if kind == AREA:
@@ -138,7 +138,7 @@ def rest_mass(first: int, last: int, inverse_mass: Floats, particle: Int32s, wei
 
 
 @inner_kernel
-def look(first: int, last: int, position: FloatRows, particle: Int32s, place: Floats) -> None:
+def look(first: int, last: int, position: FloatRows, particle: Int32s, place: FloatRows) -> None:
     """Bring the corners first..last to where their particles are."""
     for c in range(first, last):
         place[c, 0] = position[particle[c], 0]
@@ -156,8 +156,8 @@ def constraint_rate(first: int, last: int, velocity: FloatRows, particle: Int32s
 
 @kernel
 def constraint_values(
-    position: Floats, inverse_mass: Floats, constraints: ConstraintArrays, place: Floats, value: Floats, mass: Floats,
-    slope: Floats,
+    position: FloatRows, inverse_mass: Floats, constraints: ConstraintArrays, place: FloatRows, value: Floats, mass: Floats,
+    slope: FloatRows,
 ) -> None:  # fmt: skip
     """C (t,) and effective mass (t,) of all active constraints, 0 of others, with their gradients (q, 2)."""
     for k in range(constraints.kind.shape[0]):

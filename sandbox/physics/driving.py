@@ -135,7 +135,8 @@ def drive_springs(state: State, good: GoodValues, drives: Drives, tick: int, sol
 
 @kernel
 def _drive_muscles(lent: Any, tick: int, solver: int, tick_rate: int) -> None:
-    state, good, drives = contents(lent)
+    parts: tuple[State, GoodValues, Drives] = contents(lent)
+    state, good, drives = parts
     _contract(state, good, drives, tick, solver, tick_rate)
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import Flags, FloatRows, Floats
+from sandbox.physics.arrays import Flags, FloatRows
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import State
 
@@ -13,7 +13,7 @@ FULL_TURN = 6.283185307179586
 
 
 @inner_kernel
-def follow(velocity: FloatRows, slow_velocity: FloatRows, slow_change: Floats, active: Flags) -> None:
+def follow(velocity: FloatRows, slow_velocity: FloatRows, slow_change: FloatRows, active: Flags) -> None:
     """Let the slow part of velocities follow them, and that of its change in a step."""
     for p in range(active.shape[0]):
         if active[p]:

@@ -118,7 +118,8 @@ def limit_rings(state: State, stiffness: Floats, damping: Floats) -> None:
 
 @kernel
 def _limit_rings(lent: Any, stiffness: Floats, damping: Floats) -> None:
-    limit_rings(contents(lent), stiffness, damping)
+    state: State = contents(lent)
+    limit_rings(state, stiffness, damping)
 
 
 @inner_kernel

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.analysis.energy import measure_constraints, reduced_masses
-from sandbox.physics.arrays import FloatRows, FloatTables, Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, FloatTables, Slots
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.jit import kernel
@@ -42,13 +42,13 @@ class ConstraintRows(NamedTuple):
 
     first: Slots
     node: Slots
-    gradient: Floats
+    gradient: FloatRows
     mass: Floats
 
 
 @kernel
 def _iterate_inversely(
-    matrix: Matrix, rows: ConstraintRows, mass: Floats, rigid: FloatTables, vector: Floats, right_side: Floats, rounds: int,
+    matrix: Matrix, rows: ConstraintRows, mass: Floats, rigid: FloatTables, vector: FloatRows, right_side: FloatRows, rounds: int,
     converged: float,
 ) -> float:  # fmt: skip
     # x -> (S + SHIFT M)^-1 M x without its motions as a whole; the Rayleigh quotient x S x / x M x of the last x.

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slot_rows, new_slots
-from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.topology.sorting import sort_ascending

@@ -7,7 +7,7 @@ manifold: two points at which two bodies touch are two contacts.
 
 import math
 
-from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.arrays import FloatRows
 from sandbox.physics.collision.broad_phase import WITH_ALL, WITH_EDGES, WITH_NOTHING, Boxes, Candidates, Pairs
 from sandbox.physics.collision.edge_geometry import CORNER, is_enclosed
 from sandbox.physics.collision.entered import find_entered

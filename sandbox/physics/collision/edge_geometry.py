@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.arrays import FloatRows, SlotRows
 from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.polygon import winding_of_side
 from sandbox.physics.geometry.segment import difference, doubled_area, unit

@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.arrays import FloatRows
 from sandbox.physics.collision.edge_geometry import is_behind, is_in
 from sandbox.physics.collision.narrow_phase import EDGE, INSIDE, KINDS, may_collide, push_out
 from sandbox.physics.collision.outline import Outline

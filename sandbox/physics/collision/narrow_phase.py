@@ -6,7 +6,7 @@ is pushed out there. What moves fast is followed along its way, and meets what s
 
 import math
 
-from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.arrays import FloatRows, SlotRows
 from sandbox.physics.collision.edge_geometry import (
     CORNER,
     corner_normal,

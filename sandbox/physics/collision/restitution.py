@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import Flags, FloatRows, Floats
+from sandbox.physics.arrays import Flags, FloatRows
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inner_kernel
 

@@ -8,7 +8,7 @@ symmetric, and a body's angular momentum changes by what friction does at its ri
 
 import math
 
-from sandbox.physics.arrays import Flags, FloatRows, Floats
+from sandbox.physics.arrays import Flags, FloatRows
 from sandbox.physics.collision.types import TOUCHING, Colliders, Contacts, weight_of
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel

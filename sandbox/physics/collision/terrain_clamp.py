@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.arrays import Flags, FloatRows, FloatTables, Floats, Slots
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.collision.narrow_phase import are_joined, may_collide
 from sandbox.physics.collision.outline import Outline
@@ -20,14 +20,14 @@ STOPS = 3
 
 @inner_kernel
 def clamp_at_terrain(
-    position: Floats,
+    position: FloatRows,
     velocity: FloatRows,
     ahead: FloatRows,
     collides: Slots,
     active: Flags,
     inverse_mass: Floats,
     terrain: Terrain,
-    box: Floats,
+    box: FloatRows,
     near_start: Slots,
     h: float,
 ) -> None:
@@ -38,7 +38,7 @@ def clamp_at_terrain(
     if terrain.edge_a.shape[0] == 0:
         return
     for p in range(position.shape[0]):
-        if not active[p] or inverse_mass[p] == 0.0 or not collides[p] & TERRAIN_GROUP:
+        if not active[p] or inverse_mass[p] == 0.0 or (collides[p] & TERRAIN_GROUP) == 0:
             continue
         wx = h * velocity[p, 0] + ahead[p, 0]
         wy = h * velocity[p, 1] + ahead[p, 1]
@@ -76,7 +76,7 @@ def stop_at_terrain(p: int, position: FloatRows, velocity: FloatRows, terrain: T
 @inner_kernel
 def clamp_at_pins(
     position: FloatRows, velocity: FloatRows, ahead: FloatRows, inverse_mass: Floats, outline: Outline, colliders: Colliders,
-    box: Floats, near_start: Slots, h: float,
+    box: FloatRows, near_start: Slots, h: float,
 ) -> None:  # fmt: skip
     """The same at edges of bodies that pins hold, which particles of other bodies may touch.
 
@@ -147,7 +147,7 @@ def clamp_at_tips(
 
 @inner_kernel
 def _stop_edge(
-    e: int, i: int, v: int, velocity: FloatTables, inverse_mass: Floats, terrain: Terrain, colliders: Colliders,
+    e: int, i: int, v: int, velocity: FloatRows, inverse_mass: Floats, terrain: Terrain, colliders: Colliders,
     holds: bool, h: float,
 ) -> bool:  # fmt: skip
     found = False

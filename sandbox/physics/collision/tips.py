@@ -6,7 +6,7 @@ with shares 1 - s and s, and end_a is -1. At its ends an edge meets terrain as a
 
 import math
 
-from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.arrays import FloatRows
 from sandbox.physics.collision.narrow_phase import KINDS, TIP, TIP_SHIFT, add_contact, may_collide
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.equation import SHORTEST
@@ -132,7 +132,7 @@ def _first_root(c: float, b: float, a: float) -> float:
 
 
 @inner_kernel
-def _next_tip(last: int, k: int, box: Floats, terrain: Terrain) -> int:
+def _next_tip(last: int, k: int, box: FloatRows, terrain: Terrain) -> int:
     # The tip of the lowest number above `last` in a box, -1: there is none. Cells are as the whole of the terrain has
     # them.
     per_cell = 1.0 / terrain.cell[0]

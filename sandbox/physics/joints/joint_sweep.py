@@ -60,7 +60,7 @@ def _alone(joints: Joints, k: int, u: float) -> float:
 
 
 @inner_kernel
-def start_joints(joints: Joints, delta_v: Floats) -> None:
+def start_joints(joints: Joints, delta_v: FloatRows) -> None:
     """Apply the impulses that joints bring along."""
     rows = joints.rows
     for i in range(joints.listed.shape[0]):
@@ -71,7 +71,7 @@ def start_joints(joints: Joints, delta_v: Floats) -> None:
 
 
 @inner_kernel
-def sweep_joints(joints: Joints, delta_v: Floats) -> float:
+def sweep_joints(joints: Joints, delta_v: FloatRows) -> float:
     """One sweep over all joints, in order; the largest change of a row's velocity [m/s, where g has no unit]."""
     rows = joints.rows
     largest = 0.0
@@ -92,7 +92,7 @@ def sweep_joints(joints: Joints, delta_v: Floats) -> float:
 
 
 @inner_kernel
-def _set(joints: Joints, k: int, impulse: float, delta_v: Floats) -> float:
+def _set(joints: Joints, k: int, impulse: float, delta_v: FloatRows) -> float:
     # Give a row another impulse; by how much its own velocity changes.
     more = impulse - joints.rows.impulse[k]
     if more == 0.0:
@@ -114,7 +114,7 @@ def swept_by(joints: Joints) -> float:
 
 
 @inner_kernel
-def go_on_with_joints(joints: Joints, delta_v: Floats, ratio: float) -> None:
+def go_on_with_joints(joints: Joints, delta_v: FloatRows, ratio: float) -> None:
     """P += ratio p, clamped; p = ratio p + the change of the sweep: as contacts do."""
     rows = joints.rows
     for i in range(joints.listed.shape[0]):
@@ -152,7 +152,7 @@ def gather_push(joints: Joints) -> None:
 
 
 @inner_kernel
-def give_impulse(rows: JointRows, k: int, impulse: float, delta_v: Floats, inverse_mass: Floats) -> None:
+def give_impulse(rows: JointRows, k: int, impulse: float, delta_v: FloatRows, inverse_mass: Floats) -> None:
     """Apply an impulse of a row to particles that answer by their own mass."""
     for e in range(rows.first[k], rows.first[k + 1]):
         p = rows.particle[e]
@@ -161,7 +161,7 @@ def give_impulse(rows: JointRows, k: int, impulse: float, delta_v: Floats, inver
 
 
 @inner_kernel
-def warm_start_joints(joints: Joints, delta_v: Floats, inverse_mass: Floats) -> None:
+def warm_start_joints(joints: Joints, delta_v: FloatRows, inverse_mass: Floats) -> None:
     """Apply the impulses that joints bring along, to particles that answer by their own mass."""
     couple_masses(joints, inverse_mass)
     for k in range(joints.rows.limit.shape[0]):
@@ -170,7 +170,7 @@ def warm_start_joints(joints: Joints, delta_v: Floats, inverse_mass: Floats) -> 
 
 
 @inner_kernel
-def iterate_joint(joints: Joints, k: int, velocity: Floats, delta_v: FloatRows, inverse_mass: Floats) -> None:
+def iterate_joint(joints: Joints, k: int, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats) -> None:
     """Bring a joint, or two that are clamped together, to its target; particles answer by their own mass."""
     rows = joints.rows
     if rows.pair[k] == SECOND_OF_TWO or not (rows.limit[k] > 0.0 and own_response(joints, k) > 0.0):
@@ -187,7 +187,7 @@ def iterate_joint(joints: Joints, k: int, velocity: Floats, delta_v: FloatRows, 
 
 
 @inner_kernel
-def iterate_joints(joints: Joints, velocity: Floats, delta_v: Floats, inverse_mass: Floats) -> None:
+def iterate_joints(joints: Joints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats) -> None:
     """One iteration over all joints of particles that answer by their own mass; clamped is the sum of its impulses."""
     for k in range(joints.rows.limit.shape[0]):
         iterate_joint(joints, k, velocity, delta_v, inverse_mass)

@@ -6,7 +6,7 @@ has changed nothing by then but scratch.
 
 from typing import NamedTuple
 
-from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
+from sandbox.physics.arrays import Flags, FloatRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Candidates, Grid, cell_size, fill_grid, find_pairs
 from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
 from sandbox.physics.collision.disc_stop import stop_discs

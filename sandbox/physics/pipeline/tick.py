@@ -120,7 +120,8 @@ def tick(lent: Any) -> int:
 @kernel
 def find_broken(lent: Any) -> int:
     """Let springs yield and find those that break, at the end of a tick in which something was lost; how many."""
-    return _find_broken(contents(lent))
+    world: WorldBlock = contents(lent)
+    return _find_broken(world)
 
 
 @inner_kernel

@@ -1,8 +1,5 @@
 """Stable sorts and lists by key, for what kernels derive from topology: no library's choice is in their order."""
-
-from typing import Any
-
-from sandbox.physics.arrays import Int32s, Slots
+from sandbox.physics.arrays import Floats, Int32s, Slots
 from sandbox.physics.jit import inner_kernel
 
 
@@ -102,7 +99,7 @@ def list_neighbours(
 
 
 @inner_kernel
-def sort_by_value(value: Any, order: Slots, begin: int, end: int, spare: Slots) -> None:
+def sort_by_value(value: Slots | Floats, order: Slots, begin: int, end: int, spare: Slots) -> None:
     """Sort order[begin:end] by the value of each, integers or floats; equal ones stay as they are.
 
     spare: scratch of that length. By merging runs, from the shortest up.
@@ -119,7 +116,7 @@ def sort_by_value(value: Any, order: Slots, begin: int, end: int, spare: Slots) 
 
 
 @inner_kernel
-def _merge(value: Any, order: Slots, first: int, middle: int, last: int, spare: Slots) -> None:
+def _merge(value: Slots | Floats, order: Slots, first: int, middle: int, last: int, spare: Slots) -> None:
     # Two sorted runs as one.
     for at in range(first, middle):
         spare[at - first] = order[at]

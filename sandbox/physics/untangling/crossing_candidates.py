@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slots
-from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
+from sandbox.physics.arrays import Flags, FloatRows, Slots
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.rigid import WeightedSums, best_turn, centre_of, rotated, with_pair, with_point

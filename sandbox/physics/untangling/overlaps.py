@@ -9,7 +9,7 @@ a particle that is caught in a mesh narrower than itself must not hold it open.
 from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slot_rows, new_slots
-from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
 from sandbox.physics.collision.edge_geometry import winds
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, may_collide

@@ -12,9 +12,7 @@ from sandbox.physics.jit.translate.types import (
     FLAG,
     FLOAT,
     INTEGER,
-    NOTHING,
     Array,
-    Bundle,
     Scalar,
     Several,
     Struct,
@@ -32,13 +30,13 @@ _ARITHMETIC: dict[type, tuple[str, int]] = {
     ast.BitOr: ("|", BITS_OR),
 }  # fmt: skip
 _OF_INTEGERS = (ast.LShift, ast.RShift, ast.BitAnd, ast.BitXor, ast.BitOr)
-_ROUNDED = {ast.FloorDiv: "floor_divide", ast.Mod: "modulo"}
+_ROUNDED = {ast.FloorDiv: "py::floordiv", ast.Mod: "py::mod"}
 _ORDERS: dict[type, tuple[str, int]] = {
     ast.Lt: ("<", ORDER), ast.LtE: ("<=", ORDER), ast.Gt: (">", ORDER), ast.GtE: (">=", ORDER),
     ast.Eq: ("==", EQUALITY), ast.NotEq: ("!=", EQUALITY),
 }  # fmt: skip
 _OF_MATH: dict[Any, tuple[str, Scalar]] = {
-    math.sqrt: ("root", FLOAT), math.floor: ("floor_of", INTEGER), math.ceil: ("ceiling_of", INTEGER),
+    math.sqrt: ("py::sqrt", FLOAT), math.floor: ("py::floor", INTEGER), math.ceil: ("py::ceil", INTEGER),
 }  # fmt: skip
 # What lies in the memory of an arena: the type of its items, and how many dimensions it has.
 _LYING = {
@@ -48,9 +46,7 @@ _LYING = {
 }  # fmt: skip
 # Names that are words of C++.
 _WORDS = set(
-    "and auto bool case catch char class const default delete do double enum explicit export extern float friend goto "
-    "inline int long namespace new not operator or private protected public register short signed sizeof static "
-    "struct switch template this throw try typedef typename union unsigned using virtual void volatile".split()
+    ["and", "auto", "bool", "case", "catch", "char", "class", "const", "default", "delete", "do", "double", "enum", "explicit", "export", "extern", "float", "friend", "goto", "inline", "int", "long", "namespace", "new", "not", "operator", "or", "private", "protected", "public", "register", "short", "signed", "sizeof", "static", "struct", "switch", "template", "this", "throw", "try", "typedef", "typename", "union", "unsigned", "using", "virtual", "void", "volatile"]
 )
 
 
@@ -89,6 +85,10 @@ class Program(Protocol):
 
     def struct(self, kind: type) -> Struct:
         """The struct of a class of named tuples."""
+        ...
+
+    def annotated(self, module: str, node: ast.AnnAssign) -> Type:
+        """The type that an annotation says. Raises Refused."""
         ...
 
     def constant(self, constant: Constant) -> None:
@@ -303,6 +303,8 @@ class Expressions:
             dtype, dimensions = _LYING[known]
             made = Array(dtype, dimensions)
             return Code(f"lying<{made.cpp}>({', '.join(self.code(each).text for each in node.args)})", made)
+        if isinstance(value, interpreted.InterpreterFunction):
+            return Code("0", INTEGER)
         if value is interpreted.unsigned:
             return self._only(node, INTEGER)
         raise self.refuse(node, f"{ast.unparse(node.func)} is no kernel")
@@ -349,7 +351,7 @@ class Expressions:
 
     def _size(self, node: ast.Call) -> Code:
         found = self.scalar(node.args[0])
-        return Code(f"size_of({found.text})", found.type)
+        return Code(f"py::abs({found.text})", found.type)
 
     def _as_integer(self, node: ast.Call) -> Code:
         return Code(f"int64_t({self._only(node, FLOAT).text})", INTEGER)
@@ -365,8 +367,8 @@ _TRANSLATED: dict[type, Callable[[Expressions, Any], Code]] = {
     ast.Tuple: Expressions.several, ast.Call: Expressions.call,
 }  # fmt: skip
 _BUILTIN: dict[str, Callable[[Expressions, ast.Call], Code]] = {
-    "min": lambda own, node: own._extreme(node, "least"),
-    "max": lambda own, node: own._extreme(node, "greatest"),
+    "min": lambda own, node: own._extreme(node, "py::min"),
+    "max": lambda own, node: own._extreme(node, "py::max"),
     "abs": Expressions._size,
     "int": Expressions._as_integer,
     "float": Expressions._as_float,

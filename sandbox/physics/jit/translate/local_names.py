@@ -37,34 +37,50 @@ def targets_of(statement: ast.stmt) -> list[ast.expr]:
 
 def find_places(function: ast.FunctionDef) -> Places:
     """Where the names of a kernel are declared."""
-    found = Places()
+    found, names = Places(), _Names(function)
     parameters = {argument.arg for argument in function.args.args}
+    loops: dict[str, list[ast.For]] = {}
+    for node in ast.walk(function):
+        if isinstance(node, ast.For) and isinstance(node.target, ast.Name):
+            loops.setdefault(node.target.id, []).append(node)
     for name in sorted(own_names(function) - parameters - {"_"}):
-        loops = [node for node in ast.walk(function) if isinstance(node, ast.For) and _is(node.target, name)]
-        stores = sum(_is_store(node, name) for node in ast.walk(function))
-        inside = {id(node) for loop in loops for node in ast.walk(loop)}
-        outside = any(isinstance(node, ast.Name) and node.id == name and id(node) not in inside
-                      for node in ast.walk(function))  # fmt: skip
-        if loops and not outside and stores == len(loops):
+        own = loops.get(name, [])
+        inside = {id(node) for loop in own for node in ast.walk(loop)}
+        outside = any(id(node) not in inside for node in names.nodes[name])
+        stores = sum(isinstance(node.ctx, ast.Store) for node in names.nodes[name])
+        if own and not outside and stores == len(own):
             continue
-        found.hidden.update(map(id, loops))
-        _place(name, function.body, found)
+        found.hidden.update(map(id, own))
+        _place(name, function.body, found, names)
         if stores == 1:
             found.once.add(name)
     return found
 
 
+class _Names:
+    """The names in each part of a kernel, and the nodes of each name."""
+
+    def __init__(self, function: ast.FunctionDef) -> None:
+        self.nodes: dict[str, list[ast.Name]] = {}
+        self._within: dict[int, set[str]] = {}
+        self._collect(function)
+
+    def _collect(self, node: ast.AST) -> set[str]:
+        found = {node.id} if isinstance(node, ast.Name) else set()
+        if isinstance(node, ast.Name):
+            self.nodes.setdefault(node.id, []).append(node)
+        for child in ast.iter_child_nodes(node):
+            found |= self._collect(child)
+        self._within[id(node)] = found
+        return found
+
+    def holds(self, node: ast.AST, name: str) -> bool:
+        """Whether a name stands in a part."""
+        return name in self._within[id(node)]
+
+
 def _is(node: ast.AST, name: str) -> bool:
     return isinstance(node, ast.Name) and node.id == name
-
-
-def _is_store(node: ast.AST, name: str) -> bool:
-    return isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
-
-
-def has_name(node: ast.AST, name: str) -> bool:
-    """Whether a name stands in a part of a kernel."""
-    return any(_is(each, name) for each in ast.walk(node))
 
 
 def blocks_of(statement: ast.stmt) -> Iterator[Statements]:
@@ -75,27 +91,27 @@ def blocks_of(statement: ast.stmt) -> Iterator[Statements]:
             yield statement.orelse
 
 
-def _place(name: str, body: Statements, found: Places) -> None:
+def _place(name: str, body: Statements, found: Places, names: _Names) -> None:
     # In the innermost block that holds it everywhere; not in that of a loop that may carry a value on to the next turn.
-    holding = [statement for statement in body if has_name(statement, name)]
+    holding = [statement for statement in body if names.holds(statement, name)]
     first = holding[0]
     if len(holding) == 1:
-        blocks = [block for block in blocks_of(first) if any(has_name(each, name) for each in block)]
+        blocks = [block for block in blocks_of(first) if any(names.holds(each, name) for each in block)]
         heads = [first.test] if isinstance(first, (ast.If, ast.While)) else []
         heads += [first.target, first.iter] if isinstance(first, ast.For) else []
-        if len(blocks) == 1 and not any(has_name(head, name) for head in heads):
-            start = next(each for each in blocks[0] if has_name(each, name))
-            if isinstance(first, ast.If) or _begins(start, name):
-                _place(name, blocks[0], found)
+        if len(blocks) == 1 and not any(names.holds(head, name) for head in heads):
+            start = next(each for each in blocks[0] if names.holds(each, name))
+            if isinstance(first, ast.If) or _begins(start, name, names):
+                _place(name, blocks[0], found, names)
                 return
-    if _begins(first, name):
+    if _begins(first, name, names):
         found.first.setdefault(id(first), set()).add(name)
     else:
         found.before.setdefault(id(first), []).append(name)
 
 
-def _begins(statement: ast.stmt, name: str) -> bool:
+def _begins(statement: ast.stmt, name: str, names: _Names) -> bool:
     """Whether a statement assigns a name and reads it not."""
     if not isinstance(statement, (ast.Assign, ast.AnnAssign)) or statement.value is None:
         return False
-    return any(_is(target, name) for target in targets_of(statement)) and not has_name(statement.value, name)
+    return any(_is(target, name) for target in targets_of(statement)) and not names.holds(statement.value, name)

@@ -1,6 +1,7 @@
 """All kernels that entries call, as one text of C++."""
 
 import ast
+import importlib
 import inspect
 import itertools
 from collections.abc import Iterable, Sequence
@@ -13,7 +14,19 @@ from sandbox.physics.jit import KERNELS, Kernel
 from sandbox.physics.jit.translate.expressions import spelled, written
 from sandbox.physics.jit.translate.sources import Constant, Refused, definition
 from sandbox.physics.jit.translate.statements import Body
-from sandbox.physics.jit.translate.types import FLAG, FLOAT, INTEGER, NOTHING, Array, Bundle, NoType, Several, Struct, Type, Types, fits
+from sandbox.physics.jit.translate.types import (
+    FLAG,
+    FLOAT,
+    INTEGER,
+    NOTHING,
+    Array,
+    Bundle,
+    NoType,
+    Struct,
+    Type,
+    Types,
+    fits,
+)
 
 _RUNTIME = Path(__file__).with_name("runtime.h")
 
@@ -54,6 +67,13 @@ class Translation:
     def struct(self, kind: type) -> Struct:
         """The struct of a class of named tuples."""
         return self._types.struct(kind)
+
+    def annotated(self, module: str, node: ast.AnnAssign) -> Type:
+        """The type that an annotation says. Raises Refused."""
+        try:
+            return self._types.of(eval(ast.unparse(node.annotation), vars(importlib.import_module(module))))
+        except NoType as fault:
+            raise Refused(module, node.lineno, f"{fault} is no type of kernels") from None
 
     def constant(self, constant: Constant) -> None:
         """Take note that a constant is used."""

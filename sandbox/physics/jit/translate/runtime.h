@@ -74,29 +74,33 @@ template <class A, class B, class C, class D, class E, class F, class G, class H
     A item0; B item1; C item2; D item3; E item4; F item5; G item6; H item7;
 };
 
-// As Python's min, max and abs: of equal ones the first, and a NaN only where it is the first.
-template <class T> static T least(T a, T b) { return b < a ? b : a; }
-template <class T> static T greatest(T a, T b) { return b > a ? b : a; }
-static double size_of(double a) { return __builtin_fabs(a); }
-static int64_t size_of(int64_t a) { return a < 0 ? -a : a; }
+namespace py {
 
-static double root(double a) { return __builtin_sqrt(a); }
+// As Python's min, max and abs: of equal ones the first, and a NaN only where it is the first.
+template <class T> static T min(T a, T b) { return b < a ? b : a; }
+template <class T> static T max(T a, T b) { return b > a ? b : a; }
+static double abs(double a) { return __builtin_fabs(a); }
+static int64_t abs(int64_t a) { return a < 0 ? -a : a; }
+
+static double sqrt(double a) { return __builtin_sqrt(a); }
 // Processors of the oldest kind have no instruction for these: the same bits as theirs, but for the sign of 0.
-static int64_t floor_of(double a) {
+static int64_t floor(double a) {
     const int64_t whole = (int64_t)a;
     return (double)whole > a ? whole - 1 : whole;
 }
-static int64_t ceiling_of(double a) {
+static int64_t ceil(double a) {
     const int64_t whole = (int64_t)a;
     return (double)whole < a ? whole + 1 : whole;
 }
-static int64_t floor_divide(int64_t a, int64_t b) {
+static int64_t floordiv(int64_t a, int64_t b) {
     const int64_t quotient = a / b;
     return a % b != 0 && (a < 0) != (b < 0) ? quotient - 1 : quotient;
 }
-static int64_t modulo(int64_t a, int64_t b) {
+static int64_t mod(int64_t a, int64_t b) {
     const int64_t rest = a % b;
     return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
+}
+
 }
 
 // Entries: a block of words holds the arguments, one after another, and then the result in its first word.

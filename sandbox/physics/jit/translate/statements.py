@@ -5,9 +5,18 @@ from collections.abc import Iterator
 
 from sandbox.physics.jit import interpreted
 from sandbox.physics.jit.translate.expressions import PRIMARY, SUM, Code, Expressions, Program, Unknown, spelled
-from sandbox.physics.jit.translate.local_names import Places, blocks_of, find_places, own_names, targets_of
-from sandbox.physics.jit.translate.sources import comments, meaning
-from sandbox.physics.jit.translate.types import FLOAT, INTEGER, NOTHING, Array, Bundle, Several, Struct, Type, fits, joined
+from sandbox.physics.jit.translate.local_names import Places, blocks_of, find_places, own_names
+from sandbox.physics.jit.translate.sources import Constant, comments, meaning
+from sandbox.physics.jit.translate.types import (
+    FLOAT,
+    INTEGER,
+    NOTHING,
+    Several,
+    Struct,
+    Type,
+    fits,
+    joined,
+)
 
 _INDENT = "    "
 
@@ -84,11 +93,15 @@ class Body(Expressions):
         raise self.refuse(node, "this is nothing that has parts")
 
     def _annotated(self, node: ast.AnnAssign) -> Type:
-        kind = meaning(self.module, ast.unparse(node.annotation))
-        if isinstance(kind, type) and hasattr(kind, "_fields"):
-            return self.program.struct(kind)
+        if self._is_contents(node.value):
+            return self.program.annotated(self.module, node)
         assert node.value is not None
         return self.code(node.value).type
+
+    def _is_contents(self, value: ast.expr | None) -> bool:
+        if not (isinstance(value, ast.Call) and isinstance(value.func, ast.Name)):
+            return False
+        return meaning(self.module, value.func.id) is interpreted.contents
 
     def _type_of(self, value: ast.expr | Type) -> Type:
         return self.code(value).type if isinstance(value, ast.expr) else value
@@ -203,10 +216,9 @@ class Body(Expressions):
     def _contents(self, statement: ast.AnnAssign) -> list[str]:
         target, value = statement.target, statement.value
         assert isinstance(target, ast.Name) and value is not None
-        if isinstance(value, ast.Call) and isinstance(value.func, ast.Name):
-            if meaning(self.module, value.func.id) is interpreted.contents:
-                kind = self.types[target.id].cpp
-                return [f"const {kind} &{spelled(target.id)} = contents<{kind}>({self.code(value.args[0]).text});"]
+        if self._is_contents(value):
+            kind = self.types[target.id].cpp
+            return [f"const {kind} &{spelled(target.id)} = contents<{kind}>({self.code(value.args[0]).text});"]
         return [self._set(statement, target, self.code(value))]
 
     def _assigned(self, statement: ast.Assign) -> list[str]:
@@ -315,11 +327,14 @@ class Body(Expressions):
             raise self.refuse(call, "a range is one of integers")
         if len(codes) == 1:
             return Code("0", INTEGER), codes[0], 1
+        return codes[0], codes[1], self._step(call.args[2]) if len(codes) == 3 else 1
+
+    def _step(self, node: ast.expr) -> int:
+        known = meaning(self.module, node.id) if isinstance(node, ast.Name) and node.id not in self.own else None
         try:
-            step = int(codes[2].text) if len(codes) == 3 else 1
+            return int(known.value if isinstance(known, Constant) else ast.literal_eval(node))
         except ValueError:
-            raise self.refuse(call, "the step of a range is a number that is written there") from None
-        return codes[0], codes[1], step
+            raise self.refuse(node, "the step of a range is a constant") from None
 
     def _stays(self, statement: ast.For, last: Code) -> bool:
         """Whether the end of a range is the same after each turn, as C++ looks again."""

@@ -31,7 +31,7 @@ MOST_SWEEPS = 40.0
 
 @inner_kernel
 def velocity_of(
-    contacts: Contacts, c: int, velocity: FloatRows, delta_v: Floats, surface: Floats
+    contacts: Contacts, c: int, velocity: FloatRows, delta_v: FloatRows, surface: Floats
 ) -> tuple[float, float]:  # fmt: skip
     """Velocity of a contact along its normal, and slip [m/s]."""
     ux, uy = relative_velocity(contacts, c, velocity, delta_v)

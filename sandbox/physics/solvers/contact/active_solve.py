@@ -7,7 +7,7 @@ the pushes with the same factor. It usually settles in 1 to 6 steps; where it do
 stay. Joints, rolling resistance and what is fast are left to the sweeps after it.
 """
 
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.active_rows import (
@@ -41,7 +41,7 @@ SLIP_SETTLED = 1e-7
 
 @inner_kernel
 def _set_impulse(
-    contacts: Contacts, c: int, jn: float, jt: float, terms: ContactConstraints, delta_v: Floats,
+    contacts: Contacts, c: int, jn: float, jt: float, terms: ContactConstraints, delta_v: FloatRows,
     inverse_mass: Floats, delassus: Delassus,
 ) -> None:  # fmt: skip
     dn = jn - contacts.impulse[c, 0]
@@ -53,7 +53,7 @@ def _set_impulse(
 
 
 @inner_kernel
-def _load_miss(contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, count: int) -> float:
+def _load_miss(contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, count: int) -> float:
     # Load the velocities of contacts; by how much they miss what is wanted [m/s].
     at = terms.active
     worst = 0.0
@@ -77,7 +77,7 @@ def _load_miss(contacts: Contacts, terms: ContactConstraints, velocity: Floats, 
 
 @inner_kernel
 def _follow_slip(
-    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus,
+    contacts: Contacts, terms: ContactConstraints, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus,
     count: int,
 ) -> float:  # fmt: skip
     # What slips goes to the friction that its new push allows; by how much that moves a contact at most [m/s].
@@ -95,7 +95,7 @@ def _follow_slip(
 
 @inner_kernel
 def _go_to_bounds(
-    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus,
+    contacts: Contacts, terms: ContactConstraints, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus,
     count: int,
 ) -> None:  # fmt: skip
     at = terms.active
@@ -108,7 +108,7 @@ def _go_to_bounds(
 
 @inner_kernel
 def _step(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus, rows: int, count: int,
 ) -> None:  # fmt: skip
     # Rows that are free as equations; what stands at a bound goes there.
@@ -152,7 +152,7 @@ def _keep(contacts: Contacts, terms: ContactConstraints, count: int) -> None:
 
 @inner_kernel
 def _go_to_best(
-    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus,
+    contacts: Contacts, terms: ContactConstraints, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus,
     count: int,
 ) -> None:  # fmt: skip
     # Within the bounds of Coulomb, which equations do not know.
@@ -170,7 +170,7 @@ def _go_to_best(
 
 @inner_kernel
 def solve_active(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus, affordable: float, cost: float,
 ) -> tuple[bool, int]:  # fmt: skip
     """Solve slow contacts that carry and stick as equations; whether that settles all contacts, and what it took.

@@ -122,7 +122,7 @@ def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity:
 
 @inner_kernel
 def pass_on(
-    contacts: Contacts, terms: ContactConstraints, velocity: Floats, delta_v: FloatRows, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
     """Find how fast all that bounces in a step of h [s] leaves, in passes from what is hit to what that hits in turn.
@@ -162,7 +162,7 @@ def pass_on(
 
 @inner_kernel
 def pass_on_all(
-    contacts: Contacts, terms: ContactConstraints, order: ContactOrder, velocity: FloatRows, delta_v: Floats,
+    contacts: Contacts, terms: ContactConstraints, order: ContactOrder, velocity: FloatRows, delta_v: FloatRows,
     inverse_mass: Floats, delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
     """The same of every island by itself."""

@@ -75,7 +75,7 @@ def solve_contacts(
 
 @inner_kernel
 def start_sweeps(
-    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus
+    contacts: Contacts, terms: ContactConstraints, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus
 ) -> None:
     """Apply the impulses that joints and contacts bring along."""
     start_joints(delassus.joints, delta_v)
@@ -84,7 +84,7 @@ def start_sweeps(
 
 @inner_kernel
 def sweep_all(
-    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: Floats, inverse_mass: Floats,
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus,
 ) -> tuple[float, float, float]:  # fmt: skip
     """One sweep over joints, then contacts; the largest changes of a velocity [m/s], of joints, contacts, calm ones."""
@@ -109,7 +109,7 @@ def change_of_sweep(contacts: Contacts, terms: ContactConstraints, joints: Joint
 
 @inner_kernel
 def go_on(
-    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus,
+    contacts: Contacts, terms: ContactConstraints, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus,
     ratio: float,
 ) -> None:  # fmt: skip
     """Go on in the direction of the sweeps before: by so much of it, then the change of the last one is added to it."""

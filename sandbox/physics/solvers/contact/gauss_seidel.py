@@ -105,7 +105,7 @@ def store_spins(terms: ContactConstraints, spin: Floats, radius: Floats) -> None
 
 
 @inner_kernel
-def relative_velocity(contacts: Contacts, c: int, velocity: FloatRows, delta_v: Floats) -> tuple[float, float]:
+def relative_velocity(contacts: Contacts, c: int, velocity: FloatRows, delta_v: FloatRows) -> tuple[float, float]:
     """Velocity of the particle relative to the other side of the contact, from velocity + delta_v."""
     p = contacts.particle[c]
     ux = velocity[p, 0] + delta_v[p, 0]
@@ -149,7 +149,7 @@ def _push_particle(p: int, jx: float, jy: float, delta_v: FloatRows, inverse_mas
 
 @inner_kernel
 def _push_two(
-    p: int, jx: float, jy: float, q: int, kx: float, ky: float, delta_v: Floats, inverse_mass: Floats,
+    p: int, jx: float, jy: float, q: int, kx: float, ky: float, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus,
 ) -> None:  # fmt: skip
     # Push two particles, -1: none; those of one body in one pass over its points.
@@ -203,7 +203,7 @@ def answer_push(p: int, jx: float, jy: float, delta_v: FloatRows, inverse_mass: 
 
 @inner_kernel
 def push_contact(
-    contacts: Contacts, c: int, jn: float, jt: float, surface: Floats, delta_v: Floats, inverse_mass: Floats,
+    contacts: Contacts, c: int, jn: float, jt: float, surface: Floats, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus,
 ) -> None:  # fmt: skip
     """Push both sides of a contact by impulses [N s] along normal and tangent, which turns them."""
@@ -343,7 +343,7 @@ def load_biases(contacts: Contacts, terms: ContactConstraints, h: float) -> None
 
 @inner_kernel
 def warm_start_contacts(
-    contacts: Contacts, terms: ContactConstraints, delta_v: Floats, inverse_mass: Floats, delassus: Delassus
+    contacts: Contacts, terms: ContactConstraints, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus
 ) -> None:
     """Apply the impulses that contacts bring along; that of rolling resistance begins with none."""
     for c in range(contacts.particle.shape[0]):
@@ -364,8 +364,8 @@ def approach_of(contacts: Contacts, c: int, velocity: FloatRows, delta_v: FloatR
 def sweep(
     contacts: Contacts,
     terms: ContactConstraints,
-    velocity: Floats,
-    delta_v: Floats,
+    velocity: FloatRows,
+    delta_v: FloatRows,
     inverse_mass: Floats,
     delassus: Delassus,
 ) -> tuple[float, float]:

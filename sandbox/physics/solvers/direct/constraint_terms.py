@@ -33,7 +33,7 @@ WHOLE_BEND = 1.0
 
 
 @inner_kernel
-def _look(k: int, constraints: Constraints, position: FloatRows, velocity: Floats, time: float) -> None:
+def _look(k: int, constraints: Constraints, position: FloatRows, velocity: FloatRows, time: float) -> None:
     # The corners of a constraint at position + time velocity.
     for c in range(constraints.first[k], constraints.first[k + 1]):
         r = constraints.row[c]
@@ -329,7 +329,7 @@ def constraint_slope(span: Span, system: System) -> float:
 
 @inner_kernel
 def constraint_potential(
-    span: Span, system: System, position: Floats, velocity: Floats, norm: Floats, time: float, h: float
+    span: Span, system: System, position: FloatRows, velocity: FloatRows, norm: Floats, time: float, h: float
 ) -> float:
     """Energy of a body's constraints at position + time velocity [J]."""
     # sum of norm C^2 / (2 h^2)
@@ -343,7 +343,7 @@ def constraint_potential(
 
 
 @inner_kernel
-def floor_potential(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
+def floor_potential(span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float) -> float:
     """Energy of the floors under a body's triangles at position + time velocity [J]."""
     constraints = system.constraints
     total = 0.0

@@ -4,7 +4,7 @@ Wide constraints are taken in after the factorisation: (A + K g g^T)^-1 = A^-1 -
 (Sherman and Morrison 1950). Right sides and solutions are in `delta_v`: the one array that a helping thread knows.
 """
 
-from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.arrays import FloatRows
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import gradient_dot
 from sandbox.physics.solvers.direct.families import assemble, load_residual

@@ -4,7 +4,7 @@ Each family loops over its own arrays; what calls them knows spans alone. Anothe
 else in this folder.
 """
 
-from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.arrays import FloatRows
 from sandbox.physics.integrate import SLOW_SHARE
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.direct.constraint_terms import (
@@ -175,7 +175,7 @@ def slope(span: Span, system: System) -> float:
 
 
 @inner_kernel
-def _constraint_energy(span: Span, system: System, position: Floats, velocity: Floats, time: float, h: float) -> float:
+def _constraint_energy(span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float) -> float:
     # With what is below its floor.
     return constraint_potential(span, system, position, velocity, system.constraints.k_h2, time, h) + floor_potential(
         span, system, position, velocity, time, h
@@ -183,7 +183,7 @@ def _constraint_energy(span: Span, system: System, position: Floats, velocity: F
 
 
 @inner_kernel
-def potential(span: Span, system: System, position: FloatRows, velocity: Floats, time: float, h: float) -> float:
+def potential(span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float) -> float:
     """Energy of one body's springs and constraints at position + time velocity [J]."""
     springs = system.springs
     return spring_potential(span, system, position, velocity, springs.k_h2, springs.rest, time, h) + _constraint_energy(

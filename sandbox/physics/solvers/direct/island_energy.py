@@ -422,7 +422,7 @@ def _damp_bodies(workspace: IslandWorkspace, system: System, state: State, halvi
 
 
 @inner_kernel
-def damp_islands(workspace: IslandWorkspace, system: System, state: State, start: Floats, h: float) -> None:
+def damp_islands(workspace: IslandWorkspace, system: System, state: State, start: FloatRows, h: float) -> None:
     """Slow down what moves within the bodies of islands that fail, else all that moves, until they pass."""
     # All that moves slowly enough along what contacts and springs want loses energy, and at rest they pass.
     islands, surface = workspace.islands, workspace.terms.surface

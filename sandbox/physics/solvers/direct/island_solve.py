@@ -8,7 +8,7 @@ together that touch each other, so that one may take what another gives.
 
 import math
 
-from sandbox.physics.arrays import FloatRows, FloatTables, Floats
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.jit import inner_kernel
@@ -211,7 +211,7 @@ def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: floa
 
 
 @inner_kernel
-def _leave_unpushed(span: Span, rows: Rows, unpushed: FloatTables) -> None:
+def _leave_unpushed(span: Span, rows: Rows, unpushed: FloatRows) -> None:
     # What a body does without contacts; `v` stays where the body was linearised.
     for r in range(span.first_row, span.last_row):
         unpushed[r, 0] = rows.v[r, 0] + rows.delta_v[r, 0]
@@ -424,7 +424,7 @@ def _begin_again(islands: BodyIslands, system: System, share: float) -> None:
 
 @inner_kernel
 def _push_and_test(
-    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: Floats, affordable: int,
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, affordable: int,
     accelerate: bool, begins: bool, h: float,
 ) -> int:  # fmt: skip
     # Push what was linearised through its contacts and joints, and test it; how many sweeps the step may still have.
@@ -474,7 +474,7 @@ def _solve_linearly(
 
 @inner_kernel
 def _solve_lower(
-    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: Floats, affordable: int,
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, affordable: int,
     h: float,
 ) -> int:  # fmt: skip
     # More of them, for targets that give way; the sweeps left.
@@ -491,7 +491,7 @@ def _solve_lower(
 
 @inner_kernel
 def _solve_without_bias(
-    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: Floats, affordable: int,
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, affordable: int,
     h: float,
 ) -> None:  # fmt: skip
     # Contacts only hold, at Newton steps on f from v* and from rest: the last one takes energy if it is made short

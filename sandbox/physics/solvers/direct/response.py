@@ -3,7 +3,7 @@
 It says how particles P that contacts touch answer to impulses.
 """
 
-from sandbox.physics.arrays import FloatRows, Floats, Slots
+from sandbox.physics.arrays import FloatRows, Slots
 from sandbox.physics.geometry.rigid import RigidMotion
 from sandbox.physics.jit import inner_kernel, unsigned
 from sandbox.physics.solvers.contact.gauss_seidel import Delassus
@@ -15,7 +15,7 @@ from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 
 
 @inner_kernel
-def load_block(k: int, span: Span, system: System, delassus: Delassus, row: Slots, vector: Floats) -> None:
+def load_block(k: int, span: Span, system: System, delassus: Delassus, row: Slots, vector: FloatRows) -> None:
     """The block k of a body, whose points are in the order of their rows; row (n,): of each particle."""
     matrix = system.matrix
     columns = delassus.columns

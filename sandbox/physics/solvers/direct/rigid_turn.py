@@ -13,7 +13,7 @@ None of the three changes the angular momentum L about the centre of mass, or ab
 
 import math
 
-from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.arrays import FloatRows
 from sandbox.physics.geometry.rigid import (
     RigidMotion,
     WeightedSums,
@@ -23,7 +23,7 @@ from sandbox.physics.geometry.rigid import (
     with_point,
     with_turn,
 )
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.direct.motion import kinetic
 from sandbox.physics.solvers.direct.slow_motion import find_slow
 from sandbox.physics.solvers.direct.system import (
@@ -103,6 +103,16 @@ def spin_of_body(body: int, system: System) -> RigidMotion:
 
 
 @inner_kernel
+def _set_spin(spin: FloatRows, body: int, motion: RigidMotion) -> None:
+    spin[body, SPIN_X] = motion.x
+    spin[body, SPIN_Y] = motion.y
+    spin[body, SPIN_VX] = motion.u
+    spin[body, SPIN_VY] = motion.v
+    spin[body, INERTIA] = motion.inertia
+    spin[body, MOMENTUM] = motion.momentum
+
+
+@inner_kernel
 def _inward(momentum: float, inertia: float, arc: float, h: float) -> float:
     # At what rate [1/s] the chords of what turns lead out of the circle where they begin, and back where they end.
     sine, cosine = turned(momentum, inertia, arc, h)
@@ -137,8 +147,7 @@ def _find_spin(body: int, span: Span, system: System) -> float:
         m, x, y = rows.mass[r], rows.position[r, 0], rows.position[r, 1]
         momentum0 += momentum_about(motion, m, x, y, rows.start[r, 0], rows.start[r, 1])
         motion = with_turn(motion, m, x, y, rows.v_star[r, 0], rows.v_star[r, 1])
-    for k in range(SPIN_X, MOMENTUM + 1):
-        spin[body, k] = motion[k - SPIN_X]
+    _set_spin(spin, body, motion)
     return momentum0
 
 
@@ -149,6 +158,12 @@ def _is_formless(span: Span, system: System) -> bool:
     for k in range(span.first_spring, span.last_spring):
         found = found and springs.rest[k] == 0.0 and springs.K_beta[k] > LITTLE_DAMPED * springs.K[k]
     return found
+
+
+@inlined_kernel
+def _add(vector: FloatRows, r: int, x: float, y: float) -> None:
+    vector[r, 0] += x
+    vector[r, 1] += y
 
 
 @inner_kernel
@@ -180,9 +195,9 @@ def begin_turn(body: int, span: Span, system: System, state: State, arc: float, 
             dy = rows.position[r, 1] - spin.y
             x = rate * dx - turn * dy
             y = rate * dy + turn * dx
-            for vector in (rows.start, rows.v_star, rows.v_star_matched):
-                vector[r, 0] += x
-                vector[r, 1] += y
+            _add(rows.start, r, x, y)
+            _add(rows.v_star, r, x, y)
+            _add(rows.v_star_matched, r, x, y)
             x, y = rotated(cosine, sine, x + (rows.v[r, 0] - spin.u), y + (rows.v[r, 1] - spin.v))
             rows.v[r, 0] = spin.u + x
             rows.v[r, 1] = spin.v + y

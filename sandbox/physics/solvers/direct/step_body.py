@@ -189,7 +189,7 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
     allowed = energy0 * (1.0 + ENERGY_ROUNDING) + bank
     spin = spin_of_body(body, system)
     energies = _solve_within(body, span, system, spin, allowed, h)
-    after = energies[0]
+    after, _ = energies
     way = PASSED
     if not after <= allowed:
         after, way = _give_way(body, span, system, spin, energies, allowed, h)

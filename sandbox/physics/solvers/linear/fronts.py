@@ -216,7 +216,7 @@ def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) ->
 
 
 @inner_kernel
-def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
+def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: FloatRows) -> None:
     """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
     stride = unsigned(scratch.vector.shape[0])
     for front in range(first_front, last_front):
@@ -316,7 +316,7 @@ def _substitute_back(
 
 
 @inner_kernel
-def _eliminate_rows(front: int, fronts: Fronts, vector: Floats, change: Floats) -> None:
+def _eliminate_rows(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
     _gather(front, fronts, vector, change)
     _substitute_forward(
         fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
@@ -326,7 +326,7 @@ def _eliminate_rows(front: int, fronts: Fronts, vector: Floats, change: Floats) 
 
 
 @inner_kernel
-def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
+def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: FloatRows) -> None:
     """Begin to solve for the rows of the factored fronts first_front..last_front of change (n, 2)."""
     for front in range(first_front, last_front):
         _eliminate_rows(front, fronts, scratch.vector, change)

@@ -104,7 +104,7 @@ class GraphMatrix(NamedTuple):
 @kernel
 def _lay_out_graph(lent: Any, arena: Arena, nodes: int, link_a: Slots, link_b: Slots) -> None:
     begin(arena)
-    made = contents(lent)
+    made: GraphMatrix = contents(lent)
     ordered, rank = order_by_degree(nodes, link_a, link_b, arena), new_slots(arena, nodes)
     if is_full(arena):
         return

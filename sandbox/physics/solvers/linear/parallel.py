@@ -57,7 +57,7 @@ def find_fork(begin: int, end: int, fronts: Dissection, before: Slots, worth: in
 
 
 @inner_kernel
-def _work(wanted: int, first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
+def _work(wanted: int, first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: FloatRows) -> None:
     if wanted == SUBSTITUTE:
         substitute_fronts(first_front, last_front, fronts, scratch, change)
     elif wanted == FACTOR:
@@ -85,7 +85,7 @@ def _work_aside(wanted: int, body: int, fronts: Fronts, change: FloatRows) -> No
 
 
 @inner_kernel
-def _work_both(wanted: int, first_front: int, body: int, fronts: Fronts, change: Floats) -> None:
+def _work_both(wanted: int, first_front: int, body: int, fronts: Fronts, change: FloatRows) -> None:
     call = fronts.call
     helped = call[DONE] != 0
     if helped:
@@ -119,7 +119,7 @@ def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, 
 
 
 @waiting_kernel
-def _help(fronts: Fronts, change: Floats) -> None:
+def _help(fronts: Fronts, change: FloatRows) -> None:
     call = fronts.call
     while True:
         take(call[OFFERED], 1)

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.arrays import FloatRows, Floats, Int32s, Slots
+from sandbox.physics.arrays import FloatRows, Int32s, Slots
 from sandbox.physics.jit import inner_kernel
 
 # A pivot that is not above this share of the diagonal it came from is left out (its row does not move): only rounding,
