@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
 from sandbox.app.draw.raster.mark_kernels import from_segment, row_of_capsule
-from sandbox.app.draw.raster.pixels import Floats, Packed, Singles, Slots, laid_over
+from sandbox.app.draw.raster.pixels import PixelRow, Pixels, Sheets, Singles, SlotTables, laid_over
+from sandbox.physics.arrays import FloatRows, Floats, Int32s, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel, kernel, unsigned
 
 # Rows and columns of a table of colours: how far inside, how lit.
@@ -33,7 +34,7 @@ SOFTNESS = 0.85
 class Outlines(NamedTuple):
     """Closed outlines: point (k, 2) [pixels], start (c + 1,): where each begins."""
 
-    point: Floats
+    point: FloatRows
     start: Slots
 
 
@@ -44,24 +45,24 @@ class BodyRows(NamedTuple):
     rounding and half width of the line [pixels], its alpha. flush (b, 2): first splat and one past the last.
     """
 
-    loops: Slots
-    look: Slots
-    size: Floats
-    flush: Slots
+    loops: SlotRows
+    look: SlotRows
+    size: FloatRows
+    flush: SlotRows
 
 
 class Flush(NamedTuple):
     """Splats of strain: at (k, 4) = x, y, reach [pixels], amount -1..1; colours (2,) 0xRRGGBB squeezed, stretched."""
 
-    at: Floats
+    at: FloatRows
     colours: Slots
 
 
 class Skins(NamedTuple):
     """Tables (t, INSIDE, LIT) 0xAARRGGBB, grains (g, GRAIN, GRAIN), what is added to each channel."""
 
-    tables: Packed
-    grains: Slots
+    tables: Sheets
+    grains: SlotTables
 
 
 class BodyScratch(NamedTuple):
@@ -75,14 +76,14 @@ class BodyScratch(NamedTuple):
     weight: Singles
     middle: Singles
     fall: Singles
-    texel: NDArray[np.int32]
-    amount: NDArray[np.int32]
-    tone: Packed
+    texel: Int32s
+    amount: Int32s
+    tone: PixelRow
     box: Floats
 
 
 @inner_kernel
-def _raise_skin(scratch, width, height, wide, tall, edge):  # type: ignore[no-untyped-def]
+def _raise_skin(scratch: BodyScratch, width: int, height: int, wide: int, tall: int, edge: int) -> None:
     """Coverage from areas, and from it a quarter as many cells of the skin, inside an empty edge of this many cells."""
     cover, high = scratch.cover, scratch.high
     stride = width + 2
@@ -102,7 +103,9 @@ def _raise_skin(scratch, width, height, wide, tall, edge):  # type: ignore[no-un
 
 
 @inner_kernel
-def _splat(flush, first, last, scratch, wide, tall, x0, y0):  # type: ignore[no-untyped-def]
+def _splat(
+    flush: Flush, first: int, last: int, scratch: BodyScratch, wide: int, tall: int, x0: float, y0: float
+) -> None:
     """The flush of one body in cells of FLUSH_CELL pixels, -FLUSH_FULL..FLUSH_FULL."""
     field, weight = scratch.field, scratch.weight
     for k in range(wide * tall):
@@ -125,7 +128,7 @@ def _splat(flush, first, last, scratch, wide, tall, x0, y0):  # type: ignore[no-
 
 
 @inner_kernel
-def _grainy(colour, amount):  # type: ignore[no-untyped-def]
+def _grainy(colour: int, amount: int) -> int:
     red = min(max(((colour >> 16) & 255) + amount, 0), 255)
     green = min(max(((colour >> 8) & 255) + amount, 0), 255)
     blue = min(max((colour & 255) + amount, 0), 255)
@@ -133,7 +136,7 @@ def _grainy(colour, amount):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _find_texels(row, first, last, scratch, place):  # type: ignore[no-untyped-def]
+def _find_texels(row: int, first: int, last: int, scratch: BodyScratch, place: Slots) -> None:
     """Where in its table the colour of each pixel of a run lies; place: see _light_row."""
     high, middle, fall, texel = scratch.high, scratch.middle, scratch.fall, scratch.texel
     tall, reach, edge = place[4], place[5], place[9]
@@ -163,7 +166,7 @@ def _find_texels(row, first, last, scratch, place):  # type: ignore[no-untyped-d
 
 
 @inner_kernel
-def _find_amounts(row, scratch, place):  # type: ignore[no-untyped-def]
+def _find_amounts(row: int, scratch: BodyScratch, place: Slots) -> None:
     """How much of the flush lies over each pixel of a row, of 256; below 0 where it is squeezed."""
     field, amount, wide = scratch.field, scratch.amount, place[6]
     jy = min(row // FLUSH_CELL, place[7] - 2)
@@ -178,7 +181,7 @@ def _find_amounts(row, scratch, place):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _lay_flush(tone, amount, first, last, squeezed, stretched):  # type: ignore[no-untyped-def]
+def _lay_flush(tone: PixelRow, amount: Int32s, first: int, last: int, squeezed: int, stretched: int) -> None:
     for x in range(unsigned(first), unsigned(last)):
         share, colour = int(amount[x]), int(tone[x])
         over = stretched if share > 0 else squeezed
@@ -187,7 +190,9 @@ def _lay_flush(tone, amount, first, last, squeezed, stretched):  # type: ignore[
 
 
 @inner_kernel
-def _light_run(pixels, y, first, last, rows, b, skins, flush, scratch, place):  # type: ignore[no-untyped-def]
+def _light_run(
+    pixels: Pixels, y: int, first: int, last: int, rows: BodyRows, b: int, skins: Skins, flush: Flush, scratch: BodyScratch, place: Slots
+) -> None:
     """Pixels of a row of a body that lie side by side."""
     cover, tone, texel = scratch.cover, scratch.tone, scratch.texel
     table, grain, left = rows.look[b, 0], rows.look[b, 1], place[0]
@@ -195,7 +200,7 @@ def _light_run(pixels, y, first, last, rows, b, skins, flush, scratch, place):  
     for x in range(unsigned(first), unsigned(last)):
         k = texel[x]
         tone[x] = skins.tables[table, k // LIT, k % LIT]
-    if place[8]:
+    if place[8] != 0:
         _lay_flush(tone, scratch.amount, first, last, flush.colours[0], flush.colours[1])
     if grain >= 0:
         for x in range(first, last):
@@ -208,12 +213,14 @@ def _light_run(pixels, y, first, last, rows, b, skins, flush, scratch, place):  
 
 
 @inner_kernel
-def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
+def _light_row(
+    pixels: Pixels, y: int, rows: BodyRows, b: int, skins: Skins, flush: Flush, scratch: BodyScratch, place: Slots, clip: Slots
+) -> None:
     """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0, edge."""
     cover, left, width = scratch.cover, place[0], place[2]
     begin = (y - place[1]) * (width + 2)
     x, last = max(clip[0], left) - left, min(clip[2], left + width) - left
-    if place[8] and x < last:
+    if place[8] != 0 and x < last:
         _find_amounts(y - place[1], scratch, place)
     while x < last:
         while x < last and cover[begin + x] <= FAINT:
@@ -226,7 +233,9 @@ def _light_row(pixels, y, rows, b, skins, flush, scratch, place, clip):  # type:
 
 
 @inner_kernel
-def _paint_side(pixels, ox, oy, ax, ay, bx, by, half, colour, alpha, clip):  # type: ignore[no-untyped-def]
+def _paint_side(
+    pixels: Pixels, ox: float, oy: float, ax: float, ay: float, bx: float, by: float, half: float, colour: int, alpha: float, clip: Slots
+) -> None:
     """A side of a closed line from a to b, the one before it from o to a; no pixel is covered by both.
 
     What lies beyond b is the next side's, what lies beside the one before is that one's, and what lies between both,
@@ -251,7 +260,7 @@ def _paint_side(pixels, ox, oy, ax, ay, bx, by, half, colour, alpha, clip):  # t
 
 
 @inner_kernel
-def _paint_lines(pixels, outlines, rows, b, clip):  # type: ignore[no-untyped-def]
+def _paint_lines(pixels: Pixels, outlines: Outlines, rows: BodyRows, b: int, clip: Slots) -> None:
     point = outlines.point
     for loop in range(rows.loops[b, 0], rows.loops[b, 1]):
         first, last = outlines.start[loop], outlines.start[loop + 1]
@@ -264,7 +273,9 @@ def _paint_lines(pixels, outlines, rows, b, clip):  # type: ignore[no-untyped-de
 
 
 @kernel
-def paint_bodies(pixels, outlines, rows, skins, flush, scratch, place, clip):  # type: ignore[no-untyped-def]
+def paint_bodies(
+    pixels: Pixels, outlines: Outlines, rows: BodyRows, skins: Skins, flush: Flush, scratch: BodyScratch, place: Slots, clip: Slots
+) -> None:
     """Draw bodies into pixels (h, w), one after the other, inside clip (4,); place (10,): scratch of a row."""
     for b in range(rows.loops.shape[0]):
         first, last = rows.loops[b, 0], rows.loops[b, 1]

@@ -3,7 +3,8 @@
 import math
 from typing import NamedTuple
 
-from sandbox.app.draw.raster.pixels import FAR, Floats, Slots, laid_over
+from sandbox.app.draw.raster.pixels import FAR, Pixels, SlotTables, laid_over
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.jit import inner_kernel, kernel, unsigned
 
 # Texels of a sheet, a power of two.
@@ -16,14 +17,14 @@ ONE = float(1 << BITS)
 class CellArrays(NamedTuple):
     """Triangles: corner (t, 6) = x, y of each [pixels], texel (t, 6), shade (t, 3) -1..1, sheet (t,)."""
 
-    corner: Floats
-    texel: Floats
-    shade: Floats
+    corner: FloatRows
+    texel: FloatRows
+    shade: FloatRows
     sheet: Slots
 
 
 @inner_kernel
-def _find_slopes(cells, t, slopes):  # type: ignore[no-untyped-def]
+def _find_slopes(cells: CellArrays, t: int, slopes: Floats) -> bool:
     """Write values at the origin and their slopes across and down, of texel and shade, in parts of ONE; whether any."""
     x0, y0, x1, y1 = cells.corner[t, 0], cells.corner[t, 1], cells.corner[t, 2], cells.corner[t, 3]
     x2, y2 = cells.corner[t, 4], cells.corner[t, 5]
@@ -45,7 +46,7 @@ def _find_slopes(cells, t, slopes):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _paint_span(pixels, y, first, last, slopes, picture, sheet):  # type: ignore[no-untyped-def]
+def _paint_span(pixels: Pixels, y: int, first: int, last: int, slopes: Floats, picture: SlotTables, sheet: int) -> None:
     """Some pixels of a row of a triangle."""
     px, py = first + 0.5, y + 0.5
     # In whole numbers, which wrap around as texels do.
@@ -63,7 +64,7 @@ def _paint_span(pixels, y, first, last, slopes, picture, sheet):  # type: ignore
 
 
 @kernel
-def paint_cells(pixels, cells, sheets, slopes, clip):  # type: ignore[no-untyped-def]
+def paint_cells(pixels: Pixels, cells: CellArrays, sheets: SlotTables, slopes: Floats, clip: Slots) -> None:
     """Draw triangles into pixels (h, w) with sheets (s, SHEET, SHEET) 0xRRGGBB; neighbours share no pixel.
 
     slopes (9,): scratch of a triangle.

@@ -5,12 +5,13 @@ After R. Levien's font-rs and S. Barrett's stb_truetype 2: exact at the edges, f
 
 import math
 
-from sandbox.app.draw.raster.pixels import FAR
+from sandbox.app.draw.raster.pixels import FAR, Singles
+from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.jit import inner_kernel, unsigned
 
 
 @inner_kernel
-def find_box(point, first, last, box):  # type: ignore[no-untyped-def]
+def find_box(point: FloatRows, first: int, last: int, box: Floats) -> bool:
     """Write the box around points into box (4,); whether all of them can be drawn."""
     left, top, right, bottom = FAR, FAR, -FAR, -FAR
     for k in range(first, last):
@@ -24,14 +25,16 @@ def find_box(point, first, last, box):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def clear(cells, count):  # type: ignore[no-untyped-def]
+def clear(cells: Singles, count: int) -> None:
     """Set the first cells to 0."""
     for k in range(count):
         cells[k] = 0.0
 
 
 @inner_kernel
-def add_outline(cells, width, height, point, first, last, x0, y0, scale):  # type: ignore[no-untyped-def]
+def add_outline(
+    cells: Singles, width: int, height: int, point: FloatRows, first: int, last: int, x0: float, y0: float, scale: float
+) -> None:
     """Add a closed outline to cells of rows of width + 2; (x0, y0): where the cells begin, scale: cells a pixel."""
     stride = width + 2
     for i in range(first, last):
@@ -81,7 +84,7 @@ def add_outline(cells, width, height, point, first, last, x0, y0, scale):  # typ
 
 
 @inner_kernel
-def blur(cells, spare, sums, width, height, reach, passes):  # type: ignore[no-untyped-def]
+def blur(cells: Singles, spare: Singles, sums: Singles, width: int, height: int, reach: int, passes: int) -> None:
     """Blur cells (height, width) by boxes of 2 reach + 1, this many times; what lies outside counts as 0."""
     share = 1.0 / (2 * reach + 1)
     ahead, wide = unsigned(reach), unsigned(width)

@@ -3,7 +3,8 @@
 import math
 from typing import NamedTuple
 
-from sandbox.app.draw.raster.pixels import FAR, Floats, Slots, laid_over
+from sandbox.app.draw.raster.pixels import FAR, Pixels, Sheets, laid_over
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.jit import inner_kernel, kernel
 
 STROKE, STRIP, HAIR, DISC, GLOW, STRIPED, MARBLED, STUDDED, PLAIN = range(9)
@@ -22,17 +23,17 @@ class MarkArrays(NamedTuple):
     colour of a ball's mark. kind (m,).
     """
 
-    ends: Floats
+    ends: FloatRows
     half: Floats
     colour: Slots
     alpha: Floats
-    along: Floats
+    along: FloatRows
     extra: Slots
     kind: Slots
 
 
 @inner_kernel
-def row_of_capsule(py, ax, bx, ux, uy, reach):  # type: ignore[no-untyped-def]
+def row_of_capsule(py: float, ax: float, bx: float, ux: float, uy: float, reach: float) -> tuple[float, float]:
     # From where to where a row of pixels, py below the first end, is in reach of a segment in direction u.
     low, high = min(ax, bx) - reach, max(ax, bx) + reach
     if abs(uy) > 1e-9:
@@ -42,14 +43,16 @@ def row_of_capsule(py, ax, bx, ux, uy, reach):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def from_segment(along, across, length):  # type: ignore[no-untyped-def]
+def from_segment(along: float, across: float, length: float) -> float:
     # The distance of a place from a segment that begins at the origin.
     beyond = max(-along, along - length)
     return math.sqrt(beyond * beyond + across * across) if beyond > 0.0 else abs(across)
 
 
 @inner_kernel
-def paint_segment(pixels, ax, ay, bx, by, half, colour, alpha, clip):  # type: ignore[no-untyped-def]
+def paint_segment(
+    pixels: Pixels, ax: float, ay: float, bx: float, by: float, half: float, colour: int, alpha: float, clip: Slots
+) -> None:
     """A capsule: coverage of a pixel centre at distance d from the segment is clamp(half + 1/2 - d, 0, 1)."""
     reach = half + 0.5
     dx, dy = bx - ax, by - ay
@@ -68,7 +71,7 @@ def paint_segment(pixels, ax, ay, bx, by, half, colour, alpha, clip):  # type: i
 
 
 @inner_kernel
-def _paint_strip(pixels, marks, m, tiles, clip):  # type: ignore[no-untyped-def]
+def _paint_strip(pixels: Pixels, marks: MarkArrays, m: int, tiles: Sheets, clip: Slots) -> None:
     # Light falls on the same side of all: what is above, or left.
     ax, ay, bx, by = marks.ends[m, 0], marks.ends[m, 1], marks.ends[m, 2], marks.ends[m, 3]
     half, tile = marks.half[m], marks.extra[m]
@@ -104,7 +107,7 @@ def _paint_strip(pixels, marks, m, tiles, clip):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _paint_hair(pixels, ax, ay, bx, by, colour, clip):  # type: ignore[no-untyped-def]
+def _paint_hair(pixels: Pixels, ax: float, ay: float, bx: float, by: float, colour: int, clip: Slots) -> None:
     """One pixel per step along the longer side."""
     if max(ax, bx) < clip[0] or min(ax, bx) >= clip[2] or max(ay, by) < clip[1] or min(ay, by) >= clip[3]:
         return
@@ -116,7 +119,7 @@ def _paint_hair(pixels, ax, ay, bx, by, colour, clip):  # type: ignore[no-untype
 
 
 @inner_kernel
-def _paint_disc(pixels, marks, m, clip):  # type: ignore[no-untyped-def]
+def _paint_disc(pixels: Pixels, marks: MarkArrays, m: int, clip: Slots) -> None:
     cx, cy, radius = marks.ends[m, 0], marks.ends[m, 1], marks.half[m]
     colour, alpha, is_glow = marks.colour[m], marks.alpha[m], marks.kind[m] == GLOW
     for y in range(max(clip[1], int(max(cy - radius - 1.0, 0.0))), min(clip[3], int(max(cy + radius, -2.0)) + 2)):
@@ -135,7 +138,7 @@ def _paint_disc(pixels, marks, m, clip):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _mark_share(style, u, v, edge):  # type: ignore[no-untyped-def]
+def _mark_share(style: int, u: float, v: float, edge: float) -> float:
     """How much of a pixel of a ball is its mark, at (u, v) in the turned ball of radius 1."""
     if style == STRIPED:
         return min(max((0.26 - abs(v)) / edge + 0.5, 0.0), 1.0)
@@ -152,7 +155,7 @@ def _mark_share(style, u, v, edge):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _paint_ball(pixels, marks, m, clip):  # type: ignore[no-untyped-def]
+def _paint_ball(pixels: Pixels, marks: MarkArrays, m: int, clip: Slots) -> None:
     cx, cy, radius, style = marks.ends[m, 0], marks.ends[m, 1], marks.half[m], marks.kind[m]
     cosine, sine = marks.ends[m, 2], marks.ends[m, 3]
     own, mark = marks.colour[m], marks.extra[m]
@@ -186,7 +189,7 @@ def _paint_ball(pixels, marks, m, clip):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def paint_marks(pixels, marks, tiles, clip):  # type: ignore[no-untyped-def]
+def paint_marks(pixels: Pixels, marks: MarkArrays, tiles: Sheets, clip: Slots) -> None:
     """Draw marks into pixels (h, w), strips with tiles (t, ACROSS, ALONG) 0xAARRGGBB, inside clip (4,)."""
     for m in range(marks.kind.shape[0]):
         ax, ay, bx, by = marks.ends[m, 0], marks.ends[m, 1], marks.ends[m, 2], marks.ends[m, 3]

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from sandbox.app.draw.raster.pixels import Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.jit import inner_kernel, kernel
 
 
@@ -22,7 +22,7 @@ class Loops(NamedTuple):
 
 
 @inner_kernel
-def _grow(pixels, loops, c, grow, point):  # type: ignore[no-untyped-def]
+def _grow(pixels: FloatRows, loops: Loops, c: int, grow: float, point: FloatRows) -> None:
     """The corners of a loop moved outwards along their normals."""
     first, last, out = loops.start[c], loops.start[c + 1], loops.point_start[c]
     area = 0.0
@@ -41,7 +41,7 @@ def _grow(pixels, loops, c, grow, point):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _cut_corners(point, first, count, keep, spare):  # type: ignore[no-untyped-def]
+def _cut_corners(point: FloatRows, first: int, count: int, keep: float, spare: FloatRows) -> None:
     """Two points in place of each of `count` from `first` on."""
     for k in range(count):
         spare[k, 0], spare[k, 1] = point[first + k, 0], point[first + k, 1]
@@ -54,7 +54,7 @@ def _cut_corners(point, first, count, keep, spare):  # type: ignore[no-untyped-d
 
 
 @kernel
-def trace_outlines(pixels, loops, grow, point, spare):  # type: ignore[no-untyped-def]
+def trace_outlines(pixels: FloatRows, loops: Loops, grow: Floats, point: FloatRows, spare: FloatRows) -> None:
     """Write the outlines of loops of particles at pixels (n, 2), grown by grow (c,) [pixels], into point (k, 2)."""
     for c in range(loops.rounds.shape[0]):
         _grow(pixels, loops, c, grow[c], point)

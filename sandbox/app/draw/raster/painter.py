@@ -26,7 +26,8 @@ from sandbox.app.draw.raster.bodies import (
 from sandbox.app.draw.raster.cells import SHEET, CellArrays, paint_cells
 from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG, DISC, GLOW, HAIR, STRIP, STROKE, MarkArrays, paint_marks
 from sandbox.app.draw.raster.outlines import Loops, trace_outlines
-from sandbox.app.draw.raster.pixels import FAR, Floats, Packed, Slots
+from sandbox.app.draw.raster.pixels import FAR, Pixels, Sheets
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.app.draw.raster.shadows import FACTOR, ShadowScratch, Thrown, paint_shadows
 from sandbox.physics import jit
 
@@ -128,7 +129,7 @@ class Painter:
         self.exact = self.compiled and jit.COMPILED and _has_plain_pixels(surface)
         return self.exact
 
-    def pixels(self) -> Packed:
+    def pixels(self) -> Pixels:
         """The surface's pixels (h, w); while the array lives, the surface is locked."""
         return pygame.surfarray.pixels2d(self.surface).T
 
@@ -138,7 +139,7 @@ class Painter:
             # What compiling at this call has left behind holds the pixels, and nothing could be blitted any more.
             gc.collect()
 
-    def marks(self, layer: MarkList, tiles: Packed) -> None:
+    def marks(self, layer: MarkList, tiles: Sheets) -> None:
         """Draw marks."""
         arrays = layer.arrays()
         if arrays is None:
@@ -236,7 +237,7 @@ def _rgb(colour: int) -> tuple[int, int, int]:
     return (colour >> 16) & 255, (colour >> 8) & 255, colour & 255
 
 
-def _plain_marks(surface: pygame.Surface, layer: MarkArrays, tiles: Packed) -> None:
+def _plain_marks(surface: pygame.Surface, layer: MarkArrays, tiles: Sheets) -> None:
     # The middle of a tile stands for all of it.
     tones = tiles[:, ACROSS // 2, ALONG // 2].astype(np.int64)
     colour = np.where(layer.kind == STRIP, tones[np.where(layer.kind == STRIP, layer.extra, 0)], layer.colour)

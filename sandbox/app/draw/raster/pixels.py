@@ -1,16 +1,19 @@
 """Pixels 0xAARRGGBB in rows, and the part of them that may be drawn on."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.physics.arrays import ArrayKind, Slots
 from sandbox.physics.jit import scalar_kernel
 
-Packed = NDArray[np.uint32]
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Slots = NDArray[np.int64]
+# Pixels of a picture, of a row of one, and of several pictures of one size.
+Pixels = Annotated[NDArray[np.uint32], ArrayKind(np.uint32, 2)]
+PixelRow = Annotated[NDArray[np.uint32], ArrayKind(np.uint32)]
+Sheets = Annotated[NDArray[np.uint32], ArrayKind(np.uint32, 3)]
+Singles = Annotated[NDArray[np.float32], ArrayKind(np.float32)]
+SlotTables = Annotated[NDArray[np.int64], ArrayKind(np.int64, 3)]
 
 # Coordinates beyond this [pixels] are not drawn: no screen is that large.
 FAR = 1e6
@@ -23,7 +26,7 @@ class Clip(NamedTuple):
 
 
 @scalar_kernel
-def laid_over(under, over, share):  # type: ignore[no-untyped-def]
+def laid_over(under: int, over: int, share: int) -> int:
     """A pixel with share / 256 of another colour over it; red and blue in one multiplication."""
     keep = 256 - share
     both = (((over & 0xFF00FF) * share + (under & 0xFF00FF) * keep) >> 8) & 0xFF00FF

@@ -6,8 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.app.draw.raster.bodies import Outlines
 from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
-from sandbox.app.draw.raster.pixels import FAR, Floats, Singles, laid_over
+from sandbox.app.draw.raster.pixels import FAR, Pixels, Singles, laid_over
+from sandbox.physics.arrays import FloatRows, Floats, Int32s, Slots
 from sandbox.physics.jit import inner_kernel, kernel, unsigned
 
 # Pixels of the screen to one of the shadow, each way.
@@ -24,19 +26,21 @@ class ShadowScratch(NamedTuple):
     cover: Singles
     spare: Singles
     sums: Singles
-    dark: NDArray[np.int32]
+    dark: Int32s
     box: Floats
 
 
 class Thrown(NamedTuple):
     """What throws it: lines (m, 5) = both ends and half width; discs (k, 3) = centre and radius, all [pixels]."""
 
-    lines: Floats
-    discs: Floats
+    lines: FloatRows
+    discs: FloatRows
 
 
 @inner_kernel
-def _add_outline(scratch, outlines, loop, wide, tall, x0, y0):  # type: ignore[no-untyped-def]
+def _add_outline(
+    scratch: ShadowScratch, outlines: Outlines, loop: int, wide: int, tall: int, x0: float, y0: float
+) -> None:
     first, last = outlines.start[loop], outlines.start[loop + 1]
     if not find_box(outlines.point, first, last, scratch.box):
         return
@@ -57,7 +61,7 @@ def _add_outline(scratch, outlines, loop, wide, tall, x0, y0):  # type: ignore[n
 
 
 @inner_kernel
-def _add_lines(mask, lines, wide, tall, x0, y0):  # type: ignore[no-untyped-def]
+def _add_lines(mask: Singles, lines: FloatRows, wide: int, tall: int, x0: float, y0: float) -> None:
     scale = 1.0 / FACTOR
     for m in range(lines.shape[0]):
         ax, ay = (lines[m, 0] - x0) * scale, (lines[m, 1] - y0) * scale
@@ -75,7 +79,7 @@ def _add_lines(mask, lines, wide, tall, x0, y0):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _add_discs(mask, discs, wide, tall, x0, y0):  # type: ignore[no-untyped-def]
+def _add_discs(mask: Singles, discs: FloatRows, wide: int, tall: int, x0: float, y0: float) -> None:
     scale = 1.0 / FACTOR
     for k in range(discs.shape[0]):
         cx, cy, radius = (discs[k, 0] - x0) * scale, (discs[k, 1] - y0) * scale, discs[k, 2] * scale
@@ -91,14 +95,14 @@ def _add_discs(mask, discs, wide, tall, x0, y0):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _widen(box, x, y, by):  # type: ignore[no-untyped-def]
+def _widen(box: Floats, x: float, y: float, by: float) -> None:
     if abs(x) < FAR and abs(y) < FAR and by < FAR:
         box[0], box[2] = min(box[0], x - by), max(box[2], x + by)
         box[1], box[3] = min(box[1], y - by), max(box[3], y + by)
 
 
 @inner_kernel
-def _find_reach(outlines, thrown, box):  # type: ignore[no-untyped-def]
+def _find_reach(outlines: Outlines, thrown: Thrown, box: Floats) -> None:
     """Write the box (4,) [pixels] around all that throws shadows."""
     box[0], box[1], box[2], box[3] = FAR, FAR, -FAR, -FAR
     for k in range(outlines.point.shape[0]):
@@ -111,7 +115,9 @@ def _find_reach(outlines, thrown, box):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _lay_row(pixels, y, scratch, wide, at, down, left, colour, full, clip):  # type: ignore[no-untyped-def]
+def _lay_row(
+    pixels: Pixels, y: int, scratch: ShadowScratch, wide: int, at: int, down: float, left: int, colour: int, full: float, clip: Slots
+) -> None:
     """Darken a row of pixels between two rows of cells, `down` (0..1) below the one that begins at `at`."""
     mask, sums, dark = scratch.mask, scratch.sums, scratch.dark
     above, below, count = unsigned(at), unsigned(at + wide), unsigned(wide)
@@ -139,7 +145,9 @@ def _lay_row(pixels, y, scratch, wide, at, down, left, colour, full, clip):  # t
 
 
 @kernel
-def paint_shadows(pixels, outlines, thrown, scratch, offset, colour, strength, clip):  # type: ignore[no-untyped-def]
+def paint_shadows(
+    pixels: Pixels, outlines: Outlines, thrown: Thrown, scratch: ShadowScratch, offset: Floats, colour: int, strength: float, clip: Slots
+) -> None:
     """Lay shadows over pixels (h, w), offset (2,) [pixels] from what throws them, inside clip (4,)."""
     mask, box = scratch.mask, scratch.box
     # Cells of the view begin one before it; of them only those count that a shadow reaches.

@@ -8,7 +8,7 @@ import numpy as np
 from sandbox.physics.arrays import ArrayKind
 
 # What an item of an array is in C++, by its dtype.
-ITEMS = {"float64": "double", "int64": "int64_t", "int32": "int32_t", "int8": "int8_t", "uint32": "uint32_t", "bool": "bool"}
+ITEMS = {"float64": "double", "float32": "float", "int64": "int64_t", "int32": "int32_t", "int8": "int8_t", "uint32": "uint32_t", "bool": "bool"}
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Array:
     @property
     def item(self) -> Scalar:
         """What reading one gives: every integer is one of 64 bits."""
-        return {"float64": FLOAT, "bool": FLAG}.get(self.dtype, INTEGER)
+        return {"float64": FLOAT, "float32": FLOAT, "bool": FLAG}.get(self.dtype, INTEGER)
 
 
 @dataclass(frozen=True)
