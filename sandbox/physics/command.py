@@ -10,7 +10,7 @@ from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.collision.pieces import new_piece_scratch, part
 from sandbox.physics.constraints import AREA
-from sandbox.physics.jit import bundle, contents, inner_kernel, kernel
+from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, kernel
 from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
 from sandbox.physics.ramps import set_constraint, set_number, set_spring
@@ -76,9 +76,9 @@ class Commanded(NamedTuple):
 
 
 @kernel
-def command(lent: Any, arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
+def command(lent: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
     """Carry out a command, see KINDS; how many particles were pushed or shaken, for all others 0; or see NO_ARENA."""
-    world: Commanded = contents(lent)
+    world = contents(lent)
     state = world.state
     bad = _first_bad(state, kind, slots, numbers)
     if bad >= 0:
@@ -351,7 +351,7 @@ def _shake(state: State, good: GoodValues, first_cursor: int, numbers: Floats) -
     return count
 
 
-def lend(state: State, good: GoodValues, numbers: Floats) -> Any:
+def lend(state: State, good: GoodValues, numbers: Floats) -> Bundle[Commanded]:
     """What commands change, as kernels take it."""
     return bundle(Commanded(state, good, numbers))
 

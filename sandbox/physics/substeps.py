@@ -8,7 +8,7 @@ from typing import Any
 from sandbox.physics.arrays import Floats
 from sandbox.physics.constraints import HIGHEST_OF_RING, TRIANGLE
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, half_step_of_network, part_of_network
-from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import Snapshot
@@ -117,9 +117,8 @@ def limit_rings(state: State, stiffness: Floats, damping: Floats) -> None:
 
 
 @kernel
-def _limit_rings(lent: Any, stiffness: Floats, damping: Floats) -> None:
-    state: State = contents(lent)
-    limit_rings(state, stiffness, damping)
+def _limit_rings(lent: Bundle[State], stiffness: Floats, damping: Floats) -> None:
+    limit_rings(contents(lent), stiffness, damping)
 
 
 @inner_kernel

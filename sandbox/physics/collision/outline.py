@@ -23,7 +23,7 @@ from sandbox.physics.collision.close_edges import CloseEdges, close_edges, no_cl
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import no_pins, pinned_edges
 from sandbox.physics.collision.types import Colliders
-from sandbox.physics.jit import bundle, contents, inner_kernel, items_of, kernel, put
+from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, items_of, kernel, put
 from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.state import State, state_of
 from sandbox.physics.terrain import Terrain
@@ -304,8 +304,8 @@ class OutlinePlace(NamedTuple):
 
 
 @kernel
-def _derive_outline(lent: Any, arena: Arena) -> None:
-    place: OutlinePlace = contents(lent)
+def _derive_outline(lent: Bundle[OutlinePlace], arena: Arena) -> None:
+    place = contents(lent)
     begin(arena)
     put(place, "outline", new_outline(place.state, arena))
 

@@ -28,7 +28,8 @@ COMPILED: bool
 # it counts from the end. Never mix the two in one sum: that makes a float.
 unsigned: Any = interpreted.unsigned
 # In kernels: the items of a bundle, as they were given to it.
-contents: Any = interpreted.contents
+contents = interpreted.contents
+Bundle = interpreted.Bundle
 # In kernels: write an array, or a named tuple of arrays, in place of what a lent named tuple has by that name.
 put: Any = interpreted.put
 # In kernels: arrays in the memory of another, an int64 array, from an item on; (memory, first, rows) or, for rows of

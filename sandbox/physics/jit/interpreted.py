@@ -4,13 +4,14 @@ import functools
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 
 from sandbox.physics.jit.bundles import owner_of
 
 COMPILED = False
+Items = TypeVar("Items")
 
 
 class Unsigned(int):
@@ -27,7 +28,7 @@ class LentTuple:
         self.__dict__.update(zip(kind._fields, items, strict=True))
 
 
-class Bundle:
+class Bundle(Generic[Items]):
     """A bundle: what kernels get, and the objects that it was made of."""
 
     def __init__(self, items: tuple[Any, ...]) -> None:
@@ -91,7 +92,7 @@ def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
     return Bundle(items)
 
 
-def contents(bundle: Any) -> Any:
+def contents(bundle: Bundle[Items]) -> Items:
     """The items of a bundle."""
     return bundle.items
 

@@ -22,7 +22,7 @@ from sandbox.physics.collision.outline import new_colliders, new_outline
 from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
 from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.flight import new_flight
-from sandbox.physics.jit import contents, inner_kernel, kernel, put
+from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel, put
 from sandbox.physics.joints.hands import label_bodies, new_grips
 from sandbox.physics.joints.joint_answers import joints_by_mass, new_joints
 from sandbox.physics.joints.joint_set import lay_out_joints
@@ -73,9 +73,9 @@ MORE_ROOM = 2
 
 
 @kernel
-def derive_topology(lent: Any, arena: Arena) -> None:
+def derive_topology(lent: Bundle[WorldBlock], arena: Arena) -> None:
     """Lay out what follows from the topology of a world, and its solver."""
-    world: WorldBlock = contents(lent)
+    world = contents(lent)
     begin(arena)
     state = world.state
     _find_plan(world)
@@ -92,9 +92,9 @@ def derive_topology(lent: Any, arena: Arena) -> None:
 
 
 @kernel
-def derive_hands(lent: Any, arena: Arena) -> None:
+def derive_hands(lent: Bundle[WorldBlock], arena: Arena) -> None:
     """Lay out the joints of a world, which follow from what hands hold as well."""
-    world: WorldBlock = contents(lent)
+    world = contents(lent)
     begin(arena)
     state, solver = world.state, world.choices[SOLVER]
     grips = new_grips(state, world.body_label, world.plan[GRAB_PARTICLE], world.plan[GRAB_SPRING], arena)
@@ -126,9 +126,9 @@ def derive_hands(lent: Any, arena: Arena) -> None:
 
 
 @kernel
-def make_room(lent: Any, arena: Arena) -> None:
+def make_room(lent: Bundle[WorldBlock], arena: Arena) -> None:
     """Lay out what a step fills in, with room for more than any has asked for. Contacts that were kept are lost."""
-    world: WorldBlock = contents(lent)
+    world = contents(lent)
     begin(arena)
     collisions, wanted, particles = world.collisions, world.wanted, world.state.owner.shape[0]
     for k in range(BOUND):

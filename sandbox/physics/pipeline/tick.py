@@ -7,7 +7,7 @@ from sandbox.physics.driving import drive_springs
 from sandbox.physics.flight import begin_flight, label_all_joined
 from sandbox.physics.forces import integrate_velocities
 from sandbox.physics.integrate import integrate_positions
-from sandbox.physics.jit import contents, inner_kernel, kernel
+from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel
 from sandbox.physics.joints.joint_set import prepare_joints, store_joint_impulses
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline.block import (
@@ -77,9 +77,9 @@ FINISHED, UNSOUND, NO_ROOM, LOST, BROKE = range(5)
 
 
 @kernel
-def tick(lent: Any) -> int:
+def tick(lent: Bundle[WorldBlock]) -> int:
     """Advance a world by one tick of 1 / tick_rate seconds; what is to be done about it, see FINISHED."""
-    world: WorldBlock = contents(lent)
+    world = contents(lent)
     state, start, collisions, joints = world.state, world.start, world.collisions, world.joints
     progress, solver, touches = world.progress, world.choices[SOLVER], world.plan[HAS_CONTACTS] != 0
     if progress[COUNT] == 0:
@@ -118,10 +118,9 @@ def tick(lent: Any) -> int:
 
 
 @kernel
-def find_broken(lent: Any) -> int:
+def find_broken(lent: Bundle[WorldBlock]) -> int:
     """Let springs yield and find those that break, at the end of a tick in which something was lost; how many."""
-    world: WorldBlock = contents(lent)
-    return _find_broken(world)
+    return _find_broken(contents(lent))
 
 
 @inner_kernel

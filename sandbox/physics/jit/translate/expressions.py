@@ -12,7 +12,9 @@ from sandbox.physics.jit.translate.types import (
     FLAG,
     FLOAT,
     INTEGER,
+    ITEMS,
     Array,
+    Bundle,
     Scalar,
     Several,
     Struct,
@@ -57,11 +59,12 @@ def spelled(name: str) -> str:
 
 @dataclass(frozen=True)
 class Code:
-    """An expression in C++; hangs: how closely its parts hang together."""
+    """An expression in C++; hangs: how closely its parts hang together; stays: it is there before and afterwards."""
 
     text: str
     type: Type
     hangs: int = PRIMARY
+    stays: bool = False
 
     def within(self, hangs: int) -> str:
         """As a part of an expression whose parts hang together so closely."""
@@ -87,19 +90,18 @@ class Program(Protocol):
         """The struct of a class of named tuples."""
         ...
 
-    def annotated(self, module: str, node: ast.AnnAssign) -> Type:
-        """The type that an annotation says. Raises Refused."""
-        ...
-
     def constant(self, constant: Constant) -> None:
         """Take note that a constant is used."""
         ...
 
 
 class Expressions:
-    """Expressions of one kernel; types: of the names that it has of its own, as far as they are known."""
+    """Expressions of one kernel.
 
-    def __init__(self, program: Program, module: str, own: set[str], types: dict[str, Type]) -> None:
+    own: the names that it has of its own, and of them those that are assigned once. types: as far as they are known.
+    """
+
+    def __init__(self, program: Program, module: str, own: dict[str, bool], types: dict[str, Type]) -> None:
         self.program, self.module, self.own, self.types = program, module, own, types
 
     def refuse(self, node: ast.AST, reason: str) -> Refused:
@@ -141,7 +143,7 @@ class Expressions:
         if node.id in self.own:
             if node.id not in self.types:
                 raise Unknown(node.id)
-            return Code(spelled(node.id), self.types[node.id])
+            return Code(spelled(node.id), self.types[node.id], stays=self.own[node.id])
         found = meaning(self.module, node.id)
         if not isinstance(found, Constant):
             raise self.refuse(node, f"{node.id} is neither a name of this kernel nor a constant")
@@ -156,7 +158,7 @@ class Expressions:
         kind = whole.type.field(node.attr) if isinstance(whole.type, Struct) else None
         if kind is None:
             raise self.refuse(node, f"{ast.unparse(node.value)} has no {node.attr}")
-        return Code(f"{whole.within(PRIMARY)}.{spelled(node.attr)}", kind)
+        return Code(f"{whole.within(PRIMARY)}.{spelled(node.attr)}", kind, stays=whole.stays)
 
     def _of_module(self, node: ast.Attribute, value: Any) -> Code:
         if not isinstance(value, (bool, int, float)):
@@ -182,9 +184,9 @@ class Expressions:
         if any(code.type == FLOAT for code in codes):
             raise self.refuse(node, f"{ast.unparse(node)}: an index is an integer")
         text = f"{whole.within(PRIMARY)}({', '.join(code.text for code in codes)})"
-        # Narrow integers would be added as narrow ones.
-        narrow = reads and whole.type.item == INTEGER and whole.type.dtype != "int64"
-        return Code(f"int64_t({text})" if narrow else text, whole.type.item)
+        # Narrow numbers would be added as narrow ones.
+        item = whole.type.item
+        return Code(f"{item.cpp}({text})" if reads and item.cpp != ITEMS[whole.type.dtype] else text, item)
 
     def _length(self, node: ast.Subscript, whole: Code) -> Code:
         if not isinstance(node.slice, ast.Constant):
@@ -196,7 +198,7 @@ class Expressions:
         if not isinstance(node.slice, ast.Constant) or not isinstance(node.slice.value, int):
             raise self.refuse(node, f"{ast.unparse(node)}: fields are called by their names")
         name, kind = fields[node.slice.value]
-        return Code(f"{whole.within(PRIMARY)}.{spelled(name)}", kind)
+        return Code(f"{whole.within(PRIMARY)}.{spelled(name)}", kind, stays=whole.stays)
 
     def _cut(self, node: ast.Subscript, whole: Code, part: ast.Slice) -> Code:
         if part.step is not None:
@@ -221,7 +223,9 @@ class Expressions:
         if operator not in _ARITHMETIC or (operator in _OF_INTEGERS and kind != INTEGER):
             raise self.refuse(node, "kernels have no such operator of these")
         sign, hangs = _ARITHMETIC[operator]
-        left, right = a.within(hangs), b.within(hangs + 1)
+        # Compilers warn of sums in shifts without parentheses.
+        tight = UNARY if hangs == SHIFT else hangs
+        left, right = a.within(tight), b.within(tight + (tight == hangs))
         if operator is ast.Div and kind == INTEGER:
             left, kind = f"double({a.text})", FLOAT
         elif operator is ast.LShift or (_is_literal(a.text) and _is_literal(b.text)):
@@ -303,6 +307,11 @@ class Expressions:
             dtype, dimensions = _LYING[known]
             made = Array(dtype, dimensions)
             return Code(f"lying<{made.cpp}>({', '.join(self.code(each).text for each in node.args)})", made)
+        if value is interpreted.contents:
+            bundle = self.code(node.args[0])
+            if not isinstance(bundle.type, Bundle):
+                raise self.refuse(node, f"{ast.unparse(node.args[0])} is no bundle")
+            return Code(f"contents({bundle.text})", bundle.type.items, stays=True)
         if isinstance(value, interpreted.InterpreterFunction):
             return Code("0", INTEGER)
         if value is interpreted.unsigned:

@@ -1,6 +1,7 @@
 """Local names of a kernel: where C++ is to declare each, and what type it has."""
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -21,10 +22,11 @@ class Places:
     hidden: set[int] = field(default_factory=set)
 
 
-def own_names(function: ast.FunctionDef) -> set[str]:
-    """All names that a kernel assigns, its parameters included."""
-    stored = {node.id for node in ast.walk(function) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    return stored | {argument.arg for argument in function.args.args}
+def own_names(function: ast.FunctionDef) -> dict[str, bool]:
+    """All names that a kernel assigns, its parameters included: whether each is so once."""
+    found = [argument.arg for argument in function.args.args]
+    found += [node.id for node in ast.walk(function) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
+    return {name: count == 1 for name, count in Counter(found).items()}
 
 
 def targets_of(statement: ast.stmt) -> list[ast.expr]:
@@ -43,7 +45,7 @@ def find_places(function: ast.FunctionDef) -> Places:
     for node in ast.walk(function):
         if isinstance(node, ast.For) and isinstance(node.target, ast.Name):
             loops.setdefault(node.target.id, []).append(node)
-    for name in sorted(own_names(function) - parameters - {"_"}):
+    for name in sorted(own_names(function).keys() - parameters - {"_"}):
         own = loops.get(name, [])
         inside = {id(node) for loop in own for node in ast.walk(loop)}
         outside = any(id(node) not in inside for node in names.nodes[name])

@@ -1,7 +1,6 @@
 """All kernels that entries call, as one text of C++."""
 
 import ast
-import importlib
 import inspect
 import itertools
 from collections.abc import Iterable, Sequence
@@ -67,13 +66,6 @@ class Translation:
     def struct(self, kind: type) -> Struct:
         """The struct of a class of named tuples."""
         return self._types.struct(kind)
-
-    def annotated(self, module: str, node: ast.AnnAssign) -> Type:
-        """The type that an annotation says. Raises Refused."""
-        try:
-            return self._types.of(eval(ast.unparse(node.annotation), vars(importlib.import_module(module))))
-        except NoType as fault:
-            raise Refused(module, node.lineno, f"{fault} is no type of kernels") from None
 
     def constant(self, constant: Constant) -> None:
         """Take note that a constant is used."""

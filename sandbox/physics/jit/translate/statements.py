@@ -40,7 +40,7 @@ class Body(Expressions):
     def _find_types(self) -> None:
         while self._types_found():
             pass
-        missing = self.own - self.types.keys() - {"_"}
+        missing = self.own.keys() - self.types.keys() - {"_"}
         if missing:
             raise self.refuse(self.function, f"the type of {', '.join(sorted(missing))} does not follow from anything")
 
@@ -61,7 +61,7 @@ class Body(Expressions):
         """The names that a statement gives something, and what."""
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
             assert node.value is not None
-            yield node.target.id, self._annotated(node)
+            yield node.target.id, node.value
         elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
             yield node.target.id, ast.copy_location(
                 ast.BinOp(ast.Name(node.target.id, ast.Load()), node.op, node.value), node
@@ -91,17 +91,6 @@ class Body(Expressions):
         if isinstance(kind, Struct):
             return [(spelled(name), each) for name, each in kind.fields]
         raise self.refuse(node, "this is nothing that has parts")
-
-    def _annotated(self, node: ast.AnnAssign) -> Type:
-        if self._is_contents(node.value):
-            return self.program.annotated(self.module, node)
-        assert node.value is not None
-        return self.code(node.value).type
-
-    def _is_contents(self, value: ast.expr | None) -> bool:
-        if not (isinstance(value, ast.Call) and isinstance(value.func, ast.Name)):
-            return False
-        return meaning(self.module, value.func.id) is interpreted.contents
 
     def _type_of(self, value: ast.expr | Type) -> Type:
         return self.code(value).type if isinstance(value, ast.expr) else value
@@ -164,7 +153,7 @@ class Body(Expressions):
         if isinstance(statement, ast.AugAssign):
             return self._augmented(statement)
         if isinstance(statement, ast.AnnAssign):
-            return self._contents(statement)
+            return self._annotated(statement)
         if isinstance(statement, ast.Assign):
             return self._assigned(statement)
         raise self.refuse(statement, f"kernels have no {type(statement).__name__.lower()}")
@@ -213,13 +202,9 @@ class Body(Expressions):
             return [f"const {target.type.cpp} {before} = {target.text};", f"{target.text} = {again.text};"]
         return [f"{target.text} {sign[type(statement.op)]}= {value.text};"]
 
-    def _contents(self, statement: ast.AnnAssign) -> list[str]:
-        target, value = statement.target, statement.value
-        assert isinstance(target, ast.Name) and value is not None
-        if self._is_contents(value):
-            kind = self.types[target.id].cpp
-            return [f"const {kind} &{spelled(target.id)} = contents<{kind}>({self.code(value.args[0]).text});"]
-        return [self._set(statement, target, self.code(value))]
+    def _annotated(self, statement: ast.AnnAssign) -> list[str]:
+        assert statement.value is not None
+        return [self._set(statement, statement.target, self.code(statement.value))]
 
     def _assigned(self, statement: ast.Assign) -> list[str]:
         value, targets = statement.value, statement.targets
@@ -274,7 +259,7 @@ class Body(Expressions):
         if target.id not in self.places.first.get(id(statement), ()):
             return f"{name} = {value.text};"
         once = target.id in self.places.once
-        if isinstance(kind, Struct) and once and value.hangs == PRIMARY and not value.text.endswith((")", "}")):
+        if isinstance(kind, Struct) and once and value.stays:
             return f"const {kind.cpp} &{name} = {value.text};"
         return f"{'const ' if once else ''}{kind.cpp} {name} = {value.text};"
 

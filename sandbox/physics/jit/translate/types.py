@@ -6,6 +6,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 import numpy as np
 
 from sandbox.physics.arrays import ArrayKind
+from sandbox.physics.jit import interpreted
 
 # What an item of an array is in C++, by its dtype.
 ITEMS = {"float64": "double", "float32": "float", "int64": "int64_t", "int32": "int32_t", "int8": "int8_t", "uint32": "uint32_t", "bool": "bool"}
@@ -64,9 +65,14 @@ class Several:
 
 @dataclass(frozen=True)
 class Bundle:
-    """Words of a struct, of which only `contents` says which."""
+    """The words of a named tuple, or of a plain one, as one array."""
 
-    cpp: str = "Bundle"
+    items: "Type"
+
+    @property
+    def cpp(self) -> str:
+        """As C++ writes it."""
+        return f"Bundle<{self.items.cpp}>"
 
 
 Type = Scalar | Array | Struct | Several | Bundle
@@ -104,13 +110,13 @@ class Types:
 
     def of(self, hint: Any) -> Type:
         """The type that an annotation says. Raises NoType."""
-        if hint is Any:
-            return Bundle()
         if hint in _SCALARS:
             return _SCALARS[hint]
         for marker in get_args(hint):
             if isinstance(marker, ArrayKind):
                 return Array(np.dtype(marker.dtype).name, marker.dimensions)
+        if get_origin(hint) is interpreted.Bundle:
+            return Bundle(self.of(*get_args(hint)))
         if get_origin(hint) is tuple:
             return Several(tuple(map(self.of, get_args(hint))))
         if isinstance(hint, type) and hasattr(hint, "_fields"):

@@ -17,7 +17,7 @@ from sandbox.physics.arena import (
     new_slots,
 )
 from sandbox.physics.arrays import Slots, empty
-from sandbox.physics.jit import bundle, contents, inner_kernel, items_of, kernel, put
+from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, items_of, kernel, put
 from sandbox.physics.solvers.linear.minimum_degree import Columns, order_by_degree, update_targets
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.topology.sorting import place_among, sort_by_value
@@ -102,9 +102,9 @@ class GraphMatrix(NamedTuple):
 
 
 @kernel
-def _lay_out_graph(lent: Any, arena: Arena, nodes: int, link_a: Slots, link_b: Slots) -> None:
+def _lay_out_graph(lent: Bundle[GraphMatrix], arena: Arena, nodes: int, link_a: Slots, link_b: Slots) -> None:
     begin(arena)
-    made: GraphMatrix = contents(lent)
+    made = contents(lent)
     ordered, rank = order_by_degree(nodes, link_a, link_b, arena), new_slots(arena, nodes)
     if is_full(arena):
         return
