@@ -25,8 +25,6 @@ HAS_KNOWN_ARRAYS = _address_at(id(_probe) + _ADDRESS).value == _probe.ctypes.dat
 
 # What lies in a bundle: of an array its dtype and dimensions, of a tuple its class and what lies in it.
 Signature = tuple[Any, ...]
-# What lies in the bundles of this process, by the name that their arrays have for it.
-SIGNATURES: dict[str, Signature] = {}
 
 
 class _Packed(NamedTuple):
@@ -91,12 +89,15 @@ def dtype_of(name: str, words: int) -> np.dtype[Any]:
     return np.dtype([(name, np.int64, (words,))])
 
 
+def name_of(signature: Signature) -> str:
+    """The name that arrays of bundles have for what lies in them."""
+    digest = hashlib.blake2b(signature_text(signature).encode(), digest_size=6).hexdigest()
+    return f"{'' if signature[0] is tuple else signature[0].__name__}{digest}"
+
+
 @functools.cache
 def _dtype(signature: Signature, words: int) -> np.dtype[Any]:
-    digest = hashlib.blake2b(signature_text(signature).encode(), digest_size=6).hexdigest()
-    name = f"{'' if signature[0] is tuple else signature[0].__name__}{digest}"
-    SIGNATURES[name] = signature
-    return dtype_of(name, words)
+    return dtype_of(name_of(signature), words)
 
 
 def bundle(items: tuple[Any, ...], like: Any = None) -> Any:

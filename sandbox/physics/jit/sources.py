@@ -14,8 +14,10 @@ PACKAGE = Path(__file__).parents[2]
 _FOLDERS = ("physics", "app/draw/raster")
 # What makes machine code of kernels: every statement of these counts.
 _MAKERS = (
-    "bundles.py", "compiled.py", "lending.py", "linking.py", "making/calling.c", "making/emitting.py",
-    "making/gathering.py", "making/linking_by_zig.py", "making/platforms.py",
+    "bundles.py", "making/calling.c", "making/compiling.py", "making/gathering.py", "making/platforms.py",
+    *(f"translate/{name}" for name in (
+        "expressions.py", "local_names.py", "program.py", "runtime.h", "sources.py", "statements.py", "types.py"
+    )),
 )  # fmt: skip
 _ROLES = {"kernel", "waiting_kernel", "inner_kernel", "inlined_kernel", "scalar_kernel"}
 _DIGEST_SIZE = 8
@@ -59,6 +61,11 @@ def _plain(node: Any) -> Any:
 
 def _is_text(value: ast.expr) -> bool:
     return isinstance(value, ast.Constant) and isinstance(value.value, str)
+
+
+def has_kernels(text: bytes) -> bool:
+    """Whether a file has kernels."""
+    return any(f"\n@{role}\n".encode() in text for role in _ROLES)
 
 
 def _last_name(node: ast.expr) -> str:
@@ -126,7 +133,7 @@ def kernel_part(text: bytes, others: Iterable[str] = ()) -> tuple[list[Any], lis
 
 def kernel_digest(name: str, text: bytes, others: Iterable[str] = ()) -> str:
     """A digest of what machine code follows from in a file of this name; of a maker all that it says."""
-    if name.endswith(".c"):
+    if name.endswith((".c", ".h")):
         return _digest(text)
     if name.startswith("physics/jit/"):
         return _digest(repr(_plain(ast.parse(text).body)).encode())

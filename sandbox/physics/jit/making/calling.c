@@ -23,7 +23,7 @@ enum { NOTHING, GIVES_INTEGER, GIVES_FLOAT, GIVES_FLAG };
 typedef struct Entry {
     int (*run)(Word *block);
     const char *name;
-    Word gives, waits, arguments;
+    Word gives, arguments;
     /* Called in its place with arguments of other types; 0: that is an error. */
     Object *otherwise;
     Kind kinds[];
@@ -48,10 +48,6 @@ typedef struct Interpreter {
     Object *(*from_integer)(Word);
     Object *(*from_flag)(long);
     void (*keep)(Object *);
-    void *(*save_thread)(void);
-    void (*restore_thread)(void *);
-    int (*acquire_lock)(void *, int);
-    void (*release_lock)(void *);
 } Interpreter;
 
 #if defined(_WIN32)
@@ -59,7 +55,6 @@ typedef struct Interpreter {
 #else
 #define SHARED __attribute__((visibility("default")))
 #endif
-#define HIDDEN __attribute__((visibility("hidden")))
 /* At most so many words has a block; library.py refuses an entry with more. */
 #define BLOCK 448
 enum { EQUAL = 2, CONTIGUOUS = 0x1, WRITEABLE = 0x400 };
@@ -67,24 +62,6 @@ enum { EQUAL = 2, CONTIGUOUS = 0x1, WRITEABLE = 0x400 };
 static Interpreter python;
 
 SHARED void connect(const Interpreter *interpreter) { python = *interpreter; }
-
-/* What kernels call of Python: locks for threads. */
-HIDDEN int PyThread_acquire_lock(void *lock, int wait) { return python.acquire_lock(lock, wait); }
-HIDDEN void PyThread_release_lock(void *lock) { python.release_lock(lock); }
-
-/* Whole numbers next to a number: processors of the oldest kind have no instruction for it, and a call of the system's
-   library is not needed. The same bits as theirs, the sign of 0 included. */
-#define WHOLE_FROM 4503599627370496.0
-HIDDEN double floor(double x) {
-    if (!(x > -WHOLE_FROM && x < WHOLE_FROM)) return x;
-    double whole = (double)(Word)x;
-    return __builtin_copysign(whole > x ? whole - 1.0 : whole, x);
-}
-HIDDEN double ceil(double x) {
-    if (!(x > -WHOLE_FROM && x < WHOLE_FROM)) return x;
-    double whole = (double)(Word)x;
-    return __builtin_copysign(whole < x ? whole + 1.0 : whole, x);
-}
 
 #if defined(_WIN32)
 /* Called when the library is loaded: nothing is to be done. */
@@ -163,9 +140,7 @@ SHARED Object *call(Object *self, Object *const *arguments, Word count) {
                 entry->name);
         }
     }
-    void *thread = entry->waits ? python.save_thread() : 0;
     int status = entry->run(block);
-    if (entry->waits) python.restore_thread(thread);
     if (status) return python.format(python.runtime_error, "%s failed with code %d", entry->name, status);
     return result_of(entry, block);
 }

@@ -1,79 +1,83 @@
-"""Gathering: what numba makes of every entry and the parts below it, as one module of LLVM, not yet optimised."""
+"""Gathering: every kernel that Python calls, as units of C++, and how each is called."""
 
+import importlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import llvmlite.binding as llvm
-import numba
+import numpy as np
 
-from sandbox.physics.jit import compiled
-from sandbox.physics.jit.linking import libraries_below
+from sandbox.physics.jit import Kernel, entries
+from sandbox.physics.jit.bundles import Signature, name_of
+from sandbox.physics.jit.sources import has_kernels, source_files, text_of
+from sandbox.physics.jit.translate.program import Translation, symbol_of, words_of
+from sandbox.physics.jit.translate.types import FLAG, FLOAT, INTEGER, NOTHING, Array, Bundle, Scalar, Several, Struct, Type
 
-types: Any = numba.types
-
-_GIVES = {types.none: "nothing", types.int64: "integer", types.float64: "float", types.boolean: "flag"}
-_SCALARS = {types.int64: "integer", types.float64: "float", types.boolean: "flag"}
+# Entries are divided so that few kernels are called from two units: each is compiled by itself, all at once.
+_UNITS = {"tick.cpp": "sandbox.physics.pipeline.tick", "physics.cpp": "sandbox.physics", "painting.cpp": "sandbox"}
+_FORMS = {INTEGER: "integer", FLOAT: "float", FLAG: "flag", NOTHING: "nothing"}
 
 
 @dataclass(frozen=True)
-class EntryCode:
-    """One entry in gathered code.
+class Gathered:
+    """Kernels in C++, by the names of files, and entries by their names, as a manifest has them."""
 
-    name: its kernel's. function: what it is called in the module; symbol: what it is to be called in a library.
-    arguments: a form for each, as `library.py` reads them. gives: the form of its result; waits: others run meanwhile.
-    """
-
-    name: str
-    function: str
-    arguments: tuple[Any, ...]
-    gives: str
-    waits: bool
+    texts: dict[str, str]
+    entries: dict[str, dict[str, Any]]
 
     @property
-    def symbol(self) -> str:
-        """A name that C can say."""
-        return self.name.partition(".")[2].replace(".", "_")
+    def symbols(self) -> list[str]:
+        """What entries are called in a library."""
+        return [entry["symbol"] for entry in self.entries.values()]
 
 
-def _form(kind: Any) -> Any:
-    """The form of an argument by its numba type."""
-    if kind in _SCALARS:
-        return _SCALARS[kind]
-    if isinstance(kind, types.Array):
-        fields = getattr(kind.dtype, "fields", None)
-        if fields:
-            return ["bundle", next(iter(fields)), kind.dtype.size // 8]
-        return ["array", numba.np.numpy_support.as_dtype(kind.dtype).str, kind.ndim]
-    if isinstance(kind, types.BaseTuple):
-        return ["tuple", *map(_form, kind.types)]
-    raise TypeError(f"entries of libraries take no {kind}")
+def all_entries() -> list[Kernel]:
+    """Every kernel that Python calls, in the order of their names: all modules of kernels are imported."""
+    for name, file in source_files():
+        if name.endswith(".py") and has_kernels(text_of(file)):
+            importlib.import_module(f"sandbox.{name.removesuffix('.py').replace('/', '.')}")
+    return sorted(entries(), key=lambda kernel: kernel.name)
 
 
-def gather(entries: Sequence[tuple[Any, tuple[Any, ...]]]) -> tuple[bytes, list[EntryCode]]:
-    """The bitcode of one module that holds all of these kernels, each for the numba types of its arguments.
+def gathered(kernels: Sequence[Kernel]) -> Gathered:
+    """Kernels in C++. Raises Refused where one says what the language of kernels does not have."""
+    units: dict[str, list[Kernel]] = {}
+    for kernel in kernels:
+        unit = next(name for name, begin in _UNITS.items() if kernel.name.startswith(begin))
+        units.setdefault(unit, []).append(kernel)
+    texts, found = {}, {}
+    for unit, ones in units.items():
+        translation = Translation(ones)
+        texts[unit] = translation.text()
+        found |= {kernel.name: _entry(translation, kernel) for kernel in ones}
+    return Gathered(texts, found)
 
-    Raises:
-        TypeError: for an argument or a result that has no form in a library.
-    """
-    libraries: dict[Any, None] = {}
-    codes = []
-    for kernel, signature in entries:
-        result = compiled.lowered(kernel, signature)
-        libraries |= dict.fromkeys([result.library, *libraries_below(result.library)])
-        gives = result.signature.return_type
-        if gives not in _GIVES:
-            raise TypeError(f"{kernel.name} gives {gives}, which has no form in a library")
-        forms = tuple(map(_form, signature))
-        codes.append(
-            EntryCode(kernel.name, result.fndesc.llvm_func_name, forms, _GIVES[gives], kernel.role == "waiting_kernel")
-        )
-    whole = llvm.parse_assembly("")
-    for library in libraries:
-        module = llvm.parse_bitcode(library._get_module_for_linking().as_bitcode())
-        for function in module.functions:
-            # Else a part would be left out that nothing linked so far calls.
-            if not function.is_declaration:
-                function.linkage = "weak_odr"
-        whole.link_in(module)
-    return bytes(whole.as_bitcode()), codes
+
+def _entry(translation: Translation, kernel: Kernel) -> dict[str, Any]:
+    (signature,) = translation.signatures(kernel)
+    takes = [_form(kind) for _, kind in signature.takes]
+    assert isinstance(signature.gives, Scalar)
+    return {"symbol": symbol_of(kernel), "takes": takes, "gives": _FORMS[signature.gives]}
+
+
+def _form(kind: Type) -> Any:
+    """The form of an argument, as library.py reads it."""
+    if isinstance(kind, Scalar):
+        return _FORMS[kind]
+    if isinstance(kind, Array):
+        return ["array", np.dtype(kind.dtype).str, kind.dimensions]
+    if isinstance(kind, Bundle):
+        return ["bundle", name_of(_signature(kind.items)), words_of(kind.items)]
+    return ["tuple", *map(_form, _items(kind))]
+
+
+def _signature(kind: Type) -> Signature:
+    """What lies in a bundle, as bundles.py says it."""
+    if isinstance(kind, Array):
+        return np.dtype(kind.dtype).str, kind.dimensions
+    return (kind.kind if isinstance(kind, Struct) else tuple, *map(_signature, _items(kind)))
+
+
+def _items(kind: Type) -> Sequence[Type]:
+    assert isinstance(kind, (Several, Struct))
+    return kind.items if isinstance(kind, Several) else [each for _, each in kind.fields]

@@ -1,4 +1,4 @@
-"""The platforms that libraries are made for: a generic processor each."""
+"""The platforms that libraries are made for: a generic processor each, and for x86-64 one of 2013 on as well."""
 
 from dataclasses import dataclass
 
@@ -7,16 +7,14 @@ from dataclasses import dataclass
 class Platform:
     """One of them.
 
-    name: of its library, before the suffix. triple, processor, features: for LLVM. target: for zig. options: for the
-    linker. entries: names of the only kernels that are called there; empty: all.
+    name: of its library, before the suffix. target, processor: for zig. options: for its linker. entries: names of the
+    only kernels that are called there; empty: all.
     """
 
     name: str
     suffix: str
-    triple: str
-    processor: str
     target: str
-    features: str = ""
+    processor: str
     options: tuple[str, ...] = ()
     entries: tuple[str, ...] = ()
 
@@ -26,18 +24,25 @@ class Platform:
         return f"{self.name}.{self.suffix}"
 
 
+# What is added to the name of a platform whose library needs a processor of level v3: AVX2, of 2013 on.
+WIDE = "-v3"
 # The system's loader takes no library that does not name this one.
 _MACHO = ("-lc", "-install_name", "@rpath/kernels.dylib")
 # What a browser of 2023 has. No SIMD: it makes nothing faster, and the module larger.
-_WASM = "+bulk-memory,+bulk-memory-opt,+nontrapping-fptoint,+sign-ext,+mutable-globals"
+_WASM = "mvp+bulk_memory+bulk_memory_opt+nontrapping_fptoint+sign_ext+mutable_globals"
+# Products that melt into sums have other bits: a processor of level v3 could.
+_V3 = "x86_64_v3-fma"
 
 LIBRARIES = (
-    Platform("linux-x86_64", "so", "x86_64-unknown-linux-gnu", "x86-64", "x86_64-linux-none"),
-    Platform("linux-arm64", "so", "aarch64-unknown-linux-gnu", "generic", "aarch64-linux-none"),
-    Platform("macos-x86_64", "dylib", "x86_64-apple-macosx11.0.0", "x86-64", "x86_64-macos.11.0", options=_MACHO),
-    Platform("macos-arm64", "dylib", "arm64-apple-macosx11.0.0", "apple-m1", "aarch64-macos.11.0", options=_MACHO),
-    Platform("windows-x86_64", "dll", "x86_64-pc-windows-gnu", "x86-64", "x86_64-windows-gnu"),
-    Platform("windows-arm64", "dll", "aarch64-pc-windows-gnu", "generic", "aarch64-windows-gnu"),
+    Platform("linux-x86_64", "so", "x86_64-linux-none", "x86_64"),
+    Platform(f"linux-x86_64{WIDE}", "so", "x86_64-linux-none", _V3),
+    Platform("linux-arm64", "so", "aarch64-linux-none", "generic"),
+    Platform("macos-x86_64", "dylib", "x86_64-macos.11.0", "x86_64", _MACHO),
+    Platform(f"macos-x86_64{WIDE}", "dylib", "x86_64-macos.11.0", _V3, _MACHO),
+    Platform("macos-arm64", "dylib", "aarch64-macos.11.0", "apple_m1", _MACHO),
+    Platform("windows-x86_64", "dll", "x86_64-windows-gnu", "x86_64"),
+    Platform(f"windows-x86_64{WIDE}", "dll", "x86_64-windows-gnu", _V3),
+    Platform("windows-arm64", "dll", "aarch64-windows-gnu", "generic"),
 )
 # What a page calls: it draws by itself.
 _CALLED_BY_PAGES = (
@@ -48,6 +53,4 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.derive.make_room",
     "sandbox.physics.command.command",
 )
-WEB = Platform(
-    "kernels", "wasm", "wasm32-unknown-unknown", "mvp", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES
-)
+WEB = Platform("kernels", "wasm", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES)

@@ -223,9 +223,11 @@ class Expressions:
         if operator not in _ARITHMETIC or (operator in _OF_INTEGERS and kind != INTEGER):
             raise self.refuse(node, "kernels have no such operator of these")
         sign, hangs = _ARITHMETIC[operator]
-        # Compilers warn of sums in shifts without parentheses.
-        tight = UNARY if hangs == SHIFT else hangs
-        left, right = a.within(tight), b.within(tight + (tight == hangs))
+        if operator in _OF_INTEGERS:
+            # Compilers warn of operators within those of bits, but for the same one.
+            left, right = a.within(hangs if a.hangs == hangs else UNARY), b.within(UNARY)
+        else:
+            left, right = a.within(hangs), b.within(hangs + 1)
         if operator is ast.Div and kind == INTEGER:
             left, kind = f"double({a.text})", FLOAT
         elif operator is ast.LShift or (_is_literal(a.text) and _is_literal(b.text)):

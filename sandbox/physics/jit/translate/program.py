@@ -21,6 +21,7 @@ from sandbox.physics.jit.translate.types import (
     Array,
     Bundle,
     NoType,
+    Several,
     Struct,
     Type,
     Types,
@@ -191,6 +192,8 @@ def words_of(kind: Type) -> int:
         return 7
     if isinstance(kind, Struct):
         return sum(words_of(each) for _, each in kind.fields)
+    if isinstance(kind, Several):
+        return sum(map(words_of, kind.items))
     return 1
 
 
