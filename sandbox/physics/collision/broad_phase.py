@@ -11,7 +11,7 @@ from typing import NamedTuple
 from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slot_rows, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.equation import SHORTEST
-from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import sort_ascending
 
 # Cell in units of the mean box: smaller puts an object into many cells, larger many objects into a cell.
@@ -230,7 +230,7 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
                 # Boxes that share many cells are found in the first of them alone.
                 seen = (0 if column == left else 1) + (0 if row == bottom else 2)
                 for at in range(grid.start[bucket], grid.start[bucket + 1]):
-                    entry = unsigned(at)
+                    entry = at
                     found = grid.object[entry]
                     k = found >> 2
                     if (

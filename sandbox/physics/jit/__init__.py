@@ -1,21 +1,20 @@
-"""The only place that knows libraries of kernels, and numba.
+"""The only place that knows how kernels run: from a library, or interpreted.
 
-Kernels run from the library of this platform. Where there is none, or the sources of kernels were edited, numba
-compiles them, with a disk cache; where numba is missing or does not work with this Python or numpy, they are
-interpreted. One line says so. SANDBOX_KERNELS chooses: library, numba or interpreted; where NUMBA_DISABLE_JIT is set,
-and after `start_interpreted`, they are interpreted. COMPILED says whether they are not.
+Kernels run from the library of this platform. Where their sources were edited, or there is none, zig compiles them once
+and keeps them; where zig is not installed, or does not take them, they are interpreted. One line says so.
+SANDBOX_KERNELS chooses: library; generic, which any processor of this kind runs; checked, which is compiled here and
+ends the process at an index that is out of range; interpreted. COMPILED says whether they are not interpreted.
 
 A kernel costs nothing until it is called: before the first call of one, or the first question for COMPILED, nothing is
-made of any, and neither a library nor numba is opened.
+made of any, and no library is opened.
 """
 
 import importlib
 import os
 import sys
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
@@ -24,9 +23,6 @@ from sandbox.physics.jit import interpreted
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 COMPILED: bool
-# Turns an index that is never negative into one that loops are vectorised for: of a signed one numba first asks whether
-# it counts from the end. Never mix the two in one sum: that makes a float.
-unsigned: Any = interpreted.unsigned
 # In kernels: the items of a bundle, as they were given to it.
 contents = interpreted.contents
 Bundle = interpreted.Bundle
@@ -42,14 +38,13 @@ float_tables_in: Any = interpreted.float_tables_in
 flags_in: Any = interpreted.flags_in
 int32s_in: Any = interpreted.int32s_in
 
-_ENTRIES = ("kernel", "waiting_kernel")
 # Functions, of which it is looked up which kernel they run.
 _PLAIN = (FunctionType, BuiltinFunctionType)
-# Which way kernels are made, by its name for people, and the module that makes them.
-_WAYS = {"library": "library", "numba": "compiled", "interpreted": "interpreted"}
+_WAYS = ("library", "generic", "checked", "interpreted")
 _WISH = "SANDBOX_KERNELS"
-_way: Any = None
-_recording = False
+# The module that makes kernels, and how they run.
+_maker: Any = None
+_way = ""
 _making = threading.RLock()
 
 
@@ -58,26 +53,16 @@ class Kernel:
     """One kernel of this process.
 
     held: what modules hold of it: an `Entry`, or what runs it; of what only kernels call, the function itself.
-    signatures: types of arguments, by their text, that calls were noted with, of an interpreted one. part: what other
-    kernels are compiled with, once one is that calls it.
     """
 
     role: str
     function: Callable[..., Any]
     held: Any = None
-    signatures: dict[str, tuple[Any, ...]] = field(default_factory=dict)
-    part: Any = None
 
     @property
     def name(self) -> str:
         """Module and function."""
         return f"{self.function.__module__}.{self.function.__qualname__}"
-
-    def note(self, *arguments: Any) -> None:
-        """While calls are recorded: remember the types of these arguments."""
-        if _recording:
-            types = importlib.import_module(f"{__name__}.compiled").types_of(arguments)
-            self.signatures[str(types)] = types
 
     def ready(self) -> Any:
         """The function that runs it, made at the first call; modules that hold the kernel by its name hold this from
@@ -121,57 +106,44 @@ def _modules(*homes: str) -> list[ModuleType]:
     return [one for one in map(sys.modules.get, {*names, *homes}) if type(one) is ModuleType]
 
 
-def _can_compile() -> bool:
-    try:
-        importlib.import_module(f"{__name__}.lending")
-    except (ImportError, AttributeError):  # also of a numba that is too old for this numpy, or has other inner parts
-        return False
-    return True
+def _wish() -> str:
+    """How kernels are to run."""
+    wish = os.environ.get(_WISH, "") or "library"
+    if wish not in _WAYS:
+        say(f"{_WISH} is {', '.join(_WAYS)}, not {wish!r}")
+        return "library"
+    return wish
 
 
-def _best() -> str:
-    """The way that is wished for; else the best that there is, with one line if that is no library."""
-    wish = os.environ.get(_WISH, "")
-    if wish == "interpreted" or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        return "interpreted"
-    if wish and wish not in _WAYS:
-        _say(f"{_WISH} is {', '.join(_WAYS)}, not {wish!r}")
-    why = f"{_WISH} is {wish}"
-    if wish != "numba":
-        library = importlib.import_module(f"{__name__}.library")
-        try:
-            library.open_library()
-        except library.NoLibrary as fault:
-            why = str(fault)
-        else:
-            return "library"
-    way = "numba" if _can_compile() else "interpreted"
-    if way != wish:
-        does = "numba compiles kernels, once" if way == "numba" else "kernels are interpreted, a hundred times slower"
-        _say(f"{why}: {does}")
-    return way
-
-
-def _say(line: str) -> None:
+def say(line: str) -> None:
+    """Say a line to whoever started this process."""
     if sys.stderr is not None:  # a program without a console has none
         print(line, file=sys.stderr)
 
 
-def _choose(way: str) -> Any:
-    global _way, COMPILED
-    _way = importlib.import_module(f"{__name__}.{_WAYS[way]}")
-    COMPILED = _way.COMPILED
-    return _way
+def _choose(wish: str) -> Any:
+    global _maker, _way, COMPILED
+    if wish != "interpreted":
+        library = importlib.import_module(f"{__name__}.library")
+        try:
+            library.open_library(wish)
+        except library.NoLibrary as fault:
+            say(f"{fault}: kernels are interpreted, a hundred times slower")
+            wish = "interpreted"
+    _way = wish
+    _maker = importlib.import_module(f"{__name__}.{'interpreted' if wish == 'interpreted' else 'library'}")
+    COMPILED = _maker.COMPILED
+    return _maker
 
 
 def _chosen() -> Any:
-    return _way or _choose(_best())
+    return _maker or _choose(_wish())
 
 
 def way() -> str:
-    """How kernels run in this process: "library", "numba" or "interpreted"."""
-    chosen = _chosen().__name__.rpartition(".")[2]
-    return next(name for name, module in _WAYS.items() if module == chosen)
+    """How kernels run in this process: "library", "generic", "checked" or "interpreted"."""
+    _chosen()
+    return _way
 
 
 def __getattr__(name: str) -> Any:
@@ -180,51 +152,14 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-def start_interpreted() -> None:
-    """Interpret kernels in this process.
-
-    Raises:
-        RuntimeError: where they run in another way already.
-    """
-    if _way is not None and _way.COMPILED:
-        raise RuntimeError("kernels are compiled already")
-    _choose("interpreted")
-
-
-@contextmanager
-def recorded() -> Iterator[None]:
-    """While this lasts, interpreted kernels that are called note the types of their arguments."""
-    global _recording
-    _recording = True
-    try:
-        yield
-    finally:
-        _recording = False
-
-
 def entries() -> list[Kernel]:
     """The kernels that Python calls."""
-    return [kernel for kernel in KERNELS if kernel.role in _ENTRIES]
-
-
-def precompile(held: Any, *arguments: Any) -> None:
-    """Compile a kernel for such arguments, or load it, as a call would, which is not made."""
-    _chosen().precompile(cast(Kernel, kernel_of(held)), arguments)
-
-
-def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:
-    """Let numba compile an entry for some types of arguments and keep it in its cache, however kernels run here."""
-    importlib.import_module(f"{__name__}.compiled").make(kernel).compile(signature)
-
-
-def interpreter_function(name: str, result: str, *arguments: str) -> Any:
-    """A function of Python's own C interface for compiled kernels, given the numba names of its types."""
-    return interpreted.InterpreterFunction(name, result, arguments)
+    return [kernel for kernel in KERNELS if kernel.role == "kernel"]
 
 
 def _made(role: str, function: Function) -> Function:
     kernel = Kernel(role, function)
-    kernel.held = Entry(kernel) if role in _ENTRIES else function
+    kernel.held = Entry(kernel) if role == "kernel" else function
     KERNELS.append(kernel)
     _BY_FUNCTION[function] = kernel
     return cast(Function, kernel.held)
@@ -248,11 +183,6 @@ def inlined_kernel(function: Function) -> Function:
 def scalar_kernel(function: Function) -> Function:
     """Make `function`, which takes and gives scalars alone, a part of kernels that Python calls too, interpreted."""
     return _made("scalar_kernel", function)
-
-
-def waiting_kernel(function: Function) -> Function:
-    """Make `function` a kernel for a thread of its own: others run meanwhile, and may be waited for."""
-    return _made("waiting_kernel", function)
 
 
 def bundle(items: tuple[Any, ...], like: Any = None) -> Any:

@@ -1,9 +1,8 @@
-"""Kernels that the interpreter runs: where there is neither a library nor numba."""
+"""Kernels that the interpreter runs: where there is no library."""
 
 import functools
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
@@ -12,13 +11,6 @@ from sandbox.physics.jit.bundles import owner_of
 
 COMPILED = False
 Items = TypeVar("Items")
-
-
-class Unsigned(int):
-    """An int that is to be an unsigned one in compiled kernels: constants of modules are known by it."""
-
-
-unsigned: Any = Unsigned
 
 
 class LentTuple:
@@ -43,15 +35,6 @@ def _lent(item: Any) -> Any:
     return LentTuple(type(item), items) if hasattr(item, "_make") else tuple(items)
 
 
-@dataclass(frozen=True)
-class InterpreterFunction:
-    """A function of Python's own C interface, which only compiled kernels can call; types by their numba names."""
-
-    name: str
-    result: str
-    arguments: tuple[str, ...]
-
-
 def _viewed(item: Any) -> Any:
     if isinstance(item, np.ndarray):
         return memoryview(cast(Any, item)) if item.dtype.fields is None else Bundle(owner_of(item).whole.item)
@@ -60,16 +43,11 @@ def _viewed(item: Any) -> Any:
     return item
 
 
-def interpreted(function: Callable[..., Any], note: Callable[..., None] | None = None) -> Callable[..., Any]:
-    """Run the kernel's own source on memory views, whose items are Python floats: the same IEEE doubles, 3x faster.
-
-    note: is told the arguments of each call.
-    """
+def interpreted(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Run the kernel's own source on memory views, whose items are Python floats: the same IEEE doubles, 3x faster."""
 
     @functools.wraps(function)
     def call(*arguments: Any) -> Any:
-        if note is not None:
-            note(*arguments)
         return function(*map(_viewed, arguments))
 
     return call
@@ -77,14 +55,9 @@ def interpreted(function: Callable[..., Any], note: Callable[..., None] | None =
 
 def make(kernel: Any) -> Callable[..., Any]:
     """What modules hold of a kernel that Python calls; parts of kernels get views already, and are left as they are."""
-    made: Any = interpreted(kernel.function, kernel.note)
+    made: Any = interpreted(kernel.function)
     made._kernel = kernel
     return cast(Callable[..., Any], made)
-
-
-def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
-    """While calls are recorded: remember the types of such arguments."""
-    kernel.note(*arguments)
 
 
 def bundle(items: tuple[Any, ...], like: Any = None) -> Any:

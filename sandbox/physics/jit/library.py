@@ -1,7 +1,7 @@
-"""Kernels of the libraries that are shipped: machine code for each platform, which needs no compiler.
+"""Kernels of a library: machine code for a platform.
 
-`make libraries` makes them from the sources. The manifest beside them says of which sources, and what their entries
-take. A library is called by one C function, `making/calling.c`, which Python sees as builtin functions.
+`make libraries` makes those that are shipped from the sources. The manifest beside them says of which sources, and what
+their entries take. A library is called by one C function, `making/calling.c`, which Python sees as builtin functions.
 """
 
 import ctypes
@@ -22,6 +22,8 @@ from sandbox.physics.jit.sources import edited
 COMPILED = True
 FOLDER = Path(__file__).with_name("libraries")
 MANIFEST = FOLDER / "manifest.json"
+# What is added to the name of a platform whose library needs a processor of level v3: AVX2, of 2013 on.
+WIDE = "-v3"
 # Of file digests [bytes].
 DIGEST_SIZE = 16
 
@@ -32,7 +34,7 @@ _MOST_WORDS = 448
 _FUNCTIONS = (
     "PyFloat_AsDouble", "PyLong_AsLongLong", "PyObject_IsTrue", "PyLong_AsVoidPtr", "PyTuple_Size", "PyTuple_GetItem",
     "PyObject_RichCompareBool", "PyErr_Occurred", "PyErr_Format", "PyObject_Vectorcall", "PyFloat_FromDouble",
-    "PyLong_FromLongLong", "PyBool_FromLong", "Py_IncRef",
+    "PyLong_FromLongLong", "PyBool_FromLong", "Py_IncRef", "Py_FatalError",
 )  # fmt: skip
 _CONTIGUOUS_WRITEABLE = 0x401
 _FASTCALL = 0x80
@@ -92,36 +94,22 @@ def read_manifest() -> dict[str, Any]:
 
 
 class Library:
-    """The library of this platform, opened. Raises NoLibrary."""
+    """A library, opened; entries: as its manifest has them. Raises NoLibrary."""
 
-    def __init__(self) -> None:
-        name = library_name()
-        if sys.implementation.name != "cpython" or not _has_known_layout():
-            raise NoLibrary("this Python or numpy lays objects out in another way than the library for it knows")
-        manifest = read_manifest()
-        if name not in manifest["files"]:
-            raise NoLibrary(f"there is no library for this platform, {name.partition('.')[0]}")
-        changed = edited(manifest["sources"])
-        if changed:
-            others = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
-            raise NoLibrary(f"kernels were edited in {changed[0]}{others}")
-        self.entries: dict[str, Any] = manifest["entries"]
+    def __init__(self, path: Path, entries: dict[str, Any]) -> None:
+        self.entries = entries
         self._kept: list[Any] = []
-        self._open(FOLDER / name, manifest["files"][name])
-
-    def _open(self, path: Path, digest: str) -> None:
-        try:
-            content = path.read_bytes()
-        except OSError as error:
-            raise NoLibrary(f"the library {path.name} is missing") from error
-        if file_digest(content) != digest:
-            raise NoLibrary(f"the library {path.name} is damaged, or not the one of its manifest")
         try:
             self._code = ctypes.CDLL(str(path))
             self._call = ctypes.cast(self._code.call, ctypes.c_void_p).value
             self._connect()
         except (OSError, AttributeError) as error:
             raise NoLibrary(f"the library {path.name} cannot be opened: {error}") from error
+
+    @property
+    def runs_wide(self) -> bool:
+        """Whether the processor runs the library for those of level v3 too."""
+        return bool(self._code.runs_wide())
 
     def _connect(self) -> None:
         """Tell the library where it finds Python."""
@@ -205,30 +193,58 @@ def _bring_back(arguments: tuple[Any, ...], fitted: tuple[Any, ...]) -> None:
 _opened: Library | None = None
 
 
-def open_library() -> Library:
-    """The library of this platform. Raises NoLibrary."""
+def open_library(wish: str = "library") -> Library:
+    """The library of this platform; wish: see SANDBOX_KERNELS. Raises NoLibrary."""
     global _opened
-    _opened = _opened or Library()
+    if _opened is None:
+        if sys.implementation.name != "cpython" or not _has_known_layout():
+            raise NoLibrary("this Python or numpy lays objects out in another way than libraries of kernels know")
+        _opened = _compiled_here("kernels are to be checked", True) if wish == "checked" else _shipped(wish)
     return _opened
 
 
-def make(kernel: Any) -> Any:
-    """What modules hold of a kernel that Python calls.
+def _shipped(wish: str) -> Library:
+    name = library_name()
+    manifest = read_manifest()
+    if name not in manifest["files"]:
+        return _compiled_here(f"there is no library for this platform, {name.partition('.')[0]}", False)
+    changed = edited(manifest["sources"])
+    if changed:
+        others = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        return _compiled_here(f"kernels were edited in {changed[0]}{others}", False)
+    found = Library(_whole(name, manifest), manifest["entries"])
+    wide = WIDE.join(os.path.splitext(name))
+    if wish != "generic" and wide in manifest["files"] and found.runs_wide:
+        return Library(_whole(wide, manifest), manifest["entries"])
+    return found
 
-    One that the library does not hold, of a program of its own, numba compiles; without numba it is interpreted.
-    """
-    library = open_library()
-    if kernel.name in library.entries:
-        return library.function(kernel.name)
+
+def _whole(name: str, manifest: dict[str, Any]) -> Path:
+    """Where a file of the manifest lies, as it was made."""
+    path = FOLDER / name
     try:
-        return importlib.import_module("sandbox.physics.jit.compiled").make(kernel)
-    except ImportError:
-        return interpreted.make(kernel)
+        content = path.read_bytes()
+    except OSError as error:
+        raise NoLibrary(f"the library {name} is missing") from error
+    if file_digest(content) != manifest["files"][name]:
+        raise NoLibrary(f"the library {name} is damaged, or not the one of its manifest")
+    return path
 
 
-def precompile(kernel: Any, arguments: tuple[Any, ...]) -> None:
-    """Make a kernel ready to be called."""
-    kernel.ready()
+def _compiled_here(why: str, checked: bool) -> Library:
+    # Of no use to whoever has not edited a kernel, and not for nothing: it reads every source.
+    edited_kernels = importlib.import_module("sandbox.physics.jit.edited")
+    try:
+        path, manifest = edited_kernels.compiled_here(why, checked)
+    except edited_kernels.NotCompiled as fault:
+        raise NoLibrary(str(fault)) from fault
+    return Library(path, manifest["entries"])
+
+
+def make(kernel: Any) -> Any:
+    """What modules hold of a kernel that Python calls; one of a program of its own is interpreted."""
+    library = open_library()
+    return library.function(kernel.name) if kernel.name in library.entries else interpreted.make(kernel)
 
 
 bundle, hold, items_of = bundles.bundle, bundles.hold, bundles.items_of

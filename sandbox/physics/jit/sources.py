@@ -19,7 +19,7 @@ _MAKERS = (
         "expressions.py", "local_names.py", "program.py", "runtime.h", "sources.py", "statements.py", "types.py"
     )),
 )  # fmt: skip
-_ROLES = {"kernel", "waiting_kernel", "inner_kernel", "inlined_kernel", "scalar_kernel"}
+_ROLES = {"kernel", "inner_kernel", "inlined_kernel", "scalar_kernel"}
 _DIGEST_SIZE = 8
 # Fields of a syntax tree that say nothing of what is computed.
 _SILENT = {"annotation", "returns", "type_comment", "type_params", "ctx", "kind"}

@@ -14,7 +14,7 @@ from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
 from sandbox.app.draw.raster.mark_kernels import from_segment, row_of_capsule
 from sandbox.app.draw.raster.pixels import PixelRow, Pixels, Sheets, Singles, SlotTables, laid_over
 from sandbox.physics.arrays import FloatRows, Floats, Int32s, SlotRows, Slots
-from sandbox.physics.jit import inner_kernel, kernel, unsigned
+from sandbox.physics.jit import inner_kernel, kernel
 
 # Rows and columns of a table of colours: how far inside, how lit.
 INSIDE, LIT = 64, 256
@@ -146,21 +146,20 @@ def _find_texels(row: int, first: int, last: int, scratch: BodyScratch, place: S
     iy = min(max(int(half_y - 0.5), 0), tall - 2)
     fy = min(max(half_y - 0.5 - iy, 0.0), 1.0)
     stride = place[3] + 2 * edge
-    above = unsigned((iy + edge) * stride + edge)
-    below = above + unsigned(stride)
-    one, two = unsigned(1), unsigned(2)
-    begin, end = unsigned(max(first - 1, 0) // 2), unsigned(min(last // 2 + 1, place[3] - 1))
-    for k in range(begin, end + one):
+    above = (iy + edge) * stride + edge
+    below = above + stride
+    begin, end = max(first - 1, 0) // 2, min(last // 2 + 1, place[3] - 1)
+    for k in range(begin, end + 1):
         fall[k] = high[below + k] - high[above + k]
         middle[k] = high[above + k] + fall[k] * fy
     # Two pixels lie between the middles of two cells.
     for k in range(begin, end):
-        slope, bend = middle[k + one] - middle[k], fall[k + one] - fall[k]
+        slope, bend = middle[k + 1] - middle[k], fall[k + 1] - fall[k]
         light, inside = slope * across + fall[k] * down + 128.0, (middle[k] - 0.45) * 120.0
-        for half in range(two):
+        for half in range(2):
             part = 0.25 + 0.5 * half
             lit = min(max(int(light + bend * part * down), 0), LIT - 1)
-            texel[two * k + one + half] = min(max(int(inside + slope * part * 120.0), 0), INSIDE - 1) * LIT + lit
+            texel[2 * k + 1 + half] = min(max(int(inside + slope * part * 120.0), 0), INSIDE - 1) * LIT + lit
     if first == 0:
         texel[0] = texel[1]
 
@@ -182,7 +181,7 @@ def _find_amounts(row: int, scratch: BodyScratch, place: Slots) -> None:
 
 @inner_kernel
 def _lay_flush(tone: PixelRow, amount: Int32s, first: int, last: int, squeezed: int, stretched: int) -> None:
-    for x in range(unsigned(first), unsigned(last)):
+    for x in range(first, last):
         share, colour = int(amount[x]), int(tone[x])
         over = stretched if share > 0 else squeezed
         by = abs(share) if abs(share) > 2 else 0
@@ -197,7 +196,7 @@ def _light_run(
     cover, tone, texel = scratch.cover, scratch.tone, scratch.texel
     table, grain, left = rows.look[b, 0], rows.look[b, 1], place[0]
     _find_texels(y - place[1], first, last, scratch, place)
-    for x in range(unsigned(first), unsigned(last)):
+    for x in range(first, last):
         k = texel[x]
         tone[x] = skins.tables[table, k // LIT, k % LIT]
     if place[8] != 0:
@@ -205,9 +204,9 @@ def _light_run(
     if grain >= 0:
         for x in range(first, last):
             tone[x] = _grainy(int(tone[x]), skins.grains[grain, y & (GRAIN - 1), (left + x) & (GRAIN - 1)])
-    row, start, at = unsigned(y), unsigned(left + first), unsigned((y - place[1]) * (place[2] + 2) + first)
-    for x in range(unsigned(last - first)):
-        colour = int(tone[unsigned(first) + x])
+    row, start, at = y, left + first, (y - place[1]) * (place[2] + 2) + first
+    for x in range(last - first):
+        colour = int(tone[first + x])
         share = int(cover[at + x] * (colour >> 24) * 1.004)
         pixels[row, start + x] = laid_over(int(pixels[row, start + x]), colour, share)
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from sandbox.app.draw.raster.pixels import FAR, Pixels, SlotTables, laid_over
 from sandbox.physics.arrays import FloatRows, Floats, Slots
-from sandbox.physics.jit import inner_kernel, kernel, unsigned
+from sandbox.physics.jit import inner_kernel, kernel
 
 # Texels of a sheet, a power of two.
 SHEET = 64
@@ -54,8 +54,8 @@ def _paint_span(pixels: Pixels, y: int, first: int, last: int, slopes: Floats, p
     v = int(slopes[3] + slopes[4] * px + slopes[5] * py)
     shade = int(slopes[6] + slopes[7] * px + slopes[8] * py)
     du, dv, by = int(slopes[1]), int(slopes[4]), int(slopes[7])
-    row = unsigned(y)
-    for x in range(unsigned(first), unsigned(last)):
+    row = y
+    for x in range(first, last):
         colour = int(picture[sheet, (v >> BITS) & (SHEET - 1), (u >> BITS) & (SHEET - 1)])
         share = min(max(shade >> (BITS - 8), -256), 256)
         over = 0xFFFFFF if share > 0 else 0

@@ -7,7 +7,7 @@ import math
 
 from sandbox.app.draw.raster.pixels import FAR, Singles
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.jit import inner_kernel
 
 
 @inner_kernel
@@ -87,26 +87,26 @@ def add_outline(
 def blur(cells: Singles, spare: Singles, sums: Singles, width: int, height: int, reach: int, passes: int) -> None:
     """Blur cells (height, width) by boxes of 2 reach + 1, this many times; what lies outside counts as 0."""
     share = 1.0 / (2 * reach + 1)
-    ahead, wide = unsigned(reach), unsigned(width)
+    ahead, wide = reach, width
     for _ in range(passes):
-        for y in range(unsigned(height)):
+        for y in range(height):
             begin = y * wide
             total = 0.0
             for x in range(min(ahead, wide)):
                 total += cells[begin + x]
             for x in range(wide):
                 enters = cells[begin + x + ahead] if x + ahead < wide else 0.0
-                leaves = cells[begin + x - ahead - unsigned(1)] if x > ahead else 0.0
+                leaves = cells[begin + x - ahead - 1] if x > ahead else 0.0
                 total += enters - leaves
                 spare[begin + x] = total * share
         # Down the columns a whole row at a time, as memory lies.
         for x in range(wide):
             sums[x] = 0.0
-        for y in range(unsigned(min(reach, height))):
+        for y in range(min(reach, height)):
             for x in range(wide):
                 sums[x] += spare[y * wide + x]
-        for y in range(unsigned(height)):
-            if y + ahead < unsigned(height):
+        for y in range(height):
+            if y + ahead < height:
                 for x in range(wide):
                     sums[x] += spare[(y + ahead) * wide + x]
             for x in range(wide):

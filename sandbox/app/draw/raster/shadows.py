@@ -10,7 +10,7 @@ from sandbox.app.draw.raster.bodies import Outlines
 from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
 from sandbox.app.draw.raster.pixels import FAR, Pixels, Singles, laid_over
 from sandbox.physics.arrays import FloatRows, Floats, Int32s, Slots
-from sandbox.physics.jit import inner_kernel, kernel, unsigned
+from sandbox.physics.jit import inner_kernel, kernel
 
 # Pixels of the screen to one of the shadow, each way.
 FACTOR = 4
@@ -120,16 +120,16 @@ def _lay_row(
 ) -> None:
     """Darken a row of pixels between two rows of cells, `down` (0..1) below the one that begins at `at`."""
     mask, sums, dark = scratch.mask, scratch.sums, scratch.dark
-    above, below, count = unsigned(at), unsigned(at + wide), unsigned(wide)
+    above, below, count = at, at + wide, wide
     most = 0.0
     for k in range(count):
         sums[k] = (mask[above + k] + (mask[below + k] - mask[above + k]) * down) * full
         most = max(most, sums[k])
     if most < 1.0:
         return
-    for k in range(count - unsigned(1)):
-        step, first = (sums[k + unsigned(1)] - sums[k]) / FACTOR, unsigned(FACTOR) * k
-        for x in range(unsigned(FACTOR)):
+    for k in range(count - 1):
+        step, first = (sums[k + 1] - sums[k]) / FACTOR, FACTOR * k
+        for x in range(FACTOR):
             dark[first + x] = int(sums[k] + step * (x + 0.5))
     first, last = max(clip[0], left), min(clip[2], left + FACTOR * (wide - 1))
     while first < last and dark[first - left] == 0:
@@ -138,8 +138,8 @@ def _lay_row(
         last -= 1
     if first >= last:
         return
-    row, begin, shift = unsigned(y), unsigned(first), unsigned(first - left)
-    for x in range(unsigned(last - first)):
+    row, begin, shift = y, first, first - left
+    for x in range(last - first):
         under, share = pixels[row, begin + x], dark[shift + x]
         pixels[row, begin + x] = laid_over(int(under), colour, int(share))
 

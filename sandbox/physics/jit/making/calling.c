@@ -48,6 +48,7 @@ typedef struct Interpreter {
     Object *(*from_integer)(Word);
     Object *(*from_flag)(long);
     void (*keep)(Object *);
+    void (*end)(const char *);
 } Interpreter;
 
 #if defined(_WIN32)
@@ -61,7 +62,53 @@ enum { EQUAL = 2, CONTIGUOUS = 0x1, WRITEABLE = 0x400 };
 
 static Interpreter python;
 
+/* Whether the processor, and the system, run what is compiled for level v3: AVX2 and what came with it. */
+SHARED int runs_wide(void) {
+#if defined(__x86_64__)
+    unsigned a, b, c, d, low, high;
+    __asm__("cpuid" : "=a"(a), "=b"(b), "=c"(c), "=d"(d) : "a"(0), "c"(0));
+    if (a < 7) return 0;
+    __asm__("cpuid" : "=a"(a), "=b"(b), "=c"(c), "=d"(d) : "a"(1), "c"(0));
+    /* MOVBE, OSXSAVE, AVX, F16C; and SSE4.2, POPCNT of level v2. */
+    const unsigned wanted = 1u << 22 | 1u << 27 | 1u << 28 | 1u << 29 | 1u << 20 | 1u << 23;
+    if ((c & wanted) != wanted) return 0;
+    __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+    if ((low & 6) != 6) return 0;
+    __asm__("cpuid" : "=a"(a), "=b"(b), "=c"(c), "=d"(d) : "a"(7), "c"(0));
+    /* BMI1, AVX2, BMI2. */
+    if ((b & (1u << 3 | 1u << 5 | 1u << 8)) != (1u << 3 | 1u << 5 | 1u << 8)) return 0;
+    __asm__("cpuid" : "=a"(a), "=b"(b), "=c"(c), "=d"(d) : "a"(0x80000001u), "c"(0));
+    /* LZCNT. */
+    return (c & 1u << 5) != 0;
+#else
+    return 0;
+#endif
+}
+
 SHARED void connect(const Interpreter *interpreter) { python = *interpreter; }
+
+#if defined(CHECKED)
+static char *digits(char *end, Word number) {
+    unsigned long long rest = number < 0 ? 0ull - number : number;
+    do *--end = '0' + rest % 10; while (rest /= 10);
+    if (number < 0) *--end = '-';
+    return end;
+}
+
+static char *before(char *end, const char *text) {
+    const char *last = text;
+    while (*last) last++;
+    while (last > text) *--end = *--last;
+    return end;
+}
+
+/* End the process, and say where in the C++ of kernels. */
+void end_out_of_range(const char *file, int line, Word index, Word length) {
+    char text[256] = "", *at = text + sizeof text - 1;
+    at = before(digits(before(digits(at, length), " of "), index), ": index ");
+    python.end(before(before(digits(at, line), ":"), file));
+}
+#endif
 
 #if defined(_WIN32)
 /* Called when the library is loaded: nothing is to be done. */

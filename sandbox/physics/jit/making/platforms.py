@@ -1,6 +1,8 @@
 """The platforms that libraries are made for: a generic processor each, and for x86-64 one of 2013 on as well."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from sandbox.physics.jit.library import WIDE, library_name
 
 
 @dataclass(frozen=True)
@@ -24,8 +26,6 @@ class Platform:
         return f"{self.name}.{self.suffix}"
 
 
-# What is added to the name of a platform whose library needs a processor of level v3: AVX2, of 2013 on.
-WIDE = "-v3"
 # The system's loader takes no library that does not name this one.
 _MACHO = ("-lc", "-install_name", "@rpath/kernels.dylib")
 # What a browser of 2023 has. No SIMD: it makes nothing faster, and the module larger.
@@ -44,6 +44,17 @@ LIBRARIES = (
     Platform(f"windows-x86_64{WIDE}", "dll", "x86_64-windows-gnu", _V3),
     Platform("windows-arm64", "dll", "aarch64-windows-gnu", "generic"),
 )
+
+
+def this_machine() -> Platform:
+    """The platform of this machine, and all that its processor can."""
+    name = library_name()
+    known = next((each for each in LIBRARIES if each.file == name), None)
+    if known is None:
+        return Platform(*name.split("."), target="native", processor="native")
+    return replace(known, processor="native")
+
+
 # What a page calls: it draws by itself.
 _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.tick.tick",

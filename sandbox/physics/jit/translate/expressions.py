@@ -316,8 +316,6 @@ class Expressions:
             return Code(f"contents({bundle.text})", bundle.type.items, stays=True)
         if isinstance(value, interpreted.InterpreterFunction):
             return Code("0", INTEGER)
-        if value is interpreted.unsigned:
-            return self._only(node, INTEGER)
         raise self.refuse(node, f"{ast.unparse(node.func)} is no kernel")
 
     def _kernel(self, node: ast.Call, kernel: Kernel) -> Code:

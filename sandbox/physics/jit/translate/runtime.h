@@ -15,10 +15,21 @@ typedef unsigned long long uint64_t;
 // An address has 32 bits there, and lies in 8 bytes, so that bundles look as everywhere.
 template <class T> struct Address {
     uint64_t word;
+    Address() = default;
+    Address(T *place) : word((unsigned long)place) {}
     operator T *() const { return (T *)(unsigned long)word; }
 };
 #else
 template <class T> using Address = T *;
+#endif
+
+#if defined(CHECKED)
+extern "C" void end_out_of_range(const char *file, int line, int64_t index, int64_t length);
+#define AT , const char *file = __builtin_FILE(), int line = __builtin_LINE()
+#define CHECK(index, axis) if (index < 0 || index >= shape[axis]) end_out_of_range(file, line, index, shape[axis])
+#else
+#define AT
+#define CHECK(index, axis)
 #endif
 
 template <class T, int dimensions> struct Array {
@@ -26,9 +37,21 @@ template <class T, int dimensions> struct Array {
     Address<T> data;
     int64_t shape[dimensions], strides[dimensions];
 
-    T &operator()(int64_t i) const { return ((T *)data)[i]; }
-    T &operator()(int64_t i, int64_t j) const { return ((T *)data)[i * shape[1] + j]; }
-    T &operator()(int64_t i, int64_t j, int64_t k) const { return ((T *)data)[(i * shape[1] + j) * shape[2] + k]; }
+    T &operator()(int64_t i AT) const {
+        CHECK(i, 0);
+        return ((T *)data)[i];
+    }
+    T &operator()(int64_t i, int64_t j AT) const {
+        CHECK(i, 0);
+        CHECK(j, 1);
+        return ((T *)data)[i * shape[1] + j];
+    }
+    T &operator()(int64_t i, int64_t j, int64_t k AT) const {
+        CHECK(i, 0);
+        CHECK(j, 1);
+        CHECK(k, 2);
+        return ((T *)data)[(i * shape[1] + j) * shape[2] + k];
+    }
 };
 
 // What a bundle is to Python: an array of one record, which lies at its data.
@@ -40,7 +63,7 @@ template <class T> void put(const T &place, const T &value) { const_cast<T &>(pl
 template <class A, class... Sizes> static A lying(const Array<int64_t, 1> &memory, int64_t first, Sizes... sizes) {
     typedef __remove_reference_t(decltype(A{}(0))) Item;
     A made{};
-    made.data = {decltype(made.data){(Item *)((int64_t *)memory.data + first)}};
+    made.data = (Item *)((int64_t *)memory.data + first);
     const int64_t shape[] = {sizes...};
     const int dimensions = sizeof...(sizes);
     made.item_size = sizeof(Item);
@@ -60,7 +83,7 @@ template <class T, int dimensions> static Array<T, dimensions> cut(Array<T, dime
     int64_t width = 1;
     for (int k = 1; k < dimensions; k++) width *= array.shape[k];
     const int64_t end = last < array.shape[0] ? last : array.shape[0], begin = first < end ? first : end;
-    array.data = {(T *)array.data + begin * width};
+    array.data = (T *)array.data + begin * width;
     array.shape[0] = end - begin;
     array.items = array.shape[0] * width;
     return array;

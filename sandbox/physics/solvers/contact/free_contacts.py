@@ -23,7 +23,7 @@ from sandbox.physics.geometry.rigid import (
     with_spin,
     with_turn,
 )
-from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.contact.free_constraints import (
     ACROSS,
     ALONG,
@@ -89,11 +89,11 @@ def _push(work: FreeContactScratch, i: int, nx: float, ny: float, jn: float, jt:
     jx = jn * nx - jt * ny
     jy = jn * ny + jt * nx
     jt *= arm
-    p = unsigned(work.end[i, 0])
+    p = work.end[i, 0]
     motion[p, PUSHED_X] += jx * row[i, WEIGHT_P]
     motion[p, PUSHED_Y] += jy * row[i, WEIGHT_P]
     motion[p, PUSHED_SURFACE] -= jt * row[i, TURN_P]
-    q = unsigned(work.end[i, 1])
+    q = work.end[i, 1]
     motion[q, PUSHED_X] -= jx * row[i, WEIGHT_Q]
     motion[q, PUSHED_Y] -= jy * row[i, WEIGHT_Q]
     motion[q, PUSHED_SURFACE] -= jt * row[i, TURN_Q]
@@ -104,7 +104,7 @@ def _begin(work: FreeContactScratch, count: int, scale: float) -> None:
     # The impulses that contacts bring along, as those of a small step.
     row = work.constraint
     for c in range(count):
-        i = unsigned(c)
+        i = c
         row[i, ALONG] *= scale
         row[i, ACROSS] *= scale
         _push(work, i, row[i, NX], row[i, NY], row[i, ALONG], row[i, ACROSS], row[i, ARM])
@@ -130,9 +130,9 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
     displaced = False
     hits = 0
     for c in range(count):
-        i = unsigned(c)
-        p = unsigned(end[i, 0])
-        q = unsigned(end[i, 1])
+        i = c
+        p = end[i, 0]
+        q = end[i, 1]
         if displaced or work.turned[p] + work.turned[q] > 0.0:
             look(work, c, c + 1)
         ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]

@@ -3,7 +3,7 @@
 import math
 
 from sandbox.physics.equation import SHORTEST
-from sandbox.physics.jit import inlined_kernel, inner_kernel, unsigned
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.contact.free_constraints import (
     ALONG,
     ALONG_CENTRES,
@@ -79,9 +79,9 @@ def look(work: FreeContactScratch, first: int, last: int) -> None:
     """Update the gaps of contacts, and the normals and arms of discs, which follow the centres."""
     row, end, motion = work.constraint, work.end, work.motion
     for c in range(first, last):
-        i = unsigned(c)
-        p = unsigned(end[i, 0])
-        q = unsigned(end[i, 1])
+        i = c
+        p = end[i, 0]
+        q = end[i, 1]
         nx, ny = row[i, NX], row[i, NY]
         wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
         wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
@@ -102,7 +102,7 @@ def look(work: FreeContactScratch, first: int, last: int) -> None:
 def look_at(work: FreeContactScratch, i: int, late: float) -> None:
     """Where a contact is so much later [s] within the small step; its gap is that of now along this normal."""
     row, motion = work.constraint, work.motion
-    p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+    p, q = work.end[i, 0], work.end[i, 1]
     wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
     wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
     if row[i, WAY] == FOLLOWS:
@@ -127,7 +127,7 @@ def apply(
     """
     # v += J / m, and what it does to the surfaces.
     row, motion = work.constraint, work.motion
-    p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+    p, q = work.end[i, 0], work.end[i, 1]
     jx, jy = jn * nx - jt * ny, jn * ny + jt * nx
     weight_p, weight_q = row[i, WEIGHT_P], row[i, WEIGHT_Q]
     surface_p, surface_q = motion[p, SURFACE], motion[q, SURFACE]
@@ -158,7 +158,7 @@ def apply(
 def approach(work: FreeContactScratch, i: int) -> float:
     """Velocity of two ends of a contact apart along its normal [m/s]."""
     row, motion = work.constraint, work.motion
-    p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+    p, q = work.end[i, 0], work.end[i, 1]
     return row[i, NX] * (motion[p, VX] - motion[q, VX]) + row[i, NY] * (motion[p, VY] - motion[q, VY])
 
 
@@ -166,6 +166,6 @@ def approach(work: FreeContactScratch, i: int) -> float:
 def slip(work: FreeContactScratch, i: int) -> float:
     """Velocity of two surfaces against each other across the normal [m/s]."""
     row, motion = work.constraint, work.motion
-    p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+    p, q = work.end[i, 0], work.end[i, 1]
     ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
     return row[i, NX] * uy - row[i, NY] * ux - row[i, ARM] * (motion[p, SURFACE] + motion[q, SURFACE])

@@ -8,7 +8,7 @@ that are cut short, and friction at several places, may not end there; they are 
 """
 
 from sandbox.physics.collision.restitution import SLOWEST_PASSED
-from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.free_constraints import (
     ARM,
     FRICTION,
@@ -47,7 +47,7 @@ ALIKE = 1e-12
 
 @inner_kernel
 def _push_hit(work: FreeContactScratch, k: int, jn: float, jt: float) -> None:
-    i = unsigned(work.hit[k])
+    i = work.hit[k]
     row = work.constraint
     apply(work, i, row[i, NX], row[i, NY], jn, jt, row[i, ARM], work.met[k], False)
     work.pushed[k] += jn
@@ -76,7 +76,7 @@ def _answer_between(work: FreeContactScratch, i: int, j: int) -> float:
 def _solve_two(work: FreeContactScratch) -> None:
     # 0 <= J, W J >= r, one of both; r: what each lacks.
     row = work.constraint
-    i, j = unsigned(work.hit[0]), unsigned(work.hit[1])
+    i, j = work.hit[0], work.hit[1]
     one = max(0.0, work.wanted[0] - work.speed[0])
     two = max(0.0, work.wanted[1] - work.speed[1])
     a, b = 1.0 / row[i, MASS], 1.0 / row[j, MASS]
@@ -104,7 +104,7 @@ def _restrain(work: FreeContactScratch, hits: int) -> None:
     begun = 0.0
     gained = 0.0
     for k in range(hits):
-        i = unsigned(work.hit[k])
+        i = work.hit[k]
         begun += work.pushed[k] * work.speed[k] + work.across[k] * work.slip[k]
         gained += work.pushed[k] * (approach(work, i) - work.speed[k])
         gained += work.across[k] * (slip(work, i) - work.slip[k])
@@ -124,7 +124,7 @@ def _solve_many(work: FreeContactScratch, hits: int, sweeps: int) -> int:
     for sweep in range(sweeps):
         largest = 0.0
         for k in range(hits):
-            i = unsigned(work.hit[k])
+            i = work.hit[k]
             lacks = work.wanted[k] - approach(work, i)
             if abs(lacks) <= settled:
                 continue
@@ -151,7 +151,7 @@ def _rub(work: FreeContactScratch, hits: int) -> int:
     for sweep in range(FRICTION_SWEEPS):
         largest = 0.0
         for k in range(hits):
-            i = unsigned(work.hit[k])
+            i = work.hit[k]
             most = row[i, FRICTION] * work.last[k]
             if not most > 0.0:
                 continue
@@ -176,7 +176,7 @@ def _solve_rubbing(work: FreeContactScratch, hits: int, sweeps: int) -> int:
     for sweep in range(sweeps):
         largest = 0.0
         for k in range(hits):
-            i = unsigned(work.hit[k])
+            i = work.hit[k]
             old = work.pushed[k]
             j = max(0.0, old + (min(0.0, work.wanted[k]) - approach(work, i)) * row[i, MASS]) - old
             if abs(j) > settled * row[i, MASS]:
@@ -205,11 +205,11 @@ def _resist(work: FreeContactScratch, hits: int) -> None:
     # Rolling resistance of the hits.
     row, motion = work.constraint, work.motion
     for k in range(hits):
-        i = unsigned(work.hit[k])
+        i = work.hit[k]
         most = row[i, ROLLING] * work.pushed[k]
         if not most > 0.0:
             continue
-        p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+        p, q = work.end[i, 0], work.end[i, 1]
         turn = row[i, RATIO_P] * motion[p, SURFACE] - row[i, RATIO_Q] * motion[q, SURFACE]
         j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
         motion[p, SURFACE] += j * row[i, ROLL_P]
@@ -224,12 +224,12 @@ def solve_pass(work: FreeContactScratch, hits: int, left: int) -> int:
     row = work.constraint
     rubs = False
     for k in range(hits):
-        i = unsigned(work.hit[k])
+        i = work.hit[k]
         work.pushed[k], work.across[k] = 0.0, 0.0
         work.speed[k], work.slip[k] = approach(work, i), slip(work, i)
         rubs = rubs or row[i, FRICTION] > 0.0
     if hits == 1:
-        i = unsigned(work.hit[0])
+        i = work.hit[0]
         work.last[0] = max(0.0, (work.wanted[0] - work.speed[0]) * row[i, MASS])
         _push_hit(work, 0, work.last[0], 0.0)
         if rubs:
@@ -243,5 +243,5 @@ def solve_pass(work: FreeContactScratch, hits: int, left: int) -> int:
         done = hits * (_solve_rubbing(work, hits, sweeps) if rubs else _solve_many(work, hits, sweeps))
     _resist(work, hits)
     for k in range(hits):
-        row[unsigned(work.hit[k]), IMPACT] += work.pushed[k]
+        row[work.hit[k], IMPACT] += work.pushed[k]
     return done

@@ -8,7 +8,7 @@ an impulse on (generalised reflections, Smith and others 2012).
 import math
 
 from sandbox.physics.collision.restitution import SLOWEST_PASSED, bounce_of
-from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.free_constraints import (
     COMING,
     GAP,
@@ -42,8 +42,8 @@ def _find_hits(work: FreeContactScratch, rows: int, passed: int, small: float) -
     # The contacts of what the last pass has pushed that approach now; how many.
     found = 0
     for c in range(rows):
-        i = unsigned(c)
-        p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+        i = c
+        p, q = work.end[i, 0], work.end[i, 1]
         if work.stamp[p] != passed and work.stamp[q] != passed:
             continue
         late = max(work.since[p], work.since[q])
@@ -70,7 +70,7 @@ def _find_hits(work: FreeContactScratch, rows: int, passed: int, small: float) -
 def _leaves_at(work: FreeContactScratch, i: int, u: float, late: float, small: float) -> float:
     # The velocity along the normal with which a hit is to end the small step.
     row = work.constraint
-    p, q = unsigned(work.end[i, 0]), unsigned(work.end[i, 1])
+    p, q = work.end[i, 0], work.end[i, 1]
     e, gap = row[i, RESTITUTION], row[i, GAP]
     if e == 0.0:
         return 0.0 if late > 0.0 else -max(0.0, gap) / small
@@ -87,10 +87,10 @@ def _look_again(work: FreeContactScratch, hits: int, small: float) -> int:
     for k in range(hits):
         i, late = work.hit[k], work.met[k]
         if late > 0.0:
-            late = meet(work, unsigned(i), unsigned(work.end[i, 0]), unsigned(work.end[i, 1]), small)
+            late = meet(work, i, work.end[i, 0], work.end[i, 1], small)
         else:
-            look_at(work, unsigned(i), 0.0)
-        if late < small and approach(work, unsigned(i)) < 0.0:
+            look_at(work, i, 0.0)
+        if late < small and approach(work, i) < 0.0:
             work.hit[kept], work.met[kept] = i, late
             kept += 1
     return kept
@@ -126,7 +126,7 @@ def _earliest(work: FreeContactScratch, hits: int, passed: int) -> int:
 def _mark(work: FreeContactScratch, hits: int, passed: int) -> None:
     # What a pass has pushed, and when.
     for k in range(hits):
-        i = unsigned(work.hit[k])
+        i = work.hit[k]
         for end in range(2):
             p = work.end[i, end]
             if work.weight[p] > 0.0:
@@ -150,7 +150,7 @@ def collide_fast(work: FreeContactScratch, hits: int, rows: int, besides: int, s
         if hits > 1:
             hits = _earliest(work, hits, passed)
         for k in range(hits):
-            i = unsigned(work.hit[k])
+            i = work.hit[k]
             work.wanted[k] = _leaves_at(work, i, approach(work, i), work.met[k], small)
         left -= solve_pass(work, hits, left) + rows // LOOKS
         _mark(work, hits, passed)

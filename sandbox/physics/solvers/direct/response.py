@@ -5,12 +5,12 @@ It says how particles P that contacts touch answer to impulses.
 
 from sandbox.physics.arrays import FloatRows, Slots
 from sandbox.physics.geometry.rigid import RigidMotion
-from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.gauss_seidel import Delassus
 from sandbox.physics.solvers.direct.factor import respond
 from sandbox.physics.solvers.direct.rigid_turn import add_torque
 from sandbox.physics.solvers.direct.system import Constraints, Span, System
-from sandbox.physics.solvers.linear.fronts import ONE, TWO, ZERO, subtract_pair
+from sandbox.physics.solvers.linear.fronts import subtract_pair
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 
 
@@ -74,23 +74,23 @@ def _forward(k: int, span: Span, matrix: Matrix, delassus: Delassus, row: Slots)
     columns = delassus.columns
     first = delassus.start[k]
     points = delassus.start[k + 1] - first
-    width = unsigned(2 * points)
+    width = 2 * points
     begun = 0
     for j in range(span.first_row, span.last_row):
         while begun < points and row[delassus.point[first + begun]] <= j:
             begun += 1
         if begun == 0:
             continue
-        end = unsigned(2 * begun)
-        upper = unsigned(j - span.first_row) * TWO * width
+        end = 2 * begun
+        upper = (j - span.first_row) * 2 * width
         lower = upper + width
         slant = matrix.diagonal[j, 1]
-        subtract_pair(columns, lower, columns, upper, upper, slant, 0.0, ZERO, end)
+        subtract_pair(columns, lower, columns, upper, upper, slant, 0.0, 0, end)
         for at in range(matrix.column_start[j], matrix.column_start[j + 1]):
-            target = unsigned(matrix.row[at] - span.first_row) * TWO * width
-            subtract_pair(columns, target, columns, upper, lower, matrix.lower[at, 0], matrix.lower[at, 1], ZERO, end)
+            target = (matrix.row[at] - span.first_row) * 2 * width
+            subtract_pair(columns, target, columns, upper, lower, matrix.lower[at, 0], matrix.lower[at, 1], 0, end)
             subtract_pair(
-                columns, target + width, columns, upper, lower, matrix.lower[at, 2], matrix.lower[at, 3], ZERO, end
+                columns, target + width, columns, upper, lower, matrix.lower[at, 2], matrix.lower[at, 3], 0, end
             )
 
 
@@ -100,21 +100,21 @@ def _gather(k: int, span: Span, matrix: Matrix, delassus: Delassus, row: Slots) 
     columns, numbers = delassus.columns, delassus.numbers
     first = delassus.start[k]
     points = delassus.start[k + 1] - first
-    width = unsigned(2 * points)
-    base = unsigned(delassus.base[k])
+    width = 2 * points
+    base = delassus.base[k]
     for at in range(delassus.base[k], delassus.base[k] + 4 * points * points):
         numbers[at] = 0.0
     begun = 0
     for j in range(span.first_row, span.last_row):
         while begun < points and row[delassus.point[first + begun]] <= j:
             begun += 1
-        upper = unsigned(j - span.first_row) * TWO * width
+        upper = (j - span.first_row) * 2 * width
         lower = upper + width
         for c in range(2 * begun):
-            i = unsigned(c)
+            i = c
             a = -columns[upper + i] * matrix.diagonal[j, 0]
             b = -columns[lower + i] * matrix.diagonal[j, 2]
-            subtract_pair(numbers, base + i * width, columns, upper, lower, a, b, ZERO, i + ONE)
+            subtract_pair(numbers, base + i * width, columns, upper, lower, a, b, 0, i + 1)
     for i in range(2 * points):
         for j in range(i):
             numbers[delassus.base[k] + j * 2 * points + i] = numbers[delassus.base[k] + i * 2 * points + j]

@@ -9,12 +9,11 @@ Source: Duff and Reid 1983; George 1973.
 from typing import NamedTuple
 
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
-from sandbox.physics.jit import inner_kernel, unsigned
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.linear.sparse_ldl import inverse_pivot
 
-ZERO, ONE, TWO, THREE, FOUR = unsigned(0), unsigned(1), unsigned(2), unsigned(3), unsigned(4)
 # Scalars eliminated at once: a row that waits is read and written once for all of them.
-PANEL = unsigned(8)
+PANEL = 8
 
 
 class Scratch(NamedTuple):
@@ -79,7 +78,7 @@ def _subtract_panel(
     p5 = p4 + stride
     p6 = p5 + stride
     p7 = p6 + stride
-    k = i + ONE
+    k = i + 1
     a0 = panel[i] * inverse[0]
     a1 = panel[p1 + i] * inverse[1]
     a2 = panel[p2 + i] * inverse[2]
@@ -115,20 +114,20 @@ def _eliminate_panel(
 ) -> None:
     # Rows begin..end of a front become those of its factor, times their pivot; the panel is a copy of them, filled up
     # with rows that do nothing.
-    for p in range(begin, end, TWO):
+    for p in range(begin, end, 2):
         row = base + p * width
         lower = row + width
         q = p - begin
         xx = numbers[row + p]
         inverse_x = inverse_pivot(xx, xx)
-        before = numbers[lower + p + ONE]
-        slant = numbers[row + p + ONE] * inverse_x
-        for j in range(p + ONE, width):
+        before = numbers[lower + p + 1]
+        slant = numbers[row + p + 1] * inverse_x
+        for j in range(p + 1, width):
             numbers[lower + j] -= slant * numbers[row + j]
-        inverse_y = inverse_pivot(numbers[lower + p + ONE], before)
+        inverse_y = inverse_pivot(numbers[lower + p + 1], before)
         inverse[q] = inverse_x
-        inverse[q + ONE] = inverse_y
-        for i in range(p + TWO, end):
+        inverse[q + 1] = inverse_y
+        for i in range(p + 2, end):
             a = numbers[row + i] * inverse_x
             b = numbers[lower + i] * inverse_y
             subtract_pair(numbers, base + i * width, numbers, row, lower, a, b, i, width)
@@ -149,15 +148,15 @@ def _eliminate_front(
     inverse: Floats, inverses: Floats, first_inverse: int,
 ) -> None:  # fmt: skip
     border = width - pivots
-    for begin in range(ZERO, pivots, PANEL):
+    for begin in range(0, pivots, PANEL):
         end = min(begin + PANEL, pivots)
         _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse)
         for p in range(begin, end):
             inverses[first_inverse + p] = inverse[p - begin]
-        for i in range(end, pivots, TWO):
+        for i in range(end, pivots, 2):
             row = base + i * width
             _subtract_panel(numbers, row, row + width, panel, stride, inverse, i, width)
-        for i in range(pivots, width, TWO):
+        for i in range(pivots, width, 2):
             # Columns of the remainder count from the first border row; no place in it is below the widest front.
             row = place + (i - pivots) * border - pivots
             _subtract_panel(remainder, row, row + border, panel, stride, inverse, i, width)
@@ -170,26 +169,26 @@ def _add_child(
 ) -> None:  # fmt: skip
     # What waits of a child, into the rows of its parent.
     border = width - pivots
-    child_border = TWO * (end - begin)
+    child_border = 2 * (end - begin)
     for p in range(begin, end):
-        i = TWO * unsigned(places[p])
-        source = child_place + TWO * (p - begin) * child_border
+        i = 2 * places[p]
+        source = child_place + 2 * (p - begin) * child_border
         if i < pivots:
             for q in range(p, end):
-                at = base + i * width + TWO * unsigned(places[q])
-                back = source + TWO * (q - begin)
+                at = base + i * width + 2 * places[q]
+                back = source + 2 * (q - begin)
                 numbers[at] += remainder[back]
-                numbers[at + ONE] += remainder[back + ONE]
+                numbers[at + 1] += remainder[back + 1]
                 numbers[at + width] += remainder[back + child_border]
-                numbers[at + width + ONE] += remainder[back + child_border + ONE]
+                numbers[at + width + 1] += remainder[back + child_border + 1]
         else:
             for q in range(p, end):
-                at = place + (i - pivots) * border + (TWO * unsigned(places[q]) - pivots)
-                back = source + TWO * (q - begin)
+                at = place + (i - pivots) * border + (2 * places[q] - pivots)
+                back = source + 2 * (q - begin)
                 remainder[at] += remainder[back]
-                remainder[at + ONE] += remainder[back + ONE]
+                remainder[at + 1] += remainder[back + 1]
                 remainder[at + border] += remainder[back + child_border]
-                remainder[at + border + ONE] += remainder[back + child_border + ONE]
+                remainder[at + border + 1] += remainder[back + child_border + 1]
 
 
 @inner_kernel
@@ -207,7 +206,7 @@ def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) ->
     first_front = fronts.of_row[first_row]
     last = fronts.of_row[last_row - 1]
     rows = 2 * (fronts.last[last] - fronts.first[last])
-    for at in range(unsigned(fronts.base[first_front]), unsigned(fronts.base[last] + rows * fronts.width[last])):
+    for at in range(fronts.base[first_front], fronts.base[last] + rows * fronts.width[last]):
         fronts.numbers[at] = 0.0
     for row in range(first_row, last_row):
         at = fronts.diagonal[row]
@@ -218,12 +217,12 @@ def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) ->
 @inner_kernel
 def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: FloatRows) -> None:
     """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
-    stride = unsigned(scratch.vector.shape[0])
+    stride = scratch.vector.shape[0]
     for front in range(first_front, last_front):
-        pivots = TWO * unsigned(fronts.last[front] - fronts.first[front])
-        width = unsigned(fronts.width[front])
-        base = unsigned(fronts.base[front])
-        place = unsigned(fronts.remains[front])
+        pivots = 2 * (fronts.last[front] - fronts.first[front])
+        width = fronts.width[front]
+        base = fronts.base[front]
+        place = fronts.remains[front]
         border = width - pivots
         for at in range(place, place + border * border):
             fronts.remainder[at] = 0.0
@@ -231,12 +230,12 @@ def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch:
             below = fronts.child[front, side]
             if below >= 0:
                 _add_child(
-                    fronts.numbers, base, fronts.remainder, place, pivots, width, unsigned(fronts.remains[below]),
-                    fronts.to_parent, unsigned(fronts.border_start[below]), unsigned(fronts.border_start[below + 1]),
+                    fronts.numbers, base, fronts.remainder, place, pivots, width, fronts.remains[below],
+                    fronts.to_parent, fronts.border_start[below], fronts.border_start[below + 1],
                 )  # fmt: skip
         _eliminate_front(
             fronts.numbers, base, fronts.remainder, place, pivots, width, scratch.panel, stride, scratch.inverse,
-            fronts.inverses, TWO * unsigned(fronts.first[front]),
+            fronts.inverses, 2 * (fronts.first[front]),
         )  # fmt: skip
         _eliminate_rows(front, fronts, scratch.vector, change)
 
@@ -273,12 +272,12 @@ def _scatter(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> N
 def _substitute_forward(
     numbers: Floats, base: int, pivots: int, width: int, inverses: Floats, first_inverse: int, vector: Floats
 ) -> None:
-    for p in range(ZERO, pivots, TWO):
+    for p in range(0, pivots, 2):
         row = base + p * width
         x = vector[p] * inverses[first_inverse + p]
-        vector[p + ONE] -= x * numbers[row + p + ONE]
-        y = vector[p + ONE] * inverses[first_inverse + p + ONE]
-        subtract_pair(vector, ZERO, numbers, row, row + width, x, y, p + TWO, width)
+        vector[p + 1] -= x * numbers[row + p + 1]
+        y = vector[p + 1] * inverses[first_inverse + p + 1]
+        subtract_pair(vector, 0, numbers, row, row + width, x, y, p + 2, width)
 
 
 @inner_kernel
@@ -286,32 +285,32 @@ def _substitute_back(
     numbers: Floats, base: int, pivots: int, width: int, inverses: Floats, first_inverse: int, vector: Floats
 ) -> None:
     # Two rows at once, in four sums each: the order of a sum is part of the result.
-    for back in range(ZERO, pivots, TWO):
-        p = pivots - TWO - back
+    for back in range(0, pivots, 2):
+        p = pivots - 2 - back
         row = base + p * width
         lower = row + width
         x0 = x1 = x2 = x3 = 0.0
         y0 = y1 = y2 = y3 = 0.0
-        whole = (width - p - TWO) // FOUR * FOUR + p + TWO
-        for j in range(p + TWO, whole, FOUR):
+        whole = (width - p - 2) // 4 * 4 + p + 2
+        for j in range(p + 2, whole, 4):
             v0 = vector[j]
-            v1 = vector[j + ONE]
-            v2 = vector[j + TWO]
-            v3 = vector[j + THREE]
+            v1 = vector[j + 1]
+            v2 = vector[j + 2]
+            v3 = vector[j + 3]
             x0 += numbers[row + j] * v0
-            x1 += numbers[row + j + ONE] * v1
-            x2 += numbers[row + j + TWO] * v2
-            x3 += numbers[row + j + THREE] * v3
+            x1 += numbers[row + j + 1] * v1
+            x2 += numbers[row + j + 2] * v2
+            x3 += numbers[row + j + 3] * v3
             y0 += numbers[lower + j] * v0
-            y1 += numbers[lower + j + ONE] * v1
-            y2 += numbers[lower + j + TWO] * v2
-            y3 += numbers[lower + j + THREE] * v3
+            y1 += numbers[lower + j + 1] * v1
+            y2 += numbers[lower + j + 2] * v2
+            y3 += numbers[lower + j + 3] * v3
         for j in range(whole, width):
             x0 += numbers[row + j] * vector[j]
             y0 += numbers[lower + j] * vector[j]
-        y = (vector[p + ONE] - ((y0 + y1) + (y2 + y3))) * inverses[first_inverse + p + ONE]
-        vector[p + ONE] = y
-        x = vector[p] - ((x0 + x1) + (x2 + x3)) - numbers[row + p + ONE] * y
+        y = (vector[p + 1] - ((y0 + y1) + (y2 + y3))) * inverses[first_inverse + p + 1]
+        vector[p + 1] = y
+        x = vector[p] - ((x0 + x1) + (x2 + x3)) - numbers[row + p + 1] * y
         vector[p] = x * inverses[first_inverse + p]
 
 
@@ -319,8 +318,8 @@ def _substitute_back(
 def _eliminate_rows(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
     _gather(front, fronts, vector, change)
     _substitute_forward(
-        fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
-        unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), vector,
+        fronts.numbers, fronts.base[front], 2 * (fronts.last[front] - fronts.first[front]),
+        fronts.width[front], fronts.inverses, 2 * (fronts.first[front]), vector,
     )  # fmt: skip
     _scatter(front, fronts, vector, change)
 
@@ -339,8 +338,8 @@ def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, scratch
         front = last_front - 1 - back
         _gather(front, fronts, scratch.vector, change)
         _substitute_back(
-            fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
-            unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), scratch.vector,
+            fronts.numbers, fronts.base[front], 2 * (fronts.last[front] - fronts.first[front]),
+            fronts.width[front], fronts.inverses, 2 * (fronts.first[front]), scratch.vector,
         )  # fmt: skip
         k = 0
         for row in range(fronts.first[front], fronts.last[front]):

@@ -1,0 +1,90 @@
+"""Kernels that are compiled on this machine, once, where they are others than those of the libraries that are shipped.
+
+Each version has a folder of its own among the user's caches, whose name says what it follows from. It is made aside and
+moved there in one go: it is whole, or not there.
+"""
+
+import contextlib
+import hashlib
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+from sandbox.physics.jit import say
+from sandbox.physics.jit.sources import sources_now
+
+# Versions that are kept: branches of a checkout take turns.
+_KEPT = 8
+_DIGEST_SIZE = 8
+
+
+class NotCompiled(Exception):
+    """Kernels cannot be compiled here; says in one line why."""
+
+
+def _folder() -> Path:
+    return Path(platformdirs.user_cache_dir("spring-sandbox", appauthor=False)) / "kernels"
+
+
+def _version(checked: bool) -> str:
+    digests = [entry["kernels"] for _, entry in sorted(sources_now().items())]
+    digest = hashlib.blake2b("\n".join(digests).encode(), digest_size=_DIGEST_SIZE).hexdigest()
+    return f"{digest}-checked" if checked else digest
+
+
+def compiled_here(why: str, checked: bool) -> tuple[Path, dict[str, Any]]:
+    """The library of kernels as they are now, and its manifest, compiled if it is not there yet.
+
+    why: in a line that is said while that is done.
+
+    Raises:
+        NotCompiled: where they cannot be.
+    """
+    folder = _folder() / _version(checked)
+    manifest = folder / "manifest.json"
+    if not manifest.exists():
+        if importlib.util.find_spec("ziglang") is None:
+            raise NotCompiled(f"{why}, and zig is not installed (the extra `build`)")
+        say(f"{why}: they are compiled once, which takes about 20 s")
+        _compile(folder, checked)
+        _forget_others(folder)
+    with contextlib.suppress(OSError):
+        os.utime(folder)
+    made = json.loads(manifest.read_text(encoding="utf-8"))
+    return folder / made["library"], dict(made)
+
+
+def _compile(folder: Path, checked: bool) -> None:
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    aside = Path(tempfile.mkdtemp(prefix=".making-", dir=folder.parent))
+    try:
+        command = [sys.executable, "-m", f"{__package__}.making", str(aside), *(["CHECKED"] if checked else [])]
+        home = str(Path(__file__).resolve().parents[3])
+        path = os.pathsep.join(filter(None, (home, os.environ.get("PYTHONPATH"))))
+        variables = {**os.environ, "PYTHONPATH": path, "SANDBOX_KERNELS": "interpreted", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
+        ended = subprocess.run(command, env=variables, capture_output=True, text=True, check=False)
+        if ended.returncode:
+            raise NotCompiled(_last_line(ended.stdout) or _last_line(ended.stderr))
+        # Another process may have been sooner.
+        with contextlib.suppress(OSError):
+            aside.rename(folder)
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _last_line(text: str) -> str:
+    return text.strip().rpartition("\n")[2]
+
+
+def _forget_others(folder: Path) -> None:
+    found = [one for one in folder.parent.iterdir() if (one / "manifest.json").exists()]
+    for old in sorted(found, key=lambda one: one.stat().st_mtime, reverse=True)[_KEPT:]:
+        shutil.rmtree(old, ignore_errors=True)

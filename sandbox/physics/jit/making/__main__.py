@@ -1,0 +1,33 @@
+"""Compile the kernels for this machine: a library and its manifest, into a folder.
+
+python -m sandbox.physics.jit.making FOLDER [CHECKED]
+"""
+
+import json
+import sys
+from pathlib import Path
+
+from sandbox.physics.jit.making.compiling import NotCompiled, compiled
+from sandbox.physics.jit.making.gathering import all_entries, gathered
+from sandbox.physics.jit.making.platforms import this_machine
+from sandbox.physics.jit.translate.sources import Refused
+
+
+def _main(folder: Path, *defines: str) -> int:
+    platform = this_machine()
+    try:
+        found = gathered(all_entries())
+        content = compiled(found.texts, found.symbols, platform, folder.parent / "zig", defines)
+    except (Refused, NotCompiled) as fault:
+        print(fault)
+        return 1
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / platform.file).write_bytes(content)
+    for name, text in found.texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    (folder / "manifest.json").write_text(json.dumps({"library": platform.file, "entries": found.entries}))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main(Path(sys.argv[1]), *sys.argv[2:]))
