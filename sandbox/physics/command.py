@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots
-from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.pieces import new_piece_scratch, part
-from sandbox.physics.constraints import AREA
+from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, kernel
 from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
@@ -215,21 +215,6 @@ def _freeze(state: State, good: GoodValues, particle: int) -> None:
 
 
 @inner_kernel
-def _side_is_lost(p: int, q: int, state: State, start: Slots, listed: Slots, gone: Flags) -> bool:
-    # Whether a spring that is taken out joined two particles, and none that acts does.
-    lost = False
-    for at in range(start[p], start[p + 1]):
-        s = listed[at]
-        if (state.particle_a[s] == p and state.particle_b[s] == q) or (
-            state.particle_a[s] == q and state.particle_b[s] == p
-        ):
-            if state.spring_active[s]:
-                return False
-            lost = lost or gone[s]
-    return lost
-
-
-@inner_kernel
 def _cut(state: State, good: GoodValues, springs: Slots, kind: int, arena: Arena) -> int:
     # Take springs out, and the constraints that they were a side of, unless another spring holds that side. What falls
     # into pieces becomes several bodies; those of what breaks by itself keep the energy of the body. PART: the bodies
@@ -241,29 +226,17 @@ def _cut(state: State, good: GoodValues, springs: Slots, kind: int, arena: Arena
     if is_full(arena):
         return NO_ARENA
     for k in range(springs.shape[0] if kind != PART else 0):
-        s = springs[k]
-        gone[s] = True
-        state.spring_active[s] = False
-        state.impulse[s, 0] = state.impulse[s, 1] = state.tension[s] = 0.0
-        if kind == CUT:
-            state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
+        gone[springs[k]] = True
+        state.spring_active[springs[k]] = False
     list_ends(state.particle_a, state.particle_b, count, state.owner.shape[0], start, listed)
-    _end_constraints(state, start, listed, gone)
-    part(state, good, springs, start, listed, pieces)
+    end_constraints(state, start, listed, gone)
+    part(state, good, springs, start, listed, gone, pieces)
+    for s in range(count):
+        if gone[s]:
+            state.impulse[s, 0] = state.impulse[s, 1] = state.tension[s] = 0.0
+            if kind == CUT:
+                state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
     return 0
-
-
-@inner_kernel
-def _end_constraints(state: State, start: Slots, listed: Slots, gone: Flags) -> None:
-    for k in range(state.constraint_kind.shape[0]):
-        first, last = state.constraint_first[k], state.constraint_first[k] + state.constraint_corners[k]
-        # A bend's two outer corners are no side of it.
-        begins = last - 1 if state.constraint_kind[k] == AREA else first
-        for corner in range(first if state.constraint_kind[k] == AREA else first + 1, last):
-            p, q = state.corner_particle[begins], state.corner_particle[corner]
-            if _side_is_lost(p, q, state, start, listed, gone):
-                state.constraint_active[k] = False
-            begins = corner
 
 
 @inner_kernel

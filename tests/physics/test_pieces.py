@@ -295,3 +295,50 @@ def test_every_body_of_a_level_begins_with_the_firmness_that_it_says():
     assert [body.name for body in firm_bodies(world)] == ["it", "other"]
     one, other = (world.stiffness[body.springs] for body in firm_bodies(world))
     assert np.array_equal(one, other) and one[0] != 0.2
+
+
+def hinged(world):
+    """The springs that are left of a jelly without its upper left and lower right quarter, and the hinge."""
+    both = world.position[world.particle_a] + world.position[world.particle_b]
+    gone = np.flatnonzero((both[:, 0] * both[:, 1] < -1e-9) & shown_springs(world))
+    return gone, int(np.argmin(np.abs(world.position[world.particle_active]).sum(axis=1)))
+
+
+def test_lobes_that_hang_together_by_one_particle_part_there_and_undo_joins_them_again():
+    session = Session(small())
+    world = session.world
+    gone, middle = hinged(world)
+    lower, upper = (int(np.argmin(np.abs(world.position - at).sum(axis=1))) for at in ((-0.8, -0.8), (0.8, 0.8)))
+    before = shown_springs(world).copy()
+    session.submit(CutSprings(tuple(gone.tolist())), session.new_gesture())
+    session.advance()
+    assert world.owner[lower] != world.owner[upper]
+    # The hinge stays with one of them, whole; the other lost the springs to it alone.
+    here = (world.particle_a == middle) | (world.particle_b == middle)
+    sides = np.concatenate([world.particle_a, world.particle_b])[np.tile(here & shown_springs(world), 2)]
+    assert here.any() and np.all(world.owner[sides] == world.owner[middle])
+    lost = before & ~shown_springs(world)
+    lost[gone] = False
+    assert np.count_nonzero(lost) == 3 and here[lost].all()
+    outline = outline_of(world)
+    assert outline.side[: outline.dynamic[0]].all()
+    session.undo()
+    session.apply_pending()
+    assert np.array_equal(shown_springs(world), before) and world.owner[lower] == world.owner[upper]
+
+
+@pytest.mark.parametrize("shape", [{"box": [1.0, 1.0]}, {"box": [1.5, 0.5]}, {"circle": 0.5}])
+def test_a_coarse_jelly_loses_no_spring_but_the_one_that_is_cut(shape):
+    for spring in np.flatnonzero(shown_springs(build_world(small(shape=shape, spacing=0.5)))).tolist():
+        world = build_world(small(shape=shape, spacing=0.5))
+        before = np.flatnonzero(shown_springs(world))
+        world.cut([spring])
+        assert np.setdiff1d(before, np.flatnonzero(shown_springs(world))).tolist() == [spring]
+
+
+def test_a_triangle_that_hangs_by_its_corner_stays():
+    world = build_world(small(shape={"box": [0.8, 0.4]}))
+    ends = [set(pair) for pair in zip(world.particle_a.tolist(), world.particle_b.tolist(), strict=True)]
+    world.cut([ends.index(pair) for pair in ({4, 5}, {2, 4})])
+    assert all(world.spring_active[ends.index(pair)] for pair in ({1, 2}, {1, 5}, {2, 5}))
+    assert np.count_nonzero(world.constraint_active) == 3 and len(set(world.owner[:6].tolist())) == 1

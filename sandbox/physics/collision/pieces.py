@@ -12,16 +12,21 @@ from typing import NamedTuple
 from sandbox.physics.arena import Arena, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Slots
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.physics.collision.lobes import LobeScratch, let_go, new_lobe_scratch
+from sandbox.physics.collision.sides import (
+    AT_LEFT,
+    AT_RIGHT,
+    TRIANGLE_CORNERS,
+    acts_between,
+    end_constraints,
+    find_sides,
+    is_triangle,
+)
 from sandbox.physics.components import join, root_of
-from sandbox.physics.constraints import AREA
 from sandbox.physics.geometry.segment import doubled_area_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.state import GoodValues, State
-
-TRIANGLE_CORNERS = 3
-# A whole triangle of solid form lies to the left of a spring, to its right.
-AT_LEFT, AT_RIGHT = 1, 2
 
 
 class PieceScratch(NamedTuple):
@@ -35,6 +40,7 @@ class PieceScratch(NamedTuple):
     has_triangles: Flags
     has_solids: Flags
     beside: Slots
+    lobes: LobeScratch
 
 
 @inner_kernel
@@ -43,17 +49,18 @@ def new_piece_scratch(state: State, arena: Arena) -> PieceScratch:
     particles, springs = state.owner.shape[0], state.spring_active.shape[0]
     return PieceScratch(
         new_slots(arena, particles), new_slots(arena, particles), new_flags(arena, particles),
-        new_flags(arena, particles), new_slots(arena, springs),
+        new_flags(arena, particles), new_slots(arena, springs), new_lobe_scratch(particles, arena),
     )  # fmt: skip
 
 
 @inner_kernel
 def part(
-    state: State, good: GoodValues, springs: Slots, start: Slots, listed: Slots, work: PieceScratch
+    state: State, good: GoodValues, springs: Slots, start: Slots, listed: Slots, gone: Flags, work: PieceScratch
 ) -> None:  # fmt: skip
     """Make bodies of the pieces of soft bodies that have lost springs: those at which these springs (k,) are or were.
 
-    Springs of particle p, inactive ones too: listed[start[p]:start[p + 1]].
+    Springs of particle p, inactive ones too: listed[start[p]:start[p + 1]]. gone (m,): what was taken out, to which the
+    springs are added that hold a lobe.
     """
     for p in range(work.torn.shape[0]):
         work.torn[p] = -1
@@ -61,10 +68,10 @@ def part(
         _mark_torn(state, state.particle_a[springs[k]], work.torn)
         _mark_torn(state, state.particle_b[springs[k]], work.torn)
     _find_soft(state, work)
-    for k in range(state.constraint_kind.shape[0] - 1):
-        if _is_ended_triangle(state, k, work.torn) and _is_ended_triangle(state, k + 1, work.torn):
-            _halve_other_way(state, good, k, start, listed)
-    _find_sides(state, start, listed, work)
+    _find_whole(state, good, start, listed, work)
+    while let_go(state, work.torn, work.beside, gone, work.lobes):
+        end_constraints(state, start, listed, gone)
+        _find_whole(state, good, start, listed, work)
     _outline_pieces(state, work)
     _number_pieces(state, work)
 
@@ -86,7 +93,7 @@ def _find_soft(state: State, work: PieceScratch) -> None:
     # Which of the torn bodies have triangles that keep their areas, whole or not, and which have solid edges.
     for k in range(state.constraint_kind.shape[0]):
         first = work.torn[state.corner_particle[state.constraint_first[k]]]
-        if first >= 0 and state.constraint_kind[k] == AREA and state.constraint_corners[k] == TRIANGLE_CORNERS:
+        if first >= 0 and is_triangle(state, k):
             work.has_triangles[first] = True
     for s in range(state.edge.shape[0]):
         first = work.torn[state.particle_a[s]]
@@ -95,11 +102,19 @@ def _find_soft(state: State, work: PieceScratch) -> None:
 
 
 @inner_kernel
+def _find_whole(state: State, good: GoodValues, start: Slots, listed: Slots, work: PieceScratch) -> None:
+    # Which triangles are whole, and on which sides of springs they lie.
+    for k in range(state.constraint_kind.shape[0] - 1):
+        if _is_ended_triangle(state, k, work.torn) and _is_ended_triangle(state, k + 1, work.torn):
+            _halve_other_way(state, good, k, start, listed)
+    find_sides(state, work.torn, start, listed, work.beside)
+
+
+@inner_kernel
 def _is_ended_triangle(state: State, k: int, torn: Slots) -> bool:
     return (
         not state.constraint_active[k]
-        and state.constraint_kind[k] == AREA
-        and state.constraint_corners[k] == TRIANGLE_CORNERS
+        and is_triangle(state, k)
         and torn[state.corner_particle[state.constraint_first[k]]] >= 0
     )
 
@@ -148,16 +163,6 @@ def _halve_other_way(state: State, good: GoodValues, k: int, start: Slots, liste
 
 
 @inner_kernel
-def acts_between(state: State, p: int, q: int, start: Slots, listed: Slots) -> bool:
-    """Whether a spring acts between two particles; those of p: listed[start[p]:start[p + 1]]."""
-    for at in range(start[p], start[p + 1]):
-        s = listed[at]
-        if state.spring_active[s] and q in (state.particle_a[s], state.particle_b[s]):
-            return True
-    return False
-
-
-@inner_kernel
 def _place_corner(state: State, good: GoodValues, corner: int, particle: int, x: float, y: float) -> None:
     state.corner_particle[corner] = particle
     state.corner_form[corner, 0] = good.corner_form[corner, 0] = x
@@ -176,38 +181,6 @@ def _keep_area(state: State, good: GoodValues, k: int, inflation: float) -> None
         dx, dy = form[one, 0] - form[two, 0], form[one, 1] - form[two, 1]
         weight = 0.25 * (dx * dx + dy * dy)
         state.corner_weight[first + c] = good.corner_weight[first + c] = weight
-
-
-@inner_kernel
-def _find_sides(state: State, start: Slots, listed: Slots, work: PieceScratch) -> None:
-    # On which sides of springs whole triangles lie.
-    for k in range(state.constraint_kind.shape[0]):
-        corner = state.constraint_first[k]
-        if (
-            state.constraint_active[k]
-            and state.constraint_kind[k] == AREA
-            and state.constraint_corners[k] == TRIANGLE_CORNERS
-            and work.torn[state.corner_particle[corner]] >= 0
-        ):
-            is_left = state.constraint_rest[k, 1] > 0.0
-            for c in range(TRIANGLE_CORNERS):
-                p = state.corner_particle[corner + c]
-                q = state.corner_particle[corner + (c + 1) % TRIANGLE_CORNERS]
-                _add_side(p if is_left else q, q if is_left else p, state, start, listed, work.beside)
-
-
-@inner_kernel
-def _add_side(p: int, q: int, state: State, start: Slots, listed: Slots, beside: Slots) -> None:
-    # A triangle lies to the left of the way from p to q: tell the first spring that acts along it.
-    for at in range(start[p], start[p + 1]):
-        s = listed[at]
-        if state.spring_active[s]:
-            if state.particle_a[s] == p and state.particle_b[s] == q:
-                beside[s] |= AT_LEFT
-                return
-            if state.particle_a[s] == q and state.particle_b[s] == p:
-                beside[s] |= AT_RIGHT
-                return
 
 
 @inner_kernel
