@@ -8,8 +8,8 @@
 # them in WebAssembly and on an emulated arm64 too, where node and qemu-user with libc6-arm64-cross are installed, and
 # in pages, where Chromium is.
 # make seeds: random levels and commands, run several ways, bit for bit; half an hour. SEEDS=50: fewer than 1,000;
-# ARGUMENTS="--ways all --jobs 2": with kernels that numba compiles too, in two processes.
-# make bounds: run every test with kernels that check each index; usual kernels do not.
+# ARGUMENTS="--jobs 2": in two processes.
+# make bounds: run all recordings and abuse with kernels that look at each index; usual kernels do not.
 # make libraries: machine code of the kernels for all platforms, after a kernel was changed; minutes. CHECK=1 compares
 # it with what is there, HERE=1 only this platform's.
 # make abuse: stir, throw and drive bodies, and print figures; hours.
@@ -67,10 +67,9 @@ lint: $(VENV)/installed-dev
 	$(BIN)/mypy
 	$(BIN)/mypy --strict --follow-imports=silent examples
 
-bounds: export NUMBA_BOUNDSCHECK := 1
-bounds: export SANDBOX_KERNELS := numba
-bounds: export NUMBA_CACHE_DIR := $(CURDIR)/$(VENV)/bounds
-bounds: test-all
+bounds: export SANDBOX_KERNELS := checked
+bounds: $(VENV)/installed-dev
+	$(PYTEST) tests/determinism/goldens tests/level/test_shipped_levels.py tests/physics
 
 goldens: $(VENV)/installed-dev
 	$(PYTEST) tests/determinism/goldens
@@ -86,7 +85,7 @@ seeds: $(VENV)/installed-dev
 	$(BIN)/python -m tests.determinism.seeds $(if $(SEEDS),--seeds $(SEEDS)) $(ARGUMENTS)
 
 libraries: $(VENV)/installed-dev
-	$(BIN)/python -m sandbox.app.kernels.libraries $(if $(CHECK),--check) $(if $(HERE),--here)
+	$(BIN)/python -m sandbox.physics.jit.making.libraries $(if $(CHECK),--check) $(if $(HERE),--here)
 
 pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.picture_cache

@@ -9,8 +9,8 @@ import pytest
 
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.world import World
+from sandbox.physics import jit
 from tests.support import wants
-from tests.support.compiling_once import compile_before_tests
 
 with suppress(ImportError):
     import resource
@@ -50,8 +50,9 @@ def pytest_configure(config):
 
 
 def pytest_sessionstart(session):
-    """Compile kernels that were edited once and say so, before workers begin."""
-    compile_before_tests(session.config)
+    """Let kernels that were edited be compiled before workers begin."""
+    if not session.config.option.collectonly:
+        jit.way()
 
 
 def pytest_runtest_logfinish():

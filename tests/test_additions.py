@@ -306,7 +306,7 @@ def changed(package):
 
 def play(package, script):
     """Run a script with the copy, interpreted; whatever it prints."""
-    environment = os.environ | {"PYTHONPATH": str(package.parent), "NUMBA_DISABLE_JIT": "1"}
+    environment = os.environ | {"PYTHONPATH": str(package.parent), "SANDBOX_KERNELS": "interpreted"}
     ended = subprocess.run(
         [sys.executable, "-c", PLAY + script],
         cwd=package.parent, env=environment, capture_output=True, text=True, check=False,

@@ -28,7 +28,7 @@ ROOMS_OF_APP = (
 # Folders that import each other both ways: the table of solvers says where joints bear a load.
 BOTH_WAYS: dict[str, list[tuple[str, str]]] = {"physics": [], "level": []}
 LIBRARIES = {
-    "physics": {"numpy", "numba", "llvmlite"},
+    "physics": {"numpy", "platformdirs"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
     "export": {"numpy", "pydantic"},
     "session": {"numpy", "pydantic", "filelock", "distributed"},
@@ -148,13 +148,11 @@ def test_no_modules_import_each_other_in_a_circle():
         pytest.fail(" imports ".join(reversed(circle.args[1])))
 
 
-def test_only_app_imports_pygame_and_only_jit_imports_numba():
+def test_only_app_imports_pygame():
     for name in sources():
         libraries = {other.partition(".")[0] for other in imported(name)}
         if room(name) != "app":
             assert not libraries & {"pygame", "pygame_gui"}, name
-        if not name.startswith("sandbox.physics.jit"):
-            assert "numba" not in libraries, name
 
 
 def test_each_room_imports_the_libraries_that_it_may():
@@ -202,7 +200,7 @@ def test_importing_the_package_loads_none_of_its_rooms_until_a_name_is_used():
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["--version"]])
-def test_help_loads_neither_pygame_nor_numba_nor_numpy(arguments):
+def test_help_loads_neither_pygame_nor_numpy(arguments):
     loaded = loaded_after(
         "import runpy\n"
         f"sys.argv = ['sandbox', *{arguments!r}]\n"
@@ -210,19 +208,19 @@ def test_help_loads_neither_pygame_nor_numba_nor_numpy(arguments):
         "except SystemExit as end:\n    assert not end.code, end.code"
     )
     assert "sandbox.cli" in loaded
-    assert not loaded & {"pygame", "pygame_gui", "numba", "numpy", "pydantic"}
+    assert not loaded & {"pygame", "pygame_gui", "numpy", "pydantic"}
 
 
 def test_the_plugin_of_pytest_loads_nothing_heavy():
     loaded = loaded_after("import sandbox.testing.plugin")
     assert "sandbox.testing.items" in loaded
-    assert not loaded & {"pygame", "pygame_gui", "numba", "numpy", "pydantic", "sandbox.level", "sandbox.app"}
+    assert not loaded & {"pygame", "pygame_gui", "numpy", "pydantic", "sandbox.level", "sandbox.app"}
 
 
 def test_the_window_needs_none_of_the_libraries_that_take_long_to_import():
     loaded = loaded_after("from sandbox.app.window.opening import open_app")
     assert "pygame" in loaded
-    assert not loaded & {"pygame_gui", "numba", "numpy", "pydantic", "platformdirs", "sandbox.physics.jit"}
+    assert not loaded & {"pygame_gui", "numpy", "pydantic", "platformdirs", "sandbox.physics.jit"}
 
 
 def test_no_file_is_longer_than_600_lines():

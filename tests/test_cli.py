@@ -570,7 +570,7 @@ def test_an_interrupt_of_checks_in_processes_ends_all_of_them_without_a_word(rop
     endless.write_text(json.dumps({**ROPE, "checks": [{**ROPE["checks"][0], "after": 3600.0}]}))
     command = [sys.executable, "-m", "sandbox", "check", "--processes", "2", rope, str(endless), str(endless)]
     root = str(Path(__file__).resolve().parents[1])
-    environment = {**os.environ, "PYTHONPATH": root, "NUMBA_DISABLE_JIT": "1", "PYTHONUNBUFFERED": "1"}
+    environment = {**os.environ, "PYTHONPATH": root, "SANDBOX_KERNELS": "interpreted", "PYTHONUNBUFFERED": "1"}
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with interrupts(signal.default_int_handler):
         checking = subprocess.Popen(command, env=environment, start_new_session=True, **streams)
@@ -609,7 +609,7 @@ sys.exit(code)
 def test_a_headless_run_loads_no_drawing_and_makes_only_the_kernels_that_it_calls(rope, tmp_path):
     def loaded(*arguments: str) -> set[str]:
         """Modules that a run has loaded, and the kernels that it has made."""
-        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1]), "NUMBA_DISABLE_JIT": "1"}
+        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1]), "SANDBOX_KERNELS": "interpreted"}
         command = [sys.executable, "-c", HEADLESS, *arguments]
         run = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
         return set(run.stderr.split())
@@ -619,7 +619,7 @@ def test_a_headless_run_loads_no_drawing_and_makes_only_the_kernels_that_it_call
     runs += [loaded("run", rope, "--ticks", "2", "--record", replay), loaded("replay", replay)]
     for modules in runs:
         assert not {name for name in modules if name.startswith(("pygame", "sandbox.app", "sandbox.editor"))}
-        assert not modules & {"sandbox.physics.changing.freeing", "numba"}
+        assert not modules & {"sandbox.physics.changing.freeing", "sandbox.physics.jit.edited"}
         made = {name for name in modules if name.startswith("kernel:")}
         assert "kernel:sandbox.physics.pipeline.tick.tick" in made
         assert not {name for name in made if any(word in name for word in ("find_broken", "lowest_mode", "_help"))}

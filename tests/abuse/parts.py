@@ -56,7 +56,7 @@ def main(arguments: list[str] | None = None) -> int:
                 print(f"seed {seed}: {found}", flush=True)
             if seed < given.interpreted:
                 play(seed, INTERPRETED_TICKS, path)
-                plain = os.environ | {"NUMBA_DISABLE_JIT": "1"}
+                plain = os.environ | {"SANDBOX_KERNELS": "interpreted"}
                 command = [sys.executable, "-m", "sandbox", "replay", str(path)]
                 ended = subprocess.run(command, env=plain, capture_output=True, text=True, check=False)
                 interpreted += ended.returncode == 0

@@ -3,36 +3,13 @@
 Some of its springs yield and break.
 
 python kernel_script.py SOLVER SUBSTEPS[,SUBSTEPS..] TICKS
-    [--without-numba | --broken-numba | --without-cache]
-
---without-cache: only of a rope, which comes last else: to compile all that a busy world needs takes a minute.
 """
 
-import os
 import sys
 import warnings
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-
-
-class Refusal:
-    """A finder that lets numba be found nowhere."""
-
-    def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] == "numba":
-            raise ModuleNotFoundError("No module named 'numba'", name="numba")
-
-
-def prepare(mode: str) -> None:
-    """Bring about what the mode names, before physics is imported."""
-    if mode == "--without-numba":
-        sys.meta_path.insert(0, Refusal())
-    elif mode == "--broken-numba":
-        sys.modules["numba"] = None  # importing it raises ImportError, as a numba too old for this numpy does
-    elif mode == "--without-cache":
-        os.environ["NUMBA_CACHE_DIR"] = str(Path(__file__) / "not a folder")
-        warnings.filterwarnings("ignore", "compiled kernels cannot be kept")
 
 
 def busy_world(solver: str, substeps: int):
@@ -211,19 +188,16 @@ def blow_up(advance, solver: str, ticks: int):
 
 if __name__ == "__main__":
     warnings.simplefilter("error")
-    chosen, all_substeps, ticks, *mode = sys.argv[1:]
-    if mode:
-        prepare(mode[0])
+    chosen, all_substeps, ticks = sys.argv[1:]
     from sandbox.physics.jit import way
     from sandbox.physics.step import step
 
     for number, substeps in enumerate(all_substeps.split(",")):
         print(way())
         given = step, chosen, substeps if substeps == "auto" else int(substeps), int(ticks)
-        if mode != ["--without-cache"]:
-            print("\n".join(hashes(*given)))
-            print("\n".join(touches(*given)))
-        if number == 0 and mode != ["--without-cache"]:
+        print("\n".join(hashes(*given)))
+        print("\n".join(touches(*given)))
+        if number == 0:
             print("\n".join(modes()))
             print("\n".join(blow_up(step, chosen, 2 * int(ticks))))
         print("\n".join(swings(*given)))

@@ -1,10 +1,9 @@
-"""Goldens on other interpreters and with other settings of the compiler, every bit of every tick; a line for each.
+"""Goldens on other interpreters and with kernels that run in other ways, every bit of every tick; a line for each.
 
 Run by hand: python -m tests.determinism.matrix [--python PATH ...] [--setting NAME ...] [LEVEL ...]
 
 Each PYTHON has the project's dependencies (make one with `PATH -m venv` and pip; the oldest and the newest that
-pyproject.toml allows are worth two). Compiling anew for a setting of numba takes a minute or two. Exit code 1: a bit
-differs.
+pyproject.toml allows are worth two). Exit code 1: a bit differs.
 """
 
 import argparse
@@ -16,10 +15,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS: dict[str, dict[str, str]] = {
     "library": {"SANDBOX_KERNELS": "library"},
-    "numba": {"SANDBOX_KERNELS": "numba"},
-    "optimised 0": {"SANDBOX_KERNELS": "numba", "NUMBA_OPT": "0"},
-    "optimised 3": {"SANDBOX_KERNELS": "numba", "NUMBA_OPT": "3"},
-    "generic CPU": {"SANDBOX_KERNELS": "numba", "NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""},
+    "generic": {"SANDBOX_KERNELS": "generic"},
+    "checked": {"SANDBOX_KERNELS": "checked"},
     "interpreted": {"SANDBOX_KERNELS": "interpreted"},
 }
 # Interpreted kernels are some hundred times slower: no contacts, and so many particles times ticks of each golden.

@@ -75,7 +75,7 @@ def test_played_levels_verify_in_every_way(paths, is_whole, tmp_path):
         recordings.append(str(long))
         short_ones.append(str(short))
     _run_fresh(recordings)
-    _run_fresh(short_ones, NUMBA_DISABLE_JIT="1")
+    _run_fresh(short_ones, SANDBOX_KERNELS="interpreted")
 
 
 def _verifies_from_the_middle(replay) -> bool:

@@ -184,7 +184,7 @@ def test_a_body_kind_of_four_files_is_read_played_moved_drawn_and_documented(pac
     assert len(changed) == 4
 
     # The kernels of a copy are not worth compiling for five ticks.
-    environment = os.environ | {"PYTHONPATH": str(package.parent), "NUMBA_DISABLE_JIT": "1"}
+    environment = os.environ | {"PYTHONPATH": str(package.parent), "SANDBOX_KERNELS": "interpreted"}
     ended = subprocess.run(
         [sys.executable, "-c", PLAY], cwd=package.parent, env=environment, capture_output=True, text=True, check=False
     )

@@ -19,7 +19,7 @@ from typing import Any
 import platformdirs
 
 from sandbox.physics.jit import say
-from sandbox.physics.jit.sources import sources_now
+from sandbox.physics.jit.sources import source_files, text_of
 
 # Versions that are kept: branches of a checkout take turns.
 _KEPT = 8
@@ -35,9 +35,10 @@ def _folder() -> Path:
 
 
 def _version(checked: bool) -> str:
-    digests = [entry["kernels"] for _, entry in sorted(sources_now().items())]
-    digest = hashlib.blake2b("\n".join(digests).encode(), digest_size=_DIGEST_SIZE).hexdigest()
-    return f"{digest}-checked" if checked else digest
+    digest = hashlib.blake2b(digest_size=_DIGEST_SIZE)
+    for name, file in source_files():
+        digest.update(f"{name}\n".encode() + text_of(file))
+    return f"{digest.hexdigest()}-checked" if checked else digest.hexdigest()
 
 
 def compiled_here(why: str, checked: bool) -> tuple[Path, dict[str, Any]]:

@@ -1,7 +1,7 @@
 """What machine code follows from in the sources: whether kernels are those that a library was made of.
 
 Of a file of kernels that is the kernels themselves, with the named tuples, constants and imports that they name.
-Neither comments, docstrings, annotations nor other functions are among it. A digest is the same on every Python.
+Neither comments, docstrings nor other functions are among it; annotations are: types follow from them. A digest is the same on every Python.
 """
 
 import ast
@@ -22,7 +22,7 @@ _MAKERS = (
 _ROLES = {"kernel", "inner_kernel", "inlined_kernel", "scalar_kernel"}
 _DIGEST_SIZE = 8
 # Fields of a syntax tree that say nothing of what is computed.
-_SILENT = {"annotation", "returns", "type_comment", "type_params", "ctx", "kind"}
+_SILENT = {"type_comment", "type_params", "ctx", "kind"}
 
 
 def source_files() -> Iterator[tuple[str, Path]]:
@@ -85,7 +85,7 @@ def _is_of_kernels(statement: ast.stmt) -> bool:
 
 
 def _names(nodes: Iterable[ast.AST]) -> set[str]:
-    """The names that are read in these, but for those in annotations."""
+    """The names that are read in these."""
     found, waiting = set(), list(nodes)
     while waiting:
         node = waiting.pop()

@@ -10,7 +10,8 @@ saved        verified whole, from the middle, and continued where it was cut off
 threads      with one thread and with two
 web          with the calls of kernels made in WebAssembly too, by node
 interpreted  with interpreted kernels, for a few ticks
-numba        with kernels that numba compiles first, which takes minutes: only where it is asked for
+generic      with the library that every processor of this kind runs
+checked      with kernels that are compiled here and look at every index, some 20 s the first time
 
 --plant TICK:ARRAY:SLOT puts one ulp into each of these, which must be named. Exit code 1: a bit differs.
 """
@@ -37,7 +38,6 @@ from tests.determinism.seeds.player import recording
 from tests.determinism.seeds.ways import WAYS, Result, failure, run_way
 
 ALL_WAYS = (*WAYS, *CHILD_WAYS)
-USUAL_WAYS = tuple(way for way in ALL_WAYS if way != "numba")
 # Ways that take long run with a sample: with every 20th or 50th seed, from the first one on.
 EVERY = {"web": 20, "interpreted": 50}
 # Interpreted kernels are some hundred times slower: particles times steps, where things touch and where they do not.
@@ -206,7 +206,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seeds", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0, metavar="SEED")
     parser.add_argument("--ticks", type=int, default=60, help="of each seed")
-    parser.add_argument("--ways", type=_ways, default=USUAL_WAYS, help=f"{','.join(ALL_WAYS)}; all; default: no numba")
+    parser.add_argument("--ways", type=_ways, default=ALL_WAYS, help=f"{','.join(ALL_WAYS)}; default: all")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--plant", type=_plant, metavar="TICK:ARRAY:SLOT", help="put one ulp there")
     given = parser.parse_args(arguments)

@@ -25,7 +25,7 @@ from tests.determinism.seeds.ways import Result
 
 ROOT = Path(__file__).resolve().parents[3]
 # Ways that need another process, by what SANDBOX_KERNELS is for them.
-CHILD_WAYS = ("interpreted", "numba")
+CHILD_WAYS = ("interpreted", "generic", "checked")
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ def run_there(way: str, folder: Path, ticks_of: dict[int, int], plant: str = "")
 
     Raises Missing where the way is not installed, RuntimeError where the process ends before its time.
     """
-    if way == "numba" and importlib.util.find_spec("numba") is None:
-        raise Missing("numba")
+    if way == "checked" and importlib.util.find_spec("ziglang") is None:
+        raise Missing("zig")
     wanted = [f"{seed}:{ticks}" for seed, ticks in ticks_of.items()]
     command = [sys.executable, "-m", f"{__package__}.child", str(folder), plant, *wanted]
     environment = os.environ | {"SANDBOX_KERNELS": way}

@@ -49,11 +49,12 @@ def gathered(kernels: Sequence[Kernel]) -> Gathered:
     for unit, ones in units.items():
         translation = Translation(ones)
         texts[unit] = translation.text()
-        found |= {kernel.name: _entry(translation, kernel) for kernel in ones}
+        found |= {kernel.name: entry_of(translation, kernel) for kernel in ones}
     return Gathered(texts, found)
 
 
-def _entry(translation: Translation, kernel: Kernel) -> dict[str, Any]:
+def entry_of(translation: Translation, kernel: Kernel) -> dict[str, Any]:
+    """What a manifest says of an entry."""
     (signature,) = translation.signatures(kernel)
     takes = [_form(kind) for _, kind in signature.takes]
     assert isinstance(signature.gives, Scalar)

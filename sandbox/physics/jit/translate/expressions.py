@@ -179,7 +179,8 @@ class Expressions:
             return self._cut(node, whole, node.slice)
         indices = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
         if len(indices) != whole.type.dimensions:
-            raise self.refuse(node, f"{ast.unparse(node.value)} has {whole.type.dimensions} dimensions")
+            said = f"{ast.unparse(node.value)} has {whole.type.dimensions}"
+            raise self.refuse(node, f"{said} of the {len(indices)} dimensions that this has")
         codes = [self.scalar(index) for index in indices]
         if any(code.type == FLOAT for code in codes):
             raise self.refuse(node, f"{ast.unparse(node)}: an index is an integer")
@@ -290,7 +291,8 @@ class Expressions:
         if isinstance(node.func, ast.Attribute):
             module = meaning(self.module, node.func.value.id) if isinstance(node.func.value, ast.Name) else None
             return self._called(node, getattr(module, node.func.attr, None))
-        assert isinstance(node.func, ast.Name)
+        if not isinstance(node.func, ast.Name):
+            raise self.refuse(node, f"{ast.unparse(node.func)} is no kernel")
         name = node.func.id
         if name in _BUILTIN and meaning(self.module, name) is None:
             return _BUILTIN[name](self, node)
@@ -314,8 +316,6 @@ class Expressions:
             if not isinstance(bundle.type, Bundle):
                 raise self.refuse(node, f"{ast.unparse(node.args[0])} is no bundle")
             return Code(f"contents({bundle.text})", bundle.type.items, stays=True)
-        if isinstance(value, interpreted.InterpreterFunction):
-            return Code("0", INTEGER)
         raise self.refuse(node, f"{ast.unparse(node.func)} is no kernel")
 
     def _kernel(self, node: ast.Call, kernel: Kernel) -> Code:

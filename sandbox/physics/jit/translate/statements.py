@@ -31,7 +31,7 @@ class Body(Expressions):
         self.function, self.result = function, result
         self.places: Places = find_places(function)
         self._comments = comments(module)
-        self._line = function.body[0].lineno
+        self._line = function.lineno
         self._count = 0
         self._find_types()
 
@@ -137,6 +137,8 @@ class Body(Expressions):
         if isinstance(statement, ast.For):
             return self._for(statement, depth)
         if isinstance(statement, ast.While):
+            if statement.orelse:
+                raise self.refuse(statement, "a loop has no else")
             head = f"{indent}while ({self.flag(statement.test).text}) {{"
             return [head, *self._block(statement.body, depth + 1), f"{indent}}}"]
         return [indent + line for line in self._simple(statement)]

@@ -7,8 +7,9 @@ import sys
 
 import pytest
 
-from sandbox.app.kernels import libraries
 from sandbox.physics.jit.library import read_manifest
+from sandbox.physics.jit.making import libraries
+from sandbox.physics.jit.making.gathering import Gathered, all_entries, gathered
 from tests.support.wants import needs
 
 
@@ -31,15 +32,15 @@ def test_a_manifest_is_written_with_a_line_for_each_file_source_and_entry():
 
 def test_a_check_names_files_whose_kernels_were_edited_and_makes_nothing(monkeypatch, makers):
     monkeypatch.setattr(libraries, "edited", lambda known: ["physics/integrate.py"])
-    monkeypatch.setattr(libraries, "_made", lambda here_only: pytest.fail("nothing is to be made"))
+    monkeypatch.setattr(libraries, "_made", lambda found, platforms: pytest.fail("nothing is to be made"))
     (line,) = libraries._differences(True)
     assert line == "physics/integrate.py: its kernels are not those that the libraries were made of"
     assert not libraries._are_current()
 
 
 def test_bytes_are_not_compared_where_the_makers_are_others(monkeypatch, capsys):
-    monkeypatch.setattr(libraries, "makers_here", lambda: {"numba": "0.0"})
-    monkeypatch.setattr(libraries, "_made", lambda here_only: pytest.fail("nothing is to be made"))
+    monkeypatch.setattr(libraries, "makers_here", lambda: {"ziglang": "0.0"})
+    monkeypatch.setattr(libraries, "_made", lambda found, platforms: pytest.fail("nothing is to be made"))
     assert libraries._differences(True) == []
     assert capsys.readouterr().out.startswith("bytes are not compared: made by ")
 
@@ -47,9 +48,11 @@ def test_bytes_are_not_compared_where_the_makers_are_others(monkeypatch, capsys)
 def test_a_check_names_files_whose_bytes_are_others_and_entries_that_are(monkeypatch, makers):
     entries = read_manifest()["entries"]
     own = {"kernels.wasm": (libraries.FOLDER / "kernels.wasm").read_bytes()}
-    monkeypatch.setattr(libraries, "_made", lambda here_only: (own, entries))
+    monkeypatch.setattr(libraries, "gathered", lambda kernels: Gathered({}, entries))
+    monkeypatch.setattr(libraries, "_made", lambda found, platforms: own)
     assert libraries._differences(False) == []
-    monkeypatch.setattr(libraries, "_made", lambda here_only: ({"kernels.wasm": b"", "new.so": b""}, {}))
+    monkeypatch.setattr(libraries, "gathered", lambda kernels: Gathered({}, {}))
+    monkeypatch.setattr(libraries, "_made", lambda found, platforms: {"kernels.wasm": b"", "new.so": b""})
     said = libraries._differences(False)
     assert said == [
         "manifest.json: the entries are others", "kernels.wasm: its bytes are others", "new.so: its bytes are others",
@@ -61,8 +64,12 @@ def test_libraries_that_are_current_are_not_made_again(makers):
 
 
 @pytest.mark.whole_world
-@needs("numba and zig", importlib.util.find_spec("numba") and importlib.util.find_spec("ziglang"))
+@needs("zig", importlib.util.find_spec("ziglang"))
 def test_the_library_of_this_platform_made_again_has_the_same_bytes():
-    command = [sys.executable, "-m", "sandbox.app.kernels.libraries", "--check", "--here"]
+    command = [sys.executable, "-m", "sandbox.physics.jit.making.libraries", "--check", "--here"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stdout + ended.stderr
+
+
+def test_the_manifest_has_every_kernel_that_python_calls_with_the_types_of_its_annotations():
+    assert gathered(all_entries()).entries == read_manifest()["entries"]

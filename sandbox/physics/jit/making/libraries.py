@@ -1,7 +1,6 @@
 """`make libraries`: kernels become machine code for all platforms, with a manifest; or are compared with what is there.
 
-It needs the extra `build`. From the same sources the same versions of Python, numba, llvmlite and zig make the same
-bytes on the same system.
+It needs the extra `build`. From the same sources the same version of zig makes the same bytes, on every system.
 """
 
 import argparse
@@ -9,53 +8,37 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
-from sandbox.app.kernels.compiling import needed_kernels
 from sandbox.physics.jit.library import FOLDER, MANIFEST, NoLibrary, file_digest, library_name, read_manifest
+from sandbox.physics.jit.making.compiling import compiled
+from sandbox.physics.jit.making.gathering import Gathered, all_entries, gathered
+from sandbox.physics.jit.making.platforms import LIBRARIES, WEB, Platform
 from sandbox.physics.jit.sources import edited, sources_now
 
-# No instruction that only the maker's processor has, and no order that changes from run to run.
-_SETTINGS = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_OPT": "3", "PYTHONHASHSEED": "0"}
 # What a library is tried out with: it is to come to the state that the interpreter comes to.
 _TRIAL = ("run", "balloons", "--seconds", "1", "--json")
 
 
 def makers_here() -> dict[str, str]:
     """The versions of all that makes libraries here."""
-    names = ("numba", "llvmlite", "ziglang")
-    own = {"system": library_name().partition(".")[0], "python": "{}.{}".format(*sys.version_info)}
-    return own | {name: version(name) for name in names}
+    return {"ziglang": version("ziglang")}
 
 
-def _made(here_only: bool) -> tuple[dict[str, bytes], dict[str, Any]]:
-    """Libraries by their file names, and what the manifest says of their entries; only this platform's, or all."""
-    from sandbox.physics.jit.making.gathering import gather
-    from sandbox.physics.jit.making.platforms import LIBRARIES, WEB
-
-    kernels = sorted(needed_kernels(), key=lambda kernel: kernel.name)
-    bitcode, codes = gather([(kernel, kinds) for kernel in kernels for kinds in kernel.signatures.values()])
-    wanted = [each for each in (*LIBRARIES, WEB) if not here_only or each.file == library_name()]
-    with ProcessPoolExecutor(os.cpu_count()) as pool:
-        contents = pool.map(_library, [bitcode] * len(wanted), [codes] * len(wanted), wanted)
-        files = dict(zip((platform.file for platform in wanted), contents, strict=True))
-    return files, {code.name: _entry(code) for code in codes}
-
-
-def _library(bitcode: bytes, codes: Sequence[Any], platform: Any) -> bytes:
-    from sandbox.physics.jit.making.emitting import object_code
-    from sandbox.physics.jit.making.linking_by_zig import linked
-
-    called = [code.symbol for code in codes if not platform.entries or code.name in platform.entries]
-    return linked(object_code(bitcode, codes, platform), called, platform)
-
-
-def _entry(code: Any) -> dict[str, Any]:
-    entry = {"symbol": code.symbol, "takes": list(code.arguments), "gives": code.gives}
-    return entry | ({"waits": True} if code.waits else {})
+def _made(found: Gathered, platforms: Sequence[Platform]) -> dict[str, bytes]:
+    """Libraries by their file names."""
+    made = {}
+    with tempfile.TemporaryDirectory() as kept:
+        for platform in platforms:
+            names = platform.entries or tuple(found.entries)
+            symbols = [found.entries[name]["symbol"] for name in names]
+            made[platform.file] = compiled(found.texts, symbols, platform, Path(kept))
+            print(f"{len(made[platform.file]):8d} bytes  {platform.file}", flush=True)
+    return made
 
 
 def _text(manifest: dict[str, Any]) -> str:
@@ -115,9 +98,10 @@ def _differences(here_only: bool) -> list[str]:
     if manifest["makers"] != makers_here():
         print(f"bytes are not compared: made by {_said(manifest['makers'])}; here {_said(makers_here())}")
         return []
-    files, entries = _made(here_only)
-    found = [] if entries == manifest["entries"] else ["manifest.json: the entries are others"]
-    for name, content in files.items():
+    here = [each for each in (*LIBRARIES, WEB) if not here_only or each.file == library_name()]
+    now = gathered(all_entries())
+    found = [] if now.entries == manifest["entries"] else ["manifest.json: the entries are others"]
+    for name, content in _made(now, here).items():
         path = FOLDER / name
         if not path.exists() or path.read_bytes() != content:
             found.append(f"{name}: its bytes are others")
@@ -143,9 +127,6 @@ def _main() -> int:
     parser.add_argument("--check", action="store_true", help="compare with what is there, and write nothing")
     parser.add_argument("--here", action="store_true", help="with --check: only the library of this platform")
     options = parser.parse_args()
-    if any(os.environ.get(name) != value for name, value in _SETTINGS.items()):
-        command = [sys.executable, "-m", "sandbox.app.kernels.libraries", *sys.argv[1:]]
-        return subprocess.run(command, env={**os.environ, **_SETTINGS}, check=False).returncode
     if options.check:
         differences = _differences(options.here)
         print(*differences or ["the libraries are those of the sources"], sep="\n")
@@ -157,9 +138,8 @@ def _main() -> int:
         _write_manifest(read_manifest() | {"sources": sources_now()})
         print("the libraries are those of the sources")
         return 0
-    files, entries = _made(here_only=False)
-    _write(files, entries)
-    print(*(f"{len(content):8d} bytes  {name}" for name, content in files.items()), sep="\n")
+    found = gathered(all_entries())
+    _write(_made(found, (*LIBRARIES, WEB)), found.entries)
     return 0
 
 

@@ -1,0 +1,165 @@
+"""The language of kernels: what is translated to C++ and how, and what is refused, with its line and the reason."""
+
+import importlib.util
+import re
+import sys
+import textwrap
+
+import pytest
+
+from sandbox.physics.jit.translate.program import Translation
+from sandbox.physics.jit.translate.sources import Refused
+
+HEAD = """
+import math
+from typing import Any, NamedTuple
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, Slots
+from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel, put
+
+LIMIT = 3
+SHARE = 0.1
+
+class Pair(NamedTuple):
+    values: Floats
+    rows: FloatRows
+
+"""
+
+
+@pytest.fixture
+def translated(tmp_path, monkeypatch):
+    """A function that translates kernels, of which the last is an entry, and gives the C++ of that one."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+    count = 0
+
+    def translate(text):
+        nonlocal count
+        count += 1
+        name = f"kernels_of_{tmp_path.name}_{count}".replace("-", "_")
+        (tmp_path / f"{name}.py").write_text(HEAD + textwrap.dedent(text))
+        module = importlib.import_module(name)
+        *_, last = [value for value in vars(module).values() if getattr(value, "_kernel", None) is not None]
+        whole = Translation([last._kernel]).text()
+        return re.search(rf"static [^\n]* {last._kernel.function.__name__}\(.*?\n}}", whole, re.S)[0]
+
+    yield translate
+    for name in [name for name in sys.modules if name.startswith("kernels_of_")]:
+        del sys.modules[name]
+
+
+def test_a_kernel_is_written_with_its_names_and_comments(translated):
+    text = translated(
+        """
+        @kernel
+        def add(values: Floats, active: Flags, by: float) -> int:
+            # Active ones alone.
+            count = 0
+            for k in range(values.shape[0]):
+                if active[k] and count < LIMIT:
+                    values[k] += by * SHARE
+                    count += 1
+            return count
+        """
+    )
+    assert text.splitlines()[1:] == [
+        "    // Active ones alone.",
+        "    int64_t count = 0;",
+        "    for (int64_t k = 0; k < values.shape[0]; k++) {",
+        "        if (active(k) && count < LIMIT) {",
+        "            values(k) += by * SHARE;",
+        "            count += 1;",
+        "        }",
+        "    }",
+        "    return count;",
+        "}",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("said", "written"),
+    [
+        ("a // b", "py::floordiv(a, b)"),
+        ("a % b", "py::mod(a, b)"),
+        ("a / b", "double(a) / b"),
+        ("math.floor(x)", "py::floor(x)"),
+        ("min(x, y)", "py::min(x, y)"),
+        ("max(x, 0)", "py::max<double>(x, 0)"),
+        ("x - (y - x)", "x - (y - x)"),
+        ("(a & b) << 2", "int64_t(a & b) << 2"),
+        ("x if a < b < 3 else y", "a < b && b < 3 ? x : y"),
+        ("-x * y", "-x * y"),
+        ("int(x)", "int64_t(x)"),
+    ],
+)
+def test_an_expression_means_what_it_means_in_python(said, written, translated):
+    given = "int" if written.startswith(("py::floor", "py::mod", "int64_t")) else "float"
+    text = translated(f"@kernel\ndef gives(a: int, b: int, x: float, y: float) -> {given}:\n    return {said}\n")
+    assert f"return {written};" in text
+
+
+def test_values_that_change_places_are_all_read_before_one_is_set(translated):
+    text = translated(
+        "@kernel\ndef turn(x: float, y: float) -> float:\n    for k in range(2):\n        x, y = y, -x\n    return x\n"
+    )
+    assert re.search(r"const double (\w+) = y;\s+const double (\w+) = -x;\s+x = \1;\s+y = \2;", text)
+
+
+def test_what_a_bundle_holds_is_not_copied(translated):
+    text = translated(
+        """
+        @kernel
+        def fill(lent: Bundle[Pair], other: Floats) -> None:
+            pair = contents(lent)
+            put(pair, "values", other)
+            pair.rows[0, 1] = other[0]
+        """
+    )
+    assert "const Pair &pair = contents(lent);" in text and "put(pair.values, other);" in text
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ("return [x]", "kernels have no '[x]'"),
+        ("return values", "is given where double is wanted"),
+        ("return values[0, 1]", "values has 1 of the 2 dimensions that this has"),
+        ("return values[x]", "an index is an integer"),
+        ("return x ** 2.0", "kernels have no such operator of these"),
+        ("return 1.0 if x else 2.0", "x is no flag: say what it is compared with"),
+        ("return missing", "missing is neither a name of this kernel nor a constant"),
+        ("return print(x)", "print is no kernel"),
+        ("return math.sin(x)", "math.sin is no kernel"),
+        ("return values.mean()", "values.mean is no kernel"),
+        ("return min(x, key=1)", "arguments are given by their places"),
+        ("while x > 0.0:\n        return x\n    else:\n        return 1.0", "a loop has no else"),
+        ("with x:\n        return x", "kernels have no with"),
+        ("raise ValueError", "kernels have no raise"),
+        ("for k in values:\n        return k", "a loop runs over a range, or over a tuple that is written there"),
+        ("values.x = 1.0", "a field of a named tuple is set by put"),
+        ("x = values", "x is double, given Array<double, 1>"),
+        ("return other(x)", "other: it takes 2 arguments"),
+        ("return other(x, x)", "other: values is Array<double, 1>, given double"),
+        ("return (lambda: x)()", "lambda: x is no kernel"),
+        ('return "x"', "kernels have no 'x'"),
+    ],
+)
+def test_what_the_language_does_not_have_is_refused_with_its_line_and_the_reason(line, why, translated):
+    with pytest.raises(Refused) as refused:
+        translated(
+            "@inner_kernel\ndef other(x: float, values: Floats) -> float:\n    return x + values[0]\n\n"
+            f"@kernel\ndef gives(x: float, values: Floats) -> float:\n    {line}\n    return x\n"
+        )
+    place, _, reason = str(refused.value).partition(": ")
+    assert why in reason and re.fullmatch(r"kernels_of_\w+\.py:20", place)
+
+
+def test_a_parameter_without_an_annotation_or_of_another_type_is_refused(translated):
+    with pytest.raises(Refused, match="gives: x has no annotation"):
+        translated("@kernel\ndef gives(x) -> float:\n    return x\n")
+    with pytest.raises(Refused, match="gives: <class 'str'> is no type of kernels"):
+        translated("@kernel\ndef gives(x: str) -> float:\n    return 1.0\n")
+
+
+def test_a_kernel_that_calls_itself_is_refused(translated):
+    with pytest.raises(Refused, match="a kernel calls itself"):
+        translated("@kernel\ndef gives(x: float) -> float:\n    return gives(x)\n")
