@@ -17,7 +17,7 @@ PANEL = 8
 
 
 class Scratch(NamedTuple):
-    """Room for one thread's work on a front."""
+    """Room for work on a front."""
 
     panel: Floats
     inverse: Floats
@@ -32,7 +32,7 @@ class Fronts(NamedTuple):
     first, last, child, border_start, border, to_parent: see Dissection, rows counted over all bodies. width (f,):
     scalars in a row of the front; base and remains (f,): its places in numbers and remainder. inverses (2n,): 1 / d.
     fork (f, 2): at the last front of a body, where its second half begins, and where that ends; equal: it has none.
-    here and aside are the scratch of the two halves, apart (n, 2) is the second's right side, call is their talk.
+    apart (n, 2): of what lies above both halves, the right side that the first has left.
     """
 
     of_row: Slots
@@ -51,17 +51,15 @@ class Fronts(NamedTuple):
     remainder: Floats
     inverses: Floats
     fork: SlotRows
-    here: Scratch
-    aside: Scratch
+    scratch: Scratch
     apart: FloatRows
-    call: Slots
 
 
 @inner_kernel
 def subtract_pair(
     target: Floats, row: int, source: Floats, upper: int, lower: int, a: float, b: float, begin: int, end: int
 ) -> None:
-    """target[row + j] -= a source[upper + j] + b source[lower + j] for begin <= j < end, all unsigned."""
+    """target[row + j] -= a source[upper + j] + b source[lower + j] for begin <= j < end."""
     for j in range(begin, end):
         target[row + j] -= a * source[upper + j] + b * source[lower + j]
 
@@ -215,8 +213,9 @@ def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) ->
 
 
 @inner_kernel
-def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: FloatRows) -> None:
+def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
     """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
+    scratch = fronts.scratch
     stride = scratch.vector.shape[0]
     for front in range(first_front, last_front):
         pivots = 2 * (fronts.last[front] - fronts.first[front])
@@ -235,9 +234,9 @@ def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch:
                 )  # fmt: skip
         _eliminate_front(
             fronts.numbers, base, fronts.remainder, place, pivots, width, scratch.panel, stride, scratch.inverse,
-            fronts.inverses, 2 * (fronts.first[front]),
+            fronts.inverses, 2 * fronts.first[front],
         )  # fmt: skip
-        _eliminate_rows(front, fronts, scratch.vector, change)
+        _eliminate_rows(front, fronts, change)
 
 
 @inner_kernel
@@ -315,34 +314,36 @@ def _substitute_back(
 
 
 @inner_kernel
-def _eliminate_rows(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
+def _eliminate_rows(front: int, fronts: Fronts, change: FloatRows) -> None:
+    vector = fronts.scratch.vector
     _gather(front, fronts, vector, change)
     _substitute_forward(
         fronts.numbers, fronts.base[front], 2 * (fronts.last[front] - fronts.first[front]),
-        fronts.width[front], fronts.inverses, 2 * (fronts.first[front]), vector,
+        fronts.width[front], fronts.inverses, 2 * fronts.first[front], vector,
     )  # fmt: skip
     _scatter(front, fronts, vector, change)
 
 
 @inner_kernel
-def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: FloatRows) -> None:
+def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
     """Begin to solve for the rows of the factored fronts first_front..last_front of change (n, 2)."""
     for front in range(first_front, last_front):
-        _eliminate_rows(front, fronts, scratch.vector, change)
+        _eliminate_rows(front, fronts, change)
 
 
 @inner_kernel
-def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: FloatRows) -> None:
+def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
     """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
+    vector = fronts.scratch.vector
     for back in range(last_front - first_front):
         front = last_front - 1 - back
-        _gather(front, fronts, scratch.vector, change)
+        _gather(front, fronts, vector, change)
         _substitute_back(
             fronts.numbers, fronts.base[front], 2 * (fronts.last[front] - fronts.first[front]),
-            fronts.width[front], fronts.inverses, 2 * (fronts.first[front]), scratch.vector,
+            fronts.width[front], fronts.inverses, 2 * fronts.first[front], vector,
         )  # fmt: skip
         k = 0
         for row in range(fronts.first[front], fronts.last[front]):
-            change[row, 0] = scratch.vector[k]
-            change[row, 1] = scratch.vector[k + 1]
+            change[row, 0] = vector[k]
+            change[row, 1] = vector[k + 1]
             k += 2
