@@ -7,9 +7,9 @@ from contextlib import suppress
 
 import pytest
 
+from sandbox.physics import jit
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.world import World
-from sandbox.physics import jit
 from tests.support import wants
 
 with suppress(ImportError):

@@ -609,7 +609,11 @@ sys.exit(code)
 def test_a_headless_run_loads_no_drawing_and_makes_only_the_kernels_that_it_calls(rope, tmp_path):
     def loaded(*arguments: str) -> set[str]:
         """Modules that a run has loaded, and the kernels that it has made."""
-        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1]), "SANDBOX_KERNELS": "interpreted"}
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(Path(__file__).resolve().parents[1]),
+            "SANDBOX_KERNELS": "interpreted",
+        }
         command = [sys.executable, "-c", HEADLESS, *arguments]
         run = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
         return set(run.stderr.split())

@@ -156,8 +156,8 @@ def constraint_rate(first: int, last: int, velocity: FloatRows, particle: Int32s
 
 @kernel
 def constraint_values(
-    position: FloatRows, inverse_mass: Floats, constraints: ConstraintArrays, place: FloatRows, value: Floats, mass: Floats,
-    slope: FloatRows,
+    position: FloatRows, inverse_mass: Floats, constraints: ConstraintArrays, place: FloatRows, value: Floats,
+    mass: Floats, slope: FloatRows,
 ) -> None:  # fmt: skip
     """C (t,) and effective mass (t,) of all active constraints, 0 of others, with their gradients (q, 2)."""
     for k in range(constraints.kind.shape[0]):

@@ -5,7 +5,7 @@ asks for, so that it does not leap when it is let go.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 

@@ -4,7 +4,6 @@ World and Snapshot have these attributes, appending, hashing, storing and guardi
 line here, and the place that gives it its values.
 """
 
-
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar, cast

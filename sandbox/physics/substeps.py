@@ -3,8 +3,6 @@
 The choice is a pure function of the state at the tick's start, of + - * / and comparisons alone.
 """
 
-from typing import Any
-
 from sandbox.physics.arrays import Floats
 from sandbox.physics.constraints import HIGHEST_OF_RING, TRIANGLE
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, half_step_of_network, part_of_network

@@ -17,6 +17,7 @@ SOLVERS = ("single_pass", "iterative", "direct")
 SUBSTEPS = (1, 4, "auto")
 TICKS = 40
 
+
 @functools.cache
 def runs(solver, way="library", substeps=SUBSTEPS, attempt=0):
     """What the script prints for each number of substeps in one process: how kernels ran, then a hash per tick.

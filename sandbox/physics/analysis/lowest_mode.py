@@ -48,8 +48,8 @@ class ConstraintRows(NamedTuple):
 
 @kernel
 def _iterate_inversely(
-    matrix: Matrix, rows: ConstraintRows, mass: Floats, rigid: FloatTables, vector: FloatRows, right_side: FloatRows, rounds: int,
-    converged: float,
+    matrix: Matrix, rows: ConstraintRows, mass: Floats, rigid: FloatTables, vector: FloatRows, right_side: FloatRows,
+    rounds: int, converged: float,
 ) -> float:  # fmt: skip
     # x -> (S + SHIFT M)^-1 M x without its motions as a whole; the Rayleigh quotient x S x / x M x of the last x.
     count = mass.shape[0]

@@ -1,6 +1,6 @@
 """Outlines: the edges that springs make, and terrain, as topology alone decides; kept until topology changes."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 

@@ -75,8 +75,8 @@ def stop_at_terrain(p: int, position: FloatRows, velocity: FloatRows, terrain: T
 
 @inner_kernel
 def clamp_at_pins(
-    position: FloatRows, velocity: FloatRows, ahead: FloatRows, inverse_mass: Floats, outline: Outline, colliders: Colliders,
-    box: FloatRows, near_start: Slots, h: float,
+    position: FloatRows, velocity: FloatRows, ahead: FloatRows, inverse_mass: Floats, outline: Outline,
+    colliders: Colliders, box: FloatRows, near_start: Slots, h: float,
 ) -> None:  # fmt: skip
     """The same at edges of bodies that pins hold, which particles of other bodies may touch.
 
@@ -108,7 +108,13 @@ def clamp_at_pins(
 
 @inner_kernel
 def clamp_at_tips(
-    velocity: FloatRows, inverse_mass: Floats, terrain: Terrain, dynamic: int, colliders: Colliders, holds: bool, h: float
+    velocity: FloatRows,
+    inverse_mass: Floats,
+    terrain: Terrain,
+    dynamic: int,
+    colliders: Colliders,
+    holds: bool,
+    h: float,
 ) -> bool:
     """Cut the velocities of the ends of edges that would cross a corner of terrain in the coming h [s]; whether any.
 

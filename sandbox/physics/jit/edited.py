@@ -70,7 +70,12 @@ def _compile(folder: Path, checked: bool) -> None:
         command = [sys.executable, "-m", f"{__package__}.making", str(aside), *(["CHECKED"] if checked else [])]
         home = str(Path(__file__).resolve().parents[3])
         path = os.pathsep.join(filter(None, (home, os.environ.get("PYTHONPATH"))))
-        variables = {**os.environ, "PYTHONPATH": path, "SANDBOX_KERNELS": "interpreted", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
+        variables = {
+            **os.environ,
+            "PYTHONPATH": path,
+            "SANDBOX_KERNELS": "interpreted",
+            "PYGAME_HIDE_SUPPORT_PROMPT": "1",
+        }
         ended = subprocess.run(command, env=variables, capture_output=True, text=True, check=False)
         if ended.returncode:
             raise NotCompiled(_last_line(ended.stdout) or _last_line(ended.stderr))

@@ -1,7 +1,8 @@
 """What machine code follows from in the sources: whether kernels are those that a library was made of.
 
 Of a file of kernels that is the kernels themselves, with the named tuples, constants and imports that they name.
-Neither comments, docstrings nor other functions are among it; annotations are: types follow from them. A digest is the same on every Python.
+Neither comments, docstrings nor other functions are among it; annotations are: types follow from them. A digest is the
+same on every Python.
 """
 
 import ast

@@ -4,8 +4,6 @@ Three entries, each with an arena of its own: what follows from topology; what f
 the room of a step, which grows with what steps ask for. After a change of topology all three are called, in this order.
 """
 
-from typing import Any
-
 from sandbox.physics.arena import (
     Arena,
     begin,

@@ -1,7 +1,5 @@
 """A tick as one kernel: its phases on one screen. Their order is part of the replay contract."""
 
-from typing import Any
-
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.driving import drive_springs
 from sandbox.physics.flight import begin_flight, label_all_joined

@@ -137,7 +137,9 @@ def _prepare_constraints(
 
 
 @inner_kernel
-def _iterate_constraints(inverse_mass: Floats, constraints: ConstraintArrays, wanted: Wanted, change: FloatRows) -> None:
+def _iterate_constraints(
+    inverse_mass: Floats, constraints: ConstraintArrays, wanted: Wanted, change: FloatRows
+) -> None:
     # A bend obeys (1 - Cd) j = -(Cs C / h + Cd (dC/dt + g . dv)) m, the equation with the velocity after the step
     # (equation.py): so can all of more bends than there are ways to bend. Both go at once into the velocity change dv.
     for k in range(constraints.kind.shape[0]):

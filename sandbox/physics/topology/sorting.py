@@ -1,4 +1,5 @@
 """Stable sorts and lists by key, for what kernels derive from topology: no library's choice is in their order."""
+
 from sandbox.physics.arrays import Floats, Int32s, Slots
 from sandbox.physics.jit import inner_kernel
 

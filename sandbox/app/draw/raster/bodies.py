@@ -7,9 +7,6 @@ of how far inside and how lit gives the colour. All bodies of a layer are drawn 
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
 from sandbox.app.draw.raster.mark_kernels import from_segment, row_of_capsule
 from sandbox.app.draw.raster.pixels import PixelRow, Pixels, Sheets, Singles, SlotTables, laid_over
@@ -190,7 +187,16 @@ def _lay_flush(tone: PixelRow, amount: Int32s, first: int, last: int, squeezed: 
 
 @inner_kernel
 def _light_run(
-    pixels: Pixels, y: int, first: int, last: int, rows: BodyRows, b: int, skins: Skins, flush: Flush, scratch: BodyScratch, place: Slots
+    pixels: Pixels,
+    y: int,
+    first: int,
+    last: int,
+    rows: BodyRows,
+    b: int,
+    skins: Skins,
+    flush: Flush,
+    scratch: BodyScratch,
+    place: Slots,
 ) -> None:
     """Pixels of a row of a body that lie side by side."""
     cover, tone, texel = scratch.cover, scratch.tone, scratch.texel
@@ -213,7 +219,15 @@ def _light_run(
 
 @inner_kernel
 def _light_row(
-    pixels: Pixels, y: int, rows: BodyRows, b: int, skins: Skins, flush: Flush, scratch: BodyScratch, place: Slots, clip: Slots
+    pixels: Pixels,
+    y: int,
+    rows: BodyRows,
+    b: int,
+    skins: Skins,
+    flush: Flush,
+    scratch: BodyScratch,
+    place: Slots,
+    clip: Slots,
 ) -> None:
     """One row of pixels of a body. place: left, top, width, wide, tall, reach, wide and tall of the flush, 0, edge."""
     cover, left, width = scratch.cover, place[0], place[2]
@@ -233,7 +247,17 @@ def _light_row(
 
 @inner_kernel
 def _paint_side(
-    pixels: Pixels, ox: float, oy: float, ax: float, ay: float, bx: float, by: float, half: float, colour: int, alpha: float, clip: Slots
+    pixels: Pixels,
+    ox: float,
+    oy: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    half: float,
+    colour: int,
+    alpha: float,
+    clip: Slots,
 ) -> None:
     """A side of a closed line from a to b, the one before it from o to a; no pixel is covered by both.
 
@@ -273,7 +297,14 @@ def _paint_lines(pixels: Pixels, outlines: Outlines, rows: BodyRows, b: int, cli
 
 @kernel
 def paint_bodies(
-    pixels: Pixels, outlines: Outlines, rows: BodyRows, skins: Skins, flush: Flush, scratch: BodyScratch, place: Slots, clip: Slots
+    pixels: Pixels,
+    outlines: Outlines,
+    rows: BodyRows,
+    skins: Skins,
+    flush: Flush,
+    scratch: BodyScratch,
+    place: Slots,
+    clip: Slots,
 ) -> None:
     """Draw bodies into pixels (h, w), one after the other, inside clip (4,); place (10,): scratch of a row."""
     for b in range(rows.loops.shape[0]):

@@ -27,9 +27,9 @@ from sandbox.app.draw.raster.cells import SHEET, CellArrays, paint_cells
 from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG, DISC, GLOW, HAIR, STRIP, STROKE, MarkArrays, paint_marks
 from sandbox.app.draw.raster.outlines import Loops, trace_outlines
 from sandbox.app.draw.raster.pixels import FAR, Pixels, Sheets
-from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.app.draw.raster.shadows import FACTOR, ShadowScratch, Thrown, paint_shadows
 from sandbox.physics import jit
+from sandbox.physics.arrays import Floats, Slots
 
 # A body whose outline has no line around it, and no grain.
 NO_LINE = 0.0

@@ -3,9 +3,6 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from sandbox.app.draw.raster.bodies import Outlines
 from sandbox.app.draw.raster.coverage import add_outline, blur, clear, find_box
 from sandbox.app.draw.raster.pixels import FAR, Pixels, Singles, laid_over
@@ -116,7 +113,16 @@ def _find_reach(outlines: Outlines, thrown: Thrown, box: Floats) -> None:
 
 @inner_kernel
 def _lay_row(
-    pixels: Pixels, y: int, scratch: ShadowScratch, wide: int, at: int, down: float, left: int, colour: int, full: float, clip: Slots
+    pixels: Pixels,
+    y: int,
+    scratch: ShadowScratch,
+    wide: int,
+    at: int,
+    down: float,
+    left: int,
+    colour: int,
+    full: float,
+    clip: Slots,
 ) -> None:
     """Darken a row of pixels between two rows of cells, `down` (0..1) below the one that begins at `at`."""
     mask, sums, dark = scratch.mask, scratch.sums, scratch.dark
@@ -146,7 +152,14 @@ def _lay_row(
 
 @kernel
 def paint_shadows(
-    pixels: Pixels, outlines: Outlines, thrown: Thrown, scratch: ShadowScratch, offset: Floats, colour: int, strength: float, clip: Slots
+    pixels: Pixels,
+    outlines: Outlines,
+    thrown: Thrown,
+    scratch: ShadowScratch,
+    offset: Floats,
+    colour: int,
+    strength: float,
+    clip: Slots,
 ) -> None:
     """Lay shadows over pixels (h, w), offset (2,) [pixels] from what throws them, inside clip (4,)."""
     mask, box = scratch.mask, scratch.box

@@ -28,7 +28,9 @@ class NotCompiled(Exception):
 def _zig(folder: Path, kept: Path, arguments: Sequence[str]) -> None:
     variables = {"ZIG_GLOBAL_CACHE_DIR": str(kept), "ZIG_LOCAL_CACHE_DIR": str(kept)}
     command = [sys.executable, "-m", "ziglang", *arguments]
-    ended = subprocess.run(command, cwd=folder, env={**os.environ, **variables}, capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        command, cwd=folder, env={**os.environ, **variables}, capture_output=True, text=True, check=False
+    )
     if ended.returncode:
         raise NotCompiled(ended.stderr.strip())
 
@@ -38,8 +40,8 @@ def compiled(
 ) -> bytes:
     """The library of a platform: entries of kernels, with what calls them from Python; always the same bytes.
 
-    texts: C++ by the names of its files. symbols: of the entries. kept: a folder for what zig makes once. defines: names
-    that C++ is to know, such as CHECKED.
+    texts: C++ by the names of its files. symbols: of the entries. kept: a folder for what zig makes once. defines:
+    names that C++ is to know, such as CHECKED.
 
     Raises:
         NotCompiled: with what zig says.

@@ -11,7 +11,18 @@ from sandbox.physics.jit import Kernel, entries
 from sandbox.physics.jit.bundles import Signature, name_of
 from sandbox.physics.jit.sources import has_kernels, source_files, text_of
 from sandbox.physics.jit.translate.program import Translation, symbol_of, words_of
-from sandbox.physics.jit.translate.types import FLAG, FLOAT, INTEGER, NOTHING, Array, Bundle, Scalar, Several, Struct, Type
+from sandbox.physics.jit.translate.types import (
+    FLAG,
+    FLOAT,
+    INTEGER,
+    NOTHING,
+    Array,
+    Bundle,
+    Scalar,
+    Several,
+    Struct,
+    Type,
+)
 
 # Entries are divided so that few kernels are called from two units: each is compiled by itself, all at once.
 _UNITS = {"tick.cpp": "sandbox.physics.pipeline.tick", "physics.cpp": "sandbox.physics", "painting.cpp": "sandbox"}
@@ -45,7 +56,8 @@ def gathered(kernels: Sequence[Kernel]) -> Gathered:
     for kernel in kernels:
         unit = next(name for name, begin in _UNITS.items() if kernel.name.startswith(begin))
         units.setdefault(unit, []).append(kernel)
-    texts, found = {}, {}
+    texts: dict[str, str] = {}
+    found: dict[str, dict[str, Any]] = {}
     for unit, ones in units.items():
         translation = Translation(ones)
         texts[unit] = translation.text()

@@ -51,7 +51,8 @@ def this_machine() -> Platform:
     name = library_name()
     known = next((each for each in LIBRARIES if each.file == name), None)
     if known is None:
-        return Platform(*name.split("."), target="native", processor="native")
+        system, _, suffix = name.rpartition(".")
+        return Platform(system, suffix, "native", "native")
     return replace(known, processor="native")
 
 

@@ -47,9 +47,13 @@ _LYING = {
     interpreted.flags_in: ("bool", 1), interpreted.int32s_in: ("int32", 1),
 }  # fmt: skip
 # Names that are words of C++.
-_WORDS = set(
-    ["and", "auto", "bool", "case", "catch", "char", "class", "const", "default", "delete", "do", "double", "enum", "explicit", "export", "extern", "float", "friend", "goto", "inline", "int", "long", "namespace", "new", "not", "operator", "or", "private", "protected", "public", "register", "short", "signed", "sizeof", "static", "struct", "switch", "template", "this", "throw", "try", "typedef", "typename", "union", "unsigned", "using", "virtual", "void", "volatile"]
-)
+_WORDS = frozenset((
+    "and", "auto", "bool", "case", "catch", "char", "class", "const", "default", "delete", "do", "double", "enum",
+    "explicit", "export", "extern", "float", "friend", "goto", "inline", "int", "long", "namespace", "new", "not",
+    "operator", "or", "private", "protected", "public", "register", "short", "signed", "sizeof", "static", "struct",
+    "switch", "template", "this", "throw", "try", "typedef", "typename", "union", "unsigned", "using", "virtual",
+    "void", "volatile",
+))  # fmt: skip
 
 
 def spelled(name: str) -> str:
@@ -190,7 +194,7 @@ class Expressions:
         return Code(f"{item.cpp}({text})" if reads and item.cpp != ITEMS[whole.type.dtype] else text, item)
 
     def _length(self, node: ast.Subscript, whole: Code) -> Code:
-        if not isinstance(node.slice, ast.Constant):
+        if not (isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, int)):
             raise self.refuse(node, f"{ast.unparse(node)}: a dimension is a number that is written there")
         return Code(f"{whole.within(PRIMARY)}.shape[{node.slice.value}]", INTEGER)
 
@@ -242,13 +246,17 @@ class Expressions:
         a = self.scalar(node.operand)
         sign = {ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}[type(node.op)]
         inner = a.within(UNARY)
-        return Code(f"{sign}({inner})" if inner[0] == sign else sign + inner, INTEGER if a.type == FLAG else a.type, UNARY)
+        return Code(
+            f"{sign}({inner})" if inner[0] == sign else sign + inner, INTEGER if a.type == FLAG else a.type, UNARY
+        )
 
     def logical(self, node: ast.BoolOp) -> Code:
         sign, hangs = ("&&", AND) if isinstance(node.op, ast.And) else ("||", OR)
         # Compilers warn of both in one without parentheses.
         parts = [self.flag(value) for value in node.values]
-        return Code(f" {sign} ".join(part.within(hangs if part.hangs != AND else PRIMARY) for part in parts), FLAG, hangs)
+        return Code(
+            f" {sign} ".join(part.within(hangs if part.hangs != AND else PRIMARY) for part in parts), FLAG, hangs
+        )
 
     def comparison(self, node: ast.Compare) -> Code:
         parts, left = [], node.left
@@ -354,7 +362,9 @@ class Expressions:
         for code in codes[1:]:
             kind = joined(found.type, code.type)
             assert kind is not None
-            cast = f"<{kind.cpp}>" if found.type != code.type or _is_literal(found.text) or _is_literal(code.text) else ""
+            cast = (
+                f"<{kind.cpp}>" if found.type != code.type or _is_literal(found.text) or _is_literal(code.text) else ""
+            )
             found = Code(f"{name}{cast}({found.text}, {code.text})", kind)
         return found
 

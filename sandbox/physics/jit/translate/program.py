@@ -104,7 +104,9 @@ class Translation:
                 choices = [[(name, kind) for kind in self._kinds(hints[name])] for name in names]
                 gives = self._types.of(hints["return"])
             except NoType as fault:
-                raise Refused(function.__module__, line, f"{function.__name__}: {fault} is no type of kernels") from None
+                raise Refused(
+                    function.__module__, line, f"{function.__name__}: {fault} is no type of kernels"
+                ) from None
             self._signatures[kernel] = [Signature(takes, gives) for takes in itertools.product(*choices)]
         return self._signatures[kernel]
 
@@ -176,7 +178,7 @@ class Translation:
             word += words_of(kind)
         call = f"{self._spaces[function.__module__]}::{spelled(function.__name__)}({', '.join(given)})"
         result = f"{call};\n    block[0] = 0;" if signature.gives == NOTHING else f"give(block, {call});"
-        return f'ENTRY({symbol_of(entry)}) {{\n    {result}\n    return 0;\n}}'
+        return f"ENTRY({symbol_of(entry)}) {{\n    {result}\n    return 0;\n}}"
 
 
 def symbol_of(entry: Kernel) -> str:

@@ -63,8 +63,9 @@ class Body(Expressions):
             assert node.value is not None
             yield node.target.id, node.value
         elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
-            yield node.target.id, ast.copy_location(
-                ast.BinOp(ast.Name(node.target.id, ast.Load()), node.op, node.value), node
+            yield (
+                node.target.id,
+                ast.copy_location(ast.BinOp(ast.Name(node.target.id, ast.Load()), node.op, node.value), node),
             )
         elif isinstance(node, ast.Assign):
             for target in node.targets:
@@ -164,7 +165,11 @@ class Body(Expressions):
         if statement.value is None:
             return ["return;"]
         found = self.code(statement.value)
-        if isinstance(found.type, Several) and isinstance(self.result, Several) and isinstance(statement.value, ast.Tuple):
+        if (
+            isinstance(found.type, Several)
+            and isinstance(self.result, Several)
+            and isinstance(statement.value, ast.Tuple)
+        ):
             items = zip(statement.value.elts, self.result.items, strict=True)
             texts = [self._as(statement, self.code(node), wanted) for node, wanted in items]
             return [f"return {{{', '.join(texts)}}};"]
@@ -182,7 +187,8 @@ class Body(Expressions):
             return None
         place, name, value = node.args
         whole, given = self.code(place), self.code(value)
-        assert isinstance(name, ast.Constant)
+        if not (isinstance(name, ast.Constant) and isinstance(name.value, str)):
+            raise self.refuse(node, "the name of a field is written there")
         kind = whole.type.field(name.value) if isinstance(whole.type, Struct) else None
         if kind != given.type:
             raise self.refuse(node, f"{ast.unparse(place)}.{name.value} is not {given.type.cpp}")
@@ -195,7 +201,15 @@ class Body(Expressions):
         combined = self.combined(statement, type(statement.op), target, value)
         if joined(combined.type, target.type) != target.type:
             raise self.refuse(statement, f"{ast.unparse(statement.target)} is an integer")
-        sign = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.BitOr: "|", ast.BitAnd: "&", ast.BitXor: "^"}
+        sign = {
+            ast.Add: "+",
+            ast.Sub: "-",
+            ast.Mult: "*",
+            ast.Div: "/",
+            ast.BitOr: "|",
+            ast.BitAnd: "&",
+            ast.BitXor: "^",
+        }
         changes = any(isinstance(node, ast.Call) for node in ast.walk(statement.value))
         if type(statement.op) not in sign or (changes and isinstance(statement.target, ast.Subscript)):
             # Python reads what is changed before it comes to what changes it.
@@ -219,7 +233,9 @@ class Body(Expressions):
         whole, found = self._temporary(), self.code(value)
         parts = zip(targets[0].elts, self._fields(statement, found.type), strict=True)
         return [f"const {found.type.cpp} {whole} = {found.text};"] + [
-            self._set(statement, target, Code(f"{whole}.{name}", kind)) for target, (name, kind) in parts if not _is_unused(target)
+            self._set(statement, target, Code(f"{whole}.{name}", kind))
+            for target, (name, kind) in parts
+            if not _is_unused(target)
         ]
 
     def _to_each(self, statement: ast.Assign) -> list[str]:
@@ -236,8 +252,10 @@ class Body(Expressions):
         set_before: list[str] = []
         apart = True
         for target, value in zip(targets.elts, values.elts, strict=True):
-            apart = apart and isinstance(target, ast.Name) and not any(
-                isinstance(node, ast.Name) and node.id in set_before for node in ast.walk(value)
+            apart = (
+                apart
+                and isinstance(target, ast.Name)
+                and not any(isinstance(node, ast.Name) and node.id in set_before for node in ast.walk(value))
             )
             set_before.append(target.id if isinstance(target, ast.Name) else "")
         if apart:
@@ -333,9 +351,15 @@ class Body(Expressions):
             return True
         if isinstance(node, ast.Name):
             return node.id not in changed
-        is_shape = isinstance(node, ast.Subscript) and isinstance(node.value, ast.Attribute) and node.value.attr == "shape"
+        is_shape = (
+            isinstance(node, ast.Subscript) and isinstance(node.value, ast.Attribute) and node.value.attr == "shape"
+        )
         puts = any(isinstance(each, ast.Name) and each.id == "put" for each in ast.walk(statement))
-        return is_shape and not puts and not any(isinstance(each, ast.Name) and each.id in changed for each in ast.walk(node))
+        return (
+            is_shape
+            and not puts
+            and not any(isinstance(each, ast.Name) and each.id in changed for each in ast.walk(node))
+        )
 
 
 def _in_order(body: list[ast.stmt]) -> Iterator[ast.stmt]:

@@ -9,7 +9,15 @@ from sandbox.physics.arrays import ArrayKind
 from sandbox.physics.jit import interpreted
 
 # What an item of an array is in C++, by its dtype.
-ITEMS = {"float64": "double", "float32": "float", "int64": "int64_t", "int32": "int32_t", "int8": "int8_t", "uint32": "uint32_t", "bool": "bool"}
+ITEMS = {
+    "float64": "double",
+    "float32": "float",
+    "int64": "int64_t",
+    "int32": "int32_t",
+    "int8": "int8_t",
+    "uint32": "uint32_t",
+    "bool": "bool",
+}
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,9 @@ def _set_impulse(
 
 
 @inner_kernel
-def _load_miss(contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, count: int) -> float:
+def _load_miss(
+    contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, count: int
+) -> float:
     # Load the velocities of contacts; by how much they miss what is wanted [m/s].
     at = terms.active
     worst = 0.0

@@ -132,7 +132,9 @@ def _place_of(
 
 
 @inner_kernel
-def _place_of_edge(contacts: Contacts, c: int, start: FloatRows, work: FreeContactScratch, count: int) -> tuple[int, int]:
+def _place_of_edge(
+    contacts: Contacts, c: int, start: FloatRows, work: FreeContactScratch, count: int
+) -> tuple[int, int]:
     # The place of an edge that cannot move, be it of terrain or of a body, and the number of places then.
     a = contacts.end_a[c]
     b = contacts.end_b[c]

@@ -341,8 +341,8 @@ def _solve_beside(
 
 @inner_kernel
 def solve_free_contacts(
-    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows, velocity: FloatRows,
-    spin: Floats, h: float, work: FreeContactScratch,
+    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows,
+    velocity: FloatRows, spin: Floats, h: float, work: FreeContactScratch,
 ) -> None:  # fmt: skip
     """Solve the sorted free contacts over a step of h [s]; work.ahead goes with velocity and spin.
 

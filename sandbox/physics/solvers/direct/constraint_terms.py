@@ -343,7 +343,9 @@ def constraint_potential(
 
 
 @inner_kernel
-def floor_potential(span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float) -> float:
+def floor_potential(
+    span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float
+) -> float:
     """Energy of the floors under a body's triangles at position + time velocity [J]."""
     constraints = system.constraints
     total = 0.0

@@ -175,7 +175,9 @@ def slope(span: Span, system: System) -> float:
 
 
 @inner_kernel
-def _constraint_energy(span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float) -> float:
+def _constraint_energy(
+    span: Span, system: System, position: FloatRows, velocity: FloatRows, time: float, h: float
+) -> float:
     # With what is below its floor.
     return constraint_potential(span, system, position, velocity, system.constraints.k_h2, time, h) + floor_potential(
         span, system, position, velocity, time, h

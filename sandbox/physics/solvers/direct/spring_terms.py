@@ -298,7 +298,14 @@ def spring_slope(span: Span, system: System) -> float:
 
 @inner_kernel
 def spring_potential(
-    span: Span, system: System, position: FloatRows, velocity: FloatRows, norm: Floats, rest: Floats, time: float, h: float
+    span: Span,
+    system: System,
+    position: FloatRows,
+    velocity: FloatRows,
+    norm: Floats,
+    rest: Floats,
+    time: float,
+    h: float,
 ) -> float:
     """Energy of one body's springs at position + time velocity [J]; rest (k,): the rest lengths it is measured from."""
     # sum of norm x^2 / (2 h^2)

@@ -1,6 +1,6 @@
 """Where the blocks of a sparse matrix lie, and of its factor."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
