@@ -11,7 +11,6 @@ from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drive_muscles
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.pipeline.tick import find_broken
-from sandbox.physics.solvers.linear import parallel
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 
@@ -28,9 +27,6 @@ def call_every_kernel() -> None:
     drive_muscles(world, 0)
     step(world)
     find_broken(block_of(world).pointer)
-    # It is too small to need a second thread.
-    system = block_of(world).arrays.system
-    parallel.precompile_help(system.fronts, system.rows.delta_v)
     lowest_mode.precompile_modes()
     body_of(world, 0)
     outline_of(world)

@@ -96,7 +96,7 @@ class World(StateArrays):
         object.__setattr__(self, name, value)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What a copy starts from: all but what was derived, which may hold a thread."""
+        """What a copy starts from: all but what was derived."""
         return self.__dict__ | {"_derived": {}, "_lasting": {}, "_room": Capacity()}
 
     def derived(self, make: Callable[["World"], Derived], of_hands: bool = True) -> Derived:

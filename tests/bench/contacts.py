@@ -147,7 +147,7 @@ def settles(table: Table, name: str, built: World, other: pymunk.Space | None = 
 @contextmanager
 def counted_entries(spent: list[float]) -> Iterator[None]:
     """Add the calls of compiled kernels that Python makes, and their time [ms], to spent meanwhile."""
-    entries = {id(entry.held) for entry in jit.KERNELS if entry.role in jit._ENTRIES}
+    entries = {id(entry.held) for entry in jit.entries()}
     modules = [module for name, module in sys.modules.items() if name.startswith("sandbox.physics.")]
     held = [(module, name, item) for module in modules for name, item in vars(module).items() if id(item) in entries]
 

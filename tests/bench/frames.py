@@ -1,7 +1,6 @@
 """Milliseconds of whole frames at 1280x720, ticks and panel included: `python -m tests.bench.frames [LEVEL ...]`.
 
-By CPU of the thread that draws; half of the work of a large body's ticks may be another thread's. Of every shipped
-level, after a second of its run, and of a mesh of 10,000 springs that hangs by two corners.
+By CPU. Of every shipped level, after a second of its run, and of a mesh of 10,000 springs that hangs by two corners.
 """
 
 import json

@@ -8,7 +8,6 @@ import pytest
 
 from sandbox.physics import jit
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.linear.locks import has_locks
 from sandbox.session.commands import COMMAND_TYPES
 from tests.determinism.elsewhere import WEB, Missing
 from tests.determinism.seeds.__main__ import main
@@ -21,7 +20,7 @@ from tests.support.wants import skip_without
 
 pytestmark = pytest.mark.skipif(not jit.COMPILED, reason="interpreted kernels take minutes")
 SEEDS, TICKS = range(4), 30
-CHEAP = ("library", "undone", "saved", "threads")
+CHEAP = ("library", "undone", "saved")
 
 
 @pytest.fixture(scope="module")
@@ -38,13 +37,6 @@ def test_a_seed_gives_the_same_bits(seed, way, recorded):
     result = run_way(way, Watch(record(seed)), seed, folder)
     assert result.difference is None, str(result.difference)
     assert result.checks >= TICKS
-
-
-@pytest.mark.skipif(not has_locks(), reason="there is one thread only")
-def test_a_second_thread_works(recorded):
-    folder, record = recorded
-    helped = [run_way("threads", Watch(record(seed, 5)), seed, folder).helped for seed in range(4, 12)]
-    assert any(helped) and not all(helped)
 
 
 def test_seeds_make_every_solver_body_and_command(recorded):

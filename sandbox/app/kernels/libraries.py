@@ -54,8 +54,7 @@ def _library(bitcode: bytes, codes: Sequence[Any], platform: Any) -> bytes:
 
 
 def _entry(code: Any) -> dict[str, Any]:
-    entry = {"symbol": code.symbol, "takes": list(code.arguments), "gives": code.gives}
-    return entry | ({"waits": True} if code.waits else {})
+    return {"symbol": code.symbol, "takes": list(code.arguments), "gives": code.gives}
 
 
 def _text(manifest: dict[str, Any]) -> str:

@@ -41,7 +41,6 @@ float_tables_in: Any = interpreted.float_tables_in
 flags_in: Any = interpreted.flags_in
 int32s_in: Any = interpreted.int32s_in
 
-_ENTRIES = ("kernel", "waiting_kernel")
 # Functions, of which it is looked up which kernel they run.
 _PLAIN = (FunctionType, BuiltinFunctionType)
 # Which way kernels are made, by its name for people, and the module that makes them.
@@ -203,7 +202,7 @@ def recorded() -> Iterator[None]:
 
 def entries() -> list[Kernel]:
     """The kernels that Python calls."""
-    return [kernel for kernel in KERNELS if kernel.role in _ENTRIES]
+    return [kernel for kernel in KERNELS if kernel.role == "kernel"]
 
 
 def precompile(held: Any, *arguments: Any) -> None:
@@ -216,14 +215,9 @@ def compile_entry(kernel: Kernel, signature: tuple[Any, ...]) -> None:
     importlib.import_module(f"{__name__}.compiled").make(kernel).compile(signature)
 
 
-def interpreter_function(name: str, result: str, *arguments: str) -> Any:
-    """A function of Python's own C interface for compiled kernels, given the numba names of its types."""
-    return interpreted.InterpreterFunction(name, result, arguments)
-
-
 def _made(role: str, function: Function) -> Function:
     kernel = Kernel(role, function)
-    kernel.held = Entry(kernel) if role in _ENTRIES else function
+    kernel.held = Entry(kernel) if role == "kernel" else function
     KERNELS.append(kernel)
     _BY_FUNCTION[function] = kernel
     return cast(Function, kernel.held)
@@ -247,11 +241,6 @@ def inlined_kernel(function: Function) -> Function:
 def scalar_kernel(function: Function) -> Function:
     """Make `function`, which takes and gives scalars alone, a part of kernels that Python calls too, interpreted."""
     return _made("scalar_kernel", function)
-
-
-def waiting_kernel(function: Function) -> Function:
-    """Make `function` a kernel for a thread of its own: others run meanwhile, and may be waited for."""
-    return _made("waiting_kernel", function)
 
 
 def bundle(items: tuple[Any, ...], like: Any = None) -> Any:

@@ -30,7 +30,6 @@ _UNCOUNTED = {"_nrt": False}
 _PART = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _OPTIONS: dict[str, dict[str, Any]] = {
     "kernel": _UNCOUNTED,
-    "waiting_kernel": _UNCOUNTED | {"nogil": True},
     "scalar_kernel": _UNCOUNTED,
     "inner_kernel": _UNCOUNTED,
     "inlined_kernel": _UNCOUNTED | {"inline": "always"},
@@ -128,11 +127,6 @@ def _known(value: Any, function: FunctionType) -> Any:
         return np.uint64 if value is interpreted.unsigned else np.uint64(value)
     if type(value) is FunctionType and value in _INTRINSICS:
         return _INTRINSICS[value]
-    if isinstance(value, interpreted.InterpreterFunction):
-        # By name, so that a cached kernel finds it again in the next process; its address would not last.
-        kinds = numba.types
-        arguments = [getattr(kinds, kind) for kind in value.arguments]
-        return kinds.ExternalFunction(value.name, getattr(kinds, value.result)(*arguments))
     if isinstance(value, ModuleType) and is_own(value):
         known = ModuleType(value.__name__)
         vars(known).update({name: _known(item, function) for name, item in names_in(value, function)})

@@ -3,7 +3,6 @@
 import functools
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
@@ -40,15 +39,6 @@ def _lent(item: Any) -> Any:
         return _viewed(item)
     items = map(_lent, item)
     return LentTuple(type(item), items) if hasattr(item, "_make") else tuple(items)
-
-
-@dataclass(frozen=True)
-class InterpreterFunction:
-    """A function of Python's own C interface, which only compiled kernels can call; types by their numba names."""
-
-    name: str
-    result: str
-    arguments: tuple[str, ...]
 
 
 def _viewed(item: Any) -> Any:

@@ -32,8 +32,7 @@ _MOST_WORDS = 448
 _FUNCTIONS = (
     "PyFloat_AsDouble", "PyLong_AsLongLong", "PyObject_IsTrue", "PyLong_AsVoidPtr", "PyTuple_Size", "PyTuple_GetItem",
     "PyObject_RichCompareBool", "PyErr_Occurred", "PyErr_Format", "PyObject_Vectorcall", "PyFloat_FromDouble",
-    "PyLong_FromLongLong", "PyBool_FromLong", "Py_IncRef", "PyEval_SaveThread", "PyEval_RestoreThread",
-    "PyThread_acquire_lock", "PyThread_release_lock",
+    "PyLong_FromLongLong", "PyBool_FromLong", "Py_IncRef",
 )  # fmt: skip
 _CONTIGUOUS_WRITEABLE = 0x401
 _FASTCALL = 0x80
@@ -157,7 +156,7 @@ class Library:
         title = name.rpartition(".")[2].encode()
         code = ctypes.cast(getattr(self._code, entry["symbol"]), ctypes.c_void_p).value
         head = [code, ctypes.cast(ctypes.c_char_p(title), ctypes.c_void_p).value, _GIVES[entry["gives"]]]
-        head += [int(entry.get("waits", False)), len(entry["takes"]), 0 if otherwise is None else id(otherwise)]
+        head += [len(entry["takes"]), 0 if otherwise is None else id(otherwise)]
         table = np.array([*head, *words], dtype=np.int64)
         method = _Method(title, self._call, _FASTCALL, None)
         make = ctypes.pythonapi.PyCFunction_NewEx

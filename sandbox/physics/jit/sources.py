@@ -17,7 +17,7 @@ _MAKERS = (
     "bundles.py", "compiled.py", "lending.py", "linking.py", "making/calling.c", "making/emitting.py",
     "making/gathering.py", "making/linking_by_zig.py", "making/platforms.py",
 )  # fmt: skip
-_ROLES = {"kernel", "waiting_kernel", "inner_kernel", "inlined_kernel", "scalar_kernel"}
+_ROLES = {"kernel", "inner_kernel", "inlined_kernel", "scalar_kernel"}
 _DIGEST_SIZE = 8
 # Fields of a syntax tree that say nothing of what is computed.
 _SILENT = {"annotation", "returns", "type_comment", "type_params", "ctx", "kind"}

@@ -33,7 +33,6 @@ from sandbox.physics.pipeline.block import (
     GRAB_PARTICLE,
     GRAB_SPRING,
     HAS_CONTACTS,
-    HAS_FORKS,
     HAS_HOOKE,
     HAS_RINGS,
     Coefficients,
@@ -160,7 +159,7 @@ def _room(world: WorldBlock, k: int) -> int:
 @inner_kernel
 def _find_plan(world: WorldBlock) -> None:
     state, plan = world.state, world.plan
-    plan[HAS_CONTACTS] = plan[HAS_HOOKE] = plan[HAS_RINGS] = plan[HAS_FORKS] = 0
+    plan[HAS_CONTACTS] = plan[HAS_HOOKE] = plan[HAS_RINGS] = 0
     for p in range(state.collides.shape[0]):
         if state.collides[p] != 0:
             plan[HAS_CONTACTS] = 1
@@ -207,10 +206,6 @@ def _lay_out_solver(world: WorldBlock, arena: Arena) -> None:
         if is_full(arena):
             return
         lay_out_islands(world.system, particles, arena, world.workspace)
-        fork = world.system.fronts.fork
-        for front in range(fork.shape[0]):
-            if fork[front, 0] < fork[front, 1]:
-                world.plan[HAS_FORKS] = 1
     else:
         lay_out_no_blocks(particles, arena, world.workspace.delassus)
     if solver == ITERATIVE:

@@ -17,7 +17,6 @@ from sandbox.physics.pipeline.block import (
     COUNT,
     GRAB_PARTICLE,
     GRAB_SPRING,
-    HAS_FORKS,
     MAY_FLY,
     PLANNED,
     PROGRESS,
@@ -30,7 +29,6 @@ from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers.direct.energy_bank import WAYS
 from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.tuning import tuning
-from sandbox.physics.solvers.linear.parallel import Helper, start_helper
 from sandbox.physics.state import good_of, state_of
 from sandbox.physics.world import World
 
@@ -50,7 +48,6 @@ class Block:
         self._arrays: WorldBlock | None = None
         self._topology = self._hands = -1
         self._kept = self._kept_room = empty(KeptContacts)
-        self._helper: Helper | None = None
         self.given = with_empty(
             WorldBlock,
             state=state_of(world),
@@ -96,8 +93,6 @@ class Block:
     def _lay_out(self, world: World) -> None:
         self._load(world.settings)
         kept = _contacts_of(world)
-        if self._helper is not None:
-            self._helper.dismiss()
         self.pointer = bundle(self.given, self.pointer)
         self._arenas[0] = lay_out(derive_topology, self.pointer, self._arenas[0])
         self._lay_out_hands()
@@ -105,9 +100,6 @@ class Block:
         self._make_room(kept)
         if self._has_other_contacts(world):
             self._share_contacts(world)
-        if self.given.plan[HAS_FORKS]:
-            system = self.arrays.system
-            self._helper = start_helper(self, system.fronts, system.rows.delta_v)
 
     def _lay_out_hands(self) -> None:
         self._arenas[1] = lay_out(derive_hands, self.pointer, self._arenas[1])

@@ -7,7 +7,6 @@ Each seed gives a level and commands, which are recorded: the reference. Then th
 library      in another session, with the kernels of the reference
 undone       with gestures undone and redone, time taken back, and other futures that are left again
 saved        verified whole, from the middle, and continued where it was cut off; with its level written and read
-threads      with one thread and with two
 web          with the calls of kernels made in WebAssembly too, by node
 interpreted  with interpreted kernels, for a few ticks
 numba        with kernels that numba compiles first, which takes minutes: only where it is asked for
@@ -101,10 +100,8 @@ class Tally:
         for way, found in self.results.items():
             ticks, checks = sum(each.ticks for each in found), sum(each.checks for each in found)
             differ = sum(each.difference is not None for each in found)
-            helped = sum(each.helped for each in found)
-            more = f", a second thread in {helped:,}" if way == "threads" else ""
             planted = f", planted in {sum(each.put for each in found):,}" if self.plant else ""
-            yield f"{way}: {len(found):,} seeds, {ticks:,} ticks, {checks:,} checks, {differ:,} differ{more}{planted}"
+            yield f"{way}: {len(found):,} seeds, {ticks:,} ticks, {checks:,} checks, {differ:,} differ{planted}"
 
 
 def clear_line() -> None:

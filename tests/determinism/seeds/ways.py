@@ -1,19 +1,12 @@
 """Ways to run a recording again in this process; each must come to its bits at every tick."""
 
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-from unittest.mock import patch
 
 import numpy as np
 
 from sandbox.level.reading.files import read_level, write_level
-from sandbox.physics.snapshot import state_hash
-from sandbox.physics.solvers.linear import dissection, parallel
-from sandbox.session.commands import CommandError
 from sandbox.session.replay.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
@@ -23,11 +16,8 @@ from sandbox.session.session import Session
 from tests.determinism.elsewhere import WEB
 from tests.determinism.seeds.calls_elsewhere import run_elsewhere
 from tests.determinism.seeds.detours import undone
-from tests.determinism.seeds.difference import Difference, Differs, Watch, arrays_of, first_of_two
+from tests.determinism.seeds.difference import Difference, Differs, Watch
 
-# Where threads are compared, bodies of this many particles have fronts, however narrow, and a single multiplication is
-# worth a half: else those of the levels would be too small for two threads.
-SMALLEST = 20
 # Why a recording cannot be verified from the middle: what is undone or redone after it was done before it.
 EARLIER = ("undo reaches back", "nothing to redo", "nothing to undo")
 
@@ -36,7 +26,7 @@ EARLIER = ("undo reaches back", "nothing to redo", "nothing to undo")
 class Result:
     """What came of one way with one seed: ticks that were run, states compared, and the difference, if there is one.
 
-    put: a fault was planted. helped: a second thread worked.
+    put: a fault was planted.
     """
 
     way: str
@@ -44,7 +34,6 @@ class Result:
     checks: int
     difference: Difference | None = None
     put: bool = False
-    helped: bool = False
 
 
 def library(watch: Watch, seed: int, folder: Path) -> None:
@@ -91,54 +80,6 @@ def _continue(replay: Replay, path: Path) -> None:
         raise Differs(divergence)
 
 
-def threads(watch: Watch, seed: int, folder: Path) -> bool:
-    """One thread and two in step; whether a second one worked. Raises Differs."""
-    started: list[int] = []
-    with _halves(1, started):
-        alone = Session(watch.replay.level, watch.replay.script)
-    with _halves(2, started):
-        both = Session(watch.replay.level, watch.replay.script)
-    while both.tick < watch.replay.ticks:
-        with _halves(1, started):
-            fault = _advance(alone)
-        with _halves(2, started):
-            assert _advance(both) == fault
-        if fault:
-            break
-        watch.disturb(both.world)
-        watch.checks += 1
-        if state_hash(alone.world) != state_hash(both.world):
-            raise Differs(first_of_two(arrays_of(alone.world), both.world))
-    return bool(started)
-
-
-def _advance(session: Session) -> str:
-    """One tick, or why a command could not be carried out: other fronts come to other bits than the recording's."""
-    try:
-        session.advance()
-    except CommandError as error:
-        return str(error)
-    return ""
-
-
-@contextmanager
-def _halves(processors: int, started: list[int]) -> Iterator[None]:
-    """Factor also small bodies in two halves, with this many processors; notes second threads in `started`."""
-
-    def start(*arguments: Any, **more: Any) -> threading.Thread:
-        started.append(processors)
-        return threading.Thread(*arguments, **more)
-
-    with (
-        patch.object(dissection, "SMALLEST_BODY", SMALLEST),
-        patch.object(dissection, "NARROWEST_BORDER", 0.0),
-        patch.object(parallel, "WORTH_HALVING", 1),
-        patch.object(parallel, "_processor_count", lambda: processors),
-        patch.object(parallel, "Thread", start),
-    ):
-        yield
-
-
 def _follow(watch: Watch, session: Session) -> None:
     watch.see(session.world)
     while session.tick < watch.replay.ticks:
@@ -151,8 +92,8 @@ def web(watch: Watch, seed: int, folder: Path) -> None:
     run_elsewhere(watch, WEB)
 
 
-Way = Callable[[Watch, int, Path], bool | None]
-WAYS: dict[str, Way] = {"library": library, "undone": undone, "saved": saved, "threads": threads, "web": web}
+Way = Callable[[Watch, int, Path], None]
+WAYS: dict[str, Way] = {"library": library, "undone": undone, "saved": saved, "web": web}
 
 
 def failure(seed: int, way: str, ticks: int, error: Exception) -> Difference:
@@ -166,7 +107,7 @@ def run_way(way: str, watch: Watch, seed: int, folder: Path) -> Result:
     try:
         # What blows up differs no less from what blows up otherwise.
         with np.errstate(all="ignore"):
-            result.helped = bool(WAYS[way](watch, seed, folder))
+            WAYS[way](watch, seed, folder)
     except Differs as error:
         result.difference = Difference(seed, way, watch.replay.ticks, error.divergence)
     except Exception as error:

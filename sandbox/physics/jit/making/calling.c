@@ -23,7 +23,7 @@ enum { NOTHING, GIVES_INTEGER, GIVES_FLOAT, GIVES_FLAG };
 typedef struct Entry {
     int (*run)(Word *block);
     const char *name;
-    Word gives, waits, arguments;
+    Word gives, arguments;
     /* Called in its place with arguments of other types; 0: that is an error. */
     Object *otherwise;
     Kind kinds[];
@@ -48,10 +48,6 @@ typedef struct Interpreter {
     Object *(*from_integer)(Word);
     Object *(*from_flag)(long);
     void (*keep)(Object *);
-    void *(*save_thread)(void);
-    void (*restore_thread)(void *);
-    int (*acquire_lock)(void *, int);
-    void (*release_lock)(void *);
 } Interpreter;
 
 #if defined(_WIN32)
@@ -67,10 +63,6 @@ enum { EQUAL = 2, CONTIGUOUS = 0x1, WRITEABLE = 0x400 };
 static Interpreter python;
 
 SHARED void connect(const Interpreter *interpreter) { python = *interpreter; }
-
-/* What kernels call of Python: locks for threads. */
-HIDDEN int PyThread_acquire_lock(void *lock, int wait) { return python.acquire_lock(lock, wait); }
-HIDDEN void PyThread_release_lock(void *lock) { python.release_lock(lock); }
 
 /* Whole numbers next to a number: processors of the oldest kind have no instruction for it, and a call of the system's
    library is not needed. The same bits as theirs, the sign of 0 included. */
@@ -163,9 +155,7 @@ SHARED Object *call(Object *self, Object *const *arguments, Word count) {
                 entry->name);
         }
     }
-    void *thread = entry->waits ? python.save_thread() : 0;
     int status = entry->run(block);
-    if (entry->waits) python.restore_thread(thread);
     if (status) return python.format(python.runtime_error, "%s failed with code %d", entry->name, status);
     return result_of(entry, block);
 }

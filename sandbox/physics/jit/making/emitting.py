@@ -10,17 +10,13 @@ from sandbox.physics.jit.making.gathering import EntryCode
 from sandbox.physics.jit.making.platforms import Platform
 
 _LEVEL = 3
-# The machine's own root, in place of a library's. On the web one thread gets every lock.
+# The machine's own root, in place of a library's.
 _ROOT = """
 declare double @llvm.sqrt.f64(double)
 define double @sqrt(double %x) alwaysinline {
   %y = call double @llvm.sqrt.f64(double %x)
   ret double %y
 }
-"""
-_FREE_LOCKS = """
-define i32 @PyThread_acquire_lock(ptr %lock, i32 %wait) alwaysinline { ret i32 1 }
-define void @PyThread_release_lock(ptr %lock) alwaysinline { ret void }
 """
 # In WebAssembly a pointer of 32 bits lies in 8 bytes, so that bundles look as everywhere.
 _WEB_LAYOUT = "e-m:e-p:32:64-p10:8:8-p20:8:8-i64:64-i128:128-n32:64-S128-ni:1:10:20"
@@ -98,7 +94,7 @@ def object_code(bitcode: bytes, codes: Sequence[EntryCode], platform: Platform) 
         module.link_in(
             llvm.parse_assembly(_entry_text(code, module.get_function(code.function), platform.suffix == "dll"))
         )
-    module.link_in(llvm.parse_assembly(_ROOT + (_FREE_LOCKS if is_web else "")))
+    module.link_in(llvm.parse_assembly(_ROOT))
     shared = {code.symbol for code in codes}
     for value in (*module.functions, *module.global_variables):
         if not value.is_declaration and value.name not in shared:

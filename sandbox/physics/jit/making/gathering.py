@@ -21,14 +21,13 @@ class EntryCode:
     """One entry in gathered code.
 
     name: its kernel's. function: what it is called in the module; symbol: what it is to be called in a library.
-    arguments: a form for each, as `library.py` reads them. gives: the form of its result; waits: others run meanwhile.
+    arguments: a form for each, as `library.py` reads them. gives: the form of its result.
     """
 
     name: str
     function: str
     arguments: tuple[Any, ...]
     gives: str
-    waits: bool
 
     @property
     def symbol(self) -> str:
@@ -65,9 +64,7 @@ def gather(entries: Sequence[tuple[Any, tuple[Any, ...]]]) -> tuple[bytes, list[
         if gives not in _GIVES:
             raise TypeError(f"{kernel.name} gives {gives}, which has no form in a library")
         forms = tuple(map(_form, signature))
-        codes.append(
-            EntryCode(kernel.name, result.fndesc.llvm_func_name, forms, _GIVES[gives], kernel.role == "waiting_kernel")
-        )
+        codes.append(EntryCode(kernel.name, result.fndesc.llvm_func_name, forms, _GIVES[gives]))
     whole = llvm.parse_assembly("")
     for library in libraries:
         module = llvm.parse_bitcode(library._get_module_for_linking().as_bitcode())

@@ -1,7 +1,7 @@
 """A body's matrix, factored and solved with: sparse, or in fronts where the body is large.
 
 Wide constraints are taken in after the factorisation: (A + K g g^T)^-1 = A^-1 - z z^T / (1 / K + g . z), z = A^-1 g
-(Sherman and Morrison 1950). Right sides and solutions are in `delta_v`: the one array that a helping thread knows.
+(Sherman and Morrison 1950). Right sides and solutions are in `delta_v`.
 """
 
 from sandbox.physics.arrays import Floats
@@ -10,7 +10,7 @@ from sandbox.physics.solvers.direct.constraint_terms import gradient_dot
 from sandbox.physics.solvers.direct.families import assemble, load_residual
 from sandbox.physics.solvers.direct.motion import copy
 from sandbox.physics.solvers.direct.system import Span, System
-from sandbox.physics.solvers.linear.parallel import solve_fronts
+from sandbox.physics.solvers.linear.halves import solve_fronts
 from sandbox.physics.solvers.linear.sparse_ldl import back_substitute, factorise
 
 

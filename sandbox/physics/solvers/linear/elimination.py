@@ -156,7 +156,7 @@ def eliminate(
 class Tuning(NamedTuple):
     """What decides how a system is laid out.
 
-    whole (4,): SMALLEST_BODY, LEAF_SIZE, see dissection.py, WORTH_HALVING, see parallel.py, NARROW, see choosing.py;
+    whole (4,): SMALLEST_BODY, LEAF_SIZE, see dissection.py, WORTH_HALVING, see halves.py, NARROW, see choosing.py;
     narrowest (1,): NARROWEST_BORDER.
     """
 

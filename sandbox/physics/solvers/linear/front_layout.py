@@ -7,7 +7,7 @@ from sandbox.physics.arrays import SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.linear.dissection import DEEPEST, Dissection
 from sandbox.physics.solvers.linear.fronts import PANEL, Fronts, Scratch
-from sandbox.physics.solvers.linear.parallel import CALL_LENGTH, find_fork
+from sandbox.physics.solvers.linear.halves import find_fork
 from sandbox.physics.topology.sorting import place_among
 
 # Signed, for lengths.
@@ -55,9 +55,8 @@ def _lay_out_numbers(found: Dissection, places: FrontPlaces, lengths: Slots) -> 
 
 
 @inner_kernel
-def _lay_out_remainders(found: Dissection, places: FrontPlaces, lengths: Slots) -> int:
-    # Two fronts of a level wait at most, one per side, of each half; nothing lies below the widest front. How much one
-    # half has in all.
+def _lay_out_remainders(found: Dissection, places: FrontPlaces, lengths: Slots) -> None:
+    # Two fronts of a level wait at most, one per side; nothing lies below the widest front.
     for level in range(DEEPEST):
         places.size[level] = 0
     for front in range(found.first.shape[0]):
@@ -71,7 +70,7 @@ def _lay_out_remainders(found: Dissection, places: FrontPlaces, lengths: Slots) 
     for front in range(found.first.shape[0]):
         level = found.place[front, 0]
         places.remains[front] = places.beyond[level] + found.place[front, 1] * places.size[level]
-    return 2 * total
+    lengths[REMAINDER] = lengths[WIDEST] + 2 * total
 
 
 @inner_kernel
@@ -80,11 +79,10 @@ def lay_out_fronts(
 ) -> None:
     """Lay out the fronts of dissected bodies, and say in lengths (LENGTHS,) what they need.
 
-    first_front (b+1,): of each body. worth: multiplications that halves must spare.
+    first_front (b+1,): of each body. worth: multiplications that the shorter half must have.
     """
     _lay_out_numbers(found, places, lengths)
-    half = _lay_out_remainders(found, places, lengths)
-    forks = False
+    _lay_out_remainders(found, places, lengths)
     for front in range(found.first.shape[0]):
         places.fork[front, 0] = places.fork[front, 1] = 0
     for b in range(bodies):
@@ -94,10 +92,6 @@ def lay_out_fronts(
             begin, end = find_fork(first, last, found, places.before, worth)
             places.fork[last - 1, 0] = begin
             places.fork[last - 1, 1] = end
-            forks = forks or end > 0
-            for front in range(begin, end):
-                places.remains[front] += half
-    lengths[REMAINDER] = lengths[WIDEST] + (2 * half if forks else half)
 
 
 class FrontBlocks(NamedTuple):
@@ -131,7 +125,7 @@ def new_fronts(
 ) -> Fronts:  # fmt: skip
     """The fronts of a matrix of so many rows, as they were found; first_front (b+1,): of each body.
 
-    worth: multiplications that halves must spare.
+    worth: multiplications that the shorter half must have.
     """
     fronts, lengths = found.first.shape[0], new_slots(arena, LENGTHS)
     places = FrontPlaces(
@@ -145,11 +139,8 @@ def new_fronts(
     return Fronts(
         places.of_row, places.diagonal, places.row_width, found.first, found.last, found.child, found.border_start,
         found.border, found.to_parent, places.width, places.base, places.remains, new_floats(arena, lengths[NUMBERS]),
-        new_floats(arena, lengths[REMAINDER]), new_floats(arena, 2 * rows), places.fork, _new_scratch(widest, arena),
-        _new_scratch(widest, arena), new_float_rows(arena, rows, 2), new_slots(arena, CALL_LENGTH),
+        new_floats(arena, lengths[REMAINDER]), new_floats(arena, 2 * rows), places.fork, Scratch(
+            new_floats(arena, PANEL_ROWS * widest), new_floats(arena, PANEL_ROWS), new_floats(arena, widest),
+        ),
+        new_float_rows(arena, rows, 2),
     )  # fmt: skip
-
-
-@inner_kernel
-def _new_scratch(widest: int, arena: Arena) -> Scratch:
-    return Scratch(new_floats(arena, PANEL_ROWS * widest), new_floats(arena, PANEL_ROWS), new_floats(arena, widest))

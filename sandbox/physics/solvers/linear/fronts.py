@@ -18,7 +18,7 @@ PANEL = unsigned(8)
 
 
 class Scratch(NamedTuple):
-    """Room for one thread's work on a front."""
+    """Room for work on a front."""
 
     panel: Floats
     inverse: Floats
@@ -33,7 +33,7 @@ class Fronts(NamedTuple):
     first, last, child, border_start, border, to_parent: see Dissection, rows counted over all bodies. width (f,):
     scalars in a row of the front; base and remains (f,): its places in numbers and remainder. inverses (2n,): 1 / d.
     fork (f, 2): at the last front of a body, where its second half begins, and where that ends; equal: it has none.
-    here and aside are the scratch of the two halves, apart (n, 2) is the second's right side, call is their talk.
+    apart (n, 2): of what lies above both halves, the right side that the first has left.
     """
 
     of_row: Slots
@@ -52,10 +52,8 @@ class Fronts(NamedTuple):
     remainder: Floats
     inverses: Floats
     fork: SlotRows
-    here: Scratch
-    aside: Scratch
+    scratch: Scratch
     apart: FloatRows
-    call: Slots
 
 
 @inner_kernel
@@ -216,8 +214,9 @@ def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) ->
 
 
 @inner_kernel
-def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
+def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, change: Floats) -> None:
     """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
+    scratch = fronts.scratch
     stride = unsigned(scratch.vector.shape[0])
     for front in range(first_front, last_front):
         pivots = TWO * unsigned(fronts.last[front] - fronts.first[front])
@@ -238,7 +237,7 @@ def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, scratch:
             fronts.numbers, base, fronts.remainder, place, pivots, width, scratch.panel, stride, scratch.inverse,
             fronts.inverses, TWO * unsigned(fronts.first[front]),
         )  # fmt: skip
-        _eliminate_rows(front, fronts, scratch.vector, change)
+        _eliminate_rows(front, fronts, change)
 
 
 @inner_kernel
@@ -316,7 +315,8 @@ def _substitute_back(
 
 
 @inner_kernel
-def _eliminate_rows(front: int, fronts: Fronts, vector: Floats, change: Floats) -> None:
+def _eliminate_rows(front: int, fronts: Fronts, change: Floats) -> None:
+    vector = fronts.scratch.vector
     _gather(front, fronts, vector, change)
     _substitute_forward(
         fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
@@ -326,24 +326,25 @@ def _eliminate_rows(front: int, fronts: Fronts, vector: Floats, change: Floats) 
 
 
 @inner_kernel
-def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
+def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, change: Floats) -> None:
     """Begin to solve for the rows of the factored fronts first_front..last_front of change (n, 2)."""
     for front in range(first_front, last_front):
-        _eliminate_rows(front, fronts, scratch.vector, change)
+        _eliminate_rows(front, fronts, change)
 
 
 @inner_kernel
-def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, scratch: Scratch, change: Floats) -> None:
+def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, change: Floats) -> None:
     """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
+    vector = fronts.scratch.vector
     for back in range(last_front - first_front):
         front = last_front - 1 - back
-        _gather(front, fronts, scratch.vector, change)
+        _gather(front, fronts, vector, change)
         _substitute_back(
             fronts.numbers, unsigned(fronts.base[front]), TWO * unsigned(fronts.last[front] - fronts.first[front]),
-            unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), scratch.vector,
+            unsigned(fronts.width[front]), fronts.inverses, TWO * unsigned(fronts.first[front]), vector,
         )  # fmt: skip
         k = 0
         for row in range(fronts.first[front], fronts.last[front]):
-            change[row, 0] = scratch.vector[k]
-            change[row, 1] = scratch.vector[k + 1]
+            change[row, 0] = vector[k]
+            change[row, 1] = vector[k + 1]
             k += 2
