@@ -99,9 +99,7 @@ def _call_the_rest() -> None:
     world.add_springs(["s"], [0], [1])
     world.add_constraints(AREA, [[0, 1, 2]])
     total_energy(world)
-    substeps.substep_coefficients(world, 2)
-    substeps.halve(np.zeros(1), np.zeros(1), np.zeros(1), 2)
-    substeps.divide(np.zeros(1), np.zeros(1), np.zeros(1), 2, True)
+    substeps.turned(np.zeros(1), np.zeros(1), np.zeros(1), 2)
     precompile_painting()
 
 
