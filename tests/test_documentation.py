@@ -21,7 +21,7 @@ from sandbox.physics.analysis.stability import report
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import PHYSICS_VERSION, step
-from sandbox.physics.substeps import halve
+from sandbox.physics.substeps import turned
 from sandbox.physics.world import World
 from sandbox.session.check_run import run_checks
 from sandbox.session.commands import COMMAND_TYPES
@@ -261,8 +261,7 @@ def test_the_triangle_worked_by_hand_is_what_the_code_finds():
 
 
 def test_the_halved_coefficients_on_the_page_are_those_of_the_code():
-    stiffness, damping = np.array([0.5]), np.array([0.75])
-    halve(stiffness, damping, np.zeros(1), 2)
+    stiffness, damping = turned(np.array([0.5]), np.array([0.75]), np.zeros(1), 2)
     assert (stiffness[0], damping[0]) == pytest.approx((0.177, 0.5), abs=5e-4)
     assert "(Cs, Cd) = (0.5, 0.75) becomes (0.177, 0.5)" in PROSE
 

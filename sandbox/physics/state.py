@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.arrays import ArrayKind
-from sandbox.physics.jit import bundle
 from sandbox.physics.terrain import Terrain
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -221,15 +220,6 @@ def good_of(world: Any) -> GoodValues:
     """The last good values of a World's guarded arrays as kernels take them."""
     made: GoodValues = cast(Any, GoodValues)(*(world.good[column.name] for column in GUARDED))
     return made
-
-
-def lent_state(world: Any) -> Any:
-    """The arrays of a World as one argument for kernels, made anew where they are others."""
-    return world.derived(_lend, of_hands=False)
-
-
-def _lend(world: Any) -> Any:
-    return bundle(cast(Any, state_of(world)))
 
 
 def reference() -> str:

@@ -3,14 +3,18 @@
 The choice is a pure function of the state at the tick's start, of + - * / and comparisons alone.
 """
 
+import math
+
+import numpy as np
+
 from sandbox.physics.arrays import Floats
 from sandbox.physics.constraints import HIGHEST_OF_RING, TRIANGLE
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, half_step_of_network, part_of_network
-from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel
+from sandbox.physics.jit import inner_kernel, kernel, scalar_kernel
 from sandbox.physics.marks import GRAB_COUNT
-from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.settings import DIRECT, WorldSettings
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.state import State, lent_state
+from sandbox.physics.state import State
 from sandbox.physics.world import World
 
 # No tick chooses more substeps than this. 4 leaves a rope dragged at 20 m/s at a stretch above 1e-2, 16 doubles the
@@ -33,47 +37,62 @@ def substep_time(settings: WorldSettings, count: int | None = None) -> float:
     return 1.0 / (settings.tick_rate * (count or settings.fewest_substeps))
 
 
-def substep_coefficients(
-    world: World | Snapshot, count: int | None = None, keeps_constant: bool = False, highest: float = 1.0
-) -> Pair:
-    """Cs and Cd (m,) of one substep: the same k and c in the direct solver, else the same motion from tick to tick.
+def substep_coefficients(world: World | Snapshot, highest: float = 1.0) -> Pair:
+    """Cs and Cd (m,) of one substep, of the fewest that the settings give a tick.
 
-    count: substeps in the tick (None: the fewest that the settings give it). keeps_constant: leave its k instead, as
-    the direct solver's where ticks choose their parts, whatever the body. highest: one of several substeps is made of
-    Cs and Cd of at most this, see `Solver`.
+    In the direct solver they make the same k and c, else the same motion from tick to tick. highest: one of several
+    substeps is made of Cs and Cd of at most this, see `Solver`.
     """
-    return _of_substep(world, (world.stiffness, world.damping), world.lowest_mode, count, keeps_constant, highest)
+    return _of_substep(world, (world.stiffness, world.damping), world.lowest_mode, highest)
 
 
-def constraint_coefficients(
-    world: World, count: int | None = None, keeps_constant: bool = False, highest: float = 1.0
-) -> Pair:
+def constraint_coefficients(world: World, highest: float = 1.0) -> Pair:
     """Cs and Cd (t,) of constraints, as `substep_coefficients` gives those of springs."""
-    modes = world.constraint_lowest_mode
-    return _of_substep(world, tick_constraint_coefficients(world), modes, count, keeps_constant, highest)
+    return _of_substep(world, tick_constraint_coefficients(world), world.constraint_lowest_mode, highest)
 
 
 def tick_constraint_coefficients(world: World) -> Pair:
     """Cs and Cd (t,) of constraints in a tick, as solvers take them; areas of more than three corners give way."""
-    pair = world.constraint_stiffness.copy(), world.constraint_damping.copy()
-    _limit_rings(lent_state(world), *pair)
-    return pair
+    stiffness, damping = world.constraint_stiffness.copy(), world.constraint_damping.copy()
+    for k in np.flatnonzero(world.constraint_corners > TRIANGLE).tolist():
+        stiffness[k], damping[k] = capped(float(stiffness[k]), float(damping[k]), HIGHEST_OF_RING)
+    return stiffness, damping
 
 
-def _of_substep(
-    world: World | Snapshot, coefficients: Pair, lowest_mode: Floats, count: int | None, keeps_constant: bool,
-    highest: float,
-) -> Pair:  # fmt: skip
+def _of_substep(world: World | Snapshot, coefficients: Pair, lowest_mode: Floats, highest: float) -> Pair:
     settings = world.settings
-    count, is_auto = count or settings.fewest_substeps, settings.substeps == AUTO
-    # Where ticks choose their parts, that of a whole tick: the energy of a spring does not depend on the parts.
-    ease = 1.0 + settings.drag / (settings.tick_rate * (1 if is_auto else count))
+    count, (solver, tick_rate, _, is_auto, _) = settings.fewest_substeps, settings.choices
+    ease = ease_of(settings.drag, tick_rate, count)
     if count == 1 and ease == 1.0:
         return coefficients
-    keeps = ALL_CONSTANT if keeps_constant else ALL_BUT_FIRM if settings.solver == "direct" and not is_auto else MOTION
-    pair = coefficients[0].copy(), coefficients[1].copy()
+    return turned(*coefficients, lowest_mode, count, kept_by(solver, is_auto), highest, ease)
+
+
+def turned(
+    stiffness: Floats, damping: Floats, lowest_mode: Floats, count: int, keeps: int = MOTION, highest: float = math.inf,
+    ease: float = 1.0,
+) -> Pair:  # fmt: skip
+    """Cs and Cd (m,) of a substep of so many from those of a tick; see `turn_into_substep`.
+
+    lowest_mode (m,): that of the body whose firmness they come from, 0: they are their own.
+    """
+    pair = np.array(stiffness, np.float64), np.array(damping, np.float64)
     _turn_into_substep(*pair, lowest_mode, count, keeps, highest, ease)
     return pair
+
+
+@scalar_kernel
+def ease_of(drag: float, tick_rate: int, parts: int) -> float:
+    """1 + drag h, how many times as heavily the air lets everything be moved in one of so many parts of a tick."""
+    return 1.0 + drag / (tick_rate * parts)
+
+
+@scalar_kernel
+def kept_by(solver: int, is_auto: int) -> int:
+    """What substeps leave as it is in a solver; is_auto: ticks choose how many there are."""
+    if solver != DIRECT:
+        return MOTION
+    return ALL_CONSTANT if is_auto != 0 else ALL_BUT_FIRM
 
 
 @inner_kernel
@@ -82,8 +101,7 @@ def turn_into_substep(
 ) -> None:
     """Turn Cs and Cd (m,) of a tick, in place, into those of a substep of so many; see `substep_coefficients`.
 
-    keeps: MOTION, ALL_CONSTANT or ALL_BUT_FIRM. ease: 1 + drag h, how many times as heavily the air lets everything be
-    moved.
+    keeps: see `kept_by`; ease: see `ease_of`; highest: where there are several, those of a tick count as this at most.
     """
     if count > 1:
         for s in range(stiffness.shape[0]):
@@ -114,11 +132,6 @@ def limit_rings(state: State, stiffness: Floats, damping: Floats) -> None:
             stiffness[k], damping[k] = capped(stiffness[k], damping[k], HIGHEST_OF_RING)
 
 
-@kernel
-def _limit_rings(lent: Bundle[State], stiffness: Floats, damping: Floats) -> None:
-    limit_rings(contents(lent), stiffness, damping)
-
-
 @inner_kernel
 def _weigh_down(stiffness: Floats, damping: Floats, ease: float) -> None:
     # Those of springs of the same k and c whose ends are heavier by a factor. The air takes part in every step:
@@ -139,15 +152,6 @@ def _halve(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: in
             count *= 2
 
 
-@kernel
-def halve(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: int) -> None:
-    """Turn Cs and Cd (m,) of a tick into those of a substep, in place; substeps is a power of two.
-
-    lowest_mode (m,): that of the body whose firmness they come from, 0: they are their own.
-    """
-    _halve(stiffness, damping, lowest_mode, substeps)
-
-
 @inner_kernel
 def _divide(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int, firm: bool) -> None:
     if parts > 1:
@@ -160,12 +164,6 @@ def _divide(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int,
                     count *= 2
             else:
                 stiffness[s], damping[s] = part_of_network(stiffness[s], damping[s], lowest_mode[s], parts)
-
-
-@kernel
-def divide(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int, firm: bool) -> None:
-    """The same with the k of the tick in one part (`part_of_network`); firm: not of bodies that have a firmness."""
-    _divide(stiffness, damping, lowest_mode, parts, firm)
 
 
 @inner_kernel

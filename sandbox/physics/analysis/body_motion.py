@@ -15,9 +15,9 @@ from sandbox.physics.analysis.spring_motion import SpringMotion, motion_of
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
 from sandbox.physics.keeping.forms import FirmBody, StiffForm, strength_of
-from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.substeps import divide, halve, substep_coefficients, substep_time
+from sandbox.physics.substeps import ALL_BUT_FIRM, MOTION, substep_coefficients, substep_time, turned
 from sandbox.physics.world import World
 
 # Beyond this share of its height a body lies flat, and a sag says little.
@@ -53,12 +53,8 @@ class BodyMotion:
 
     def of_substep(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
         """Cs and Cd (k,) of a substep from those of a tick, as springs get them that have no firmness."""
-        pair, none = (np.array(stiffness, np.float64), np.array(damping, np.float64)), np.zeros(len(stiffness))
-        if self.solver == "direct":
-            divide(*pair, none, self.substeps, True)
-        else:
-            halve(*pair, none, self.substeps)
-        return pair
+        keeps = ALL_BUT_FIRM if self.solver == "direct" else MOTION
+        return turned(stiffness, damping, np.zeros(len(stiffness)), self.substeps, keeps)
 
     def whole(self, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
         """Cs and Cd (k,) of the body's slowest wobble in a substep, from those of its springs in one."""
@@ -121,9 +117,7 @@ class BodyReading:
 
 def present_coefficients(world: World) -> tuple[Floats, Floats]:
     """Cs and Cd (m,) of a substep that springs of a world have now."""
-    solver = SOLVERS[world.settings.solver]
-    keeps = solver.bounded and world.settings.substeps == AUTO
-    return substep_coefficients(world, keeps_constant=keeps, highest=solver.highest)
+    return substep_coefficients(world, highest=SOLVERS[world.settings.solver].highest)
 
 
 def read_body(

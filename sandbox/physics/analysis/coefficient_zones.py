@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.physics.analysis.stability import BOUND, demand_limit, largest_eigenvalue, most_springs
 from sandbox.physics.arrays import Floats
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.substeps import halve
+from sandbox.physics.substeps import turned
 from sandbox.physics.world import World
 
 # Steps of the bisection that finds where a zone ends: to 1e-6 of the range.
@@ -65,8 +65,7 @@ def _highest_damping(
 
     def is_inside(damping: Floats) -> np.ndarray:
         # Cs and Cd of a substep grow with both of those of a tick, so bisection finds the edge.
-        each, damp = stiffness.copy(), damping.copy()
-        halve(each, damp, np.zeros(len(each)), substeps)
+        each, damp = turned(stiffness, damping, np.zeros(len(stiffness)), substeps)
         return (each <= largest_stiffness) & (damp <= largest_damping) & (each + 2.0 * damp < demand)
 
     low, high = np.zeros(len(stiffness)), np.ones(len(stiffness))

@@ -23,7 +23,7 @@ from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.arrays import Floats
 from sandbox.physics.marks import LAW_HAND, LAW_HOOKE
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.substeps import halve, substep_time
+from sandbox.physics.substeps import substep_time, turned
 from sandbox.physics.world import World
 
 # (Cs + 2 Cd) times an eigenvalue stays below this, or the mode grows; from the linear theory, not a setting.
@@ -160,8 +160,7 @@ def _incidence(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64], Floa
 
 def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
     """Cs + 2 Cd of a substep (m,) from Cs and Cd per tick; a Hooke spring's are those that it amounts to."""
-    stiffness, damping = stiffness.copy(), damping.copy()
-    halve(stiffness, damping, world.lowest_mode, world.settings.fewest_substeps)
+    stiffness, damping = turned(stiffness, damping, world.lowest_mode, world.settings.fewest_substeps)
     working, mass = _working(world), reduced_masses(world)
     hooke = (world.law == LAW_HOOKE) & working
     h = substep_time(world.settings)
@@ -172,8 +171,7 @@ def _demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
 
 def _constraint_demands(world: World, stiffness: Floats, damping: Floats) -> Floats:
     """Cs + 2 Cd of a substep (t,) from a constraint's Cs and Cd per tick; 0 where it does nothing."""
-    stiffness, damping = stiffness.copy(), damping.copy()
-    halve(stiffness, damping, world.constraint_lowest_mode, world.settings.fewest_substeps)
+    stiffness, damping = turned(stiffness, damping, world.constraint_lowest_mode, world.settings.fewest_substeps)
     return np.where(constraint_count(world) > 0.0, stiffness + 2.0 * damping, 0.0)
 
 
@@ -243,8 +241,7 @@ def _equal_limit(world: World, effective: float) -> float:
     """Largest Cs = Cd per tick that stays inside (Cs + 2 Cd) n_eff < 4, for an n_eff or an eigenvalue."""
 
     def inside(c: float) -> bool:
-        stiffness, damping = np.array([c]), np.array([c])
-        halve(stiffness, damping, np.zeros(1), world.settings.fewest_substeps)
+        stiffness, damping = turned(np.array([c]), np.array([c]), np.zeros(1), world.settings.fewest_substeps)
         return bool((stiffness[0] + 2.0 * damping[0]) * effective < BOUND)
 
     return _largest(inside)

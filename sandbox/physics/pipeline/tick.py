@@ -59,14 +59,7 @@ from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.iterative import solve as solve_iterative
 from sandbox.physics.solvers.single_pass import apply_explicit
 from sandbox.physics.solvers.single_pass import solve as solve_single_pass
-from sandbox.physics.substeps import (
-    ALL_BUT_FIRM,
-    ALL_CONSTANT,
-    MOTION,
-    choose_substeps,
-    limit_rings,
-    turn_into_substep,
-)
+from sandbox.physics.substeps import choose_substeps, ease_of, kept_by, limit_rings, turn_into_substep
 from sandbox.physics.untangling.triangle_clamp import clamp_world
 
 # What a tick says at its end. It has changed nothing where something that it begins with is not sound, and goes on
@@ -159,18 +152,15 @@ def _begin_tick(world: WorldBlock) -> None:
 
 @inner_kernel
 def _ease(world: WorldBlock) -> float:
-    # 1 + drag h, of a whole tick where ticks choose their parts, see substeps.py.
+    # That of a whole tick where ticks choose their parts: the energy of a spring does not depend on the parts.
     choices = world.choices
-    parts = 1 if choices[IS_AUTO] != 0 else world.progress[COUNT]
-    return 1.0 + world.numbers[DRAG] / (choices[TICK_RATE] * parts)
+    return ease_of(world.numbers[DRAG], choices[TICK_RATE], 1 if choices[IS_AUTO] != 0 else world.progress[COUNT])
 
 
 @inner_kernel
 def _turn_all_into_substep(world: WorldBlock, ease: float) -> None:
     state, into, count = world.state, world.coefficients, world.progress[COUNT]
-    keeps = MOTION
-    if world.choices[SOLVER] == DIRECT:
-        keeps = ALL_CONSTANT if world.choices[IS_AUTO] != 0 else ALL_BUT_FIRM
+    keeps = kept_by(world.choices[SOLVER], world.choices[IS_AUTO])
     limit_rings(state, into.constraint_stiffness, into.constraint_damping)
     highest = HIGHEST_ITERATED if world.choices[SOLVER] == ITERATIVE else 1.0
     turn_into_substep(into.stiffness, into.damping, state.lowest_mode, count, keeps, highest, ease)
