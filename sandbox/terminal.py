@@ -195,8 +195,9 @@ class Progress:
 def interrupted_between_ticks() -> Iterator[Callable[[], None]]:
     """Hold an interrupt back until the function given is called: it never strikes in the middle of a recorded line.
 
-    Before the first call it strikes at once: a first tick may take a minute, where numba compiles its kernels. Where
-    the program was started with interrupts ignored, as `nohup` and shells do for jobs in the background, they stay so.
+    Before the first call it strikes at once: a first tick may take half a minute, where edited kernels are compiled.
+    Where the program was started with interrupts ignored, as `nohup` and shells do for jobs in the background, they
+    stay so.
     """
     asked, begun = False, False
 

@@ -34,7 +34,6 @@ from sandbox.app.window.app import App
 from sandbox.editor.items import items_of
 from sandbox.editor.storage.part_files import catalogue
 from sandbox.level.reading.files import load_level
-from sandbox.physics.every_kernel import call_every_kernel
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from tests.support.person import VirtualScreen
@@ -308,9 +307,6 @@ def end_toys(folder: Path) -> None:
 def soak(seed: int, frames: int, folder: Path, seconds: float | None = None, stretch: int = STRETCH) -> list[str]:
     """Do it; what was found."""
     measures = frames // stretch > len(SCREENS)
-    if measures:
-        # What a kernel needs once comes at its first call and stays; which levels need it first is left to chance.
-        call_every_kernel()
     monkey = Monkey(seed)
     if measures:
         monkey.meet_parts()

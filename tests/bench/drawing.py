@@ -15,7 +15,6 @@ import pygame
 
 from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.picture import view_of
-from sandbox.app.draw.raster.painter import precompile_painting
 from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.session.session import Session
@@ -48,7 +47,6 @@ def frame_times(path):
 
 def main(names):
     """Print a line for each level."""
-    precompile_painting()
     print(f"{'level':24}{'median':>9}{'99 %':>9}{'best':>9}  ms")
     for path in shipped_levels():
         if not names or path.stem in names:

@@ -12,7 +12,6 @@ from collections.abc import Callable
 import numpy as np
 
 from sandbox.physics.arrays import Floats
-from sandbox.physics.every_kernel import call_every_kernel
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.step import step
 from tests.bench import scenes
@@ -72,7 +71,6 @@ def main() -> None:
     sides = [int(text) for text in sys.argv[1].split(",")] if len(sys.argv) > 1 else SIDES
     seconds = int(sys.argv[2]) if len(sys.argv) > 2 else SECONDS
     with_pymunk = importlib.util.find_spec("pymunk") is not None
-    call_every_kernel()
     head = "| lattice | springs | first | symbolic | mean ms | p99 | worst | RMS stretch | maximum | energy lost |"
     head += " pymunk ms | ratio | its stretch |" if with_pymunk else ""
     print(f"{head}\n|{'---|' * (head.count('|') - 1)}")

@@ -1,9 +1,10 @@
 """The language of kernels: what is translated to C++ and how, and what is refused, with its line and the reason."""
 
-import importlib.util
+import importlib
 import re
 import sys
 import textwrap
+from pathlib import Path
 
 import pytest
 
@@ -12,8 +13,8 @@ from sandbox.physics.jit.translate.sources import Refused
 
 HEAD = """
 import math
-from typing import Any, NamedTuple
-from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, Slots
+from typing import NamedTuple
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, SlotRows, Slots
 from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel, put
 
 LIMIT = 3
@@ -117,40 +118,24 @@ def test_what_a_bundle_holds_is_not_copied(translated):
     assert "const Pair &pair = contents(lent);" in text and "put(pair.values, other);" in text
 
 
-@pytest.mark.parametrize(
-    ("line", "why"),
-    [
-        ("return [x]", "kernels have no '[x]'"),
-        ("return values", "is given where double is wanted"),
-        ("return values[0, 1]", "values has 1 of the 2 dimensions that this has"),
-        ("return values[x]", "an index is an integer"),
-        ("return x ** 2.0", "kernels have no such operator of these"),
-        ("return 1.0 if x else 2.0", "x is no flag: say what it is compared with"),
-        ("return missing", "missing is neither a name of this kernel nor a constant"),
-        ("return print(x)", "print is no kernel"),
-        ("return math.sin(x)", "math.sin is no kernel"),
-        ("return values.mean()", "values.mean is no kernel"),
-        ("return min(x, key=1)", "arguments are given by their places"),
-        ("while x > 0.0:\n        return x\n    else:\n        return 1.0", "a loop has no else"),
-        ("with x:\n        return x", "kernels have no with"),
-        ("raise ValueError", "kernels have no raise"),
-        ("for k in values:\n        return k", "a loop runs over a range, or over a tuple that is written there"),
-        ("values.x = 1.0", "a field of a named tuple is set by put"),
-        ("x = values", "x is double, given Array<double, 1>"),
-        ("return other(x)", "other: it takes 2 arguments"),
-        ("return other(x, x)", "other: values is Array<double, 1>, given double"),
-        ("return (lambda: x)()", "lambda: x is no kernel"),
-        ('return "x"', "kernels have no 'x'"),
-    ],
-)
-def test_what_the_language_does_not_have_is_refused_with_its_line_and_the_reason(line, why, translated):
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "kernels.md").read_text(encoding="utf-8")
+REFUSED = re.findall(r"^\| `(.*?)` \| (.*) \|$", PAGE.partition("is told")[2], re.M)
+
+
+@pytest.mark.parametrize(("line", "why"), [*REFUSED, ("while x > 0.0: return x\n    else: return x", "a loop has no else")])
+def test_what_the_page_says_is_refused_is_so_with_its_line_and_that_reason(line, why, translated):
     with pytest.raises(Refused) as refused:
         translated(
             "@inner_kernel\ndef other(x: float, values: Floats) -> float:\n    return x + values[0]\n\n"
             f"@kernel\ndef gives(x: float, values: Floats) -> float:\n    {line}\n    return x\n"
         )
     place, _, reason = str(refused.value).partition(": ")
-    assert why in reason and re.fullmatch(r"kernels_of_\w+\.py:20", place)
+    assert reason == why and re.fullmatch(r"kernels_of_\w+\.py:20", place)
+
+
+def test_the_kernel_of_the_page_is_translated(translated):
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE, re.S)
+    assert "most = py::max(most, _stretch(position, ends(s, 0), ends(s, 1)));" in translated(code)
 
 
 def test_a_parameter_without_an_annotation_or_of_another_type_is_refused(translated):

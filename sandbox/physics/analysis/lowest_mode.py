@@ -110,12 +110,6 @@ def find_lowest_mode(form: StiffForm) -> float:
     return _kept[key]
 
 
-def precompile_modes() -> None:
-    """Compile what finding a lowest mode takes, or load it from the cache."""
-    none = np.zeros((0, 3), dtype=np.int64)
-    _find(StiffForm(np.eye(2), np.ones(2), np.array([[0, 1]]), none, none))
-
-
 def _find(form: StiffForm) -> float:
     points, mass, count = form.points, form.mass, len(form.points)
     rows = rows_of(form)

@@ -1,6 +1,6 @@
 """Bundles: many arrays as one array of the words that say where they lie, which compiled kernels take as one argument.
 
-An array is the words that numba gives it: two of 0, number of items, bytes of an item, address, and a word of shape and
+An array is these words: two of 0, number of items, bytes of an item, address, and a word of shape and
 one of strides for each dimension. A named tuple is the words of its fields, one after another.
 """
 

@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.app.draw.raster.bodies import (
     FLUSH_CELL,
-    GRAIN,
-    INSIDE,
-    LIT,
     SOFTNESS,
     WIDEST,
     BodyRows,
@@ -23,7 +20,7 @@ from sandbox.app.draw.raster.bodies import (
     Skins,
     paint_bodies,
 )
-from sandbox.app.draw.raster.cells import SHEET, CellArrays, paint_cells
+from sandbox.app.draw.raster.cells import CellArrays, paint_cells
 from sandbox.app.draw.raster.mark_kernels import ACROSS, ALONG, DISC, GLOW, HAIR, STRIP, STROKE, MarkArrays, paint_marks
 from sandbox.app.draw.raster.outlines import Loops, trace_outlines
 from sandbox.app.draw.raster.pixels import FAR, Pixels, Sheets
@@ -275,29 +272,3 @@ def _plain_bodies(surface: pygame.Surface, layer: BodyLayer) -> None:
                 pygame.draw.polygon(surface, _rgb(fill), corners)
             if alpha > 0.0:
                 pygame.draw.aalines(surface, _rgb(line), True, corners)
-
-
-def precompile_painting() -> None:
-    """Compile the drawing kernels, or load them from the cache; while kernels are interpreted, note what they take."""
-    scratch = _made_scratch((8, 8))
-    pixels, clip = np.zeros((8, 8), dtype=np.uint32), np.zeros(4, dtype=np.int64)
-    flat, pairs, numbers = np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=np.int64)
-    many = np.zeros((0, 2), dtype=np.int64)
-    shapes = Outlines(pairs, np.zeros(1, dtype=np.int64))
-    layer = MarkArrays(np.zeros((0, 4)), flat, numbers, flat, pairs, numbers, numbers)
-    jit.precompile(paint_marks, pixels, layer, np.zeros((1, ACROSS, ALONG), dtype=np.uint32), clip)
-    jit.precompile(
-        paint_bodies, pixels, shapes,
-        BodyRows(many, np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3)), many),
-        Skins(
-            np.zeros((1, INSIDE, LIT), dtype=np.uint32),
-            np.zeros((1, GRAIN, GRAIN), dtype=np.int64),
-        ),
-        Flush(np.zeros((0, 4)), numbers), scratch.bodies, scratch.place, clip,
-    )  # fmt: skip
-    triangles = CellArrays(np.zeros((0, 6)), np.zeros((0, 6)), np.zeros((0, 3)), numbers)
-    jit.precompile(paint_cells, pixels, triangles, np.zeros((1, SHEET, SHEET), dtype=np.int64), np.zeros(9), clip)
-    thrown = Thrown(np.zeros((0, 5)), np.zeros((0, 3)))
-    jit.precompile(paint_shadows, pixels, shapes, thrown, scratch.shadows, np.zeros(2), 0, 0.5, clip)
-    loops = Loops(numbers, numbers, numbers, flat, numbers)
-    jit.precompile(trace_outlines, pairs, loops, flat, pairs, pairs)

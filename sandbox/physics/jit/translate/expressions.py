@@ -226,7 +226,7 @@ class Expressions:
                 raise self.refuse(node, "// and % are of integers")
             return Code(f"{_ROUNDED[operator]}({a.text}, {b.text})", INTEGER)
         if operator not in _ARITHMETIC or (operator in _OF_INTEGERS and kind != INTEGER):
-            raise self.refuse(node, "kernels have no such operator of these")
+            raise self.refuse(node, f"kernels have no such operator of these: {ast.unparse(node)}")
         sign, hangs = _ARITHMETIC[operator]
         if operator in _OF_INTEGERS:
             # Compilers warn of operators within those of bits, but for the same one.
