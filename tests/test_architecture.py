@@ -22,7 +22,7 @@ ROOMS = (
 )  # fmt: skip
 # Rooms of the window, from the ground up.
 ROOMS_OF_APP = (
-    "base", "run", "draw", "sound", "kernels", "widgets", "film", "settings", "contracts", "graphs", "share", "parts",
+    "base", "run", "draw", "sound", "widgets", "film", "settings", "contracts", "graphs", "share", "parts",
     "panel", "play", "edit", "compare", "toy", "gallery", "site", "window",
 )  # fmt: skip
 # Folders that import each other both ways: the table of solvers says where joints bear a load.

@@ -82,7 +82,7 @@ def test_without_a_commit_before_all_are_run(clone, tmp_path, monkeypatch):
 
 def test_a_file_of_whole_world_tests_counts_and_another_one_does_not():
     assert whole_world.is_watched("tests/physics/test_direct.py")
-    assert whole_world.is_watched("tests/physics/test_specialisations.py")
+    assert whole_world.is_watched("tests/physics/test_large.py")
     assert not whole_world.is_watched("tests/physics/test_settings.py")
 
 

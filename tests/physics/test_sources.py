@@ -63,12 +63,10 @@ def digest(*change, others=()):
     [
         ("# A remark.", "# Another remark."),
         ('"""Some words."""', '"""Other words."""'),
-        ("share: float) -> float:", "share: int) -> int:"),
         ("return OTHER * world.size", "return OTHER + world.size"),
         ("OTHER = 4.0", "OTHER = 5.0"),
         ("import numpy as np", "import numpy as np\nimport math"),
         ("    size = 1", "    size = 2"),
-        ("first: float", "first: int"),
         ("capped(pair.first * share) - HALF", "(capped(pair.first*share)\n            - HALF)"),
     ],
 )
@@ -87,6 +85,8 @@ def test_edits_that_no_machine_code_follows_from_are_none(change):
         ("@kernel\ndef run", "@inner_kernel\ndef run"),
         ("sandbox.physics.equation import capped", "sandbox.physics.terrain import capped"),
         ("def run(values, pair)", "def run(pair, values)"),
+        ("share: float) -> float:", "share: int) -> int:"),
+        ("first: float", "first: int"),
     ],
 )
 def test_edits_that_machine_code_follows_from_change_the_digest(change):

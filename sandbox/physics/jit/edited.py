@@ -19,15 +19,12 @@ from typing import Any
 import platformdirs
 
 from sandbox.physics.jit import say
+from sandbox.physics.jit.making.compiling import NotCompiled
 from sandbox.physics.jit.sources import source_files, text_of
 
 # Versions that are kept: branches of a checkout take turns.
 _KEPT = 8
 _DIGEST_SIZE = 8
-
-
-class NotCompiled(Exception):
-    """Kernels cannot be compiled here; says in one line why."""
 
 
 def _folder() -> Path:

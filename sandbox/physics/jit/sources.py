@@ -17,7 +17,7 @@ _FOLDERS = ("physics", "app/draw/raster")
 _MAKERS = (
     "bundles.py", "making/calling.c", "making/compiling.py", "making/gathering.py", "making/platforms.py",
     *(f"translate/{name}" for name in (
-        "expressions.py", "local_names.py", "program.py", "runtime.h", "sources.py", "statements.py", "types.py"
+        "cpp_types.py", "definitions.py", "expressions.py", "local_names.py", "program.py", "runtime.h", "statements.py"
     )),
 )  # fmt: skip
 _ROLES = {"kernel", "inner_kernel", "inlined_kernel", "scalar_kernel"}

@@ -10,7 +10,7 @@ from pathlib import Path
 from sandbox.physics.jit.making.compiling import NotCompiled, compiled
 from sandbox.physics.jit.making.gathering import all_entries, gathered
 from sandbox.physics.jit.making.platforms import this_machine
-from sandbox.physics.jit.translate.sources import Refused
+from sandbox.physics.jit.translate.definitions import Untranslatable
 
 
 def _main(folder: Path, *defines: str) -> int:
@@ -18,7 +18,7 @@ def _main(folder: Path, *defines: str) -> int:
     try:
         found = gathered(all_entries())
         content = compiled(found.texts, found.symbols, platform, folder.parent / "zig", defines)
-    except (Refused, NotCompiled) as fault:
+    except (Untranslatable, NotCompiled) as fault:
         print(fault)
         return 1
     folder.mkdir(parents=True, exist_ok=True)

@@ -10,19 +10,19 @@ import numpy as np
 from sandbox.physics.jit import Kernel, entries
 from sandbox.physics.jit.bundles import Signature, name_of
 from sandbox.physics.jit.sources import has_kernels, source_files, text_of
-from sandbox.physics.jit.translate.program import Translation, symbol_of, words_of
-from sandbox.physics.jit.translate.types import (
+from sandbox.physics.jit.translate.cpp_types import (
     FLAG,
     FLOAT,
     INTEGER,
     NOTHING,
     Array,
-    Bundle,
+    BundleType,
     Scalar,
     Several,
     Struct,
     Type,
 )
+from sandbox.physics.jit.translate.program import Translation, symbol_of, words_of
 
 # Entries are divided so that few kernels are called from two units: each is compiled by itself, all at once.
 _UNITS = {"tick.cpp": "sandbox.physics.pipeline.tick", "physics.cpp": "sandbox.physics", "painting.cpp": "sandbox"}
@@ -51,7 +51,7 @@ def all_entries() -> list[Kernel]:
 
 
 def gathered(kernels: Sequence[Kernel]) -> Gathered:
-    """Kernels in C++. Raises Refused where one says what the language of kernels does not have."""
+    """Kernels in C++. Raises Untranslatable where one says what the language of kernels does not have."""
     units: dict[str, list[Kernel]] = {}
     for kernel in kernels:
         unit = next(name for name, begin in _UNITS.items() if kernel.name.startswith(begin))
@@ -79,7 +79,7 @@ def _form(kind: Type) -> Any:
         return _FORMS[kind]
     if isinstance(kind, Array):
         return ["array", np.dtype(kind.dtype).str, kind.dimensions]
-    if isinstance(kind, Bundle):
+    if isinstance(kind, BundleType):
         return ["bundle", name_of(_signature(kind.items)), words_of(kind.items)]
     return ["tuple", *map(_form, _items(kind))]
 

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from sandbox.physics.jit import Kernel, interpreted
-from sandbox.physics.jit.translate.sources import Constant, Refused, meaning
-from sandbox.physics.jit.translate.types import (
+from sandbox.physics.jit.translate.cpp_types import (
     FLAG,
     FLOAT,
     INTEGER,
     ITEMS,
     Array,
-    Bundle,
+    BundleType,
     Scalar,
     Several,
     Struct,
@@ -22,6 +21,7 @@ from sandbox.physics.jit.translate.types import (
     fits,
     joined,
 )
+from sandbox.physics.jit.translate.definitions import Constant, Untranslatable, meaning
 
 # How closely parts of an expression hang together in C++, the looser the lower.
 PRIMARY, UNARY, PRODUCT, SUM, SHIFT, ORDER, EQUALITY, BITS_AND, BITS_XOR, BITS_OR, AND, OR, CHOICE = range(12, -1, -1)
@@ -108,12 +108,12 @@ class Expressions:
     def __init__(self, program: Program, module: str, own: dict[str, bool], types: dict[str, Type]) -> None:
         self.program, self.module, self.own, self.types = program, module, own, types
 
-    def refuse(self, node: ast.AST, reason: str) -> Refused:
+    def refuse(self, node: ast.AST, reason: str) -> Untranslatable:
         """What says that a kernel may not say this."""
-        return Refused(self.module, getattr(node, "lineno", 0), reason)
+        return Untranslatable(self.module, getattr(node, "lineno", 0), reason)
 
     def code(self, node: ast.expr) -> Code:
-        """An expression. Raises Refused, and Unknown."""
+        """An expression. Raises Untranslatable, and Unknown."""
         translate = _TRANSLATED.get(type(node))
         if translate is None:
             raise self.refuse(node, f"kernels have no {ast.unparse(node)!r:.60}")
@@ -321,7 +321,7 @@ class Expressions:
             return Code(f"lying<{made.cpp}>({', '.join(self.code(each).text for each in node.args)})", made)
         if value is interpreted.contents:
             bundle = self.code(node.args[0])
-            if not isinstance(bundle.type, Bundle):
+            if not isinstance(bundle.type, BundleType):
                 raise self.refuse(node, f"{ast.unparse(node.args[0])} is no bundle")
             return Code(f"contents({bundle.text})", bundle.type.items, stays=True)
         raise self.refuse(node, f"{ast.unparse(node.func)} is no kernel")

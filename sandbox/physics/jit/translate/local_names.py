@@ -9,7 +9,7 @@ Statements = list[ast.stmt]
 
 
 @dataclass
-class Places:
+class Declarations:
     """Where names are declared: at the statements, by id, that first assign them, or before a statement.
 
     once: names that are assigned only there. hidden: loops whose own name is assigned or read elsewhere as well, so
@@ -37,9 +37,9 @@ def targets_of(statement: ast.stmt) -> list[ast.expr]:
     return [statement.target] if isinstance(statement, (ast.AnnAssign, ast.AugAssign)) else []
 
 
-def find_places(function: ast.FunctionDef) -> Places:
+def find_places(function: ast.FunctionDef) -> Declarations:
     """Where the names of a kernel are declared."""
-    found, names = Places(), _Names(function)
+    found, names = Declarations(), _NamesWithin(function)
     parameters = {argument.arg for argument in function.args.args}
     loops: dict[str, list[ast.For]] = {}
     for node in ast.walk(function):
@@ -59,7 +59,7 @@ def find_places(function: ast.FunctionDef) -> Places:
     return found
 
 
-class _Names:
+class _NamesWithin:
     """The names in each part of a kernel, and the nodes of each name."""
 
     def __init__(self, function: ast.FunctionDef) -> None:
@@ -93,7 +93,7 @@ def blocks_of(statement: ast.stmt) -> Iterator[Statements]:
             yield statement.orelse
 
 
-def _place(name: str, body: Statements, found: Places, names: _Names) -> None:
+def _place(name: str, body: Statements, found: Declarations, names: _NamesWithin) -> None:
     # In the innermost block that holds it everywhere; not in that of a loop that may carry a value on to the next turn.
     holding = [statement for statement in body if names.holds(statement, name)]
     first = holding[0]
@@ -112,7 +112,7 @@ def _place(name: str, body: Statements, found: Places, names: _Names) -> None:
         found.before.setdefault(id(first), []).append(name)
 
 
-def _begins(statement: ast.stmt, name: str, names: _Names) -> bool:
+def _begins(statement: ast.stmt, name: str, names: _NamesWithin) -> bool:
     """Whether a statement assigns a name and reads it not."""
     if not isinstance(statement, (ast.Assign, ast.AnnAssign)) or statement.value is None:
         return False

@@ -10,16 +10,13 @@ from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from sandbox.physics.jit import KERNELS, Kernel
-from sandbox.physics.jit.translate.expressions import spelled, written
-from sandbox.physics.jit.translate.sources import Constant, Refused, definition
-from sandbox.physics.jit.translate.statements import Body
-from sandbox.physics.jit.translate.types import (
+from sandbox.physics.jit.translate.cpp_types import (
     FLAG,
     FLOAT,
     INTEGER,
     NOTHING,
     Array,
-    Bundle,
+    BundleType,
     NoType,
     Several,
     Struct,
@@ -27,6 +24,9 @@ from sandbox.physics.jit.translate.types import (
     Types,
     fits,
 )
+from sandbox.physics.jit.translate.definitions import Constant, Untranslatable, definition
+from sandbox.physics.jit.translate.expressions import spelled, written
+from sandbox.physics.jit.translate.statements import Body
 
 _RUNTIME = Path(__file__).with_name("runtime.h")
 
@@ -48,7 +48,7 @@ class _Function:
 
 
 class Translation:
-    """The kernels that some entries call, translated. Raises Refused."""
+    """The kernels that some entries call, translated. Raises Untranslatable."""
 
     def __init__(self, entries: Iterable[Kernel]) -> None:
         self._types = Types()
@@ -91,7 +91,7 @@ class Translation:
         return why
 
     def signatures(self, kernel: Kernel) -> list[Signature]:
-        """What a kernel takes and gives: several, where an argument is one of several kinds. Raises Refused."""
+        """What a kernel takes and gives: several, where an argument is one of several kinds. Raises Untranslatable."""
         if kernel not in self._signatures:
             function = kernel.function
             line = function.__code__.co_firstlineno
@@ -99,12 +99,12 @@ class Translation:
             names = list(inspect.signature(function).parameters)
             missing = [name for name in (*names, "return") if name not in hints]
             if missing:
-                raise Refused(function.__module__, line, f"{function.__name__}: {missing[0]} has no annotation")
+                raise Untranslatable(function.__module__, line, f"{function.__name__}: {missing[0]} has no annotation")
             try:
                 choices = [[(name, kind) for kind in self._kinds(hints[name])] for name in names]
                 gives = self._types.of(hints["return"])
             except NoType as fault:
-                raise Refused(
+                raise Untranslatable(
                     function.__module__, line, f"{function.__name__}: {fault} is no type of kernels"
                 ) from None
             self._signatures[kernel] = [Signature(takes, gives) for takes in itertools.product(*choices)]
@@ -126,7 +126,9 @@ class Translation:
 
     def _visit(self, kernel: Kernel, above: tuple[Kernel, ...]) -> None:
         if kernel in above:
-            raise Refused(kernel.function.__module__, kernel.function.__code__.co_firstlineno, "a kernel calls itself")
+            raise Untranslatable(
+                kernel.function.__module__, kernel.function.__code__.co_firstlineno, "a kernel calls itself"
+            )
         if kernel in self._functions:
             return
         made = self._functions[kernel] = self._translated(kernel)
@@ -190,7 +192,7 @@ def words_of(kind: Type) -> int:
     """How many words an argument is, as bundles.py lays it out."""
     if isinstance(kind, Array):
         return 5 + 2 * kind.dimensions
-    if isinstance(kind, Bundle):
+    if isinstance(kind, BundleType):
         return 7
     if isinstance(kind, Struct):
         return sum(words_of(each) for _, each in kind.fields)

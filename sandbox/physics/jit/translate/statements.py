@@ -4,10 +4,7 @@ import ast
 from collections.abc import Iterator
 
 from sandbox.physics.jit import interpreted
-from sandbox.physics.jit.translate.expressions import PRIMARY, SUM, Code, Expressions, Program, Unknown, spelled
-from sandbox.physics.jit.translate.local_names import Places, blocks_of, find_places, own_names
-from sandbox.physics.jit.translate.sources import Constant, comments, meaning
-from sandbox.physics.jit.translate.types import (
+from sandbox.physics.jit.translate.cpp_types import (
     FLOAT,
     INTEGER,
     NOTHING,
@@ -17,6 +14,9 @@ from sandbox.physics.jit.translate.types import (
     fits,
     joined,
 )
+from sandbox.physics.jit.translate.definitions import Constant, comments, meaning
+from sandbox.physics.jit.translate.expressions import PRIMARY, SUM, Code, Expressions, Program, Unknown, spelled
+from sandbox.physics.jit.translate.local_names import Declarations, blocks_of, find_places, own_names
 
 _INDENT = "    "
 
@@ -29,7 +29,7 @@ class Body(Expressions):
     ) -> None:
         super().__init__(program, module, own_names(function), dict(given))
         self.function, self.result = function, result
-        self.places: Places = find_places(function)
+        self.places: Declarations = find_places(function)
         self._comments = comments(module)
         self._line = function.lineno
         self._count = 0

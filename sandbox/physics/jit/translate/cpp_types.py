@@ -72,7 +72,7 @@ class Several:
 
 
 @dataclass(frozen=True)
-class Bundle:
+class BundleType:
     """The words of a named tuple, or of a plain one, as one array."""
 
     items: "Type"
@@ -83,7 +83,7 @@ class Bundle:
         return f"Bundle<{self.items.cpp}>"
 
 
-Type = Scalar | Array | Struct | Several | Bundle
+Type = Scalar | Array | Struct | Several | BundleType
 
 FLAG = Scalar("bool", 0)
 INTEGER = Scalar("int64_t", 1)
@@ -124,7 +124,7 @@ class Types:
             if isinstance(marker, ArrayKind):
                 return Array(np.dtype(marker.dtype).name, marker.dimensions)
         if get_origin(hint) is interpreted.Bundle:
-            return Bundle(self.of(*get_args(hint)))
+            return BundleType(self.of(*get_args(hint)))
         if get_origin(hint) is tuple:
             return Several(tuple(map(self.of, get_args(hint))))
         if isinstance(hint, type) and hasattr(hint, "_fields"):

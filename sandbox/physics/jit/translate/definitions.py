@@ -14,7 +14,7 @@ from sandbox.physics.jit import Kernel, kernel_of
 _UNSPOKEN = ("sandbox.",)
 
 
-class Refused(Exception):
+class Untranslatable(Exception):
     """A kernel says what the language of kernels does not have; where, and why."""
 
     def __init__(self, module: str, line: int, reason: str) -> None:
@@ -59,7 +59,9 @@ def definition(kernel: Kernel) -> ast.FunctionDef:
     for node in _tree(function.__module__).body:
         if isinstance(node, ast.FunctionDef) and node.name == function.__name__:
             return node
-    raise Refused(function.__module__, function.__code__.co_firstlineno, "a kernel stands at the top of its module")
+    raise Untranslatable(
+        function.__module__, function.__code__.co_firstlineno, "it stands not at the top of its module"
+    )
 
 
 @functools.cache
