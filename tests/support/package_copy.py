@@ -7,10 +7,9 @@ PACKAGE = Path(__file__).resolve().parents[2] / "sandbox"
 
 
 def copy_of_the_package(folder: Path) -> Path:
-    """The package in a folder, without compiled kernels; with byte code, or each process would compile every module."""
+    """The package in a folder, with byte code: else each process would compile every module."""
     return Path(shutil.copytree(PACKAGE, folder / "sandbox", ignore=_unwanted))
 
 
 def _unwanted(folder: str, names: list[str]) -> set[str]:
-    compiled = ["kernels"] if folder.endswith("__pycache__") else []
-    return shutil.ignore_patterns("_shipped", "*.pyc.*", *compiled)(folder, names)
+    return shutil.ignore_patterns("_shipped", "*.pyc.*")(folder, names)

@@ -19,7 +19,7 @@ from typing import Any
 import platformdirs
 
 from sandbox.physics.jit import say
-from sandbox.physics.jit.making.compiling import NotCompiled
+from sandbox.physics.jit.library import NoLibrary
 from sandbox.physics.jit.sources import source_files, text_of
 
 # Versions that are kept: branches of a checkout take turns.
@@ -44,13 +44,13 @@ def compiled_here(why: str, checked: bool) -> tuple[Path, dict[str, Any]]:
     why: in a line that is said while that is done.
 
     Raises:
-        NotCompiled: where they cannot be.
+        NoLibrary: where they cannot be.
     """
     folder = _folder() / _version(checked)
     manifest = folder / "manifest.json"
     if not manifest.exists():
         if importlib.util.find_spec("ziglang") is None:
-            raise NotCompiled(f"{why}, and zig is not installed (the extra `build`)")
+            raise NoLibrary(f"{why}, and zig is not installed (the extra `build`)")
         say(f"{why}: they are compiled once, which takes about 20 s")
         _compile(folder, checked)
         _forget_others(folder)
@@ -64,7 +64,7 @@ def _compile(folder: Path, checked: bool) -> None:
     folder.parent.mkdir(parents=True, exist_ok=True)
     aside = Path(tempfile.mkdtemp(prefix=".making-", dir=folder.parent))
     try:
-        command = [sys.executable, "-m", f"{__package__}.making", str(aside), *(["CHECKED"] if checked else [])]
+        command = [sys.executable, "-P", "-m", f"{__package__}.making", str(aside), *(["CHECKED"] if checked else [])]
         home = str(Path(__file__).resolve().parents[3])
         path = os.pathsep.join(filter(None, (home, os.environ.get("PYTHONPATH"))))
         variables = {
@@ -75,7 +75,7 @@ def _compile(folder: Path, checked: bool) -> None:
         }
         ended = subprocess.run(command, env=variables, capture_output=True, text=True, check=False)
         if ended.returncode:
-            raise NotCompiled(_last_line(ended.stdout) or _last_line(ended.stderr))
+            raise NoLibrary(_last_line(ended.stdout) or _last_line(ended.stderr))
         # Another process may have been sooner.
         with contextlib.suppress(OSError):
             aside.rename(folder)

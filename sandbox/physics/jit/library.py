@@ -233,11 +233,7 @@ def _whole(name: str, manifest: dict[str, Any]) -> Path:
 
 def _compiled_here(why: str, checked: bool) -> Library:
     # Of no use to whoever has not edited a kernel, and not for nothing: it reads every source.
-    edited_kernels = importlib.import_module("sandbox.physics.jit.edited")
-    try:
-        path, manifest = edited_kernels.compiled_here(why, checked)
-    except edited_kernels.NotCompiled as fault:
-        raise NoLibrary(str(fault)) from fault
+    path, manifest = importlib.import_module("sandbox.physics.jit.edited").compiled_here(why, checked)
     return Library(path, manifest["entries"])
 
 

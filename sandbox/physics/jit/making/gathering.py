@@ -43,11 +43,11 @@ class Gathered:
 
 
 def all_entries() -> list[Kernel]:
-    """Every kernel that Python calls, in the order of their names: all modules of kernels are imported."""
+    """Every kernel of the package that Python calls, in the order of their names: all modules of kernels are imported."""
     for name, file in source_files():
         if name.endswith(".py") and has_kernels(text_of(file)):
             importlib.import_module(f"sandbox.{name.removesuffix('.py').replace('/', '.')}")
-    return sorted(entries(), key=lambda kernel: kernel.name)
+    return sorted((one for one in entries() if one.name.startswith("sandbox.")), key=lambda kernel: kernel.name)
 
 
 def gathered(kernels: Sequence[Kernel]) -> Gathered:
