@@ -44,7 +44,8 @@ ROOT = Path(__file__).resolve().parents[2]
 def outcome(package, before=WITHOUT_ZIG, **variables):
     """How kernels run in a fresh process with this copy of the package, the hash of a tick, and the lines of errors."""
     environment = {name: value for name, value in os.environ.items() if name != "SANDBOX_KERNELS"}
-    environment |= {"PYTHONPATH": os.pathsep.join([str(package.parent), str(ROOT)]), **variables}
+    kept = dict.fromkeys(("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"), str(package.parent))
+    environment |= {"PYTHONPATH": os.pathsep.join([str(package.parent), str(ROOT)]), **kept, **variables}
     command = [sys.executable, "-P", "-c", STEPS.replace("{before}", before)]
     ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
@@ -125,18 +126,17 @@ def test_an_edited_kernel_is_not_run_from_the_library(package, untouched):
 
 
 @needs("zig", importlib.util.find_spec("ziglang"))
-def test_edited_kernels_are_compiled_once_on_this_machine(package, tmp_path, untouched):
+def test_edited_kernels_are_compiled_once_on_this_machine(package, untouched):
     file = package / "physics" / "integrate.py"
     text = file.read_text()
     file.write_text(text.replace("position[p, 0] += velocity[p, 0] * h", "position[p, 0] += velocity[p, 0] * h * 2.0"))
-    ways = {"XDG_CACHE_HOME": str(tmp_path / "kept"), "LOCALAPPDATA": str(tmp_path / "kept"), "HOME": str(tmp_path)}
-    way, state, lines = outcome(package, "", **ways)
+    way, state, lines = outcome(package, "")
     why = "kernels were edited in physics/integrate.py: they are compiled once, which takes about 20 s"
     assert (way, lines) == ("library", [why]) and state != untouched[1]
-    assert outcome(package, "", **ways) == (way, state, [])
-    assert outcome(package, "", SANDBOX_KERNELS="interpreted", **ways)[1] == state
+    assert outcome(package, "") == (way, state, [])
+    assert outcome(package, "", SANDBOX_KERNELS="interpreted")[1] == state
     file.write_text(text.replace("position[p, 0] += velocity[p, 0] * h", "position[p, 0] **= 2.0"))
-    way, _, lines = outcome(package, "", **ways)
+    way, _, lines = outcome(package, "")
     assert way == "interpreted" and lines[0].startswith("kernels were edited in physics/integrate.py: ")
     assert re.match(r"sandbox/physics/integrate\.py:\d+: kernels have no such operator of these: ", lines[1])
 

@@ -43,7 +43,7 @@ class Gathered:
 
 
 def all_entries() -> list[Kernel]:
-    """Every kernel of the package that Python calls, in the order of their names: all modules of kernels are imported."""
+    """Every kernel of the package that Python calls, by name, from all modules that have any."""
     for name, file in source_files():
         if name.endswith(".py") and has_kernels(text_of(file)):
             importlib.import_module(f"sandbox.{name.removesuffix('.py').replace('/', '.')}")
