@@ -15,6 +15,8 @@
 # make abuse: stir, throw and drive bodies, and print figures; hours.
 # make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen; and ten minutes
 # of random mouse and touch at pages, where Chromium is installed.
+# make bundle: the script of pages, after one of their modules was changed; seconds. make node: what that, lint and tests of
+# JavaScript need from npm, into node_modules.
 # make pictures: draw the pictures of the gallery and of docs/ again, after a level or the look was changed.
 # make site: the levels, each at an address of its own, and the documents, as files for any web server, in the folder site.
 PYTHON ?= python3
@@ -36,7 +38,7 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test test-all whole-world quick lint bounds goldens goldens-everywhere goldens-record seeds libraries pictures site bench abuse soak clean
+.PHONY: play install test test-all whole-world quick lint bounds goldens goldens-everywhere goldens-record seeds libraries node bundle pictures site bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -88,6 +90,11 @@ seeds: $(VENV)/installed-dev
 libraries: $(VENV)/installed-dev
 	$(BIN)/python -m sandbox.app.kernels.libraries $(if $(CHECK),--check) $(if $(HERE),--here)
 
+node: $(VENV)/installed-node
+
+bundle: $(VENV)/installed-node
+	$(BIN)/python -m sandbox.page.bundle
+
 pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.picture_cache
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.app_icon
@@ -122,5 +129,10 @@ $(VENV)/installed-dev: $(BIN)/python pyproject.toml
 	$(UV) --editable ".[dev]" 2> $(VENV)/uv.log || $(PIP) --no-compile --editable ".[dev]"
 	touch $(VENV)/installed $@
 
+# node comes with the packages for Python.
+$(VENV)/installed-node: $(VENV)/installed-dev package-lock.json
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/npm ci --ignore-scripts --no-audit --no-fund --silent
+	touch $@
+
 clean:
-	rm -rf $(VENV) dist build site .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) node_modules dist build site .pytest_cache .mypy_cache .ruff_cache
