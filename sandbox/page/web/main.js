@@ -1,8 +1,9 @@
 // Main: the page around a toy: its bars, panel, timeline and keys, and what it says.
+import { Refusal } from './commands.js';
+import { read } from './files.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
-import { read, Toy } from './toy.js';
-import { Refusal } from './commands.js';
+import { Toy } from './toy.js';
 
 const SLOW = 0.2, NARROW = 640, ARROWS = { left: '←', right: '→', up: '↑', down: '↓' };
 const TOOLS = ['drag', 'pin', 'cut'];
