@@ -93,6 +93,7 @@ libraries: $(VENV)/installed-dev
 node: $(VENV)/installed-node
 
 bundle: $(VENV)/installed-node
+	$(BIN)/python -m sandbox.app.site.shared_values
 	$(BIN)/python -m sandbox.page.bundle
 
 pictures: $(VENV)/installed-dev

@@ -1,4 +1,5 @@
 // Checks: what a level promises of its run, measured as time passes from its start; those that hold keys are left out.
+import { CHECKS } from './shared.js';
 
 // What a check measures, by its name in files: of its particles, springs and box.
 const METRICS = {
@@ -27,7 +28,7 @@ const METRICS = {
   non_finite: (gauge, check) => gauge.shown(check).filter((p) =>
     ![...gauge.at('position', p), ...gauge.at('velocity', p)].every(Number.isFinite)).length,
 };
-const STILL = 0.05, STRAIN_WINDOW = 2;
+const { STILL, STRAIN_WINDOW } = CHECKS;
 const most = (values) => values.reduce((a, b) => Math.max(a, b), 0);
 const least = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
 

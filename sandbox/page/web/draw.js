@@ -2,14 +2,13 @@
 import { ball, boxOf, canvasOf, castShadow, clamp, disc, drawBar, drawMuscle, drawTurf, fillParts,
   fillSkin, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, partsOf, pathOf, radial, stroke,
 } from './paint.js';
+import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
 
-const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
-const PERIOD = { chain: 5.6, deck: 2 }, USUAL_PERIOD = 6.5, BAR_PERIOD = 8, PLANKS = 3;
-const FLUSH_FROM = 0.03, FLUSH_RANGE = 0.22, LEAST_FLUSH = 0.02, BENT = 2.5;
-const SANDS = ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'];
+const { HALF, PERIOD, USUAL_PERIOD, MOST_OF_STEP, LEAST, LEAST_BEND: BENT, PLANKS } = LINES, BAR_PERIOD = 8;
+const { FLUSH_FROM, FLUSH_RANGE, LEAST_FLUSH } = STRAIN;
 const BOLTS = { bone: ['#4a3a28', '#fff4de'], brass: ['#3a2a10', '#f2ce7c'], wood: ['#3a2614', '#d8a970'] };
-const INK = '#2a1030', DARK = '#161b26', SMALLEST_FACE = 24, LARGEST_PIN = 0.1;
+const INK = '#2a1030', DARK = '#161b26', LARGEST_PIN = 0.1;
 
 export class Camera {
   constructor() {
@@ -122,11 +121,12 @@ export class Picture {
 
   // The outline, the skin and the strain of a shape as they are now.
   #trace(shape) {
-    const { scale, camera: { zoom } } = this, by = Math.min(shape.grown * zoom, 40 * scale) + shape.extra * scale;
+    const { scale, camera: { zoom } } = this, by = Math.min(shape.grown * zoom, SHAPES.MOST_GROWN * scale) + shape.extra * scale;
     const loops = shape.loops.map((loop) => grown(this.#points(loop), by)), box = boxOf(loops[0]);
     shape.path = pathOf(loops, shape.keep);
     shape.box = box;
-    shape.depth = clamp(Math.sqrt((box[2] - box[0]) * (box[3] - box[1])) * shape.rounding, 6 * scale, 34 * scale);
+    shape.depth = clamp(Math.sqrt((box[2] - box[0]) * (box[3] - box[1])) * shape.rounding, SHAPES.LEAST_ROUNDING * scale,
+      SHAPES.MOST_ROUNDING * scale);
     shape.splats = this.#splats(shape);
     shape.reach = shape.cell * zoom;
   }
@@ -162,7 +162,7 @@ export class Picture {
     const { at, rest, scale, camera: { zoom } } = this, { particles, springs } = line;
     if (particles) {
       const step = rest[springs[springs.length >> 1]] * zoom, { kind } = line;
-      line.half = Math.max(Math.min(HALF[kind] * line.width * scale, 0.45 * step), 0.55);
+      line.half = Math.max(Math.min(HALF[kind] * line.width * scale, MOST_OF_STEP * step), LEAST);
       line.pieces = this.#curve(particles, springs, zoom / ((PERIOD[kind] ?? USUAL_PERIOD) * line.half));
     } else {
       const [part, least, most] = line.size, usual = line.cell ?? rest[springs[0]?.[0]] ?? 0;
@@ -268,7 +268,7 @@ export class Picture {
   #drawLine(line) {
     const { half, kind, bolts = [] } = line, context = this.#context;
     drawBar(context, line.pieces, line.path, half, kind === 'paint' ? line.colour : kind, this.#tintOf);
-    if (!bolts.length || (line.cell ?? 0) * this.camera.zoom < 9) return;
+    if (!bolts.length || (line.cell ?? 0) * this.camera.zoom < LINES.BOLTS_FROM) return;
     const [rim, tone] = kind === 'paint' ? [outlineOf(line.colour), mixed(line.colour, '#ffffff', 0.24)]
       : BOLTS[kind] ?? [DARK, '#b9c4d8'];
     const sizes = line.isTruss ? [1.35, 1.05, 0.42] : [1.7, 1.25, 0.5];
@@ -290,7 +290,7 @@ export class Picture {
     else if (kind === 'piston') {
       const half = size(0.07 * rest, 2, 4.5);
       bar(1, 0.5 * half, 'steel');
-      bar(0.55, half, '#f6b83e');
+      bar(0.55, half, LINES.CYLINDER);
     } else {
       const wide = size(0.13 * rest, 2.5, 8) / length, points = Array.from({ length: 15 }, (_, k) => {
         const share = clamp(0.12 + (0.76 * (k - 1)) / 12), side = k < 2 || k > 12 ? 0 : k % 2 ? -wide : wide;
@@ -306,16 +306,17 @@ export class Picture {
 
   #drawShape(shape) {
     fillSkin(this.#context, shape);
-    if (shape.line) stroke(this.#context, shape.path, shape.line, 0.75 * this.scale);
+    if (shape.line) stroke(this.#context, shape.path, shape.line, SHAPES.LINE_HALF * this.scale);
   }
 
   // Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
   #drawSheet(sheet) {
     const { body, isCloth } = sheet, context = this.#context;
-    sheet.parts ??= partsOf(sheet.triangles, this.#texels(body, sheet.triangles, isCloth ? 16 : 14));
+    sheet.parts ??= partsOf(sheet.triangles, this.#texels(body, sheet.triangles, isCloth ? SHAPES.CLOTH_TEXELS
+      : SHAPES.LAID_TEXELS));
     fillParts(context, `${body.skin} ${body.colour}`, sheet.parts, this.at);
     const hem = pathOf(sheet.loops.map((loop) => this.#points(loop)));
-    const [tone, half] = isCloth ? [outlineOf(body.colour), 1.5] : [mixed(body.colour, '#180a00', 0.66), 2.2];
+    const [tone, half] = isCloth ? [outlineOf(body.colour), SHAPES.HEM_HALF] : [mixed(body.colour, '#180a00', 0.66), 2.2];
     stroke(context, hem, tone, half * this.scale);
   }
 
@@ -337,8 +338,8 @@ export class Picture {
   // Lugs are dashes of a wide line under the tyre, two to a particle.
   #drawLugs(wheel) {
     const context = this.#context, size = this.#sizeOf(wheel), period = (Math.PI * size) / wheel.outer.length;
-    if (!wheel.is_tyre || size < 22) return;
-    const lug = Math.max(3, Math.min(0.11 * size, 0.4 * period)), high = 0.075 * size + wheel.radius * this.camera.zoom;
+    if (!wheel.is_tyre || size < WHEELS.LUGS_FROM) return;
+    const lug = Math.max(3, Math.min(0.11 * size, 0.4 * period)), high = WHEELS.LUG * size + wheel.radius * this.camera.zoom;
     context.lineCap = 'butt';
     context.setLineDash([lug, period - lug]);
     stroke(context, pathOf([this.#points(wheel.outer)]), this.theme.tyre, high);
@@ -349,7 +350,7 @@ export class Picture {
     const context = this.#context, { scale } = this, { hub, inner, outer } = wheel, size = this.#sizeOf(wheel);
     const bar = (pieces, half) => drawBar(context, pieces, linesOf(pieces), half, 'steel');
     const [x, y, firstX, firstY] = this.#points([hub, outer[0]]), radius = clamp(0.15 * size, 2.5, 22 * scale);
-    if (wheel.is_tyre && size > 14) bar(this.#curve([...inner, inner[0]], [], 0), Math.max(1.6, 0.045 * size));
+    if (wheel.is_tyre && size > WHEELS.RIM_FROM) bar(this.#curve([...inner, inner[0]], [], 0), Math.max(1.6, 0.045 * size));
     bar(wheel.spokes.map((slot) => [x, y, ...this.#points([slot])]), clamp(0.034 * size, 1.2, 4 * scale));
     disc(context, x, y, radius + 0.8 * scale, DARK, 0.8);
     ball(context, x, y, radius, -Math.atan2(firstY - y, firstX - x), 'steel', '#aeb9cc');
@@ -377,8 +378,8 @@ export class Picture {
   // Eyes that look where it moves, cheeks, and a mouth that says how it feels.
   #drawFace(face, number) {
     const { slots, springs, angle } = face, { at, camera: { zoom } } = this, count = slots.length, context = this.#context;
-    const [spotX, spotY, room] = face.spot, size = Math.min(2 * room * zoom, 120 * this.scale);
-    if (size < SMALLEST_FACE * this.scale) return;
+    const [spotX, spotY, room] = face.spot, size = Math.min(2 * room * zoom, FACES.LARGEST * this.scale);
+    if (size < FACES.SMALLEST * this.scale) return;
     const origin = this.#state('origin'), velocity = this.#state('velocity');
     const middle = (values, k) => slots.reduce((sum, slot) => sum + values[2 * slot + k], 0) / count;
     const [x, y, u, v] = [middle(at, 0), middle(at, 1), middle(origin, 0), middle(origin, 1)];
@@ -390,9 +391,9 @@ export class Picture {
       cosine += ownX * dx + ownY * dy;
       sine += ownX * dy - ownY * dx;
     }
-    const turn = Math.atan2(sine, cosine), beat = 3.4 + 0.77 * (number % 4);
+    const turn = Math.atan2(sine, cosine), beat = FACES.BLINK_EVERY + 0.77 * (number % 4);
     const load = springs.reduce((sum, [spring]) => sum + Math.abs(this.strain[spring]), 0) / springs.length;
-    const isSqueezed = load > 0.1, isShut = !isSqueezed && (this.seconds + 1.7 * number) % beat > beat - 0.13;
+    const isSqueezed = load > FACES.SQUEEZED, isShut = !isSqueezed && (this.seconds + 1.7 * number) % beat > beat - FACES.BLINK;
     context.save();
     context.translate(x, y);
     context.rotate(turn);
@@ -421,10 +422,10 @@ export class Picture {
     }
     const smile = 0.125 + 0.25 * (0.66 - Math.min(9 * load, 0.8));
     if (isSqueezed) line('M-0.125 0.125q0.042 -0.05 0.083 0t0.084 0t0.083 0', 0.02);
-    else if (speed <= 2.5) line(`M-0.125 0.125Q0 ${smile} 0.125 0.125`, 0.02);
+    else if (speed <= FACES.FAST) line(`M-0.125 0.125Q0 ${smile} 0.125 0.125`, 0.02);
     else {
       disc(context, 0, 0.145, 0.0725, INK);
-      disc(context, 0, 0.17, 0.041, '#f0708a');
+      disc(context, 0, 0.17, 0.041, FACES.TONGUE);
     }
     context.restore();
   }
@@ -444,7 +445,7 @@ export class Picture {
     const angle = this.#state('angle'), inverse = this.#state('inverse_mass'), active = this.#state('particle_active');
     const context = this.#context, sizes = new Map();
     this.#eachBall((slot, x, y, radius, { kind, colour }, k) => {
-      ball(context, x, y, radius, angle[slot], kind, colour ?? (kind === 'sand' ? SANDS[k % 4] : '#8d99b0'));
+      ball(context, x, y, radius, angle[slot], kind, colour ?? (kind === 'sand' ? COLOURS.SANDS[k % 4] : '#8d99b0'));
       sizes.set(slot, kind === 'bumper' ? 0 : 0.55);
     });
     inverse.forEach((value, slot) => {

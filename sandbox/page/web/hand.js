@@ -1,11 +1,12 @@
 // Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut; what holds nothing moves the view.
+import { HANDS } from './shared.js';
 
-const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98, SOFT_REACH = 2;
+const { STRENGTH, AT_LIMIT, SOFT_REACH, UNITS, PICK_RADIUS } = HANDS;
+const REACH = { mouse: PICK_RADIUS, pen: 16, touch: 26 };
 const NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
 // Two taps so soon after each other [ms] and so near to each other [pixels] are one gesture.
 const TWICE = 350, BESIDE = 30;
 const isNear = (one, two) => Math.hypot(one.x - two.x, one.y - two.y) < BESIDE;
-const UNITS = [[1e6, 'MN'], [1e3, 'kN'], [1, 'N'], [1e-3, 'mN']];
 
 // What of a world lies near a point [m].
 class Near {

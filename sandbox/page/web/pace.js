@@ -1,8 +1,9 @@
 // Pace: how many ticks a frame makes, so that time passes as it does outside, or as fast as the machine can.
+import { PACE } from './shared.js';
 
 // The longest frame that is made up for, and what the ticks of a frame may take [s]: what is beyond is lost, but the page
 // goes on answering.
-const LONGEST = 0.1, BUDGET = 0.05;
+const { LONGEST, BUDGET } = PACE;
 // How long what was lost counts [s]; the part of all time from which it is slow, and that below which it is no more.
 const MEMORY = 2, SLOW = 0.1, FAIR = 0.02;
 

@@ -1,4 +1,6 @@
 // Paint: colours, lit skins, strips with a texture and balls on a canvas. All sizes are pixels of the page.
+import { COLOURS } from './shared.js';
+
 
 export const clamp = (value, low = 0, high = 1) => Math.min(Math.max(value, low), high);
 const parse = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
@@ -136,7 +138,7 @@ export function castShadow(onto, { width, height }, { shadow: colour, shadow_str
 const CELL = 0.25, REACH = 3, TIMES = 3, AROUND = REACH * (TIMES - 1) + 1;
 // Light from above, a little from the left.
 const DOWNWARDS = 0.9, ACROSS = 0.42, STEEPNESS = 1.45 / CELL / 2;
-const FLUSH = 0.74, SQUEEZED = parse('#4a3fd8'), STRETCHED = parse('#fff0b0');
+const FLUSH = 0.74, SQUEEZED = parse(COLOURS.SQUEEZED), STRETCHED = parse(COLOURS.STRETCHED);
 
 // Make the skin of a shape that bulges, of which a view of this size is seen. The shape has a path, a box, a depth, a
 // look, and splats of strain or none: it is filled with cells; blurred they are how high its skin stands, and the slope

@@ -1,6 +1,7 @@
 // Pieces: what is left of a body of triangles where springs of it were cut, and which face each piece has.
+import { FACES } from './shared.js';
 
-const NEARER = 0.12, MOST_COMPARED = 1e6;
+const { MOST_COMPARED } = FACES, NEARER = 0.12;
 
 // The triangles of a world that keep their areas, by slot, counter-clockwise in their form.
 export function wholeTriangles(world) {

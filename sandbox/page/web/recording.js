@@ -1,8 +1,9 @@
 // Recording: a run written line by line as the desktop's recordings are, and the run of a recording compared.
 import { blake2b } from './hash.js';
+import { RECORDING } from './shared.js';
 import { canonical } from './world.js';
 
-const TICK_DIGITS = 16, ARRAY_DIGITS = 6, CHAIN_DIGITS = 8, STATE_TICKS = 600, SLICE = 12;
+const { TICK_DIGITS, ARRAY_DIGITS, CHAIN_DIGITS, STATE_TICKS } = RECORDING, SLICE = 12;
 const encoder = new TextEncoder();
 // So that the page goes on meanwhile [ms].
 const pause = () => new Promise((resolve) => setTimeout(resolve));

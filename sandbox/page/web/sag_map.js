@@ -1,7 +1,9 @@
 // SagMap: what a body sags at every Cs and Cd of the pad, and the words for that, from the table that the window has.
+import { AXIS } from './shared.js';
 
-// Values that have a number on an axis, where there is room.
-const NUMBERED = [1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1];
+// Values that have a number on an axis, where there is room; digits of a value, or of what it is below 1 by; from where on
+// an axis it is 1.
+const { NUMBERED, DIGITS, END } = AXIS;
 
 // An axis from its lowest value to 1; rest: what 1 - value fades out at, the less the wider the last tenth.
 export class Scale {
@@ -22,10 +24,10 @@ export class Scale {
   }
 
   valueAt(place) {
-    if (place >= 0.997) return 1;
+    if (place >= END) return 1;
     const power = 10 ** (this.low + Math.max(place, 0) * (this.high - this.low)),
       value = Math.min(1, (power * (1 + this.rest)) / (1 + power));
-    return value < 0.9 ? Number(value.toPrecision(3)) : Number((1 - Number((1 - value).toPrecision(2))).toFixed(9));
+    return value < 0.9 ? Number(value.toPrecision(DIGITS)) : Number((1 - Number((1 - value).toPrecision(DIGITS - 1))).toFixed(9));
   }
 
   numbers() {
@@ -34,7 +36,7 @@ export class Scale {
 }
 
 // Where nothing is known of what sags.
-export const PLAIN = new Scale(0.003, 0.02);
+export const PLAIN = new Scale(AXIS.LOWEST, AXIS.REST);
 
 export class SagMap {
   #borders = [];

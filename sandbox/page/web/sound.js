@@ -1,9 +1,8 @@
 // Sound: what is heard of a run: blows, breaks, jerks of strings and motors, made of a few sines and a little noise.
+import { SOUND } from './shared.js';
 
-const SOFTEST = 0.35, HARDEST = 9, NEWS = 1.5, MEMORY = 0.25, MOST = 4, JERK = 1, HARD_JERK = 8, REST = 90, VOICES = 12;
-const FADE = 0.12;
-const LEVELS = { thud: 0.8, pluck: 0.45, snap: 0.85, motor: 0.22 };
-const SCALE = [0, 2, 4, 7, 9], LOWEST = 65.41, STEPS = 26;
+const { SOFTEST, HARDEST, NEWS, MEMORY, MOST, JERK, HARD_JERK, REST, VOICES, LEVELS, MOTOR_FADE: FADE } = SOUND;
+const { SCALE, LOWEST, STEPS, TUNED, HIGHEST_STRING, SNAP_PITCH, MOTOR_PITCH, MOTOR_RISE, WIDTH } = SOUND;
 
 // The nearest note [Hz] of a scale of five steps, on which all things sound well together.
 function noteOf(pitch) {
@@ -121,7 +120,7 @@ export class Sound {
     const jerk = most.map((value, b) => value / mass[b]);
     for (const b of this.#new(jerk, this.#jerks, JERK)) {
       const pull = Math.max(most[b] * tick_rate, 3 * mass[b]),
-        pitch = Math.min((24 * Math.sqrt((pull * long[b]) / mass[b])) / (2 * long[b]), 700);
+        pitch = Math.min((TUNED * Math.sqrt((pull * long[b]) / mass[b])) / (2 * long[b]), HIGHEST_STRING);
       this.#play('pluck', b, pitch, 0.8 * (jerk[b] / HARD_JERK) ** 0.8, pan(place[b]));
     }
   }
@@ -129,13 +128,13 @@ export class Sound {
   #hearBreak(springs, pan) {
     const [spring] = springs, p = this.world.view('state.particle_a')[spring],
       length = this.world.view('state.rest_length')[spring];
-    const pitch = 420 * Math.sqrt(0.3 / Math.max(length, 1e-3)) * (0.6 + this.world.view('state.stiffness')[spring]);
+    const pitch = SNAP_PITCH * Math.sqrt(0.3 / Math.max(length, 1e-3)) * (0.6 + this.world.view('state.stiffness')[spring]);
     this.#play('snap', this.bodies.of[p], pitch, 0.55 + 0.12 * Math.log2(springs.length), pan(p));
   }
 
   #play(kind, body, wanted, loudness, pan, stuff) {
     const context = this.#context, now = context.currentTime, key = `${kind}${body}`, pitch = noteOf(wanted);
-    if (this.#voices >= VOICES || 1000 * (now - (this.#last.get(key) ?? -1)) < REST
+    if (this.#voices >= VOICES || now - (this.#last.get(key) ?? -1) < REST
       || !Number.isFinite(pitch * loudness)) return;
     this.#last.set(key, now);
     const gain = LEVELS[kind] * Math.min(loudness, 1), out = this.#out(gain, pan);
@@ -153,7 +152,7 @@ export class Sound {
 
   #out(gain, pan) {
     const context = this.#context, volume = new GainNode(context, { gain: 0.6 * gain });
-    volume.connect(new StereoPannerNode(context, { pan: 0.7 * pan })).connect(context.destination);
+    volume.connect(new StereoPannerNode(context, { pan: WIDTH * pan })).connect(context.destination);
     return volume;
   }
 
@@ -202,7 +201,7 @@ export class Sound {
       }
       const { hum, out } = this.#motors.get(part),
         effort = value[part] ? 0.2 + 0.8 * Math.min(turning / (Math.abs(speed) || 1), 1) : 0;
-      hum.frequency.setTargetAtTime(70 + 9 * turning, this.#context.currentTime, 0.05);
+      hum.frequency.setTargetAtTime(MOTOR_PITCH + MOTOR_RISE * turning, this.#context.currentTime, 0.05);
       out.gain.setTargetAtTime(0.35 * LEVELS.motor * effort, this.#context.currentTime, FADE);
     }
   }

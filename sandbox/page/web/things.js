@@ -1,12 +1,9 @@
 // Things: the springs of a level, grouped into what is drawn; grouped again where one breaks.
 import { piecesOf, wholeTriangles, withFaces } from './pieces.js';
+import { THINGS } from './shared.js';
 
-const STRANDS = ['rope', 'cable', 'chain', 'deck', 'thread', 'silk'];
-const WORKING = ['coil', 'muscle', 'piston'];
-const LAID = ['wood', 'stone', 'brick'];
-// Half widths of bars: as a part of their body's cells, from [pixels], to [pixels].
-const TRUSS = [0.11, 1.6, 4.2], MESH = [0.075, 1.0, 3.4], LOOSE = [0.1, 1.2, 2.6], THREADS = [...MESH];
-const BRACE = 0.62, HANGER = 0.62, DECK = 0.95;
+// Half widths of bars, TRUSS to LOOSE: as a part of their body's cells, from [pixels], to [pixels].
+const { STRANDS, WORKING, LAID, TRUSS, MESH, LOOSE, BRACE, HANGER } = THINGS, THREADS = [...MESH], DECK = 0.95;
 
 // The scene with the slots of each body's particles and its springs as [spring, first end, second end].
 export function unfolded(scene, world) {
