@@ -16,7 +16,7 @@
 # make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen; and ten minutes
 # of random mouse and touch at pages, where Chromium is installed.
 # make bundle: the script of pages, after one of their modules was changed; seconds. make node: what that, lint and tests of
-# JavaScript need from npm, into node_modules.
+# JavaScript need from npm, into node_modules. make lint: ruff and mypy, and for JavaScript TypeScript and eslint.
 # make pictures: draw the pictures of the gallery and of docs/ again, after a level or the look was changed.
 # make site: the levels, each at an address of its own, and the documents, as files for any web server, in the folder site.
 PYTHON ?= python3
@@ -38,7 +38,7 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test test-all whole-world quick lint bounds goldens goldens-everywhere goldens-record seeds libraries node bundle pictures site bench abuse soak clean
+.PHONY: play install test test-all whole-world quick lint lint-pages bounds goldens goldens-everywhere goldens-record seeds libraries node bundle pictures site bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -63,11 +63,15 @@ $(VENV)/collected: $(VENV)/installed-dev
 quick: $(VENV)/installed-dev
 	$(BIN)/python -m tests.quick -n $(WORKERS)
 
-lint: $(VENV)/installed-dev
+lint: $(VENV)/installed-dev lint-pages
 	$(BIN)/ruff check sandbox tests examples
 	$(BIN)/ruff format --check sandbox tests examples
 	$(BIN)/mypy
 	$(BIN)/mypy --strict --follow-imports=silent examples
+
+lint-pages: $(VENV)/installed-node
+	$(BIN)/node node_modules/typescript/bin/tsc -p .
+	$(BIN)/node node_modules/eslint/bin/eslint.js .
 
 bounds: export NUMBA_BOUNDSCHECK := 1
 bounds: export SANDBOX_KERNELS := numba
@@ -94,6 +98,7 @@ node: $(VENV)/installed-node
 
 bundle: $(VENV)/installed-node
 	$(BIN)/python -m sandbox.app.site.shared_values
+	$(BIN)/python -m sandbox.page.table_types
 	$(BIN)/python -m sandbox.page.bundle
 
 pictures: $(VENV)/installed-dev
@@ -132,7 +137,7 @@ $(VENV)/installed-dev: $(BIN)/python pyproject.toml
 
 # node comes with the packages for Python.
 $(VENV)/installed-node: $(VENV)/installed-dev package-lock.json
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/npm ci --ignore-scripts --no-audit --no-fund --silent
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
 	touch $@
 
 clean:

@@ -67,7 +67,7 @@ def test_the_map_lists_every_module_of_a_page_behind_those_that_it_imports():
     listed = [name for names, _ in rows(ARCHITECTURE, "The page that plays") for name in quoted(names)]
     assert sorted(listed) == sorted(path.name for path in web.glob("*.js"))
     for place, name in enumerate(listed):
-        imported = set(re.findall(r"from '\./(\w+\.js)'", (web / name).read_text(encoding="utf-8")))
+        imported = set(re.findall(r"from '\./(\w+\.js)';", (web / name).read_text(encoding="utf-8")))
         assert imported <= set(listed[:place]), name
 
 

@@ -17,12 +17,14 @@ export class Pace {
   isBehind = false;
 
   // clock: what time it is [ms].
+  /** @param {() => number} [clock] */
   constructor(clock = () => performance.now()) {
     this.clock = clock;
     this.#then = clock();
   }
 
   // Let time pass until now [ms], at so many ticks a second. tick: makes one, and says whether time still passes.
+  /** @type {(now: number, rate: number, tick: () => boolean) => void} */
   pass(now, rate, tick) {
     const passed = Math.max(now - this.#then, 0) / 1000, counted = Math.min(passed, LONGEST), began = this.clock();
     this.#then = now;
@@ -37,14 +39,16 @@ export class Pace {
   }
 
   // lost: which part of the time that passed.
+  /** @type {(counted: number, lost: number) => void} */
   #remember(counted, lost) {
     this.#lost += (lost - this.#lost) * (1 - Math.exp(-counted / MEMORY));
     this.isBehind = this.#lost > (this.isBehind ? FAIR : SLOW);
   }
 
   // Time stands until now [ms]: nothing is owed.
+  /** @type {(now: number) => void} */
   rest(now) {
-    Object.assign(this, { part: 1, isBehind: false });
+    [this.part, this.isBehind] = [1, false];
     [this.#then, this.#owed, this.#lost] = [now, 0, 0];
   }
 }

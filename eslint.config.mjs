@@ -1,0 +1,11 @@
+import js from '@eslint/js';
+import globals from 'globals';
+
+export default [
+  { ignores: ['.venv/', 'site/', 'build/', 'dist/', 'sandbox/page/bundle.js'] },
+  js.configs.recommended,
+  { files: ['sandbox/page/web/*.js'], languageOptions: { globals: globals.browser } },
+  { files: ['**/*.mjs'], languageOptions: { globals: globals.node } },
+  // It is for pages and for node, and as such no module.
+  { files: ['examples/flat/*.js'], languageOptions: { sourceType: 'commonjs', globals: globals.node } },
+];
