@@ -10,13 +10,14 @@ from typing import Any
 from sandbox.app.base import coefficient_scale, loop
 from sandbox.app.draw import looks, themes
 from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, wheels
+from sandbox.app.panel import readings
 from sandbox.app.play import hand_labels, stage
 from sandbox.app.run import playback
 from sandbox.app.sound import bank, sound_events, voices, waves
 from sandbox.level import checks
 from sandbox.page.page import WEB
 from sandbox.physics import world
-from sandbox.physics.analysis import pulls, query
+from sandbox.physics.analysis import body_motion, pulls, query
 from sandbox.session import summary
 from sandbox.session.replay import format
 
@@ -36,8 +37,9 @@ def shared_values() -> dict[str, dict[str, Any]]:
             "STRENGTH": world.HAND_STRENGTH, "SOFT_REACH": query.REACH, "AT_LIMIT": pulls.AT_LIMIT,
             "PICK_RADIUS": stage.PICK_RADIUS, "UNITS": hand_labels.UNITS,
         },
-        "AXIS": _of(coefficient_scale, "NUMBERED", "DIGITS", "END")
-        | {"LOWEST": coefficient_scale.PLAIN.lowest, "REST": coefficient_scale.PLAIN.rest},
+        "PAD": _of(coefficient_scale, "NUMBERED", "DIGITS", "END")
+        | {"LOWEST": coefficient_scale.PLAIN.lowest, "REST": coefficient_scale.PLAIN.rest}
+        | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},
         "SOUND": _of(
             sound_events, "SOFTEST", "HARDEST", "NEWS", "MEMORY", "MOST", "JERK", "HARD_JERK", "TUNED",
             "HIGHEST_STRING", "SNAP_PITCH", "MOTOR_PITCH", "MOTOR_RISE",

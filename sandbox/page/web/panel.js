@@ -1,6 +1,7 @@
 // Panel: Cs and Cd of each material by a pad, sliders and words, and the gravity of the world.
 import { contextOf } from './paint.js';
 import { PLAIN, SagMap, Scale } from './sag_map.js';
+import { PAD } from './shared.js';
 /** @import { Run } from './run.js' */
 /** @import { Level, MaterialRow, Point } from './types.js' */
 
@@ -8,13 +9,11 @@ import { PLAIN, SagMap, Scale } from './sag_map.js';
 const STEP = 0.02, MARGIN = 14;
 const WAYS = new Map(Object.entries({ ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP],
   ArrowDown: [0, -STEP] }));
-// Sags that are said to be nothing.
-const UNSEEN = 1e-5;
 
 // A share in per cent, of two digits.
 /** @type {(share: number) => string} */
 function perCent(share) {
-  return share < UNSEEN ? '0 %' : `${Number((100 * share).toPrecision(2))} %`;
+  return share < PAD.UNSEEN ? '0 %' : `${Number((100 * share).toPrecision(2))} %`;
 }
 
 /** @type {<N extends keyof HTMLElementTagNameMap>(name: N,
@@ -149,7 +148,7 @@ export class Panel {
   // The word for how far it sags; where nothing is known of that, the word whose stiffness Cs / (1 - Cd) is nearest.
   /** @type {(chosen: Material, pair: Point) => string} */
   #wordFor({ sags, words }, [stiffness, damping]) {
-    if (stiffness === 1 && damping === 1) return 'rigid';
+    if (stiffness === 1 && damping === 1) return PAD.RIGID;
     if (sags) return sags.wordAt(stiffness, damping);
     /** @type {(pair: Point) => number} */
     const firmness = ([cs, cd]) => Math.log(Math.max(cs, 1e-9) / (1 - cd + 1e-9));

@@ -1,10 +1,10 @@
 // SagMap: what a body sags at every Cs and Cd of the pad, and the words for that, from the table that the window has.
-import { AXIS } from './shared.js';
+import { PAD } from './shared.js';
 /** @import { Point, SagMapData } from './types.js' */
 
 // Values that have a number on an axis, where there is room; digits of a value, or of what it is below 1 by; from where
 // on an axis it is 1.
-const { NUMBERED, DIGITS, END } = AXIS;
+const { NUMBERED, DIGITS, END } = PAD;
 
 // An axis from its lowest value to 1; rest: what 1 - value fades out at, the less the wider the last tenth.
 export class Scale {
@@ -42,7 +42,7 @@ export class Scale {
 }
 
 // Where nothing is known of what sags.
-export const PLAIN = new Scale(AXIS.LOWEST, AXIS.REST);
+export const PLAIN = new Scale(PAD.LOWEST, PAD.REST);
 
 export class SagMap {
   /** @type {Point[]} */

@@ -20,12 +20,14 @@ export const HANDS = {
   PICK_RADIUS: 14,
   UNITS: [[1000000000, 'GN'], [1000000, 'MN'], [1000, 'kN'], [1, 'N'], [0.001, 'mN']],
 };
-export const AXIS = {
+export const PAD = {
   NUMBERED: [1e-05, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1],
   DIGITS: 3,
   END: 0.997,
   LOWEST: 0.003,
   REST: 0.02,
+  RIGID: 'rigid',
+  UNSEEN: 1e-05,
 };
 export const SOUND = {
   SOFTEST: 0.35,
