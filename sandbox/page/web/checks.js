@@ -8,8 +8,8 @@ import { CHECKS } from './shared.js';
 /** @typedef {{ check: Check, from: number, to: number, found: Found | null }} Waiting */
 /** @typedef {Waiting & { found: Found }} Decided */
 
-// What a check measures, by its name in files: of its particles, springs and box.
-/** @type {Record<string, (gauge: Checks, check: Check) => number>} */
+/** What a check measures, by its name in files: of its particles, springs and box.
+ * @type {Record<string, (gauge: Checks, check: Check) => number>} */
 const METRICS = {
   x: (gauge, check) => gauge.middle(check, 'position')[0],
   y: (gauge, check) => gauge.middle(check, 'position')[1],
@@ -52,8 +52,8 @@ export class Checks {
   /** @type {[largest: number, squares: number, count: number][]} */
   window = [];
 
-  // checks: what each measures, of slots; particles and springs are all where none are named.
-  /** @param {{ checks: Check[] }} level @param {World} world */
+  /** checks: what each measures, of slots; particles and springs are all where none are named.
+   * @param {{ checks: Check[] }} level @param {World} world */
   constructor({ checks }, world) {
     this.checks = checks;
     this.world = world;
@@ -70,8 +70,8 @@ export class Checks {
     this.#decided = this.#decide();
   }
 
-  // Measure at this tick: the checks that are decided by it, with what they came to.
-  /** @type {() => CheckResult[]} */
+  /** Measure at this tick: the checks that are decided by it, with what they came to.
+   * @type {() => CheckResult[]} */
   look() {
     if (!this.#waiting.length && !this.#decided.length) return [];
     this.#follow();
@@ -121,15 +121,15 @@ export class Checks {
     return this.of(array).subarray(2 * particle, 2 * particle + 2);
   }
 
-  // The particles of a check that are there.
-  /** @type {(check: Partial<Check>) => number[]} */
+  /** The particles of a check that are there.
+   * @type {(check: Partial<Check>) => number[]} */
   shown({ particles = this.world.particles }) {
     const active = this.of('particle_active');
     return particles.filter((p) => active[p]);
   }
 
-  // Mean place or velocity, by mass.
-  /** @type {(check: Check, array: 'position' | 'velocity') => Point} */
+  /** Mean place or velocity, by mass.
+   * @type {(check: Check, array: 'position' | 'velocity') => Point} */
   middle(check, array) {
     const mass = this.of('mass');
     let [x, y, sum] = [0, 0, 0];
@@ -151,8 +151,8 @@ export class Checks {
     return this.shown(check).reduce((sum, p) => sum + 0.5 * mass[p] * Math.hypot(...this.at('velocity', p)) ** 2, 0);
   }
 
-  // |l - L| / L of springs that have a free end.
-  /** @type {(check: Partial<Check>) => number[]} */
+  /** |l - L| / L of springs that have a free end.
+   * @type {(check: Partial<Check>) => number[]} */
   strains({ springs = this.world.springs }) {
     const active = this.of('spring_active'), rest = this.of('rest_length'), inverse = this.of('inverse_mass');
     const a = this.of('particle_a'), b = this.of('particle_b');

@@ -19,18 +19,18 @@ const LIMITS = {
   minimum: (value, limit) => value >= limit, exclusiveMinimum: (value, limit) => value > limit,
   maximum: (value, limit) => value <= limit, exclusiveMaximum: (value, limit) => value < limit,
 };
-// The rows that have the names of a kind, where they are called otherwise.
-/** @type {(kind: NameKind) => keyof Counts} */
+/** The rows that have the names of a kind, where they are called otherwise.
+ * @type {(kind: NameKind) => keyof Counts} */
 const countedBy = (kind) => (kind === 'part' ? 'actuator' : kind);
 
 /** @type {(message: string, ...values: unknown[]) => string} */
 const fill = (message, ...values) => message.replace(/\{\}/g, () => String(values.shift()));
-// As JSON would keep it: a copy, without -0.
-/** @type {(value: unknown) => unknown} */
+/** As JSON would keep it: a copy, without -0.
+ * @type {(value: unknown) => unknown} */
 const plain = (value) => (Array.isArray(value) ? value.map(plain) : typeof value === 'number' ? value + 0 : value);
 
-// A text in quotes, cut short, as messages of the desktop have it.
-/** @type {(text: string) => string} */
+/** A text in quotes, cut short, as messages of the desktop have it.
+ * @type {(text: string) => string} */
 function shown(text) {
   let quoted = JSON.stringify(text);
   if (UNPRINTABLE.test(quoted)) {
@@ -47,8 +47,8 @@ const placed = (parts) => [...parts.map((part) => (PLAIN.test(String(part)) ? pa
 export class Commands {
   #about;
 
-  // about: what Python says, see about.py.
-  /** @param {About} about */
+  /** about: what Python says, see about.py.
+   * @param {About} about */
   constructor(about) {
     this.#about = about;
   }
@@ -62,8 +62,8 @@ export class Commands {
     });
   }
 
-  // The slot of a name. kind: particle, spring, part or material; counts: rows in use, by family.
-  /** @type {(schema: Named, name: unknown, counts: Counts) => number} */
+  /** The slot of a name. kind: particle, spring, part or material; counts: rows in use, by family.
+   * @type {(schema: Named, name: unknown, counts: Counts) => number} */
   slot({ names: kind, noun = kind }, name, counts) {
     const { messages, names, second } = this.#about;
     if (typeof name !== 'string') throw new Refusal(fill(messages.noName, noun));
@@ -73,8 +73,8 @@ export class Commands {
     return slot;
   }
 
-  // A record as files have it, with slots in place of names, and defaults.
-  /** @type {(record: unknown, counts: Counts) => Command} */
+  /** A record as files have it, with slots in place of names, and defaults.
+   * @type {(record: unknown, counts: Counts) => Command} */
   read(record, counts) {
     const { messages, commands } = this.#about, types = Object.keys(commands);
     const type = typeof record === 'object' && record && 'type' in record ? record.type : null;
@@ -97,8 +97,8 @@ export class Commands {
     return /** @type {Command} */ ({ type, ...Object.fromEntries(values.filter(([, value]) => value != null)) });
   }
 
-  // The first fault: where it is, and words for it.
-  /** @type {(given: Map<string, unknown>, fields: Record<string, Field>) => Fault | null} */
+  /** The first fault: where it is, and words for it.
+   * @type {(given: Map<string, unknown>, fields: Record<string, Field>) => Fault | null} */
   #faultOf(given, fields) {
     const { messages } = this.#about;
     for (const [field, schema] of Object.entries(fields)) {
@@ -144,8 +144,8 @@ export class Commands {
     return null;
   }
 
-  // What of a world does not let a record with slots be carried out, in words; null: nothing.
-  /** @type {(world: World, record: Command) => string | null} */
+  /** What of a world does not let a record with slots be carried out, in words; null: nothing.
+   * @type {(world: World, record: Command) => string | null} */
   faultIn(world, record) {
     const { messages, commands, names } = this.#about, kinds = new Map(this.#named(record.type));
     const fields = /** @type {Record<string, number | number[] | undefined>} */ ({ ...record, type: undefined });
@@ -161,8 +161,8 @@ export class Commands {
     return null;
   }
 
-  // What a kernel takes for a record with slots: its number, slots and numbers; and what has to be derived again.
-  /** @type {(record: Command, given: Record<string, number>) => Packed} */
+  /** What a kernel takes for a record with slots: its number, slots and numbers; and what has to be derived again.
+   * @type {(record: Command, given: Record<string, number>) => Packed} */
   packed(record, given) {
     const kind = this.#about.kinds[record.type], fields = this.#about.commands[record.type]?.fields;
     const own = /** @type {Record<string, unknown>} */ (record);
@@ -173,8 +173,8 @@ export class Commands {
     return { ...kind, slots, numbers: kind.numbers.flatMap((name) => value(name)) };
   }
 
-  // Whether a kernel has done it: throws in words where it has not.
-  /** @type {(record: Command, packed: Packed, result: number) => void} */
+  /** Whether a kernel has done it: throws in words where it has not.
+   * @type {(record: Command, packed: Packed, result: number) => void} */
   answer(record, { slots, numbers }, result) {
     const place = this.#about.badSlot - result, { type } = record, { nothing } = this.#about.commands[type] ?? {};
     if (place >= slots.length) throw new Refusal(`${type}: ${numbers.join(', ')}: finite numbers are needed`);
@@ -182,8 +182,8 @@ export class Commands {
     if (nothing && result === 0) throw new Refusal(nothing);
   }
 
-  // A record with slots as files have it: names in place of slots, and nothing that is left out.
-  /** @type {(record: Command) => NamedRecord} */
+  /** A record with slots as files have it: names in place of slots, and nothing that is left out.
+   * @type {(record: Command) => NamedRecord} */
   named(record) {
     const { names } = this.#about, kinds = new Map(this.#named(record.type));
     const entries = Object.entries(record).filter(([, value]) => value !== null && value !== undefined);

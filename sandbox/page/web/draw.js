@@ -12,8 +12,8 @@ import { thingsOf, unfolded } from './things.js';
 /** @import { World } from './world.js' */
 
 const { USUAL_PERIOD, MOST_OF_STEP, LEAST, LEAST_BEND: BENT, PLANKS } = LINES, BAR_PERIOD = 8;
-// Of strands by their kinds.
-/** @type {Record<string, number | undefined>} */
+/** Of strands by their kinds.
+ * @type {Record<string, number | undefined>} */
 const HALVES = LINES.HALF;
 /** @type {Record<string, number | undefined>} */
 const PERIODS = LINES.PERIOD;
@@ -30,8 +30,8 @@ export class Camera {
   width = 1;
   height = 1;
 
-  // Show a box [m] as large as it goes, above what covers `bottom` pixels of the lower edge.
-  /** @type {(box: Box, bottom?: number) => void} */
+  /** Show a box [m] as large as it goes, above what covers `bottom` pixels of the lower edge.
+   * @type {(box: Box, bottom?: number) => void} */
   fit([left, low, right, high], bottom = 0) {
     const height = Math.max(this.height - bottom, 1);
     this.zoom = Math.min((this.width * 0.92) / Math.max(right - left, 0.5),
@@ -76,11 +76,11 @@ export class Picture {
   ratio = 1;
   scale = 1;
   seconds = 0;
-  // Where particles are [pixels].
-  /** @type {Float64Array} */
+  /** Where particles are [pixels].
+   * @type {Float64Array} */
   at = new Float64Array();
-  // Rest lengths [m] and strain of springs.
-  /** @type {Float64Array} */
+  /** Rest lengths [m] and strain of springs.
+   * @type {Float64Array} */
   rest = new Float64Array();
   /** @type {Float64Array} */
   strain = new Float64Array();
@@ -100,8 +100,8 @@ export class Picture {
     return this.#world.view(`state.${name}`);
   }
 
-  // previous: positions a tick ago; part: how much of the way from them to the present ones, 0..1.
-  /** @type {(camera: Camera, theme: Theme, previous: Float64Array, part: number, seconds: number) => void} */
+  /** previous: positions a tick ago; part: how much of the way from them to the present ones, 0..1.
+   * @type {(camera: Camera, theme: Theme, previous: Float64Array, part: number, seconds: number) => void} */
   draw(camera, theme, previous, part, seconds) {
     const { width, height } = camera, ratio = Math.min(devicePixelRatio || 1, 2), context = this.#context;
     const canvas = this.#canvas;
@@ -139,8 +139,8 @@ export class Picture {
     this.#drawBalls();
   }
 
-  // Where particles are in the picture, and the strain of springs.
-  /** @type {(previous: Float64Array, part: number) => void} */
+  /** Where particles are in the picture, and the strain of springs.
+   * @type {(previous: Float64Array, part: number) => void} */
   #place(previous, part) {
     const position = this.#state('position'), { camera } = this, count = position.length;
     const at = (this.at = new Float64Array(count));
@@ -162,8 +162,8 @@ export class Picture {
     return Float64Array.from({ length: 2 * slots.length }, (_, k) => this.at[2 * slots[k >> 1] + (k & 1)]);
   }
 
-  // The outline, the skin and the strain of a shape as they are now.
-  /** @type {(shape: Shape) => void} */
+  /** The outline, the skin and the strain of a shape as they are now.
+   * @type {(shape: Shape) => void} */
   #trace(shape) {
     const { scale, camera: { zoom } } = this;
     const by = Math.min(shape.grown * zoom, SHAPES.MOST_GROWN * scale) + shape.extra * scale;
@@ -176,14 +176,14 @@ export class Picture {
     shape.reach = shape.cell * zoom;
   }
 
-  // How much strain shows, from -1 where it is squeezed to 1.
-  /** @type {(strain: number) => number} */
+  /** How much strain shows, from -1 where it is squeezed to 1.
+   * @type {(strain: number) => number} */
   #flushOf(strain) {
     return Math.sign(strain) * clamp((Math.abs(strain) - FLUSH_FROM) / FLUSH_RANGE);
   }
 
-  // The strain of each particle of a shape, the mean of that of its springs; nothing where little of it shows.
-  /** @type {(shape: Shape) => Splat[] | null} */
+  /** The strain of each particle of a shape, the mean of that of its springs; nothing where little of it shows.
+   * @type {(shape: Shape) => Splat[] | null} */
   #splats({ shows_strain: isShown, springs }) {
     if (!isShown) return null;
     /** @type {Map<number, [sum: number, count: number]>} */
@@ -199,15 +199,15 @@ export class Picture {
     return splats.some(([, , amount]) => Math.abs(amount) > LEAST_FLUSH) ? splats : null;
   }
 
-  // The colour of strain over a line, and how much of it.
-  /** @type {(spring: number) => [colour: string, alpha: number] | null} */
+  /** The colour of strain over a line, and how much of it.
+   * @type {(spring: number) => [colour: string, alpha: number] | null} */
   #tintOf = (spring) => {
     const flush = this.#flushOf(this.strain[spring]);
     return flush ? [this.theme.strain[flush > 0 ? 2 : 0], 0.7 * Math.abs(flush)] : null;
   };
 
-  // The pieces of a line, as drawBar() takes them, a path through them and half its width.
-  /** @type {(line: Strand | Bars) => void} */
+  /** The pieces of a line, as drawBar() takes them, a path through them and half its width.
+   * @type {(line: Strand | Bars) => void} */
   #follow(line) {
     const { at, rest, scale, camera: { zoom } } = this;
     if (line.particles) {
@@ -229,8 +229,8 @@ export class Picture {
     line.path = linesOf(line.pieces);
   }
 
-  // A smooth way through particles, in pieces; rate: periods of the texture in a metre.
-  /** @type {(particles: number[], springs: number[], rate: number) => LinePiece[]} */
+  /** A smooth way through particles, in pieces; rate: periods of the texture in a metre.
+   * @type {(particles: number[], springs: number[], rate: number) => LinePiece[]} */
   #curve(particles, springs, rate) {
     const last = particles.length - 1, isClosed = particles[0] === particles[last];
     /** @type {LinePiece[]} */
@@ -245,8 +245,8 @@ export class Picture {
       /** @type {(q: Float64Array, r: Float64Array, s: Float64Array) => boolean} */
       const bends = (q, r, s) => q.some((_, i) => Math.abs(q[i] - 2 * r[i] + s[i]) > BENT);
       const count = bends(a, b, c) || bends(b, c, d) ? 3 : 1;
-      // Catmull and Rom's curve.
-      /** @type {(t: number, i: number) => number} */
+      /** Catmull and Rom's curve.
+       * @type {(t: number, i: number) => number} */
       const coordinate = (t, i) => b[i] + (t / 2) * (c[i] - a[i]
         + t * (2 * a[i] - 5 * b[i] + 4 * c[i] - d[i] + t * (3 * (b[i] - c[i]) + d[i] - a[i])));
       /** @type {(t: number) => Point} */
@@ -273,8 +273,8 @@ export class Picture {
     });
   }
 
-  // Stage and ground, kept while the camera stands still.
-  /** @type {(size: [number, number]) => HTMLCanvasElement} */
+  /** Stage and ground, kept while the camera stands still.
+   * @type {(size: [number, number]) => HTMLCanvasElement} */
   #backdropNow(size) {
     const { camera, theme, ratio } = this, { width, height } = camera, context = this.#backdrop;
     const key = [camera.x, camera.y, camera.zoom, width, height, theme.name, ratio].join();
@@ -286,8 +286,8 @@ export class Picture {
     theme.stage.forEach((colour, k) => fade.addColorStop(k, colour));
     context.fillStyle = fade;
     context.fillRect(0, 0, width, height);
-    // A lamp behind the stage, which is darker towards the corners.
-    /** @type {(tone: (away: number) => string) => [number, string][]} */
+    /** A lamp behind the stage, which is darker towards the corners.
+     * @type {(tone: (away: number) => string) => [number, string][]} */
     const stops = (tone) => Array.from({ length: 17 }, (_, k) => [k / 16, tone(k / 10)]);
     const rim = /** @type {[number, number, number]} */ ([0, 0, 1.6]);
     /** @type {(away: number) => string} */
@@ -385,8 +385,8 @@ export class Picture {
     if (shape.line) stroke(this.#context, shape.path, shape.line, SHAPES.LINE_HALF * this.scale);
   }
 
-  // Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
-  /** @type {(sheet: Sheet) => void} */
+  /** Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
+   * @type {(sheet: Sheet) => void} */
   #drawSheet(sheet) {
     const { body, isCloth } = sheet, context = this.#context;
     sheet.parts ??= partsOf(sheet.triangles, this.#texels(body, sheet.triangles, isCloth ? SHAPES.CLOTH_TEXELS
@@ -397,8 +397,8 @@ export class Picture {
     stroke(context, hem, tone, (isCloth ? SHAPES.HEM_HALF : 2.2) * this.scale);
   }
 
-  // Where the corners of triangles of a body lie in its picture, so many texels to a cell.
-  /** @type {(body: FilledBody, triangles: number[][], texels: number) => number[][]} */
+  /** Where the corners of triangles of a body lie in its picture, so many texels to a cell.
+   * @type {(body: FilledBody, triangles: number[][], texels: number) => number[][]} */
   #texels({ angle, spacing, slots }, triangles, texels) {
     const origin = this.#state('origin'), cosine = Math.cos(angle), sine = Math.sin(angle);
     /** @type {(slot: number) => number[]} */
@@ -408,15 +408,15 @@ export class Picture {
     return triangles.map((corners) => corners.flatMap(turned).map((value, k) => value - (k % 2 ? low : left)));
   }
 
-  // How large a wheel is.
-  /** @type {(wheel: Pick<Wheel, 'hub' | 'outer'>) => number} */
+  /** How large a wheel is.
+   * @type {(wheel: Pick<Wheel, 'hub' | 'outer'>) => number} */
   #sizeOf({ hub, outer }) {
     const [x, y, ...points] = this.#points([hub, ...outer]);
     return outer.reduce((sum, _, k) => sum + Math.hypot(points[2 * k] - x, points[2 * k + 1] - y), 0) / outer.length;
   }
 
-  // Lugs are dashes of a wide line under the tyre, two to a particle.
-  /** @type {(wheel: Wheel) => void} */
+  /** Lugs are dashes of a wide line under the tyre, two to a particle.
+   * @type {(wheel: Wheel) => void} */
   #drawLugs(wheel) {
     const context = this.#context, size = this.#sizeOf(wheel), period = (Math.PI * size) / wheel.outer.length;
     if (!wheel.is_tyre || size < WHEELS.LUGS_FROM) return;
@@ -443,8 +443,8 @@ export class Picture {
     ball(context, x, y, radius, -Math.atan2(firstY - y, firstX - x), 'steel', '#aeb9cc');
   }
 
-  // Gleams of a balloon that stay where the light is, and a knot where something is tied.
-  /** @type {(balloon: Things['balloons'][number]) => void} */
+  /** Gleams of a balloon that stay where the light is, and a knot where something is tied.
+   * @type {(balloon: Things['balloons'][number]) => void} */
   #drawGleams({ slots, knots, colour }) {
     const [left, top, right, low] = boxOf(this.#points(slots)), context = this.#context;
     /** @type {LinePiece[]} */
@@ -465,8 +465,8 @@ export class Picture {
     stroke(context, linesOf(tips), outlineOf(colour), Math.max(1.2, 0.03 * radius));
   }
 
-  // Eyes that look where it moves, cheeks, and a mouth that says how it feels.
-  /** @type {(face: Face, number: number) => void} */
+  /** Eyes that look where it moves, cheeks, and a mouth that says how it feels.
+   * @type {(face: Face, number: number) => void} */
   #drawFace(face, number) {
     const { slots, springs, angle } = face, { at, camera: { zoom } } = this;
     const count = slots.length, context = this.#context;
@@ -526,8 +526,8 @@ export class Picture {
     context.restore();
   }
 
-  // Balls that are there: a small one that is held is a pin.
-  /** @type {(act: (slot: number, x: number, y: number, radius: number, ball: Ball, k: number) => void) => void} */
+  /** Balls that are there: a small one that is held is a pin.
+   * @type {(act: (slot: number, x: number, y: number, radius: number, ball: Ball, k: number) => void) => void} */
   #eachBall(act) {
     const active = this.#state('particle_active'), radius = this.#state('radius');
     const inverse = this.#state('inverse_mass');

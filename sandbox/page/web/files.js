@@ -3,8 +3,8 @@ import { Refusal } from './commands.js';
 import { World } from './world.js';
 /** @import { Fresh, Kernels, Level } from './types.js' */
 
-// Level and worlds of a toy's file, which begins with the length of what is JSON, and of the kernels' module.
-/** @type {(content: ArrayBuffer, kernels: WebAssembly.Module | Promise<WebAssembly.Module>) => Promise<[Level,
+/** Level and worlds of a toy's file, which begins with the length of what is JSON, and of the kernels' module.
+ * @type {(content: ArrayBuffer, kernels: WebAssembly.Module | Promise<WebAssembly.Module>) => Promise<[Level,
  *   Fresh]>} */
 export async function read(content, kernels) {
   const bytes = new Uint8Array(content), begin = 4;
@@ -25,8 +25,8 @@ async function fetched(address) {
   return answer;
 }
 
-// The level and the worlds of files at addresses; kernels are fetched once for all toys of a page.
-/** @type {(address: string, kernels?: string | URL) => Promise<[Level, Fresh]>} */
+/** The level and the worlds of files at addresses; kernels are fetched once for all toys of a page.
+ * @type {(address: string, kernels?: string | URL) => Promise<[Level, Fresh]>} */
 export async function load(address, kernels = new URL('kernels.wasm', import.meta.url)) {
   if (!globalThis.WebAssembly || !globalThis.DecompressionStream) throw new Refusal('This browser is too old for it.');
   const key = String(kernels);

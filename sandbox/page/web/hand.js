@@ -16,15 +16,15 @@ const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDow
 // Two taps so soon after each other [ms] and so near to each other [pixels] are one gesture.
 const TWICE = 350, BESIDE = 30;
 /** @typedef {{ x: number, y: number }} Pixel */
-// Where and when a finger came down [ms].
-/** @typedef {Pixel & { time: number }} Touch */
-// What a pointer does, and where it is; hand: that it moves; point: where it cut last [m].
+/** Where and when a finger came down [ms].
+ * @typedef {Pixel & { time: number }} Touch */
 /**
+ * What a pointer does, and where it is; hand: that it moves; point: where it cut last [m].
  * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'done', began: Touch, isBeside: boolean, hand: number | null,
  *   point: Point, gesture: number }} Pointer
  */
-// What a hand holds, where it draws it [m], how far that is from the pointer, and its largest force [N].
 /**
+ * What a hand holds, where it draws it [m], how far that is from the pointer, and its largest force [N].
  * @typedef {{ particle: number, gesture: number, beside: Point, target: Point, isMoved: boolean, limit: number }} Held
  */
 /** @type {(one: Pixel, two: Pixel) => boolean} */
@@ -70,8 +70,8 @@ class Near {
     return this.#nearest(this.mass.length, away, within);
   }
 
-  // The free particle that a press takes: one within reach, else the nearest of a body with springs around the point.
-  /** @type {(point: Point, within: number) => number | null} */
+  /** The free particle that a press takes: one within reach, else the nearest of a body with springs around the point.
+   * @type {(point: Point, within: number) => number | null} */
   free(point, within) {
     const pressed = this.particle(point, within);
     if (pressed !== null && this.inverse_mass[pressed] > 0) return pressed;
@@ -135,8 +135,8 @@ class Near {
     return found;
   }
 
-  // How far a hand reaches into a soft body [m]; 0 where it is not soft.
-  /** @type {(particle: number) => number} */
+  /** How far a hand reaches into a soft body [m]; 0 where it is not soft.
+   * @type {(particle: number) => number} */
   grip(particle) {
     const active = this.world.view('state.constraint_active'), kind = this.world.view('state.constraint_kind');
     const first = this.world.view('state.constraint_first'), corner = this.world.view('state.corner_particle');
@@ -167,15 +167,15 @@ export class Hands {
   marked = null;
   /** @type {Map<number, Pointer>} */
   #pointers = new Map();
-  // What each hand holds that a pointer or a key moves.
-  /** @type {Map<number, Held>} */
+  /** What each hand holds that a pointer or a key moves.
+   * @type {Map<number, Held>} */
   #held = new Map();
   /** @type {Touch | null} */
   #tapped = null;
   #closing = new AbortController();
 
-  // changed: called when the view has been moved by hand; fit: shows all again; say: tells a person something in a line.
-  /** @param {HTMLCanvasElement} canvas @param {Run} run @param {Camera} camera @param {HandEvents} events */
+  /** changed: called when the view has been moved by hand; fit: shows all again; say: tells a person something in a line.
+   * @param {HTMLCanvasElement} canvas @param {Run} run @param {Camera} camera @param {HandEvents} events */
   constructor(canvas, run, camera, { changed, fit, say }) {
     this.canvas = canvas;
     this.run = run;
@@ -199,8 +199,8 @@ export class Hands {
     this.#closing.abort();
   }
 
-  // A wheel zooms, unless it would scroll the page and the picture was not clicked before.
-  /** @type {(event: WheelEvent) => void} */
+  /** A wheel zooms, unless it would scroll the page and the picture was not clicked before.
+   * @type {(event: WheelEvent) => void} */
   #turn(event) {
     const { scrollHeight, clientHeight } = document.documentElement;
     if (scrollHeight > clientHeight && document.activeElement !== this.canvas && !event.ctrlKey) return;
@@ -233,8 +233,8 @@ export class Hands {
     } else if (touched !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
   }
 
-  // Two taps where nothing is show all again.
-  /** @type {(began: Touch, ended: number) => void} */
+  /** Two taps where nothing is show all again.
+   * @type {(began: Touch, ended: number) => void} */
   #tap(began, ended) {
     const first = this.#tapped, isSecond = first !== null && ended - first.time < TWICE && isNear(began, first);
     this.#tapped = isSecond ? null : began;
@@ -255,8 +255,8 @@ export class Hands {
     this.say('This page cannot cut.');
   }
 
-  // Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
-  /** @type {(particle: number, point: Point, within: number) => number | null} */
+  /** Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
+   * @type {(particle: number, point: Point, within: number) => number | null} */
   hold(particle, point, within) {
     const gesture = this.run.newGesture();
     this.run.takeUp(gesture);
@@ -264,8 +264,8 @@ export class Hands {
     const hand = Array.from({ length: world.hands.count }, (_, k) => k).find((k) => !world.isHeld(k));
     if (hand === undefined) return null;
     const dx = position[2 * particle] - point[0], dy = position[2 * particle + 1] - point[1];
-    // A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
-    /** @type {Point} */
+    /** A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
+     * @type {Point} */
     const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy];
     /** @type {Point} */
     const target = [point[0] + beside[0], point[1] + beside[1]];
@@ -297,8 +297,8 @@ export class Hands {
     if (!isNear(pointer, pointer.began)) pointer.isBeside = false;
   }
 
-  // One finger moves the view, two turn it larger or smaller as well.
-  /** @type {(pointer: Pointer, x: number, y: number) => void} */
+  /** One finger moves the view, two turn it larger or smaller as well.
+   * @type {(pointer: Pointer, x: number, y: number) => void} */
   #moveView(pointer, x, y) {
     const other = [...this.#pointers.values()].find((each) => each.kind === 'pan' && each !== pointer);
     const share = other ? 0.5 : 1;
@@ -365,8 +365,8 @@ export class Hands {
     }
   }
 
-  // Keys: N marks the next particle, Enter takes it, arrows move it. Whether the key was of use.
-  /** @type {(event: KeyboardEvent) => boolean} */
+  /** Keys: N marks the next particle, Enter takes it, arrows move it. Whether the key was of use.
+   * @type {(event: KeyboardEvent) => boolean} */
   key(event) {
     const near = new Near(this.run.world), way = Object.hasOwn(WAYS, event.key) ? WAYS[event.key] : null;
     const [hand, held] = [...this.#held].find(([, { particle }]) => particle === this.marked) ?? [];
@@ -386,8 +386,8 @@ export class Hands {
     return true;
   }
 
-  // Lines from what is held to its cursor, with the force of each hand.
-  /** @type {(context: CanvasRenderingContext2D, at: Float64Array, theme: Theme) => void} */
+  /** Lines from what is held to its cursor, with the force of each hand.
+   * @type {(context: CanvasRenderingContext2D, at: Float64Array, theme: Theme) => void} */
   draw(context, at, theme) {
     const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'),
       force = world.view('state.hand_force');

@@ -12,8 +12,8 @@ const ARROWS = { left: '←', right: '→', up: '↑', down: '↓' };
 const TOOLS = ['drag', 'pin', 'cut'];
 /** @type {Record<string, string | undefined>} */
 const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', m: 'sound', h: 'tune', '?': 'hint' };
-// Parts of the page that are no plain elements.
-/** @typedef {{ picture: HTMLCanvasElement, time: HTMLInputElement }} Parts */
+/** Parts of the page that are no plain elements.
+ * @typedef {{ picture: HTMLCanvasElement, time: HTMLInputElement }} Parts */
 /** @template {string} I @typedef {I extends keyof Parts ? Parts[I] : HTMLElement} Part */
 /** @template {string} I @param {I} id @returns {Part<I>} */
 function byId(id) {
@@ -117,8 +117,8 @@ class Page {
     byId('state').className = kind;
   }
 
-  // Show a part of the page by its button, or hide it.
-  /** @type {(id: string, button: string) => void} */
+  /** Show a part of the page by its button, or hide it.
+   * @type {(id: string, button: string) => void} */
   #show(id, button) {
     const part = byId(id);
     part.hidden = !part.hidden;
@@ -203,8 +203,8 @@ class Page {
   }
 }
 
-// Open the page of a toy whose parts a promise gives: what its file holds, and the kernels.
-/** @type {(parts: Promise<[Level, Fresh]>) => Promise<void>} */
+/** Open the page of a toy whose parts a promise gives: what its file holds, and the kernels.
+ * @type {(parts: Promise<[Level, Fresh]>) => Promise<void>} */
 export async function start(parts) {
   try {
     globalThis.page = new Page(...await parts);
@@ -215,8 +215,8 @@ export async function start(parts) {
   }
 }
 
-// The parts that a page holds itself.
-/** @type {() => Promise<[Level, Fresh]>} */
+/** The parts that a page holds itself.
+ * @type {() => Promise<[Level, Fresh]>} */
 export async function unpack() {
   const parts = await Promise.all(['toy', 'kernels'].map((id) => globalThis.unpacked(id))).catch(() => {
     throw new Refusal('This page was cut off or damaged. Ask for it again.');

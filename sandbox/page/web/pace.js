@@ -16,15 +16,15 @@ export class Pace {
   // Whether it has been slower than it should be of late.
   isBehind = false;
 
-  // clock: what time it is [ms].
-  /** @param {() => number} [clock] */
+  /** clock: what time it is [ms].
+   * @param {() => number} [clock] */
   constructor(clock = () => performance.now()) {
     this.clock = clock;
     this.#then = clock();
   }
 
-  // Let time pass until now [ms], at so many ticks a second. tick: makes one, and says whether time still passes.
-  /** @type {(now: number, rate: number, tick: () => boolean) => void} */
+  /** Let time pass until now [ms], at so many ticks a second. tick: makes one, and says whether time still passes.
+   * @type {(now: number, rate: number, tick: () => boolean) => void} */
   pass(now, rate, tick) {
     const passed = Math.max(now - this.#then, 0) / 1000, counted = Math.min(passed, LONGEST), began = this.clock();
     this.#then = now;
@@ -38,15 +38,15 @@ export class Pace {
     this.#remember(counted, Math.min((cut + (passed - counted) * rate) / (passed * rate || 1), 1));
   }
 
-  // lost: which part of the time that passed.
-  /** @type {(counted: number, lost: number) => void} */
+  /** lost: which part of the time that passed.
+   * @type {(counted: number, lost: number) => void} */
   #remember(counted, lost) {
     this.#lost += (lost - this.#lost) * (1 - Math.exp(-counted / MEMORY));
     this.isBehind = this.#lost > (this.isBehind ? FAIR : SLOW);
   }
 
-  // Time stands until now [ms]: nothing is owed.
-  /** @type {(now: number) => void} */
+  /** Time stands until now [ms]: nothing is owed.
+   * @type {(now: number) => void} */
   rest(now) {
     [this.part, this.isBehind] = [1, false];
     [this.#then, this.#owed, this.#lost] = [now, 0, 0];

@@ -2,7 +2,6 @@
 import { COLOURS } from './shared.js';
 /** @import { Box, LinePiece, Numbers, Point, Scene, SheetPart, SkinLook, Skinned, Splat, Theme } from './types.js' */
 
-
 /** @type {(value: number, low?: number, high?: number) => number} */
 export const clamp = (value, low = 0, high = 1) => Math.min(Math.max(value, low), high);
 /** @type {(colour: string) => number[]} */
@@ -11,11 +10,11 @@ const parse = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2
 const mean = (first, second, share) => first.map((value, k) => value + (second[k] - value) * share);
 
 /** @typedef {{ width: number, height: number }} Size */
-// A colour over a line at a spring, and how much of that.
-/** @typedef {(spring: number) => [colour: string, alpha: number] | null} TintOf */
+/** A colour over a line at a spring, and how much of that.
+ * @typedef {(spring: number) => [colour: string, alpha: number] | null} TintOf */
 
-// The colour that has `share` (0..1) of the second in it; colours are '#rrggbb'.
-/** @type {(first: string, second: string, share: number) => string} */
+/** The colour that has `share` (0..1) of the second in it; colours are '#rrggbb'.
+ * @type {(first: string, second: string, share: number) => string} */
 export function mixed(first, second, share) {
   const channels = mean(parse(first), parse(second), share);
   return `#${channels.map((value) => Math.round(value).toString(16).padStart(2, '0')).join('')}`;
@@ -27,21 +26,21 @@ export const outlineOf = (colour) => mixed(colour, '#28003c', 0.46);
 const WHITE = [255, 255, 255];
 /** @type {Map<string, unknown>} */
 const kept = new Map();
-// Textures by their names in a scene.
-/** @type {Map<string, CanvasPattern>} */
+/** Textures by their names in a scene.
+ * @type {Map<string, CanvasPattern>} */
 const textures = new Map();
 /** @type {(name: string) => CanvasPattern | string} */
 const textureOf = (name) => textures.get(name) ?? 'transparent';
 
-// What was made under a name, or is made now.
-/** @template T @param {string} name @param {() => T} make @returns {T} */
+/** What was made under a name, or is made now.
+ * @template T @param {string} name @param {() => T} make @returns {T} */
 function once(name, make) {
   if (!kept.has(name)) kept.set(name, make());
   return /** @type {T} */ (kept.get(name));
 }
 
-// What draws on a canvas.
-/** @type {(canvas: HTMLCanvasElement, settings?: CanvasRenderingContext2DSettings) => CanvasRenderingContext2D} */
+/** What draws on a canvas.
+ * @type {(canvas: HTMLCanvasElement, settings?: CanvasRenderingContext2DSettings) => CanvasRenderingContext2D} */
 export function contextOf(canvas, settings) {
   const context = canvas.getContext('2d', settings);
   if (!context) throw new Error('this canvas has no 2d context');
@@ -55,8 +54,8 @@ export function canvasOf(width, height, settings) {
   return contextOf(canvas, settings);
 }
 
-// A picture as what fills all around it.
-/** @type {(context: CanvasRenderingContext2D) => CanvasPattern} */
+/** A picture as what fills all around it.
+ * @type {(context: CanvasRenderingContext2D) => CanvasPattern} */
 function tiled(context) {
   const pattern = context.createPattern(context.canvas, 'repeat');
   if (!pattern) throw new Error('a picture has no size');
@@ -70,8 +69,8 @@ function patternOf(image) {
   return tiled(context);
 }
 
-// Closed loops of points [x, y, ...] as one path, with their corners cut by `keep` of their sides.
-/** @type {(loops: Numbers[], keep?: number) => Path2D} */
+/** Closed loops of points [x, y, ...] as one path, with their corners cut by `keep` of their sides.
+ * @type {(loops: Numbers[], keep?: number) => Path2D} */
 export function pathOf(loops, keep = 0) {
   const path = new Path2D(), cut = Math.min(2 * keep, 0.5);
   for (const points of loops) {
@@ -86,8 +85,8 @@ export function pathOf(loops, keep = 0) {
   return path;
 }
 
-// A loop of points moved outwards by so much; it runs anticlockwise, and a hole the other way.
-/** @type {(points: Float64Array, by: number) => Float64Array} */
+/** A loop of points moved outwards by so much; it runs anticlockwise, and a hole the other way.
+ * @type {(points: Float64Array, by: number) => Float64Array} */
 export function grown(points, by) {
   return points.map((value, k) => {
     const x = k & ~1, before = (x + points.length - 2) % points.length, after = (x + 2) % points.length;
@@ -96,8 +95,8 @@ export function grown(points, by) {
   });
 }
 
-// Left, top, right and bottom of points [x, y, ...].
-/** @type {(points: Numbers) => Box} */
+/** Left, top, right and bottom of points [x, y, ...].
+ * @type {(points: Numbers) => Box} */
 export function boxOf(points) {
   /** @type {Box} */
   const box = [Infinity, Infinity, -Infinity, -Infinity];
@@ -110,9 +109,9 @@ export function boxOf(points) {
 
 const INSIDE = 32, LIT = 128, STRONGEST = 1.5;
 
-// Colours of a skin by how far inside a place is, and how lit. look: colours near its edge and deep inside, the
-// strength of light, the colour and strength of shade, its gleam, how much shows through inside, and how little at all.
-/** @type {(look: SkinLook) => Uint32Array} */
+/** Colours of a skin by how far inside a place is, and how lit. look: colours near its edge and deep inside, the
+ * strength of light, the colour and strength of shade, its gleam, how much shows through inside, and how little at all.
+ * @type {(look: SkinLook) => Uint32Array} */
 function table(look) {
   return once(look.join(), () => {
     const [, , up, , down, gloss, clear, alpha] = look, [near, deep, shade] = [look[0], look[1], look[3]].map(parse);
@@ -129,8 +128,8 @@ function table(look) {
   });
 }
 
-// Blur cells in rows by the mean of `reach` of them to each side, so many times; cells at the border are empty.
-/** @type {(cells: Float32Array, columns: number, reach: number, times: number) => void} */
+/** Blur cells in rows by the mean of `reach` of them to each side, so many times; cells at the border are empty.
+ * @type {(cells: Float32Array, columns: number, reach: number, times: number) => void} */
 function blur(cells, columns, reach, times) {
   const full = 2 * reach + 1;
   for (let time = 0; time < 2 * times; time++) {
@@ -150,8 +149,8 @@ function blur(cells, columns, reach, times) {
 // Pixels of the page to one of a shadow, and how often that is blurred.
 const SHADOW = 6, SOFTNESS = 3, shadowed = canvasOf(1, 1, { willReadFrequently: true });
 
-// Lay the soft shadow of what a function draws on a picture of this size: down and to the right.
-/** @type {(onto: CanvasRenderingContext2D, size: Size, theme: Pick<Theme, 'shadow' | 'shadow_strength'>,
+/** Lay the soft shadow of what a function draws on a picture of this size: down and to the right.
+ * @type {(onto: CanvasRenderingContext2D, size: Size, theme: Pick<Theme, 'shadow' | 'shadow_strength'>,
  *   scale: number, draw: (context: CanvasRenderingContext2D) => void) => void} */
 export function castShadow(onto, { width, height }, { shadow: colour, shadow_strength: strength }, scale, draw) {
   const context = shadowed, { canvas } = context, columns = Math.ceil(width / SHADOW) + 2 * SOFTNESS;
@@ -184,10 +183,10 @@ const CELL = 0.25, REACH = 3, TIMES = 3, AROUND = REACH * (TIMES - 1) + 1;
 const DOWNWARDS = 0.9, ACROSS = 0.42, STEEPNESS = 1.45 / CELL / 2;
 const FLUSH = 0.74, SQUEEZED = parse(COLOURS.SQUEEZED), STRETCHED = parse(COLOURS.STRETCHED);
 
-// Make the skin of a shape that bulges, of which a view of this size is seen. The shape has a path, a box, a depth, a
-// look, and splats of strain or none: it is filled with cells; blurred they are how high its skin stands, and the slope
-// of that is how it is lit.
-/** @type {(shape: Skinned, width: number, height: number) => void} */
+/** Make the skin of a shape that bulges, of which a view of this size is seen. The shape has a path, a box, a depth, a
+ * look, and splats of strain or none: it is filled with cells; blurred they are how high its skin stands, and the slope
+ * of that is how it is lit.
+ * @type {(shape: Skinned, width: number, height: number) => void} */
 export function makeSkin(shape, width, height) {
   const { box: [left, top, right, bottom], depth, path, look } = shape, cell = Math.max(CELL * depth, 1);
   const room = AROUND * cell, x = Math.max(left, -room) - room, y = Math.max(top, -room) - room;
@@ -221,8 +220,8 @@ export function makeSkin(shape, width, height) {
   shape.fill.setTransform(new DOMMatrix([cell, 0, 0, cell, x, y]));
 }
 
-// How squeezed (-1) or stretched (1) cells are, by splats [x, y, amount] that reach so far.
-/** @type {(splats: Splat[], reach: number, columns: number, rows: number) => Float32Array} */
+/** How squeezed (-1) or stretched (1) cells are, by splats [x, y, amount] that reach so far.
+ * @type {(splats: Splat[], reach: number, columns: number, rows: number) => Float32Array} */
 function strainOf(splats, reach, columns, rows) {
   const sum = new Float32Array(columns * rows), weight = new Float32Array(columns * rows).fill(0.25);
   for (const [x, y, amount] of splats) {
@@ -237,16 +236,16 @@ function strainOf(splats, reach, columns, rows) {
   return sum.map((value, k) => clamp(value / weight[k], -1, 1));
 }
 
-// Fill a shape with its skin.
-/** @type {(context: CanvasRenderingContext2D, shape: Pick<Skinned, 'fill' | 'path'>) => void} */
+/** Fill a shape with its skin.
+ * @type {(context: CanvasRenderingContext2D, shape: Pick<Skinned, 'fill' | 'path'>) => void} */
 export function fillSkin(context, { fill, path }) {
   if (!fill) return;
   context.fillStyle = fill;
   context.fill(path, 'evenodd');
 }
 
-// Of each kind of line: the line around it and its own colour.
-/** @type {Record<string, [line: string | null, own: string] | []>} */
+/** Of each kind of line: the line around it and its own colour.
+ * @type {Record<string, [line: string | null, own: string] | []>} */
 const LINES = {
   rope: ['#5b3d20', '#c89b62'], cable: ['#3a4252', '#a3adbf'], deck: ['#4a2e16', '#c48e58'], chain: [],
   wood: ['#3a2614', '#c99258'], thread: [null, '#aeb5c2'], silk: [null, '#8c9bb2'], steel: ['#161b26', '#96a3ba'],
@@ -256,8 +255,8 @@ const ALONG = 32, HALF_TILE = 8;
 // Lines narrower than this have no texture, nor has any where there are so many.
 const THIN = 1.1, MOST_STRIPS = 1500;
 
-// Keep the pictures of a scene: textures of lines and sheets.
-/** @type {(pictures: Scene['pictures']) => void} */
+/** Keep the pictures of a scene: textures of lines and sheets.
+ * @type {(pictures: Scene['pictures']) => void} */
 export function keepPictures(pictures) {
   for (const [name, { rows, bytes }] of Object.entries(pictures)) {
     const values = Uint8ClampedArray.from(atob(bytes), (letter) => letter.charCodeAt(0));
@@ -265,9 +264,9 @@ export function keepPictures(pictures) {
   }
 }
 
-// Fill a strip from a to b with a style, in the coordinates of a tile: between two places along it, and lit from above.
-// within: a path in those coordinates, of what there is of it.
-/** @type {(context: CanvasRenderingContext2D, style: string | CanvasPattern, piece: LinePiece, half: number,
+/** Fill a strip from a to b with a style, in the coordinates of a tile: between two places along it, and lit from above.
+ * within: a path in those coordinates, of what there is of it.
+ * @type {(context: CanvasRenderingContext2D, style: string | CanvasPattern, piece: LinePiece, half: number,
  *   within?: Path2D) => void} */
 function strip(context, style, [ax, ay, bx, by, from = 0, to = 1], half, within) {
   const dx = bx - ax, dy = by - ay, length = Math.hypot(dx, dy), wide = half / HALF_TILE / length;
@@ -281,9 +280,9 @@ function strip(context, style, [ax, ay, bx, by, from = 0, to = 1], half, within)
   context.setTransform(before);
 }
 
-// Draw pieces [ax, ay, bx, by, from, to, spring] as a bar of a kind, or of a colour, along a path through them.
-// tintOf(spring): a colour over it and how much of that, or nothing.
-/** @type {(context: CanvasRenderingContext2D, pieces: LinePiece[], path: Path2D, half: number, kind: string,
+/** Draw pieces [ax, ay, bx, by, from, to, spring] as a bar of a kind, or of a colour, along a path through them.
+ * tintOf(spring): a colour over it and how much of that, or nothing.
+ * @type {(context: CanvasRenderingContext2D, pieces: LinePiece[], path: Path2D, half: number, kind: string,
  *   tintOf?: TintOf) => void} */
 export function drawBar(context, pieces, path, half, kind, tintOf) {
   const [line, own] = LINES[kind] ?? [outlineOf(kind), kind];
@@ -301,16 +300,16 @@ export function drawBar(context, pieces, path, half, kind, tintOf) {
   }
 }
 
-// A muscle between two places, as thick as its belly.
-/** @type {(context: CanvasRenderingContext2D, ends: [number, number, number, number], belly: number) => void} */
+/** A muscle between two places, as thick as its belly.
+ * @type {(context: CanvasRenderingContext2D, ends: [number, number, number, number], belly: number) => void} */
 export function drawMuscle(context, ends, belly) {
   const lens = new Path2D('M0 6C19 -2.4 45 -2.4 64 6V10C45 18.4 19 18.4 0 10Z');
   strip(context, '#4a1622', [...ends, 0, 2], belly + 1.2, lens);
   strip(context, textureOf('muscle'), [...ends, 0, 2], belly, lens);
 }
 
-// Turf on those of the pieces [ax, ay, bx, by] of the ground's outline that face up.
-/** @type {(context: CanvasRenderingContext2D, pieces: LinePiece[], theme: Theme, scale: number) => void} */
+/** Turf on those of the pieces [ax, ay, bx, by] of the ground's outline that face up.
+ * @type {(context: CanvasRenderingContext2D, pieces: LinePiece[], theme: Theme, scale: number) => void} */
 export function drawTurf(context, pieces, theme, scale) {
   let along = 0;
   /** @type {LinePiece[]} */
@@ -326,8 +325,8 @@ export function drawTurf(context, pieces, theme, scale) {
   for (const piece of turf) strip(context, grass, piece, 12 * scale);
 }
 
-// A path of lines [ax, ay, bx, by].
-/** @type {(pieces: (LinePiece | Float64Array)[]) => Path2D} */
+/** A path of lines [ax, ay, bx, by].
+ * @type {(pieces: (LinePiece | Float64Array)[]) => Path2D} */
 export function linesOf(pieces) {
   const path = new Path2D();
   for (const [ax, ay, bx, by] of /** @type {LinePiece[]} */ (pieces)) {
@@ -357,8 +356,8 @@ export function disc(context, x, y, radius, colour, alpha = 1) {
   context.globalAlpha = 1;
 }
 
-// Waves that tile and look like noise, of about so many to a picture; u and v: angles across and down.
-/** @type {(u: number, v: number, count: number) => number} */
+/** Waves that tile and look like noise, of about so many to a picture; u and v: angles across and down.
+ * @type {(u: number, v: number, count: number) => number} */
 const noise = (u, v, count) => [1, 2, 3, 4, 5, 6, 7].reduce((sum, k) => {
   const way = 2.4 * k + count, across = Math.round(count * Math.cos(way)), down = Math.round(count * Math.sin(way));
   return sum + Math.sin(across * u + down * v + k * k) / 1.9;
@@ -375,8 +374,8 @@ const GRAINS = {
   1.3 * noise(u, v, 10) + 4 * Math.tanh(2 * Math.sin(4 * v + Math.sin(u) + 0.6 * noise(u, v, 4)))),
 };
 
-// Lay the grain of earth or wood over a path; its place on the page moves with x and y.
-/** @type {(context: CanvasRenderingContext2D, path: Path2D, kind: string, x: number, y: number) => void} */
+/** Lay the grain of earth or wood over a path; its place on the page moves with x and y.
+ * @type {(context: CanvasRenderingContext2D, path: Path2D, kind: string, x: number, y: number) => void} */
 export function layGrain(context, path, kind, x, y) {
   const grain = once(`grain ${kind}`, () => [1, -1].map((sign) => {
     const image = new ImageData(GRAIN, GRAIN), unit = (2 * Math.PI) / GRAIN;
@@ -388,8 +387,8 @@ export function layGrain(context, path, kind, x, y) {
     }
     return patternOf(image);
   }));
-  // What is lighter is added, and what is darker taken away.
-  /** @type {const} */ (['lighter', 'difference']).forEach((how, k) => {
+  /** What is lighter is added, and what is darker taken away.
+   * @type {const} */ (['lighter', 'difference']).forEach((how, k) => {
     context.globalCompositeOperation = how;
     grain[k].setTransform(new DOMMatrix([1, 0, 0, 1, x, y]));
     context.fillStyle = grain[k];
@@ -398,8 +397,8 @@ export function layGrain(context, path, kind, x, y) {
   context.globalCompositeOperation = 'source-over';
 }
 
-// A picture that is drawn once, between -1 and 1 each way.
-/** @type {(name: string, size: number, draw: (context: CanvasRenderingContext2D) => void) => HTMLCanvasElement} */
+/** A picture that is drawn once, between -1 and 1 each way.
+ * @type {(name: string, size: number, draw: (context: CanvasRenderingContext2D) => void) => HTMLCanvasElement} */
 function sprite(name, size, draw) {
   return once(`${name} ${size}`, () => {
     const context = canvasOf(size, size);
@@ -409,8 +408,8 @@ function sprite(name, size, draw) {
   });
 }
 
-// Fill the square with a colour that changes from a place to the rim of a disc.
-/** @type {(context: CanvasRenderingContext2D, from: Point, rim: [x: number, y: number, radius: number],
+/** Fill the square with a colour that changes from a place to the rim of a disc.
+ * @type {(context: CanvasRenderingContext2D, from: Point, rim: [x: number, y: number, radius: number],
  *   stops: [at: number, colour: string][]) => void} */
 export function radial(context, [x, y], [middleX, middleY, radius], stops) {
   const fade = context.createRadialGradient(x, y, 0, middleX, middleY, radius);
@@ -419,8 +418,8 @@ export function radial(context, [x, y], [middleX, middleY, radius], stops) {
   context.fillRect(-1, -1, 2, 2);
 }
 
-// A disc of a colour that fades out towards its rim.
-/** @type {(context: CanvasRenderingContext2D, x: number, y: number, radius: number, colour: string,
+/** A disc of a colour that fades out towards its rim.
+ * @type {(context: CanvasRenderingContext2D, x: number, y: number, radius: number, colour: string,
  *   alpha: number) => void} */
 export function glow(context, x, y, radius, colour, alpha) {
   /** @type {(k: number) => [number, string]} */
@@ -447,8 +446,8 @@ const MARKS = {
   },
 };
 
-// A ball of a kind, lit from above, with its mark turned by an angle (anticlockwise).
-/** @type {(context: CanvasRenderingContext2D, x: number, y: number, radius: number, angle: number, kind: string,
+/** A ball of a kind, lit from above, with its mark turned by an angle (anticlockwise).
+ * @type {(context: CanvasRenderingContext2D, x: number, y: number, radius: number, angle: number, kind: string,
  *   colour: string) => void} */
 export function ball(context, x, y, radius, angle, kind, colour) {
   if (radius < 3) {
@@ -483,8 +482,8 @@ export function ball(context, x, y, radius, angle, kind, colour) {
   context.restore();
 }
 
-// The corners of two triangles that are a cell of a sheet, around it, or null. texels: places of corners in its picture.
-/** @type {(triangles: number[][], texels: number[][]) => SheetPart | null} */
+/** The corners of two triangles that are a cell of a sheet, around it, or null. texels: places of corners in its picture.
+ * @type {(triangles: number[][], texels: number[][]) => SheetPart | null} */
 function cellOf(triangles, texels) {
   /** @type {Map<number, number[]>} */
   const at = new Map(triangles.flatMap((slots, n) =>
@@ -496,11 +495,12 @@ function cellOf(triangles, texels) {
   const corner = (u, v) => [...at].filter(([, place]) => place[0] === across[u] && place[1] === down[v])
     .map(([slot]) => slot);
   const corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)], slots = corners.flat();
-  return corners.some(({ length }) => length !== 1) ? null : { slots, texels: [across[0], down[0], across[1], down[1]] };
+  if (corners.some(({ length }) => length !== 1)) return null;
+  return { slots, texels: [across[0], down[0], across[1], down[1]] };
 }
 
-// Triangles of a sheet as its parts: pairs of them as cells, and the others.
-/** @type {(triangles: number[][], texels: number[][]) => SheetPart[]} */
+/** Triangles of a sheet as its parts: pairs of them as cells, and the others.
+ * @type {(triangles: number[][], texels: number[][]) => SheetPart[]} */
 export function partsOf(triangles, texels) {
   const parts = [];
   for (let k = 0; k < triangles.length; k++) {
@@ -515,8 +515,8 @@ export function partsOf(triangles, texels) {
 // that no seam shows.
 const ASKEW = 1, SEAM = 0.6;
 
-// Fill parts of a sheet with its picture; at: places on the page by slot.
-/** @type {(context: CanvasRenderingContext2D, name: string, parts: SheetPart[], at: Numbers) => void} */
+/** Fill parts of a sheet with its picture; at: places on the page by slot.
+ * @type {(context: CanvasRenderingContext2D, name: string, parts: SheetPart[], at: Numbers) => void} */
 export function fillParts(context, name, parts, at) {
   const before = context.getTransform();
   context.fillStyle = textureOf(name);
@@ -542,8 +542,8 @@ function fillCell(context, points, [left, top, right, bottom]) {
   fillTriangle(context, [x2, y2, x3, y3, x0, y0], [right, bottom, left, bottom, left, top]);
 }
 
-// Go over to the coordinates of a picture, of which three places lie on the page there.
-/** @type {(context: CanvasRenderingContext2D, points: number[], texels: number[]) => void} */
+/** Go over to the coordinates of a picture, of which three places lie on the page there.
+ * @type {(context: CanvasRenderingContext2D, points: number[], texels: number[]) => void} */
 function lay(context, [x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]) {
   const area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
   // How x and y change across and down the picture.

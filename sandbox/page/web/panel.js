@@ -10,8 +10,8 @@ const STEP = 0.02, MARGIN = 14;
 const WAYS = new Map(Object.entries({ ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP],
   ArrowDown: [0, -STEP] }));
 
-// A share in per cent, of two digits.
-/** @type {(share: number) => string} */
+/** A share in per cent, of two digits.
+ * @type {(share: number) => string} */
 function perCent(share) {
   return share < PAD.UNSEEN ? '0 %' : `${Number((100 * share).toPrecision(2))} %`;
 }
@@ -26,8 +26,8 @@ export const element = (name, attributes = {}, ...children) => {
 };
 
 /** @typedef {MaterialRow & { sags: SagMap | null, scale: Scale }} Material */
-// Where on the pad a place of an axis is, and the size of its map [pixels].
 /**
+ * Where on the pad a place of an axis is, and the size of its map [pixels].
  * @typedef {{ across: (place: number) => number, up: (place: number) => number, wide: number, high: number }} PadMap
  */
 
@@ -38,9 +38,9 @@ export class Panel {
   /** @type {Material | null} */
   chosen = null;
 
-  // rows: materials, by the words of firmness their Cs and Cd; what sags, the sentence that says how far, and the map of
-  // the pad, where something sags.
-  /** @param {HTMLElement} root @param {Run} run @param {MaterialRow[]} rows @param {Level} level */
+  /** rows: materials, by the words of firmness their Cs and Cd; what sags, the sentence that says how far, and the map of
+   * the pad, where something sags.
+   * @param {HTMLElement} root @param {Run} run @param {MaterialRow[]} rows @param {Level} level */
   constructor(root, run, rows, level) {
     this.run = run;
     this.level = level;
@@ -99,8 +99,8 @@ export class Panel {
     return { field, label: element('label', {}, `Gravity ${axis} [m/s²]`, field) };
   }
 
-  // Cs and Cd of the first spring of the material that is chosen.
-  /** @type {Point} */
+  /** Cs and Cd of the first spring of the material that is chosen.
+   * @type {Point} */
   get pair() {
     const { world } = this.run, material = world.view('state.material'), slot = this.chosen?.slot ?? null;
     const spring = material.findIndex((own) => (slot === null ? own >= 0 : own === slot));
@@ -145,8 +145,8 @@ export class Panel {
     this.#end();
   }
 
-  // The word for how far it sags; where nothing is known of that, the word whose stiffness Cs / (1 - Cd) is nearest.
-  /** @type {(chosen: Material, pair: Point) => string} */
+  /** The word for how far it sags; where nothing is known of that, the word whose stiffness Cs / (1 - Cd) is nearest.
+   * @type {(chosen: Material, pair: Point) => string} */
   #wordFor({ sags, words }, [stiffness, damping]) {
     if (stiffness === 1 && damping === 1) return PAD.RIGID;
     if (sags) return sags.wordAt(stiffness, damping);
@@ -157,8 +157,8 @@ export class Panel {
       (Math.abs(firmness(each[1]) - own) < Math.abs(firmness(best[1]) - own) ? each : best))[0];
   }
 
-  // The sentence that says how far it sags.
-  /** @type {(chosen: Material, pair: Point) => string} */
+  /** The sentence that says how far it sags.
+   * @type {(chosen: Material, pair: Point) => string} */
   #sentence({ says, sags }, pair) {
     if (!says || !sags) return '';
     const sag = pair.every((value) => value === 1) ? 0 : sags.at(...pair);
@@ -256,8 +256,8 @@ export class Panel {
     context.fill();
   }
 
-  // Lines between the words for how far it sags, and the words, as the window draws them.
-  /** @type {(context: CanvasRenderingContext2D, sags: SagMap, subject: string, style: CSSStyleDeclaration,
+  /** Lines between the words for how far it sags, and the words, as the window draws them.
+   * @type {(context: CanvasRenderingContext2D, sags: SagMap, subject: string, style: CSSStyleDeclaration,
    *   map: PadMap) => void} */
   #drawWords(context, sags, subject, style, { across, up, wide, high }) {
     context.fillStyle = style.getPropertyValue('--accent');

@@ -7,8 +7,8 @@ import { FACES } from './shared.js';
 
 const { MOST_COMPARED } = FACES, NEARER = 0.12;
 
-// The triangles of a world that keep their areas, by slot, counter-clockwise in their form.
-/** @type {(world: World) => number[][]} */
+/** The triangles of a world that keep their areas, by slot, counter-clockwise in their form.
+ * @type {(world: World) => number[][]} */
 export function wholeTriangles(world) {
   const active = world.view('state.constraint_active'), kind = world.view('state.constraint_kind');
   const first = world.view('state.constraint_first'), corners = world.view('state.constraint_corners');
@@ -23,8 +23,8 @@ export function wholeTriangles(world) {
   return found;
 }
 
-// The triangles of a body that are left. A body that keeps no areas has one while the springs along its sides are there.
-/** @type {(body: FilledBody, active: Flag, whole: number[][]) => number[][]} */
+/** The triangles of a body that are left. A body that keeps no areas has one while the springs along its sides are there.
+ * @type {(body: FilledBody, active: Flag, whole: number[][]) => number[][]} */
 function leftOf({ triangles, sides, slots, keeps_area: keepsArea }, active, whole) {
   /** @type {number[][]} */
   const all = [];
@@ -36,8 +36,8 @@ function leftOf({ triangles, sides, slots, keeps_area: keepsArea }, active, whol
   return whole.filter((triangle) => triangle.every((slot) => own.has(slot)));
 }
 
-// What is left of a body, by what its springs join, the piece of most triangles first.
-/** @type {(body: FilledBody, active: Flag, whole: number[][]) => Piece[]} */
+/** What is left of a body, by what its springs join, the piece of most triangles first.
+ * @type {(body: FilledBody, active: Flag, whole: number[][]) => Piece[]} */
 export function piecesOf(body, active, whole) {
   const springs = body.springs.filter(([spring]) => active[spring]);
   /** @type {Map<number, number>} */
@@ -66,8 +66,8 @@ export function piecesOf(body, active, whole) {
   });
 }
 
-// Loops of particles around triangles of one winding: sides of one of them alone.
-/** @type {(triangles: number[][]) => number[][]} */
+/** Loops of particles around triangles of one winding: sides of one of them alone.
+ * @type {(triangles: number[][]) => number[][]} */
 function bordersOf(triangles) {
   /** @type {Map<number, [number, number]>} */
   const sides = new Map();
@@ -103,20 +103,20 @@ function bordersOf(triangles) {
 const middleOf = (places) => [places.reduce((sum, [x]) => sum + x, 0) / places.length,
   places.reduce((sum, [, y]) => sum + y, 0) / places.length];
 
-// How far a place is from a line from a to b.
-/** @type {(place: Point, a: Point, b: Point) => number} */
+/** How far a place is from a line from a to b.
+ * @type {(place: Point, a: Point, b: Point) => number} */
 function distance([x, y], [ax, ay], [bx, by]) {
   const dx = bx - ax, dy = by - ay, along = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1);
   const part = Math.min(Math.max(along, 0), 1);
   return Math.hypot(x - ax - part * dx, y - ay - part * dy);
 }
 
-// The sides of a loop, by the places of their ends.
-/** @type {(loop: number[], form: Form) => [Point, Point][]} */
+/** The sides of a loop, by the places of their ends.
+ * @type {(loop: number[], form: Form) => [Point, Point][]} */
 const sidesOf = (loop, form) => loop.map((slot, k) => [form(slot), form(loop[(k + 1) % loop.length])]);
 
-// How far a place is from triangles of a piece, 0 inside of one.
-/** @type {(place: Point, piece: Piece, form: Form) => number} */
+/** How far a place is from triangles of a piece, 0 inside of one.
+ * @type {(place: Point, piece: Piece, form: Form) => number} */
 function awayFrom(place, { left }, form) {
   return left.reduce((least, slots) => {
     const ends = sidesOf(slots, form);
@@ -126,8 +126,8 @@ function awayFrom(place, { left }, form) {
   }, Infinity);
 }
 
-// Where the largest circle inside a piece lies in the form, rather near to a place, and its radius [m].
-/** @type {(piece: Piece, form: Form, near: Point) => [place: Point, room: number]} */
+/** Where the largest circle inside a piece lies in the form, rather near to a place, and its radius [m].
+ * @type {(piece: Piece, form: Form, near: Point) => [place: Point, room: number]} */
 function spotIn({ left, slots, loops }, form, near) {
   const halves = left.flatMap((corners) => corners.map((slot, k) =>
     middleOf([form(slot), form(corners[(k + 1) % 3])])));
@@ -143,9 +143,9 @@ function spotIn({ left, slots, loops }, form, near) {
   return best;
 }
 
-// Faces of the pieces of a body, and which pieces are crumbs, too small for a skin: that of the whole stays with the
-// piece it lies on, where it fits. origin: places at creation; shares: of the room of the whole, see scene.py.
-/** @type {(body: FilledBody, pieces: Piece[], origin: Float64Array, shares: Scene['pieces']) => Piece[]} */
+/** Faces of the pieces of a body, and which pieces are crumbs, too small for a skin: that of the whole stays with the
+ * piece it lies on, where it fits. origin: places at creation; shares: of the room of the whole, see scene.py.
+ * @type {(body: FilledBody, pieces: Piece[], origin: Float64Array, shares: Scene['pieces']) => Piece[]} */
 export function withFaces(body, pieces, origin, shares) {
   const { slots, springs, angle, spot: [x, y, room], triangles } = body;
   if (pieces.length === 1 && 3 * pieces[0].left.length === triangles.length) {

@@ -7,12 +7,12 @@ import { canonical } from './world.js';
 
 const { TICK_DIGITS, ARRAY_DIGITS, CHAIN_DIGITS, STATE_TICKS } = RECORDING, SLICE = 12;
 const encoder = new TextEncoder();
-// So that the page goes on meanwhile [ms].
-/** @type {() => Promise<void>} */
+/** So that the page goes on meanwhile [ms].
+ * @type {() => Promise<void>} */
 const pause = () => new Promise((resolve) => setTimeout(resolve));
 
-// Run commands on a world from its start; gives every tick its hash, and the commands that follow it.
-/** @type {(world: World, commands: Done[], ticks: number) => AsyncGenerator<{ hash: StateHash, commands: Done[] }>} */
+/** Run commands on a world from its start; gives every tick its hash, and the commands that follow it.
+ * @type {(world: World, commands: Done[], ticks: number) => AsyncGenerator<{ hash: StateHash, commands: Done[] }>} */
 async function* repeated(world, commands, ticks) {
   let next = 0, since = performance.now();
   for (;;) {
@@ -29,8 +29,8 @@ async function* repeated(world, commands, ticks) {
   }
 }
 
-// The first tick of a recording that has not the hash that it says; null: each has.
-/** @type {(world: World, recording: Recording) => Promise<number | null>} */
+/** The first tick of a recording that has not the hash that it says; null: each has.
+ * @type {(world: World, recording: Recording) => Promise<number | null>} */
 export async function verified(world, { commands, hashes }) {
   for await (const { hash } of repeated(world, commands, hashes.length - 1)) {
     if (!hash.whole.startsWith(hashes[world.time])) return world.time;
@@ -38,8 +38,8 @@ export async function verified(world, { commands, hashes }) {
   return null;
 }
 
-// The file of a run, compressed. world: a fresh one; about: the table; header: the first line without its end.
-/** @type {(world: World, about: About, header: string, commands: Done[], ticks: number, progress: (done: number,
+/** The file of a run, compressed. world: a fresh one; about: the table; header: the first line without its end.
+ * @type {(world: World, about: About, header: string, commands: Done[], ticks: number, progress: (done: number,
  *   all: number) => void) => Promise<Blob>} */
 export async function written(world, about, header, commands, ticks, progress) {
   /** @type {string[]} */
@@ -92,8 +92,8 @@ export async function written(world, about, header, commands, ticks, progress) {
   return new Blob([new Uint8Array(await through(encoder.encode(lines.join('')), new CompressionStream('gzip')))]);
 }
 
-// JSON with the spaces that Python puts into it.
-/** @type {(value: unknown) => string} */
+/** JSON with the spaces that Python puts into it.
+ * @type {(value: unknown) => string} */
 function spaced(value) {
   if (Array.isArray(value)) return `[${value.map(spaced).join(', ')}]`;
   if (value === null || typeof value !== 'object') return JSON.stringify(value);

@@ -10,9 +10,9 @@ export class Run {
   // Whether what goes on now was begun by what is told again, so that nobody is there to end it.
   #isTold = true;
 
-  // commands: [{ tick, gesture, record, changes }] of a recording in order, with slots in place of names but where
-  // there are changes; ticks: of it.
-  /** @param {World} world @param {Done[]} [commands] @param {number} [ticks] */
+  /** commands: [{ tick, gesture, record, changes }] of a recording in order, with slots in place of names but where
+   * there are changes; ticks: of it.
+   * @param {World} world @param {Done[]} [commands] @param {number} [ticks] */
   constructor(world, commands = [], ticks = 0) {
     this.world = world;
     this.commands = commands;
@@ -39,8 +39,8 @@ export class Run {
     return (this.gesture += 1);
   }
 
-  // Carry out a command now, and forget what would have come later. Throws a Refusal where it cannot be.
-  /** @type {(record: Command, gesture: number) => void} */
+  /** Carry out a command now, and forget what would have come later. Throws a Refusal where it cannot be.
+   * @type {(record: Command, gesture: number) => void} */
   command(record, gesture) {
     this.takeUp(gesture);
     const fault = this.world.commands.faultIn(this.world, record);
@@ -51,8 +51,8 @@ export class Run {
     this.last = this.time;
   }
 
-  // The same. Whether it could be.
-  /** @type {(record: Command, gesture: number) => boolean} */
+  /** The same. Whether it could be.
+   * @type {(record: Command, gesture: number) => boolean} */
   submit(record, gesture) {
     try {
       this.command(record, gesture);
@@ -63,16 +63,16 @@ export class Run {
     return true;
   }
 
-  // Go on from here by hand, with a gesture that ends what goes on.
-  /** @type {(gesture: number) => void} */
+  /** Go on from here by hand, with a gesture that ends what goes on.
+   * @type {(gesture: number) => void} */
   takeUp(gesture) {
     if (this.isFollowing) this.takeOver();
     if (this.#isTold) this.#endAll(gesture);
   }
 
-  // Let go what hands hold and stop what is driven, which nobody does any more. gesture: null: each belongs to what
-  // began it.
-  /** @type {(gesture?: number | null) => void} */
+  /** Let go what hands hold and stop what is driven, which nobody does any more. gesture: null: each belongs to what
+   * began it.
+   * @type {(gesture?: number | null) => void} */
   #endAll(gesture = null) {
     this.#isTold = false;
     /** @type {Map<string, [Extract<Command, { type: 'release' | 'set_drive' }>, number]>} */
@@ -116,8 +116,8 @@ export class Run {
     }
   }
 
-  // Go to a tick that was reached, with those of its commands that come before one of this place.
-  /** @type {(tick: number, place?: number) => Done[]} */
+  /** Go to a tick that was reached, with those of its commands that come before one of this place.
+   * @type {(tick: number, place?: number) => Done[]} */
   seek(tick, place = Infinity) {
     const state = this.kept.findLast((each) => each.time <= tick) ?? this.kept[0];
     this.world.restore(state);

@@ -49,8 +49,8 @@ export class SagMap {
   #borders = [];
   #bordersOf = '';
 
-  // See SagMap.as_data in Python: logarithms of sags in steps, column by column, on an axis both ways.
-  /** @param {SagMapData} data */
+  /** See SagMap.as_data in Python: logarithms of sags in steps, column by column, on an axis both ways.
+   * @param {SagMapData} data */
   constructor({ lowest, rest, size, step, logs, names, edges, places }) {
     this.scale = new Scale(lowest, rest);
     this.size = size;
@@ -60,8 +60,8 @@ export class SagMap {
     this.places = places;
   }
 
-  // The logarithm of the sag at places 0..1 across and up, between the values around it.
-  /** @type {(across: number, up: number) => number} */
+  /** The logarithm of the sag at places 0..1 across and up, between the values around it.
+   * @type {(across: number, up: number) => number} */
   #log(across, up) {
     const { size, logs } = this, x = across * (size - 1), y = up * (size - 1),
       left = Math.min(Math.floor(x), size - 2), low = Math.min(Math.floor(y), size - 2), right = x - left, above = y - low;
@@ -80,8 +80,8 @@ export class SagMap {
     return this.#log(this.scale.placeOf(stiffness), this.scale.placeOf(damping));
   }
 
-  // The sag at Cs and Cd.
-  /** @type {(stiffness: number, damping: number) => number} */
+  /** The sag at Cs and Cd.
+   * @type {(stiffness: number, damping: number) => number} */
   at(stiffness, damping) {
     return Math.exp(this.#logAt(stiffness, damping));
   }
@@ -91,8 +91,8 @@ export class SagMap {
     return this.names[this.#number(this.#logAt(stiffness, damping))];
   }
 
-  // Pixels [x, y] of a map of that size between two words, y up.
-  /** @type {(wide: number, high: number) => Point[]} */
+  /** Pixels [x, y] of a map of that size between two words, y up.
+   * @type {(wide: number, high: number) => Point[]} */
   borders(wide, high) {
     if (this.#bordersOf === `${wide} ${high}`) return this.#borders;
     this.#bordersOf = `${wide} ${high}`;

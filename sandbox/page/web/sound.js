@@ -6,8 +6,8 @@ import { SOUND } from './shared.js';
 const { SOFTEST, HARDEST, NEWS, MEMORY, MOST, JERK, HARD_JERK, REST, VOICES, LEVELS, MOTOR_FADE: FADE } = SOUND;
 const { SCALE, LOWEST, STEPS, TUNED, HIGHEST_STRING, SNAP_PITCH, MOTOR_PITCH, MOTOR_RISE, WIDTH } = SOUND;
 
-// The nearest note [Hz] of a scale of five steps, on which all things sound well together.
-/** @type {(pitch: number) => number} */
+/** The nearest note [Hz] of a scale of five steps, on which all things sound well together.
+ * @type {(pitch: number) => number} */
 function noteOf(pitch) {
   let best = LOWEST;
   for (let step = 0; step < STEPS; step++) {
@@ -17,8 +17,8 @@ function noteOf(pitch) {
   return best;
 }
 
-// How far to the right a particle is, -1..1.
-/** @typedef {(particle: number) => number} Pan */
+/** How far to the right a particle is, -1..1.
+ * @typedef {(particle: number) => number} Pan */
 
 export class Sound {
   /** @type {AudioContext | null} */
@@ -38,8 +38,8 @@ export class Sound {
   /** @type {{ time: number, velocity: Float64Array } | null} */
   before = null;
 
-  // bodies: of each particle its body; of each body mass, pitch, weight, stuff, if it is a string. stuffs: modes.
-  /** @param {World} world @param {Sounds} sounds */
+  /** bodies: of each particle its body; of each body mass, pitch, weight, stuff, if it is a string. stuffs: modes.
+   * @param {World} world @param {Sounds} sounds */
   constructor(world, { bodies, stuffs, motors }) {
     this.world = world;
     this.bodies = bodies;
@@ -81,8 +81,8 @@ export class Sound {
     for (const { out } of this.#motors.values()) out.gain.setTargetAtTime(0, out.context.currentTime, FADE);
   }
 
-  // Take in a tick. pan: of a place across the view, -1..1.
-  /** @type {(pan: Pan) => void} */
+  /** Take in a tick. pan: of a place across the view, -1..1.
+   * @type {(pan: Pan) => void} */
   hear(pan) {
     const { world, before } = this, velocity = world.view('state.velocity');
     if (this.isOn && before?.time === world.time - 1) {
@@ -94,8 +94,8 @@ export class Sound {
     this.before = { time: world.time, velocity: velocity.slice() };
   }
 
-  // What there is much more of than of late, the loudest bodies first.
-  /** @type {(now: Float64Array, usual: Float64Array, least: number) => number[]} */
+  /** What there is much more of than of late, the loudest bodies first.
+   * @type {(now: Float64Array, usual: Float64Array, least: number) => number[]} */
   #new(now, usual, least) {
     const keep = Math.exp(-1 / (MEMORY * this.world.settings().tick_rate));
     /** @type {number[]} */

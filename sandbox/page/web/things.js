@@ -16,8 +16,8 @@ const NO_SPOT = /** @type {Spot} */ ([0, 0, 0]);
 /** @typedef {SceneLook & Partial<Pick<Body, 'type' | 'cell' | 'slots' | 'segments'>>} LineLook */
 /** @typedef {{ particles: number[], springs: number[] }} Chain */
 
-// The scene with the slots of each body's particles and its springs as [spring, first end, second end].
-/** @type {(scene: Scene, world: World) => Unfolded} */
+/** The scene with the slots of each body's particles and its springs as [spring, first end, second end].
+ * @type {(scene: Scene, world: World) => Unfolded} */
 export function unfolded(scene, world) {
   const a = world.view('state.particle_a'), b = world.view('state.particle_b'),
     key = (/** @type {number} */ p, /** @type {number} */ q) => Math.min(p, q) * 0x4000000 + Math.max(p, q);
@@ -35,21 +35,21 @@ export function unfolded(scene, world) {
   return { ...scene, bodies };
 }
 
-// What a picture finds out of each shape and line.
-/** @type {() => Pick<Shape, 'box' | 'depth' | 'path' | 'splats' | 'reach'>} */
+/** What a picture finds out of each shape and line.
+ * @type {() => Pick<Shape, 'box' | 'depth' | 'path' | 'splats' | 'reach'>} */
 const untraced = () => ({ box: [0, 0, 0, 0], depth: 0, path: new Path2D(), splats: null, reach: 0 });
 const unfollowed = () => ({ half: 0, pieces: [], path: new Path2D() });
 
-// What there is to draw of an unfolded scene, where active (m,) and present (n,) say which springs and particles there
-// are in a world.
-/** @type {(scene: Unfolded, world: World, active: Flag, present: Flag) => Things} */
+/** What there is to draw of an unfolded scene, where active (m,) and present (n,) say which springs and particles there
+ * are in a world.
+ * @type {(scene: Unfolded, world: World, active: Flag, present: Flag) => Things} */
 export function thingsOf(scene, world, active, present) {
   const now = { scene, world, active, whole: wholeTriangles(world) };
   /** @type {Things} */
   const things = { shapes: [], lines: [], working: [], wheels: [], sheets: [], faces: [], balloons: [] };
   for (const body of scene.bodies) if (body.slots.some((slot) => present[slot])) addBody(things, body, now);
-  // Joins of one look may be strands together.
-  /** @type {Map<string | Join, { look: Join, springs: SpringEnds[] }>} */
+  /** Joins of one look may be strands together.
+   * @type {Map<string | Join, { look: Join, springs: SpringEnds[] }>} */
   const looks = new Map();
   for (const join of scene.joins.filter(({ spring }) => active[spring])) {
     const key = STRANDS.includes(join.line) ? `${join.line} ${join.width}` : join;
@@ -63,8 +63,8 @@ export function thingsOf(scene, world, active, present) {
   return things;
 }
 
-// A balloon has a knot where a spring joins its skin that is none of it.
-/** @type {(things: Things, scene: Unfolded, active: Flag) => void} */
+/** A balloon has a knot where a spring joins its skin that is none of it.
+ * @type {(things: Things, scene: Unfolded, active: Flag) => void} */
 function tieBalloons(things, { bodies, joins }, active) {
   const joined = [...bodies.flatMap(({ springs }) => springs), ...joins.map(({ spring, ends }) => [spring, ...ends])];
   const there = joined.filter(([spring]) => active[spring]);
@@ -84,8 +84,8 @@ function addBody(things, body, now) {
   } else addLines(things, body, springs, ['bridge', 'girder'].includes(body.type) ? TRUSS : MESH);
 }
 
-// Springs of one look as strands, working springs or bars.
-/** @type {(things: Things, look: LineLook, springs: SpringEnds[], size: number[]) => void} */
+/** Springs of one look as strands, working springs or bars.
+ * @type {(things: Things, look: LineLook, springs: SpringEnds[], size: number[]) => void} */
 function addLines(things, look, springs, size) {
   if (!springs.length || look.line === 'hidden') return;
   const { line: kind, colour, width, cell } = look;
@@ -113,8 +113,8 @@ function addLines(things, look, springs, size) {
   } else bars(springs, 1, { bolts: size === MESH ? bolts : [] });
 }
 
-// A body of triangles, in the pieces that are left of it.
-/** @type {(things: Things, body: FilledBody, springs: SpringEnds[], now: Now) => void} */
+/** A body of triangles, in the pieces that are left of it.
+ * @type {(things: Things, body: FilledBody, springs: SpringEnds[], now: Now) => void} */
 function addFilled(things, body, springs, { scene, world, active, whole }) {
   const found = piecesOf(body, active, whole), inside = new Set(), isCloth = body.skin === 'cloth';
   const isLaid = LAID.includes(body.skin), [shape] = body.shapes;
@@ -130,13 +130,13 @@ function addFilled(things, body, springs, { scene, world, active, whole }) {
   addLines(things, body, springs.filter(([spring]) => !inside.has(spring)), THREADS);
 }
 
-// The look of a shape with its colour alone.
-/** @type {(shape: SceneShape, scene: Unfolded) => SkinLook} */
+/** The look of a shape with its colour alone.
+ * @type {(shape: SceneShape, scene: Unfolded) => SkinLook} */
 const flatOf = ({ look }, { pieces: { flat } }) =>
   /** @type {SkinLook} */ ([...look.slice(0, 2), ...flat, ...look.slice(2 + flat.length)]);
 
-// Ways along springs through particles that just two of them meet in.
-/** @type {(springs: SpringEnds[]) => Chain[]} */
+/** Ways along springs through particles that just two of them meet in.
+ * @type {(springs: SpringEnds[]) => Chain[]} */
 function chainsOf(springs) {
   /** @type {Map<number, SpringEnds[]>} */
   const at = new Map();

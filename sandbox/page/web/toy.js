@@ -39,10 +39,12 @@ export class Toy extends EventTarget {
   // How fast time passes: 1 as in the world.
   speed = 1;
 
-  // level: what Python says of it; fresh: gives its world before the first tick; keyboard: what keys are listened to.
   /**
-   * @param {HTMLCanvasElement} canvas @param {Level} level @param {Fresh} fresh @param {HTMLElement | Window}
-   *   [keyboard]
+   * level: what Python says of it; fresh: gives its world before the first tick; keyboard: what keys are listened to.
+   * @param {HTMLCanvasElement} canvas
+   * @param {Level} level
+   * @param {Fresh} fresh
+   * @param {HTMLElement | Window} [keyboard]
    */
   constructor(canvas, level, fresh, keyboard = canvas) {
     super();
@@ -108,8 +110,8 @@ export class Toy extends EventTarget {
     event.preventDefault();
   }
 
-  // Whether a key of no drive was of use.
-  /** @type {(event: KeyboardEvent) => boolean} */
+  /** Whether a key of no drive was of use.
+   * @type {(event: KeyboardEvent) => boolean} */
   #does(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return false;
     if (event.key === ' ') this.toggle();
@@ -132,8 +134,8 @@ export class Toy extends EventTarget {
     this.dispatchEvent(new CustomEvent(name, { detail }));
   }
 
-  // Tell a person something in a line; kind: '', 'good' or 'bad'.
-  /** @type {(text: string, kind?: '' | 'good' | 'bad') => void} */
+  /** Tell a person something in a line; kind: '', 'good' or 'bad'.
+   * @type {(text: string, kind?: '' | 'good' | 'bad') => void} */
   say(text, kind = '') {
     this.#tell('say', { text, kind });
   }
@@ -148,8 +150,8 @@ export class Toy extends EventTarget {
     return this.level.scene.themes[this.#themeName];
   }
 
-  // 'dark', 'light', or null: that of the level, or else of the viewer.
-  /** @param {ThemeName | null} name */
+  /** 'dark', 'light', or null: that of the level, or else of the viewer.
+   * @param {ThemeName | null} name */
   set theme(name) {
     this.#chosenTheme = name;
     this.#follow();
@@ -160,8 +162,8 @@ export class Toy extends EventTarget {
     this.refresh();
   }
 
-  // How many pixels of the lower edge something covers.
-  /** @param {number} pixels */
+  /** How many pixels of the lower edge something covers.
+   * @param {number} pixels */
   set covered(pixels) {
     this.#covered = pixels;
     this.#resize();
@@ -206,8 +208,8 @@ export class Toy extends EventTarget {
     this.#tell('draw');
   }
 
-  // Do something; where it fails, time stands and a line says why.
-  /** @type {(act: () => void) => void} */
+  /** Do something; where it fails, time stands and a line says why.
+   * @type {(act: () => void) => void} */
   #guarded(act) {
     try {
       act();
@@ -265,8 +267,8 @@ export class Toy extends EventTarget {
     this.#guarded(() => this.tick());
   }
 
-  // Go to a tick that was reached.
-  /** @type {(tick: number) => void} */
+  /** Go to a tick that was reached.
+   * @type {(tick: number) => void} */
   seek(tick) {
     this.#jump(() => this.run.seek(tick));
   }
@@ -291,8 +293,8 @@ export class Toy extends EventTarget {
     return isDone;
   }
 
-  // Go elsewhere in time: nothing is compared with what was before.
-  /** @type {(go: () => void) => void} */
+  /** Go elsewhere in time: nothing is compared with what was before.
+   * @type {(go: () => void) => void} */
   #jump(go) {
     this.hands.forget();
     this.drives.forget();
@@ -310,8 +312,8 @@ export class Toy extends EventTarget {
     return this.world.particles.map((slot) => this.level.about.names.particle[slot]);
   }
 
-  // Where a particle is [m], its velocity [m/s], and whether it is pinned.
-  /** @type {(name: string) => { x: number, y: number, vx: number, vy: number, isPinned: boolean }} */
+  /** Where a particle is [m], its velocity [m/s], and whether it is pinned.
+   * @type {(name: string) => { x: number, y: number, vx: number, vy: number, isPinned: boolean }} */
   particle(name) {
     const { world } = this, slot = world.commands.slot({ names: 'particle' }, name, world.counts);
     const [x, y] = world.view('state.position').subarray(2 * slot);
@@ -319,15 +321,15 @@ export class Toy extends EventTarget {
     return { x, y, vx, vy, isPinned: world.view('state.inverse_mass')[slot] === 0 };
   }
 
-  // Carry out a command as recordings have it, with names: { type: 'set_drive', part: 'wheel', value: 1 }.
-  /** @type {(record: NamedRecord) => void} */
+  /** Carry out a command as recordings have it, with names: { type: 'set_drive', part: 'wheel', value: 1 }.
+   * @type {(record: NamedRecord) => void} */
   command(record) {
     this.run.command(this.world.commands.read(record, this.world.counts), this.run.newGesture());
     this.refresh();
   }
 
-  // The file of what was done, a Blob that `sandbox replay` verifies.
-  /** @type {() => Promise<Blob>} */
+  /** The file of what was done, a Blob that `sandbox replay` verifies.
+   * @type {() => Promise<Blob>} */
   async recording() {
     const { run, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
     /** @type {(done: number, all: number) => void} */
@@ -346,8 +348,8 @@ export class Toy extends EventTarget {
   }
 }
 
-// Play a toy's file on a canvas. kernels: the address of kernels.wasm, where it is not beside this module.
-/** @type {(canvas: HTMLCanvasElement, address: string, options?: { kernels?: string | URL }) => Promise<Toy>} */
+/** Play a toy's file on a canvas. kernels: the address of kernels.wasm, where it is not beside this module.
+ * @type {(canvas: HTMLCanvasElement, address: string, options?: { kernels?: string | URL }) => Promise<Toy>} */
 export async function open(canvas, address, { kernels } = {}) {
   return new Toy(canvas, ...await load(address, kernels));
 }

@@ -39,8 +39,8 @@ export class World {
   #end;
   /** @type {Record<string, Span>} */
   #arenas = {};
-  // The words of what the block was given: what kernels derived lies in place of the others.
-  /** @type {Uint8Array} */
+  /** The words of what the block was given: what kernels derived lies in place of the others.
+   * @type {Uint8Array} */
   #given;
   /** @type {Map<string, { word: number, kind: string, dimensions: number }>} */
   #table = new Map();
@@ -50,19 +50,19 @@ export class World {
   #hashed = new Map();
   /** @type {Map<string, AnyArray>} */
   #saved = new Map();
-  // Rows in use, by family: a page has room for what a recording adds later.
-  /** @type {Counts} */
+  /** Rows in use, by family: a page has room for what a recording adds later.
+   * @type {Counts} */
   counts;
-  // What of records is right, and what kernels take of it.
-  /** @type {Commands} */
+  /** What of records is right, and what kernels take of it.
+   * @type {Commands} */
   commands;
   // Ticks since the level's start; springs that broke in the last one.
   time = 0;
   /** @type {number[]} */
   broken = [];
 
-  // kernels: what the module exports; image: the block as bytes; about: what Python says of both, see about.py.
-  /** @param {Kernels} kernels @param {Uint8Array} image @param {About} about */
+  /** kernels: what the module exports; image: the block as bytes; about: what Python says of both, see about.py.
+   * @param {Kernels} kernels @param {Uint8Array} image @param {About} about */
   constructor(kernels, image, about) {
     this.#kernels = kernels;
     this.#about = about;
@@ -87,8 +87,8 @@ export class World {
     this.#derive(DERIVATIONS);
   }
 
-  // Where there are so many more bytes of memory.
-  /** @type {(size: number) => number} */
+  /** Where there are so many more bytes of memory.
+   * @type {(size: number) => number} */
   #reserve(size) {
     const address = this.#end, { memory } = this.#kernels;
     this.#end = aligned(address + size);
@@ -97,14 +97,14 @@ export class World {
     return address;
   }
 
-  // Where a word of the block is, as an index of numbers of 32 bits.
-  /** @type {(word: number) => number} */
+  /** Where a word of the block is, as an index of numbers of 32 bits.
+   * @type {(word: number) => number} */
   #place(word) {
     return (this.#base + WORD * word) / 4;
   }
 
-  // The array at a path of the block, such as 'state.position', flat.
-  /** @template {string} P @param {P} path @returns {View<P>} */
+  /** The array at a path of the block, such as 'state.position', flat.
+   * @template {string} P @param {P} path @returns {View<P>} */
   view(path) {
     const found = this.#views.get(path);
     if (found && found.buffer === this.#kernels.memory.buffer) return /** @type {View<P>} */ (found);
@@ -119,8 +119,8 @@ export class World {
     return /** @type {View<P>} */ (view);
   }
 
-  // Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
-  /** @type {(name: string, ...given: (number | Span)[]) => number} */
+  /** Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
+   * @type {(name: string, ...given: (number | Span)[]) => number} */
   #call(name, ...given) {
     const words = given.flatMap((each) => {
       if (!Array.isArray(each)) return [each];
@@ -184,8 +184,8 @@ export class World {
     for (const particle of lost) this.command({ type: 'freeze', particle });
   }
 
-  // Carry out what was done: a command, or what it changes where no kernel carries it out.
-  /** @type {(done: Done) => void} */
+  /** Carry out what was done: a command, or what it changes where no kernel carries it out.
+   * @type {(done: Done) => void} */
   carryOut(done) {
     if (!done.changes) {
       this.command(done.record);
@@ -201,8 +201,8 @@ export class World {
     if (this.#about.topology.some((path) => path in changes)) this.#derive(DERIVATIONS);
   }
 
-  // Write rows of an array: the first, how many, and what each is to hold.
-  /** @type {(path: string, runs: Runs) => void} */
+  /** Write rows of an array: the first, how many, and what each is to hold.
+   * @type {(path: string, runs: Runs) => void} */
   #change(path, runs) {
     const view = this.view(path);
     for (const [first, count, ...row] of runs) {
@@ -211,8 +211,8 @@ export class World {
     }
   }
 
-  // Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
-  /** @type {(record: Command) => void} */
+  /** Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
+   * @type {(record: Command) => void} */
   command(record) {
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
@@ -226,15 +226,15 @@ export class World {
     if (changes) this.#derive(changes === 'hands' ? HANDS : DERIVATIONS);
   }
 
-  // Whether what a command would end goes on: a hand holds something, or a part is driven.
-  /** @type {(ending: Extract<Command, { type: 'release' | 'set_drive' }>) => boolean} */
+  /** Whether what a command would end goes on: a hand holds something, or a part is driven.
+   * @type {(ending: Extract<Command, { type: 'release' | 'set_drive' }>) => boolean} */
   isGoing(ending) {
     if (ending.type === 'release') return this.isHeld(ending.grab);
     return this.view('state.actuator_value')[ending.part] !== 0;
   }
 
-  // Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
-  /** @type {(names: string[], contacts?: AnyArray[]) => void} */
+  /** Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
+   * @type {(names: string[], contacts?: AnyArray[]) => void} */
   #derive(names, contacts = this.#contactRows()) {
     if (names === DERIVATIONS) new Uint8Array(this.#kernels.memory.buffer).set(this.#given, this.#base);
     this.#views.clear();
@@ -243,8 +243,8 @@ export class World {
     if (names !== HANDS) CONTACTS.forEach((path, k) => put(this.view(path), contacts[k]));
   }
 
-  // Call a kernel with the block and its own arena, which grows until there is room.
-  /** @type {(name: string, ...given: (number | Span)[]) => number} */
+  /** Call a kernel with the block and its own arena, which grows until there is room.
+   * @type {(name: string, ...given: (number | Span)[]) => number} */
   #inArena(name, ...given) {
     let arena = (this.#arenas[name] ??= this.#newArena(FIRST_ARENA));
     let result = this.#call(name, this.#block, arena, ...given);
@@ -281,23 +281,23 @@ export class World {
     return this.#about.area;
   }
 
-  // Whether a particle is the cursor of a hand.
-  /** @type {(particle: number) => boolean} */
+  /** Whether a particle is the cursor of a hand.
+   * @type {(particle: number) => boolean} */
   isCursor(particle) {
     const first = this.hands.particle;
     return particle >= first && particle < first + this.hands.count;
   }
 
-  // Whether what a name stands for is in use, and no hand's; parts and materials always are.
-  /** @type {(kind: NameKind, slot: number) => boolean} */
+  /** Whether what a name stands for is in use, and no hand's; parts and materials always are.
+   * @type {(kind: NameKind, slot: number) => boolean} */
   isInUse(kind, slot) {
     if (kind !== 'particle' && kind !== 'spring') return true;
     const { [kind]: first, count } = this.hands;
     return Boolean(this.view(`state.${kind}_active`)[slot]) && (slot < first || slot >= first + count);
   }
 
-  // Whether people see a particle, and whether it can move.
-  /** @type {(particle: number) => boolean} */
+  /** Whether people see a particle, and whether it can move.
+   * @type {(particle: number) => boolean} */
   isShown(particle) {
     return this.isInUse('particle', particle);
   }
@@ -328,8 +328,8 @@ export class World {
     return this.view('collisions.kept.particle').subarray(0, count);
   }
 
-  // What ticks keep from one to the next, as a copy; arrays that have not changed are those of the copy before.
-  /** @type {() => SavedState} */
+  /** What ticks keep from one to the next, as a copy; arrays that have not changed are those of the copy before.
+   * @type {() => SavedState} */
   save() {
     /** @type {Map<string, AnyArray>} */
     const arrays = new Map();
@@ -354,15 +354,15 @@ export class World {
     }
   }
 
-  // The rows of a state array that are in use, flat.
-  /** @type {(column: Column) => AnyArray} */
+  /** The rows of a state array that are in use, flat.
+   * @type {(column: Column) => AnyArray} */
   rows(column) {
     const count = column.isContact ? this.contacts().length : this.counts[column.family];
     return this.view(column.path).subarray(0, column.width * count);
   }
 
-  // The hash of the whole state, and those of its arrays that are in use, by their names in files.
-  /** @type {() => StateHash} */
+  /** The hash of the whole state, and those of its arrays that are in use, by their names in files.
+   * @type {() => StateHash} */
   hash() {
     /** @type {Map<string, string>} */
     const arrays = new Map();
@@ -382,8 +382,8 @@ export class World {
     return { whole: blake2b(new TextEncoder().encode(text), 16), arrays };
   }
 
-  // The settings of a tick, in the order in which they are hashed and stored.
-  /** @type {() => Settings} */
+  /** The settings of a tick, in the order in which they are hashed and stored.
+   * @type {() => Settings} */
   settings() {
     const [x, y, windX, windY, drag, warm] = this.view('numbers');
     const [solver, rate, substeps, isAuto, iterations] = Array.from(this.view('choices'), Number);
@@ -394,8 +394,8 @@ export class World {
   }
 }
 
-// Write numbers into an array that holds such, from a place on.
-/** @type {(array: AnyArray, values: AnyArray, at?: number) => void} */
+/** Write numbers into an array that holds such, from a place on.
+ * @type {(array: AnyArray, values: AnyArray, at?: number) => void} */
 function put(array, values, at = 0) {
   // Both are of 64 bits and whole, or neither is.
   /** @type {Float64Array} */ (array).set(/** @type {Float64Array} */ (values), at);
@@ -410,15 +410,15 @@ function isEqual(one, other) {
   return true;
 }
 
-// The bytes that are hashed and stored: -0 as 0, and every NaN as the same.
-/** @type {(array: AnyArray) => Uint8Array} */
+/** The bytes that are hashed and stored: -0 as 0, and every NaN as the same.
+ * @type {(array: AnyArray) => Uint8Array} */
 export function canonical(array) {
   const copy = array instanceof Float64Array ? array.map((value) => value + 0) : array;
   return new Uint8Array(copy.buffer, copy.byteOffset, copy.byteLength);
 }
 
-// Nothing of an array of which all is as usual, and which is left out then.
-/** @type {(column: Column, array: AnyArray) => string | null} */
+/** Nothing of an array of which all is as usual, and which is left out then.
+ * @type {(column: Column, array: AnyArray) => string | null} */
 function digestOf(column, array) {
   if (column.isSparse && array.every((value) => Number(value) === column.usual)) return null;
   return blake2b(canonical(array), 8);
