@@ -15,6 +15,8 @@
 # make abuse: stir, throw and drive bodies, and print figures; hours.
 # make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen; and ten minutes
 # of random mouse and touch at pages, where Chromium is installed.
+# make bundle: the script of pages, after one of their modules was changed; seconds. make node: what that, lint and tests of
+# JavaScript need from npm, into node_modules. make lint: ruff and mypy, and for JavaScript TypeScript and eslint.
 # make pictures: draw the pictures of the gallery and of docs/ again, after a level or the look was changed.
 # make site: the levels, each at an address of its own, and the documents, as files for any web server, in the folder site.
 PYTHON ?= python3
@@ -36,7 +38,7 @@ ifdef PIP_INDEX_URL
 export UV_DEFAULT_INDEX := $(PIP_INDEX_URL)
 endif
 
-.PHONY: play install test test-all whole-world quick lint bounds goldens goldens-everywhere goldens-record seeds libraries pictures site bench abuse soak clean
+.PHONY: play install test test-all whole-world quick lint lint-pages bounds goldens goldens-everywhere goldens-record seeds libraries node bundle pictures site bench abuse soak clean
 
 play: $(VENV)/installed
 	$(BIN)/sandbox
@@ -61,11 +63,15 @@ $(VENV)/collected: $(VENV)/installed-dev
 quick: $(VENV)/installed-dev
 	$(BIN)/python -m tests.quick -n $(WORKERS)
 
-lint: $(VENV)/installed-dev
+lint: $(VENV)/installed-dev lint-pages
 	$(BIN)/ruff check sandbox tests examples
 	$(BIN)/ruff format --check sandbox tests examples
 	$(BIN)/mypy
 	$(BIN)/mypy --strict --follow-imports=silent examples
+
+lint-pages: $(VENV)/installed-node
+	$(BIN)/node node_modules/typescript/bin/tsc -p .
+	$(BIN)/node node_modules/eslint/bin/eslint.js .
 
 bounds: export SANDBOX_KERNELS := checked
 bounds: $(VENV)/installed-dev
@@ -86,6 +92,13 @@ seeds: $(VENV)/installed-dev
 
 libraries: $(VENV)/installed-dev
 	$(BIN)/python -m sandbox.physics.jit.making.libraries $(if $(CHECK),--check) $(if $(HERE),--here)
+
+node: $(VENV)/installed-node
+
+bundle: $(VENV)/installed-node
+	$(BIN)/python -m sandbox.app.site.shared_values
+	$(BIN)/python -m sandbox.page.table_types
+	$(BIN)/python -m sandbox.page.bundle
 
 pictures: $(VENV)/installed-dev
 	SDL_VIDEODRIVER=dummy $(BIN)/python -m sandbox.app.draw.picture_cache
@@ -121,5 +134,10 @@ $(VENV)/installed-dev: $(BIN)/python pyproject.toml
 	$(UV) --editable ".[dev]" 2> $(VENV)/uv.log || $(PIP) --no-compile --editable ".[dev]"
 	touch $(VENV)/installed $@
 
+# node comes with the packages for Python.
+$(VENV)/installed-node: $(VENV)/installed-dev package-lock.json
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+	touch $@
+
 clean:
-	rm -rf $(VENV) dist build site .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) node_modules dist build site .pytest_cache .mypy_cache .ruff_cache

@@ -2,8 +2,10 @@
 
 import ctypes
 import gc
+import os
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +16,9 @@ from tests.support import wants
 
 with suppress(ImportError):
     import resource
+
+# The node of this Python's packages goes before any other.
+os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
 
 # The marks of tests that are begun first.
 LONG_ONES = ("whole_world", "slow")

@@ -27,7 +27,11 @@ ELSEWHERE = {
     "levels/": ("tests/level/test_shipped_levels.py", "tests/level/test_levels_keep_their_word.py"),
     "assets/": ("tests/app/test_theme.py", "tests/test_packaging.py"),
     "pyproject.toml": ("tests/test_packaging.py",),
+    "package.json": ("tests/page/test_bundle.py",),
+    "package-lock.json": ("tests/page/test_bundle.py",),
 }
+# Folders of tests that node runs, with what starts it.
+IN_NODE = {"tests/page/modules": "tests/page/test_modules.py"}
 # Rooms that are one file, or are tested by files of another name.
 BY_ROOM = {
     "cli": ("tests/test_cli.py",), "terminal.py": ("tests/test_cli.py",), "__main__.py": ("tests/test_cli.py",),
@@ -94,6 +98,8 @@ def tests_of_tests(path: str) -> set[str]:
         return set()
     if name == "conftest.py" and path != "tests/conftest.py":
         return {str(Path(path).parent)}
+    if str(Path(path).parent) in IN_NODE:
+        return {IN_NODE[str(Path(path).parent)]}
     return naming(path.removesuffix(".py").replace("/", "."), "") if name.endswith(".py") else set()
 
 

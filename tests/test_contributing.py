@@ -62,6 +62,15 @@ def test_the_map_lists_every_folder_of_a_room_and_no_other(heading, path):
     assert {quoted(folder)[0] for folder, _ in rows(ARCHITECTURE, heading)} == folders(path)
 
 
+def test_the_map_lists_every_module_of_a_page_behind_those_that_it_imports():
+    web = ROOT / "sandbox" / "page" / "web"
+    listed = [name for names, _ in rows(ARCHITECTURE, "The page that plays") for name in quoted(names)]
+    assert sorted(listed) == sorted(path.name for path in web.glob("*.js"))
+    for place, name in enumerate(listed):
+        imported = set(re.findall(r"from '\./(\w+\.js)';", (web / name).read_text(encoding="utf-8")))
+        assert imported <= set(listed[:place]), name
+
+
 WALKS = ("A drag, from the mouse to the recording", "A level, from its file to a world", "A tick")
 STOPS = [
     (quoted(file)[0], name) for walk in WALKS for file, names, _ in rows(ARCHITECTURE, walk) for name in quoted(names)

@@ -10,6 +10,9 @@ import pytest
 import yaml
 
 from sandbox.app.film.kinds import KINDS
+from sandbox.page.bundle import BUNDLE
+from sandbox.page.page import KERNELS
+from tests.page.packed import unpacked
 
 ROOT = Path(__file__).resolve().parents[1]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
@@ -55,6 +58,11 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
     assert int(levels) == len(list((ROOT / "levels").glob("*.json")))
     assert int(parts) == len(list((ROOT / "levels" / "parts").glob("*.json"))) > 0
     assert int(assets) == len(list((ROOT / "assets").iterdir()))
+    # Who writes a page needs neither node nor anything else on the path.
+    page = [sys.executable, "-P", "-m", "sandbox", "page", "rope", "-o", "rope.html"]
+    subprocess.run(page, cwd=elsewhere, env=environment | {"PATH": str(elsewhere)}, check=True, capture_output=True)
+    text = (elsewhere / "rope.html").read_text(encoding="utf-8")
+    assert unpacked(text, "modules") == BUNDLE.read_bytes() and unpacked(text, "kernels") == KERNELS.read_bytes()
 
 
 def test_make_play_installs_what_shared_files_need_and_no_compiler_and_dev_all_extras():

@@ -24,6 +24,8 @@ ROOT = Path(__file__).resolve().parents[1]
         ("sandbox/physics/snapshot.py", "tests/physics/test_snapshot.py"),
         ("tests/support/zoo.py", "tests/editor/test_edits.py"),
         ("tests/level/test_migrate.py", "tests/level/test_migrate.py"),
+        ("tests/page/modules/toys.mjs", "tests/page/test_modules.py"),
+        ("sandbox/page/web/world.js", "tests/page"),
         ("docs/physics.md", "tests/test_documentation.py"),
         ("levels/rope.json", "tests/level/test_shipped_levels.py"),
     ],

@@ -7,20 +7,15 @@ import re
 import string
 import struct
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 from sandbox.export.policy import policy
+from sandbox.page.bundle import BUNDLE, WEB
 from sandbox.page.image import Image
 from sandbox.physics.jit.library import FOLDER
 
-WEB = Path(__file__).with_name("web")
 KERNELS = FOLDER / "kernels.wasm"
-# In an order in which each is behind what it imports from.
-MODULES = (
-    "hash", "commands", "world", "run", "recording", "paint", "pieces", "things", "draw", "hand", "drives", "sag_map",
-    "panel", "sound", "checks", "pace", "toy", "main",
-)  # fmt: skip
+MODULES = tuple(sorted(path.stem for path in WEB.glob("*.js")))
 GZIP_LEVEL = 9
 # Sources in policies: that lets kernels be compiled, and that of the icon; without one a browser asks a server for it.
 COMPILING, ICON = "'wasm-unsafe-eval'", "data:"
@@ -28,9 +23,6 @@ COMPILING, ICON = "'wasm-unsafe-eval'", "data:"
 DIGITS = string.digits + string.ascii_letters + "!#$%()*+,-./:;=?@[]^_{|"
 _POWERS = (85**4, 85**3, 85**2, 85, 1)
 
-_IMPORT = re.compile(r"^import (\{.*?\}) from '\./(\w+)\.js';$", re.MULTILINE | re.DOTALL)
-_COMMENT, _INDENT = re.compile(r"^\s*//.*\n", re.MULTILINE), re.compile(r"^\s+", re.MULTILINE)
-_EXPORT = re.compile(r"^export ((?:async )?(?:function\*? |class |const ))(\w+)", re.MULTILINE)
 _PLACE = re.compile("@([A-Z]+)@")
 
 
@@ -47,7 +39,7 @@ def toy_file(content: bytes) -> bytes:
 
 def page_text(title: str, hints: str, content: bytes) -> str:
     """The page of a toy that needs no other file. hints: what there is to do."""
-    whole = f"{script()}from_main.start(from_main.unpack());\n"
+    whole = BUNDLE.read_text(encoding="utf-8")
     held = {
         "TOY": packed(content),
         "KERNELS": packed(KERNELS.read_bytes()),
@@ -78,18 +70,6 @@ def filled(template: str, **parts: str) -> str:
 
 def _template(name: str) -> str:
     return (WEB / f"{name}.html").read_text(encoding="utf-8")
-
-
-def script() -> str:
-    """All modules as one script, without comments and indents: each is a function, which gives what it exports."""
-    whole = "\n".join(_as_function(name, (WEB / f"{name}.js").read_text(encoding="utf-8")) for name in MODULES)
-    return _INDENT.sub("", _COMMENT.sub("", whole))
-
-
-def _as_function(name: str, text: str) -> str:
-    exported = ", ".join(found[2] for found in _EXPORT.finditer(text))
-    body = _EXPORT.sub(r"\1\2", _IMPORT.sub(r"const \1 = from_\2;", text))
-    return f"const from_{name} = (() => {{\n{body}return {{ {exported} }};\n}})();\n"
 
 
 def packed(content: bytes) -> str:

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.page.bundle import node_path
 from sandbox.physics import jit
 from sandbox.physics.jit.library import FOLDER, read_manifest
 from sandbox.physics.jit.making import platforms
@@ -53,7 +54,7 @@ class Machine:
 
 
 def _web() -> list[str]:
-    node = shutil.which("node")
+    node = node_path()
     if node is None:
         raise Missing("node")
     return [node, str(HERE / "web.mjs"), str(FOLDER / "kernels.wasm")]

@@ -70,7 +70,8 @@ class Played:
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """A page beside the module."""
     folder = tmp_path_factory.mktemp("pace")
-    shutil.copy(WEB / "pace.js", folder)
+    for name in ("pace.js", "shared.js"):
+        shutil.copy(WEB / name, folder)
     (folder / "index.html").write_text("<!doctype html>", encoding="utf-8")
     with served(folder) as at:
         yield at

@@ -18,7 +18,7 @@ NUMBERED = (1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0
 # Significant digits of a value, or of what it is below 1 by.
 DIGITS = 3
 # The last part of an axis is 1 itself.
-_END = 0.997
+END = 0.997
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class CoefficientScale:
 
     def value_at(self, place: float) -> float:
         """The value at a place on the axis, in three significant digits, or this many of what it is below 1 by."""
-        if place >= _END:
+        if place >= END:
             return 1.0
         low, high = self._ends
         power = 10.0 ** (low + max(place, 0.0) * (high - low))

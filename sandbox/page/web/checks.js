@@ -1,14 +1,23 @@
 // Checks: what a level promises of its run, measured as time passes from its start; those that hold keys are left out.
+import { CHECKS } from './shared.js';
+/** @import { StateArrays } from './tables.js' */
+/** @import { Check, CheckResult, Point } from './types.js' */
+/** @import { World } from './world.js' */
 
-// What a check measures, by its name in files: of its particles, springs and box.
+/** @typedef {{ value: number, beyond: number }} Found */
+/** @typedef {{ check: Check, from: number, to: number, found: Found | null }} Waiting */
+/** @typedef {Waiting & { found: Found }} Decided */
+
+/** What a check measures, by its name in files: of its particles, springs and box.
+ * @type {Record<string, (gauge: Checks, check: Check) => number>} */
 const METRICS = {
   x: (gauge, check) => gauge.middle(check, 'position')[0],
   y: (gauge, check) => gauge.middle(check, 'position')[1],
   speed: (gauge, check) => Math.hypot(...gauge.middle(check, 'velocity')),
-  distance: (gauge, { particles: [one, other] }) => Math.hypot(...[0, 1].map((axis) =>
+  distance: (gauge, { particles: [one, other] = [0, 0] }) => Math.hypot(...[0, 1].map((axis) =>
     gauge.at('position', one)[axis] - gauge.at('position', other)[axis])),
   inside: (gauge, check) => least(gauge.shown(check).map((p) => {
-    const [x, y] = gauge.at('position', p), [left, bottom, right, top] = check.box;
+    const [x, y] = gauge.at('position', p), [left, bottom, right, top] = check.box ?? NOWHERE;
     return Math.min(x - left, right - x, y - bottom, top - y);
   })),
   settled: (gauge, check) => gauge.still(check),
@@ -27,19 +36,27 @@ const METRICS = {
   non_finite: (gauge, check) => gauge.shown(check).filter((p) =>
     ![...gauge.at('position', p), ...gauge.at('velocity', p)].every(Number.isFinite)).length,
 };
-const STILL = 0.05, STRAIN_WINDOW = 2;
+const { STILL, STRAIN_WINDOW } = CHECKS, NOWHERE = [0, 0, 0, 0];
+/** @type {(values: number[]) => number} */
 const most = (values) => values.reduce((a, b) => Math.max(a, b), 0);
+/** @type {(values: number[]) => number} */
 const least = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
 
 export class Checks {
+  /** @type {Map<Check, number>} */
   #still = new Map();
+  /** @type {Waiting[]} */
   #waiting = [];
+  /** @type {Decided[]} */
   #decided = [];
+  /** @type {[largest: number, squares: number, count: number][]} */
   window = [];
 
-  // checks: what each measures, of slots; particles and springs are all where none are named.
+  /** checks: what each measures, of slots; particles and springs are all where none are named.
+   * @param {{ checks: Check[] }} level @param {World} world */
   constructor({ checks }, world) {
-    Object.assign(this, { checks, world });
+    this.checks = checks;
+    this.world = world;
     this.begin();
   }
 
@@ -53,7 +70,8 @@ export class Checks {
     this.#decided = this.#decide();
   }
 
-  // Measure at this tick: the checks that are decided by it, with what they came to.
+  /** Measure at this tick: the checks that are decided by it, with what they came to.
+   * @type {() => CheckResult[]} */
   look() {
     if (!this.#waiting.length && !this.#decided.length) return [];
     this.#follow();
@@ -62,12 +80,14 @@ export class Checks {
     return told.map(({ check, found }) => ({ name: check.name, value: found.value, holds: found.beyond <= 0 }));
   }
 
+  /** @type {() => Decided[]} */
   #decide() {
     const decided = this.#waiting.filter((each) => this.#isDecided(each));
-    this.#waiting = this.#waiting.filter((each) => !decided.includes(each));
+    this.#waiting = this.#waiting.filter((each) => !decided.some((other) => other === each));
     return decided;
   }
 
+  /** @type {(each: Waiting) => each is Decided} */
   #isDecided(each) {
     const { check, from, to, found } = each;
     if (this.world.time < from) return false;
@@ -75,7 +95,7 @@ export class Checks {
     const beyond = Number.isNaN(value) ? Infinity
       : Math.max((check.at_least ?? -Infinity) - value, value - (check.at_most ?? Infinity));
     if (!found || (check.is_eventual ? beyond < found.beyond : beyond > found.beyond)) each.found = { value, beyond };
-    return this.world.time >= to || (check.is_eventual && beyond <= 0);
+    return this.world.time >= to || (Boolean(check.is_eventual) && beyond <= 0);
   }
 
   // What depends on more than the present tick.
@@ -91,21 +111,25 @@ export class Checks {
     }
   }
 
+  /** @template {keyof StateArrays} N @param {N} array */
   of(array) {
     return this.world.view(`state.${array}`);
   }
 
+  /** @type {(array: 'position' | 'velocity', particle: number) => Float64Array} */
   at(array, particle) {
     return this.of(array).subarray(2 * particle, 2 * particle + 2);
   }
 
-  // The particles of a check that are there.
+  /** The particles of a check that are there.
+   * @type {(check: Partial<Check>) => number[]} */
   shown({ particles = this.world.particles }) {
     const active = this.of('particle_active');
     return particles.filter((p) => active[p]);
   }
 
-  // Mean place or velocity, by mass.
+  /** Mean place or velocity, by mass.
+   * @type {(check: Check, array: 'position' | 'velocity') => Point} */
   middle(check, array) {
     const mass = this.of('mass');
     let [x, y, sum] = [0, 0, 0];
@@ -116,19 +140,22 @@ export class Checks {
     return [x / sum, y / sum];
   }
 
+  /** @type {(check: Partial<Check>) => number[]} */
   speeds(check) {
     return this.shown(check).map((p) => Math.hypot(...this.at('velocity', p)));
   }
 
+  /** @type {(check: Check) => number} */
   energy(check) {
     const mass = this.of('mass');
     return this.shown(check).reduce((sum, p) => sum + 0.5 * mass[p] * Math.hypot(...this.at('velocity', p)) ** 2, 0);
   }
 
-  // |l - L| / L of springs that have a free end.
+  /** |l - L| / L of springs that have a free end.
+   * @type {(check: Partial<Check>) => number[]} */
   strains({ springs = this.world.springs }) {
-    const [active, rest, a, b, inverse] = ['spring_active', 'rest_length', 'particle_a', 'particle_b', 'inverse_mass']
-      .map((array) => this.of(array));
+    const active = this.of('spring_active'), rest = this.of('rest_length'), inverse = this.of('inverse_mass');
+    const a = this.of('particle_a'), b = this.of('particle_b');
     const bear = springs.filter((s) => active[s] && rest[s] > 0 && (inverse[a[s]] > 0 || inverse[b[s]] > 0));
     return bear.map((s) => {
       const [[x, y], [u, v]] = [this.at('position', a[s]), this.at('position', b[s])];
@@ -136,6 +163,7 @@ export class Checks {
     });
   }
 
+  /** @type {(check: Check) => number} */
   still(check) {
     return (this.#still.get(check) ?? 0) / this.world.settings().tick_rate;
   }

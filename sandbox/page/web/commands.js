@@ -1,4 +1,12 @@
 // Commands: records read as the desktop reads them, with its words, by the table that it makes of its commands.
+/** @import { About, Command, Counts, Field, Kind, NameKind, NamedRecord } from './types.js' */
+/** @import { World } from './world.js' */
+
+/** @typedef {'minimum' | 'exclusiveMinimum' | 'maximum' | 'exclusiveMaximum'} Limit */
+/** @typedef {{ names: NameKind, noun?: string }} Named */
+/** @typedef {(string | number)[]} Place */
+/** @typedef {[place: Place, words: string]} Fault */
+/** @typedef {Omit<Kind, 'slots' | 'numbers'> & { slots: number[], numbers: number[] }} Packed */
 
 // What a person is to read, in one line.
 export class Refusal extends Error {}
@@ -6,18 +14,23 @@ export class Refusal extends Error {}
 const PLAIN = /^\w+$/, UNPRINTABLE = /[\p{C}\p{Zl}\p{Zp}]|(?! )\p{Zs}/u, SHOWN = 60, PLACE = 80;
 // Beyond this JSON writes whole numbers as floats.
 const WHOLE = 1e21;
+/** @type {Record<Limit, (value: number, limit: number) => boolean>} */
 const LIMITS = {
   minimum: (value, limit) => value >= limit, exclusiveMinimum: (value, limit) => value > limit,
   maximum: (value, limit) => value <= limit, exclusiveMaximum: (value, limit) => value < limit,
 };
-// The rows that have the names of a kind, where they are called otherwise.
-const COUNTED_BY = { part: 'actuator' };
+/** The rows that have the names of a kind, where they are called otherwise.
+ * @type {(kind: NameKind) => keyof Counts} */
+const countedBy = (kind) => (kind === 'part' ? 'actuator' : kind);
 
-const fill = (message, ...values) => message.replace(/\{\}/g, () => values.shift());
-// As JSON would keep it: a copy, without -0.
+/** @type {(message: string, ...values: unknown[]) => string} */
+const fill = (message, ...values) => message.replace(/\{\}/g, () => String(values.shift()));
+/** As JSON would keep it: a copy, without -0.
+ * @type {(value: unknown) => unknown} */
 const plain = (value) => (Array.isArray(value) ? value.map(plain) : typeof value === 'number' ? value + 0 : value);
 
-// A text in quotes, cut short, as messages of the desktop have it.
+/** A text in quotes, cut short, as messages of the desktop have it.
+ * @type {(text: string) => string} */
 function shown(text) {
   let quoted = JSON.stringify(text);
   if (UNPRINTABLE.test(quoted)) {
@@ -27,53 +40,65 @@ function shown(text) {
   return letters.length <= SHOWN ? quoted : `${letters.slice(0, SHOWN - 4).join('')}..."`;
 }
 
-const placed = (parts) => [...parts.map((part) => (PLAIN.test(part) ? part : shown(part))).join('.')]
+/** @type {(parts: (string | number)[]) => string} */
+const placed = (parts) => [...parts.map((part) => (PLAIN.test(String(part)) ? part : shown(String(part)))).join('.')]
   .slice(0, PLACE).join('');
 
 export class Commands {
   #about;
 
-  // about: what Python says, see about.py.
+  /** about: what Python says, see about.py.
+   * @param {About} about */
   constructor(about) {
     this.#about = about;
   }
 
+  /** @type {(type: string) => [field: string, schema: Named][]} */
   #named(type) {
-    const fields = Object.entries(this.#about.commands[type].fields);
-    return fields.map(([field, schema]) => [field, schema.items ?? schema]).filter(([, { names }]) => names);
+    const fields = Object.entries(this.#about.commands[type]?.fields ?? {});
+    return fields.flatMap(([field, schema]) => {
+      const { names, noun } = schema.items ?? schema;
+      return names ? [[field, { names, noun }]] : [];
+    });
   }
 
-  // The slot of a name. kind: particle, spring, part or material; counts: rows in use, by family.
+  /** The slot of a name. kind: particle, spring, part or material; counts: rows in use, by family.
+   * @type {(schema: Named, name: unknown, counts: Counts) => number} */
   slot({ names: kind, noun = kind }, name, counts) {
     const { messages, names, second } = this.#about;
     if (typeof name !== 'string') throw new Refusal(fill(messages.noName, noun));
     const first = names[kind].indexOf(name), others = second[kind] ?? {};
     const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
-    if (slot < 0 || slot >= counts[COUNTED_BY[kind] ?? kind]) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
+    if (slot < 0 || slot >= counts[countedBy(kind)]) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
     return slot;
   }
 
-  // A record as files have it, with slots in place of names, and defaults.
+  /** A record as files have it, with slots in place of names, and defaults.
+   * @type {(record: unknown, counts: Counts) => Command} */
   read(record, counts) {
-    const { messages, commands } = this.#about, types = Object.keys(commands), type = record?.type;
-    if (typeof record !== 'object' || typeof type !== 'string') throw new Refusal(messages.noCommand);
+    const { messages, commands } = this.#about, types = Object.keys(commands);
+    const type = typeof record === 'object' && record && 'type' in record ? record.type : null;
+    if (typeof record !== 'object' || !record || typeof type !== 'string') throw new Refusal(messages.noCommand);
     if (!types.includes(type)) throw new Refusal(fill(messages.unknown, shown(type), types.join(', ')));
-    if (!commands[type]) {
+    const entry = commands[type];
+    if (!entry) {
       throw new Refusal(`a page cannot do ${type}; it can do ${types.filter((each) => commands[each]).join(', ')}`);
     }
-    const { fields } = commands[type];
+    const { fields } = entry;
+    /** @type {Map<string, unknown>} */
     const given = new Map(Object.entries(record).filter(([name, value]) => name !== 'type' && value !== undefined));
     for (const [field, schema] of this.#named(type)) {
-      const value = given.get(field), slot = (name) => this.slot(schema, name, counts);
+      const value = given.get(field), slot = (/** @type {unknown} */ name) => this.slot(schema, name, counts);
       if (value != null) given.set(field, Array.isArray(value) ? value.map(slot) : slot(value));
     }
     const fault = this.#faultOf(given, fields);
     if (fault) throw new Refusal(`${type}: ${placed(fault[0])}: ${fault[1]}`);
     const values = Object.entries(fields).map(([field, schema]) => [field, plain(given.get(field) ?? schema.default)]);
-    return { type, ...Object.fromEntries(values.filter(([, value]) => value != null)) };
+    return /** @type {Command} */ ({ type, ...Object.fromEntries(values.filter(([, value]) => value != null)) });
   }
 
-  // The first fault: where it is, and words for it.
+  /** The first fault: where it is, and words for it.
+   * @type {(given: Map<string, unknown>, fields: Record<string, Field>) => Fault | null} */
   #faultOf(given, fields) {
     const { messages } = this.#about;
     for (const [field, schema] of Object.entries(fields)) {
@@ -89,55 +114,67 @@ export class Commands {
     return stranger === undefined ? null : [[stranger], messages.unexpected];
   }
 
+  /** @type {(value: unknown, schema: Field, parts: Place) => Fault | null} */
   #fault(value, schema, parts) {
     const { messages } = this.#about;
     if (schema.type === 'array') return this.#faultOfList(value, schema, parts);
-    if (schema.type === 'integer' && !(Number.isInteger(value) && Math.abs(value) < WHOLE)) {
+    const isWhole = typeof value === 'number' && Number.isInteger(value) && Math.abs(value) < WHOLE;
+    if (schema.type === 'integer' && !isWhole) {
       return [parts, schema.names ? messages.name : messages.integer];
     }
     if (typeof value !== 'number') return [parts, messages.number];
     if (!Number.isFinite(value)) return [parts, messages.finite];
-    const broken = Object.keys(LIMITS).find((key) => key in schema && !LIMITS[key](value, Number(schema[key])));
+    const limits = /** @type {Limit[]} */ (Object.keys(LIMITS));
+    const broken = limits.find((key) => key in schema && !LIMITS[key](value, Number(schema[key])));
     return broken ? [parts, fill(messages[broken], schema[broken])] : null;
   }
 
-  #faultOfList(value, { maxItems, items, prefixItems }, parts) {
+  /** @type {(value: unknown, schema: Field, parts: Place) => Fault | null} */
+  #faultOfList(value, { maxItems = Infinity, items, prefixItems = [] }, parts) {
     const { messages } = this.#about;
     if (!Array.isArray(value)) return [parts, messages.array];
     if (value.length > maxItems) return [parts, fill(messages.long, maxItems)];
-    for (let k = 0; k < Math.max(value.length, prefixItems?.length ?? 0); k++) {
+    for (let k = 0; k < Math.max(value.length, prefixItems.length); k++) {
       const place = [...parts, k];
-      const fault = k < value.length ? this.#fault(value[k], items ?? prefixItems[k], place) : [place, messages.missing];
+      /** @type {Fault | null} */
+      const fault = k < value.length ? this.#fault(value[k], items ?? prefixItems[k], place)
+        : [place, messages.missing];
       if (fault) return fault;
     }
     return null;
   }
 
-  // What of a world does not let a record with slots be carried out, in words; null: nothing.
+  /** What of a world does not let a record with slots be carried out, in words; null: nothing.
+   * @type {(world: World, record: Command) => string | null} */
   faultIn(world, record) {
     const { messages, commands, names } = this.#about, kinds = new Map(this.#named(record.type));
+    const fields = /** @type {Record<string, number | number[] | undefined>} */ ({ ...record, type: undefined });
     for (const [field, { names: kind, noun }] of kinds) {
-      const lost = [record[field] ?? []].flat().find((slot) => !world.isInUse(kind, slot));
+      const lost = [fields[field] ?? []].flat().find((slot) => !world.isInUse(kind, slot));
       if (lost !== undefined) return fill(messages.noSlot, noun, shown(names[kind][lost]));
     }
-    for (const [field, array, isSet, text] of commands[record.type].conditions) {
-      const row = record[field], kind = kinds.get(field)?.names;
+    for (const [field, array, isSet, text] of commands[record.type]?.conditions ?? []) {
+      const row = Number(fields[field]), kind = kinds.get(field)?.names;
       const value = world.view(`state.${array}`)[row + (field === 'grab' ? world.hands.spring : 0)];
       if (Boolean(value) !== isSet) return fill(text, kind ? names[kind][row] : row);
     }
     return null;
   }
 
-  // What a kernel takes for a record with slots: its number, slots and numbers; and what has to be derived again.
+  /** What a kernel takes for a record with slots: its number, slots and numbers; and what has to be derived again.
+   * @type {(record: Command, given: Record<string, number>) => Packed} */
   packed(record, given) {
     const kind = this.#about.kinds[record.type], fields = this.#about.commands[record.type]?.fields;
-    const value = (name) => (name.startsWith('?') ? Number(record[name.slice(1)] != null)
-      : given[name] ?? record[name] ?? fields?.[name]?.default ?? 0);
+    const own = /** @type {Record<string, unknown>} */ (record);
+    /** @type {(name: string) => number | number[]} */
+    const value = (name) => /** @type {number | number[]} */ (name.startsWith('?') ? Number(own[name.slice(1)] != null)
+      : given[name] ?? own[name] ?? fields?.[name]?.default ?? 0);
     const slots = kind.slots.flatMap((name) => [...new Set([value(name)].flat())]);
-    return { ...kind, slots, numbers: kind.numbers.flatMap(value) };
+    return { ...kind, slots, numbers: kind.numbers.flatMap((name) => value(name)) };
   }
 
-  // Whether a kernel has done it: throws in words where it has not.
+  /** Whether a kernel has done it: throws in words where it has not.
+   * @type {(record: Command, packed: Packed, result: number) => void} */
   answer(record, { slots, numbers }, result) {
     const place = this.#about.badSlot - result, { type } = record, { nothing } = this.#about.commands[type] ?? {};
     if (place >= slots.length) throw new Refusal(`${type}: ${numbers.join(', ')}: finite numbers are needed`);
@@ -145,13 +182,15 @@ export class Commands {
     if (nothing && result === 0) throw new Refusal(nothing);
   }
 
-  // A record with slots as files have it: names in place of slots, and nothing that is left out.
+  /** A record with slots as files have it: names in place of slots, and nothing that is left out.
+   * @type {(record: Command) => NamedRecord} */
   named(record) {
     const { names } = this.#about, kinds = new Map(this.#named(record.type));
     const entries = Object.entries(record).filter(([, value]) => value !== null && value !== undefined);
-    return Object.fromEntries(entries.map(([field, value]) => {
-      const of = names[kinds.get(field)?.names];
-      return [field, of ? plain(value).map?.((slot) => of[slot]) ?? of[value] : value];
-    }));
+    return { type: record.type, ...Object.fromEntries(entries.map(([field, value]) => {
+      const kind = kinds.get(field)?.names;
+      if (!kind) return [field, value];
+      return [field, Array.isArray(value) ? value.map((slot) => names[kind][slot]) : names[kind][value]];
+    })) };
   }
 }

@@ -1,22 +1,37 @@
 // Picture: draws a scene as its world is now, on a canvas. It reads and never writes.
-import { ball, boxOf, canvasOf, castShadow, clamp, disc, drawBar, drawMuscle, drawTurf, fillParts,
+import { ball, boxOf, canvasOf, castShadow, clamp, contextOf, disc, drawBar, drawMuscle, drawTurf, fillParts,
   fillSkin, glow, grown, keepPictures, layGrain, linesOf, makeSkin, mixed, outlineOf, partsOf, pathOf, radial, stroke,
 } from './paint.js';
+import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
+/** @import { StateArrays } from './tables.js' */
+/**
+ * @import { Ball, Bars, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
+ *   Wheel, Working } from './types.js'
+ */
+/** @import { World } from './world.js' */
 
-const HALF = { rope: 3.4, cable: 2.6, chain: 4.6, deck: 6, thread: 1.2, silk: 0.9 };
-const PERIOD = { chain: 5.6, deck: 2 }, USUAL_PERIOD = 6.5, BAR_PERIOD = 8, PLANKS = 3;
-const FLUSH_FROM = 0.03, FLUSH_RANGE = 0.22, LEAST_FLUSH = 0.02, BENT = 2.5;
-const SANDS = ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'];
+const { USUAL_PERIOD, MOST_OF_STEP, LEAST, LEAST_BEND: BENT, PLANKS } = LINES, BAR_PERIOD = 8;
+/** Of strands by their kinds.
+ * @type {Record<string, number | undefined>} */
+const HALVES = LINES.HALF;
+/** @type {Record<string, number | undefined>} */
+const PERIODS = LINES.PERIOD;
+const { FLUSH_FROM, FLUSH_RANGE, LEAST_FLUSH } = STRAIN;
+/** @type {Record<string, [rim: string, tone: string]>} */
 const BOLTS = { bone: ['#4a3a28', '#fff4de'], brass: ['#3a2a10', '#f2ce7c'], wood: ['#3a2614', '#d8a970'] };
-const INK = '#2a1030', DARK = '#161b26', SMALLEST_FACE = 24, LARGEST_PIN = 0.1;
+const INK = '#2a1030', DARK = '#161b26', LARGEST_PIN = 0.1;
 
+// The place in the middle of the picture [m], pixels to a metre, and the size of the picture [pixels].
 export class Camera {
-  constructor() {
-    Object.assign(this, { x: 0, y: 0, zoom: 50, width: 1, height: 1 });
-  }
+  x = 0;
+  y = 0;
+  zoom = 50;
+  width = 1;
+  height = 1;
 
-  // Show a box [m] as large as it goes, above what covers `bottom` pixels of the lower edge.
+  /** Show a box [m] as large as it goes, above what covers `bottom` pixels of the lower edge.
+   * @type {(box: Box, bottom?: number) => void} */
   fit([left, low, right, high], bottom = 0) {
     const height = Math.max(this.height - bottom, 1);
     this.zoom = Math.min((this.width * 0.92) / Math.max(right - left, 0.5),
@@ -25,14 +40,17 @@ export class Camera {
     this.y = (low + high) / 2 - bottom / 2 / this.zoom;
   }
 
+  /** @type {(x: number, y: number) => Point} */
   toWorld(x, y) {
     return [this.x + (x - this.width / 2) / this.zoom, this.y - (y - this.height / 2) / this.zoom];
   }
 
+  /** @type {(x: number, y: number) => Point} */
   toPixels(x, y) {
     return [this.width / 2 + (x - this.x) * this.zoom, this.height / 2 - (y - this.y) * this.zoom];
   }
 
+  /** @type {(x: number, y: number, factor: number) => void} */
   zoomAbout(x, y, factor) {
     const [heldX, heldY] = this.toWorld(x, y);
     this.zoom = clamp(this.zoom * factor, 0.5, 20000);
@@ -47,37 +65,59 @@ export class Picture {
   #context;
   #scene;
   #world;
+  /** @type {Things | null} */
   #things = null;
+  /** @type {Uint8Array[]} */
   #there = [];
   #backdrop = canvasOf(1, 1);
   #backdropKey = '';
+  camera = new Camera();
+  // Of the present picture: pixels of the screen to one of the page, and how large what has a size in pixels is.
+  ratio = 1;
+  scale = 1;
+  seconds = 0;
+  /** Where particles are [pixels].
+   * @type {Float64Array} */
+  at = new Float64Array();
+  /** Rest lengths [m] and strain of springs.
+   * @type {Float64Array} */
+  rest = new Float64Array();
+  /** @type {Float64Array} */
+  strain = new Float64Array();
 
+  /** @param {HTMLCanvasElement} canvas @param {Scene} scene @param {World} world */
   constructor(canvas, scene, world) {
     this.#canvas = canvas;
-    this.#context = canvas.getContext('2d');
+    this.#context = contextOf(canvas);
+    this.theme = scene.themes.dark;
     this.#scene = unfolded(scene, world);
     keepPictures(scene.pictures);
     this.#world = world;
   }
 
+  /** @template {keyof StateArrays} N @param {N} name */
   #state(name) {
     return this.#world.view(`state.${name}`);
   }
 
-  // previous: positions a tick ago; part: how much of the way from them to the present ones, 0..1.
+  /** previous: positions a tick ago; part: how much of the way from them to the present ones, 0..1.
+   * @type {(camera: Camera, theme: Theme, previous: Float64Array, part: number, seconds: number) => void} */
   draw(camera, theme, previous, part, seconds) {
     const { width, height } = camera, ratio = Math.min(devicePixelRatio || 1, 2), context = this.#context;
-    const size = [Math.round(width * ratio), Math.round(height * ratio)], canvas = this.#canvas;
+    const canvas = this.#canvas;
+    /** @type {[number, number]} */
+    const size = [Math.round(width * ratio), Math.round(height * ratio)];
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
     const scale = clamp(Math.min(width / 1280, height / 720), 0.6, 1);
-    Object.assign(this, { camera, theme, seconds, ratio, scale });
+    [this.camera, this.theme, this.seconds, this.ratio, this.scale] = [camera, theme, seconds, ratio, scale];
     this.#place(previous, part);
     const there = [this.#state('spring_active'), this.#state('particle_active')];
-    if (!this.#things || there.some((array, n) => array.some((value, k) => value !== this.#there[n][k]))) {
+    let things = this.#things;
+    if (!things || there.some((array, n) => array.some((value, k) => value !== this.#there[n][k]))) {
       this.#there = there.map((array) => array.slice());
-      this.#things = thingsOf(this.#scene, this.#world, ...this.#there);
+      things = this.#things = thingsOf(this.#scene, this.#world, this.#there[0], this.#there[1]);
     }
-    const things = this.#things, { shapes } = things;
+    const { shapes } = things;
     shapes.forEach((shape) => {
       this.#trace(shape);
       makeSkin(shape, width, height);
@@ -99,7 +139,8 @@ export class Picture {
     this.#drawBalls();
   }
 
-  // Where particles are in the picture, and the strain of springs.
+  /** Where particles are in the picture, and the strain of springs.
+   * @type {(previous: Float64Array, part: number) => void} */
   #place(previous, part) {
     const position = this.#state('position'), { camera } = this, count = position.length;
     const at = (this.at = new Float64Array(count));
@@ -116,29 +157,36 @@ export class Picture {
     });
   }
 
+  /** @type {(slots: number[]) => Float64Array} */
   #points(slots) {
     return Float64Array.from({ length: 2 * slots.length }, (_, k) => this.at[2 * slots[k >> 1] + (k & 1)]);
   }
 
-  // The outline, the skin and the strain of a shape as they are now.
+  /** The outline, the skin and the strain of a shape as they are now.
+   * @type {(shape: Shape) => void} */
   #trace(shape) {
-    const { scale, camera: { zoom } } = this, by = Math.min(shape.grown * zoom, 40 * scale) + shape.extra * scale;
+    const { scale, camera: { zoom } } = this;
+    const by = Math.min(shape.grown * zoom, SHAPES.MOST_GROWN * scale) + shape.extra * scale;
     const loops = shape.loops.map((loop) => grown(this.#points(loop), by)), box = boxOf(loops[0]);
     shape.path = pathOf(loops, shape.keep);
     shape.box = box;
-    shape.depth = clamp(Math.sqrt((box[2] - box[0]) * (box[3] - box[1])) * shape.rounding, 6 * scale, 34 * scale);
+    const wide = Math.sqrt((box[2] - box[0]) * (box[3] - box[1]));
+    shape.depth = clamp(wide * shape.rounding, SHAPES.LEAST_ROUNDING * scale, SHAPES.MOST_ROUNDING * scale);
     shape.splats = this.#splats(shape);
     shape.reach = shape.cell * zoom;
   }
 
-  // How much strain shows, from -1 where it is squeezed to 1.
+  /** How much strain shows, from -1 where it is squeezed to 1.
+   * @type {(strain: number) => number} */
   #flushOf(strain) {
     return Math.sign(strain) * clamp((Math.abs(strain) - FLUSH_FROM) / FLUSH_RANGE);
   }
 
-  // The strain of each particle of a shape, the mean of that of its springs; nothing where little of it shows.
+  /** The strain of each particle of a shape, the mean of that of its springs; nothing where little of it shows.
+   * @type {(shape: Shape) => Splat[] | null} */
   #splats({ shows_strain: isShown, springs }) {
     if (!isShown) return null;
+    /** @type {Map<number, [sum: number, count: number]>} */
     const sums = new Map();
     for (const [spring, ...ends] of springs) {
       for (const slot of ends) {
@@ -146,29 +194,33 @@ export class Picture {
         sums.set(slot, [sum[0] + this.strain[spring], sum[1] + 1]);
       }
     }
-    const splats = Array.from(sums, ([slot, [sum, count]]) =>
-      [this.at[2 * slot], this.at[2 * slot + 1], this.#flushOf(sum / count)]);
+    const splats = Array.from(sums, ([slot, [sum, count]]) => /** @type {Splat} */ (
+      [this.at[2 * slot], this.at[2 * slot + 1], this.#flushOf(sum / count)]));
     return splats.some(([, , amount]) => Math.abs(amount) > LEAST_FLUSH) ? splats : null;
   }
 
-  // The colour of strain over a line, and how much of it.
+  /** The colour of strain over a line, and how much of it.
+   * @type {(spring: number) => [colour: string, alpha: number] | null} */
   #tintOf = (spring) => {
     const flush = this.#flushOf(this.strain[spring]);
     return flush ? [this.theme.strain[flush > 0 ? 2 : 0], 0.7 * Math.abs(flush)] : null;
   };
 
-  // The pieces of a line, as drawBar() takes them, a path through them and half its width.
+  /** The pieces of a line, as drawBar() takes them, a path through them and half its width.
+   * @type {(line: Strand | Bars) => void} */
   #follow(line) {
-    const { at, rest, scale, camera: { zoom } } = this, { particles, springs } = line;
-    if (particles) {
+    const { at, rest, scale, camera: { zoom } } = this;
+    if (line.particles) {
+      const { particles, springs } = line;
       const step = rest[springs[springs.length >> 1]] * zoom, { kind } = line;
-      line.half = Math.max(Math.min(HALF[kind] * line.width * scale, 0.45 * step), 0.55);
-      line.pieces = this.#curve(particles, springs, zoom / ((PERIOD[kind] ?? USUAL_PERIOD) * line.half));
+      line.half = Math.max(Math.min((HALVES[kind] ?? 0) * line.width * scale, MOST_OF_STEP * step), LEAST);
+      line.pieces = this.#curve(particles, springs, zoom / ((PERIODS[kind] ?? USUAL_PERIOD) * line.half));
     } else {
-      const [part, least, most] = line.size, usual = line.cell ?? rest[springs[0]?.[0]] ?? 0;
+      const { springs } = line, [part, least, most] = line.size, usual = line.cell ?? rest[springs[0]?.[0]] ?? 0;
       line.half = clamp(usual * zoom * part, least * scale, most * scale) * line.width;
       const up = (line.raised ?? 0) * line.half;
       line.pieces = springs.map(([spring, a, b]) => {
+        /** @type {[number, number, number, number]} */
         const ends = [at[2 * a], at[2 * a + 1] - up, at[2 * b], at[2 * b + 1] - up];
         const length = Math.hypot(ends[2] - ends[0], ends[3] - ends[1]);
         return [...ends, 0, line.raised ? PLANKS : length / (BAR_PERIOD * line.half), line.raised ? -1 : spring];
@@ -177,20 +229,28 @@ export class Picture {
     line.path = linesOf(line.pieces);
   }
 
-  // A smooth way through particles, in pieces; rate: periods of the texture in a metre.
+  /** A smooth way through particles, in pieces; rate: periods of the texture in a metre.
+   * @type {(particles: number[], springs: number[], rate: number) => LinePiece[]} */
   #curve(particles, springs, rate) {
-    const last = particles.length - 1, isClosed = particles[0] === particles[last], pieces = [];
+    const last = particles.length - 1, isClosed = particles[0] === particles[last];
+    /** @type {LinePiece[]} */
+    const pieces = [];
     const p = particles.map((slot) => this.#points([slot]));
+    /** @type {(end: Float64Array, inner: Float64Array, other: Float64Array) => Float64Array} */
     const beyond = (end, inner, other) => (isClosed ? other : end.map((value, i) => 2 * value - inner[i]));
     const way = [beyond(p[0], p[1], p[last - 1]), ...p, beyond(p[last], p[last - 1], p[1])];
     let along = 0;
     for (let k = 0; k < last; k++) {
       const [a, b, c, d] = way.slice(k, k + 4), length = this.rest[springs[k]] * rate;
+      /** @type {(q: Float64Array, r: Float64Array, s: Float64Array) => boolean} */
       const bends = (q, r, s) => q.some((_, i) => Math.abs(q[i] - 2 * r[i] + s[i]) > BENT);
       const count = bends(a, b, c) || bends(b, c, d) ? 3 : 1;
-      // Catmull and Rom's curve.
-      const place = (t) => b.map((_, i) => b[i] + (t / 2) * (c[i] - a[i]
-        + t * (2 * a[i] - 5 * b[i] + 4 * c[i] - d[i] + t * (3 * (b[i] - c[i]) + d[i] - a[i]))));
+      /** Catmull and Rom's curve.
+       * @type {(t: number, i: number) => number} */
+      const coordinate = (t, i) => b[i] + (t / 2) * (c[i] - a[i]
+        + t * (2 * a[i] - 5 * b[i] + 4 * c[i] - d[i] + t * (3 * (b[i] - c[i]) + d[i] - a[i])));
+      /** @type {(t: number) => Point} */
+      const place = (t) => [coordinate(t, 0), coordinate(t, 1)];
       for (let n = 0; n < count; n++) {
         const [from, to] = [n / count, (n + 1) / count];
         pieces.push([...place(from), ...place(to), along + length * from, along + length * to, springs[k]]);
@@ -200,19 +260,21 @@ export class Picture {
     return pieces;
   }
 
+  /** @type {(things: Things) => void} */
   #castShadows({ shapes, sheets, lines: bars, working }) {
     const { theme: { shadow }, scale } = this;
     castShadow(this.#context, this.camera, this.theme, scale, (context) => {
       shapes.forEach((shape) => context.fill(shape.path, 'evenodd'));
       sheets.filter((sheet) => sheet.isCloth).forEach(({ loops }) =>
         context.fill(pathOf(loops.map((loop) => this.#points(loop)))));
-      bars.forEach(({ path, half, size }) => stroke(context, path, shadow, half + (size ? 1 : 0)));
+      bars.forEach((bar) => stroke(context, bar.path, shadow, bar.half + (bar.particles ? 0 : 1)));
       working.forEach(({ ends }) => stroke(context, linesOf([this.#points(ends)]), shadow, 3 * scale));
       this.#eachBall((slot, x, y, radius) => disc(context, x, y, radius, shadow));
     });
   }
 
-  // Stage and ground, kept while the camera stands still.
+  /** Stage and ground, kept while the camera stands still.
+   * @type {(size: [number, number]) => HTMLCanvasElement} */
   #backdropNow(size) {
     const { camera, theme, ratio } = this, { width, height } = camera, context = this.#backdrop;
     const key = [camera.x, camera.y, camera.zoom, width, height, theme.name, ratio].join();
@@ -224,9 +286,13 @@ export class Picture {
     theme.stage.forEach((colour, k) => fade.addColorStop(k, colour));
     context.fillStyle = fade;
     context.fillRect(0, 0, width, height);
-    // A lamp behind the stage, which is darker towards the corners.
-    const stops = (tone) => Array.from({ length: 17 }, (_, k) => [k / 16, tone(k / 10)]), rim = [0, 0, 1.6];
+    /** A lamp behind the stage, which is darker towards the corners.
+     * @type {(tone: (away: number) => string) => [number, string][]} */
+    const stops = (tone) => Array.from({ length: 17 }, (_, k) => [k / 16, tone(k / 10)]);
+    const rim = /** @type {[number, number, number]} */ ([0, 0, 1.6]);
+    /** @type {(away: number) => string} */
     const lamp = (away) => mixed('#000000', theme.lamp, Math.max(1 - 1.25 * away, 0) ** 2);
+    /** @type {(away: number) => string} */
     const dim = (away) => `rgb(0 0 0 / ${theme.vignette * clamp(away - 0.55, 0, 1.2) ** 1.6})`;
     context.save();
     context.translate(width / 2, 0.46 * height);
@@ -240,24 +306,25 @@ export class Picture {
     return context.canvas;
   }
 
+  /** @type {(context: CanvasRenderingContext2D) => void} */
   #drawGround(context) {
     const { theme, scale, camera } = this, { width, height } = camera, paler = { ...theme };
-    const shapes = this.#scene.ground.map(({ kind, points, rounding, grain, themes }) => {
+    const shapes = this.#scene.ground.map(({ kind, points, rounding = 0, grain, themes }) => {
       const way = points.map(([x, y]) => camera.toPixels(x, y)), corners = way.slice(1).flat();
-      const pieces = way.slice(1).map((point, k) => [...way[k], ...point]);
-      const depth = rounding * scale, path = pathOf([corners]);
-      return { kind, grain, pieces, path, depth, box: boxOf(corners), ...themes?.[theme.name] };
+      const pieces = way.slice(1).map((point, k) => /** @type {LinePiece} */ ([...way[k], ...point]));
+      const depth = rounding * scale, path = pathOf([corners]), box = boxOf(corners), tones = themes?.[theme.name];
+      return { kind, grain, pieces, path, skin: tones && { path, depth, box, ...tones } };
     });
-    const solid = shapes.filter(({ kind }) => kind !== 'line');
+    const solid = shapes.flatMap(({ kind, grain, skin }) => (skin ? [{ kind, grain, skin }] : []));
     paler.shadow_strength *= 0.7;
     castShadow(context, camera, paler, scale, (shadow) => {
-      for (const { kind, path } of solid) if (kind !== 'soil') shadow.fill(path);
+      for (const { kind, skin } of solid) if (kind !== 'soil') shadow.fill(skin.path);
     });
-    for (const shape of solid) {
-      makeSkin(shape, width, height);
-      fillSkin(context, shape);
-      if (shape.grain) layGrain(context, shape.path, shape.grain, ...camera.toPixels(0, 0));
-      stroke(context, shape.path, shape.line, 0.9 * scale, shape.kind === 'glass' ? 0.5 : 0.9);
+    for (const { kind, grain, skin } of solid) {
+      makeSkin(skin, width, height);
+      fillSkin(context, skin);
+      if (grain) layGrain(context, skin.path, grain, ...camera.toPixels(0, 0));
+      stroke(context, skin.path, skin.line, 0.9 * scale, kind === 'glass' ? 0.5 : 0.9);
     }
     for (const { kind, pieces } of shapes) {
       if (kind === 'soil') drawTurf(context, pieces, theme, scale);
@@ -265,11 +332,14 @@ export class Picture {
     }
   }
 
+  /** @type {(line: Strand | Bars) => void} */
   #drawLine(line) {
-    const { half, kind, bolts = [] } = line, context = this.#context;
-    drawBar(context, line.pieces, line.path, half, kind === 'paint' ? line.colour : kind, this.#tintOf);
-    if (!bolts.length || (line.cell ?? 0) * this.camera.zoom < 9) return;
-    const [rim, tone] = kind === 'paint' ? [outlineOf(line.colour), mixed(line.colour, '#ffffff', 0.24)]
+    const { half, kind } = line, context = this.#context, colour = line.particles ? '' : line.colour;
+    drawBar(context, line.pieces, line.path, half, kind === 'paint' ? colour : kind, this.#tintOf);
+    if (line.particles) return;
+    const { bolts = [] } = line;
+    if (!bolts.length || (line.cell ?? 0) * this.camera.zoom < LINES.BOLTS_FROM) return;
+    const [rim, tone] = kind === 'paint' ? [outlineOf(colour), mixed(colour, '#ffffff', 0.24)]
       : BOLTS[kind] ?? [DARK, '#b9c4d8'];
     const sizes = line.isTruss ? [1.35, 1.05, 0.42] : [1.7, 1.25, 0.5];
     for (const slot of bolts) {
@@ -278,11 +348,15 @@ export class Picture {
     }
   }
 
+  /** @type {(working: Working) => void} */
   #drawWorking({ kind, ends, spring, width }) {
     const { scale } = this, context = this.#context, rest = this.rest[spring] * this.camera.zoom;
     const [x, y, endX, endY] = this.#points(ends), dx = endX - x, dy = endY - y, length = Math.hypot(dx, dy) || 1;
+    /** @type {(value: number, low: number, high: number) => number} */
     const size = (value, low, high) => clamp(value, low * scale, high * scale) * width;
+    /** @type {(share: number, half: number, own: string) => void} */
     const bar = (share, half, own) => {
+      /** @type {LinePiece} */
       const piece = [x, y, x + share * dx, y + share * dy];
       drawBar(context, [piece], linesOf([piece]), half, own);
     };
@@ -290,13 +364,14 @@ export class Picture {
     else if (kind === 'piston') {
       const half = size(0.07 * rest, 2, 4.5);
       bar(1, 0.5 * half, 'steel');
-      bar(0.55, half, '#f6b83e');
+      bar(0.55, half, LINES.CYLINDER);
     } else {
       const wide = size(0.13 * rest, 2.5, 8) / length, points = Array.from({ length: 15 }, (_, k) => {
         const share = clamp(0.12 + (0.76 * (k - 1)) / 12), side = k < 2 || k > 12 ? 0 : k % 2 ? -wide : wide;
-        return [x + dx * (k % 14 ? share : k / 14) - dy * side, y + dy * (k % 14 ? share : k / 14) + dx * side];
+        const along = k % 14 ? share : k / 14;
+        return /** @type {Point} */ ([x + dx * along - dy * side, y + dy * along + dx * side]);
       });
-      const wire = points.slice(1).map((point, k) => [...points[k], ...point]);
+      const wire = points.slice(1).map((point, k) => /** @type {LinePiece} */ ([...points[k], ...point]));
       context.lineCap = context.lineJoin = 'round';
       stroke(context, linesOf(wire), DARK, 2.5 * scale, 0.75);
       ['#e8edf6', '#8e9ab2'].forEach((tone, odd) =>
@@ -304,60 +379,76 @@ export class Picture {
     }
   }
 
+  /** @type {(shape: Shape) => void} */
   #drawShape(shape) {
     fillSkin(this.#context, shape);
-    if (shape.line) stroke(this.#context, shape.path, shape.line, 0.75 * this.scale);
+    if (shape.line) stroke(this.#context, shape.path, shape.line, SHAPES.LINE_HALF * this.scale);
   }
 
-  // Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
+  /** Triangles of cloth, planks or stones: each is filled in the coordinates of its picture.
+   * @type {(sheet: Sheet) => void} */
   #drawSheet(sheet) {
     const { body, isCloth } = sheet, context = this.#context;
-    sheet.parts ??= partsOf(sheet.triangles, this.#texels(body, sheet.triangles, isCloth ? 16 : 14));
+    sheet.parts ??= partsOf(sheet.triangles, this.#texels(body, sheet.triangles, isCloth ? SHAPES.CLOTH_TEXELS
+      : SHAPES.LAID_TEXELS));
     fillParts(context, `${body.skin} ${body.colour}`, sheet.parts, this.at);
     const hem = pathOf(sheet.loops.map((loop) => this.#points(loop)));
-    const [tone, half] = isCloth ? [outlineOf(body.colour), 1.5] : [mixed(body.colour, '#180a00', 0.66), 2.2];
-    stroke(context, hem, tone, half * this.scale);
+    const tone = isCloth ? outlineOf(body.colour) : mixed(body.colour, '#180a00', 0.66);
+    stroke(context, hem, tone, (isCloth ? SHAPES.HEM_HALF : 2.2) * this.scale);
   }
 
-  // Where the corners of triangles of a body lie in its picture, so many texels to a cell.
+  /** Where the corners of triangles of a body lie in its picture, so many texels to a cell.
+   * @type {(body: FilledBody, triangles: number[][], texels: number) => number[][]} */
   #texels({ angle, spacing, slots }, triangles, texels) {
     const origin = this.#state('origin'), cosine = Math.cos(angle), sine = Math.sin(angle);
+    /** @type {(slot: number) => number[]} */
     const turned = (slot) => [origin[2 * slot] * cosine + origin[2 * slot + 1] * sine,
       origin[2 * slot] * sine - origin[2 * slot + 1] * cosine].map((value) => (value * texels) / spacing);
     const [left, , , low] = boxOf(slots.flatMap(turned));
     return triangles.map((corners) => corners.flatMap(turned).map((value, k) => value - (k % 2 ? low : left)));
   }
 
-  // How large a wheel is.
+  /** How large a wheel is.
+   * @type {(wheel: Pick<Wheel, 'hub' | 'outer'>) => number} */
   #sizeOf({ hub, outer }) {
     const [x, y, ...points] = this.#points([hub, ...outer]);
     return outer.reduce((sum, _, k) => sum + Math.hypot(points[2 * k] - x, points[2 * k + 1] - y), 0) / outer.length;
   }
 
-  // Lugs are dashes of a wide line under the tyre, two to a particle.
+  /** Lugs are dashes of a wide line under the tyre, two to a particle.
+   * @type {(wheel: Wheel) => void} */
   #drawLugs(wheel) {
     const context = this.#context, size = this.#sizeOf(wheel), period = (Math.PI * size) / wheel.outer.length;
-    if (!wheel.is_tyre || size < 22) return;
-    const lug = Math.max(3, Math.min(0.11 * size, 0.4 * period)), high = 0.075 * size + wheel.radius * this.camera.zoom;
+    if (!wheel.is_tyre || size < WHEELS.LUGS_FROM) return;
+    const lug = Math.max(3, Math.min(0.11 * size, 0.4 * period));
+    const high = WHEELS.LUG * size + wheel.radius * this.camera.zoom;
     context.lineCap = 'butt';
     context.setLineDash([lug, period - lug]);
     stroke(context, pathOf([this.#points(wheel.outer)]), this.theme.tyre, high);
     context.setLineDash([]);
   }
 
+  /** @type {(wheel: Wheel) => void} */
   #drawWheel(wheel) {
     const context = this.#context, { scale } = this, { hub, inner, outer } = wheel, size = this.#sizeOf(wheel);
+    /** @type {(pieces: LinePiece[], half: number) => void} */
     const bar = (pieces, half) => drawBar(context, pieces, linesOf(pieces), half, 'steel');
     const [x, y, firstX, firstY] = this.#points([hub, outer[0]]), radius = clamp(0.15 * size, 2.5, 22 * scale);
-    if (wheel.is_tyre && size > 14) bar(this.#curve([...inner, inner[0]], [], 0), Math.max(1.6, 0.045 * size));
-    bar(wheel.spokes.map((slot) => [x, y, ...this.#points([slot])]), clamp(0.034 * size, 1.2, 4 * scale));
+    if (wheel.is_tyre && size > WHEELS.RIM_FROM) {
+      bar(this.#curve([...inner, inner[0]], [], 0), Math.max(1.6, 0.045 * size));
+    }
+    bar(wheel.spokes.map((slot) => [x, y, this.at[2 * slot], this.at[2 * slot + 1]]),
+      clamp(0.034 * size, 1.2, 4 * scale));
     disc(context, x, y, radius + 0.8 * scale, DARK, 0.8);
     ball(context, x, y, radius, -Math.atan2(firstY - y, firstX - x), 'steel', '#aeb9cc');
   }
 
-  // Gleams of a balloon that stay where the light is, and a knot where something is tied.
+  /** Gleams of a balloon that stay where the light is, and a knot where something is tied.
+   * @type {(balloon: Things['balloons'][number]) => void} */
   #drawGleams({ slots, knots, colour }) {
-    const [left, top, right, low] = boxOf(this.#points(slots)), context = this.#context, tips = [];
+    const [left, top, right, low] = boxOf(this.#points(slots)), context = this.#context;
+    /** @type {LinePiece[]} */
+    const tips = [];
     const x = (left + right) / 2, y = (top + low) / 2, radius = (right - left + low - top) / 4;
     for (const [across, down, size, alpha] of [[-0.34, -0.42, 0.46, 0.45], [-0.42, -0.44, 0.17, 0.85],
       [-0.2, -0.56, 0.09, 0.8], [0.34, 0.5, 0.4, 0.16]]) {
@@ -374,12 +465,15 @@ export class Picture {
     stroke(context, linesOf(tips), outlineOf(colour), Math.max(1.2, 0.03 * radius));
   }
 
-  // Eyes that look where it moves, cheeks, and a mouth that says how it feels.
+  /** Eyes that look where it moves, cheeks, and a mouth that says how it feels.
+   * @type {(face: Face, number: number) => void} */
   #drawFace(face, number) {
-    const { slots, springs, angle } = face, { at, camera: { zoom } } = this, count = slots.length, context = this.#context;
-    const [spotX, spotY, room] = face.spot, size = Math.min(2 * room * zoom, 120 * this.scale);
-    if (size < SMALLEST_FACE * this.scale) return;
+    const { slots, springs, angle } = face, { at, camera: { zoom } } = this;
+    const count = slots.length, context = this.#context;
+    const [spotX, spotY, room] = face.spot, size = Math.min(2 * room * zoom, FACES.LARGEST * this.scale);
+    if (size < FACES.SMALLEST * this.scale) return;
     const origin = this.#state('origin'), velocity = this.#state('velocity');
+    /** @type {(values: Float64Array, k: number) => number} */
     const middle = (values, k) => slots.reduce((sum, slot) => sum + values[2 * slot + k], 0) / count;
     const [x, y, u, v] = [middle(at, 0), middle(at, 1), middle(origin, 0), middle(origin, 1)];
     const right = middle(velocity, 0), down = -middle(velocity, 1), speed = Math.hypot(right, down);
@@ -390,9 +484,10 @@ export class Picture {
       cosine += ownX * dx + ownY * dy;
       sine += ownX * dy - ownY * dx;
     }
-    const turn = Math.atan2(sine, cosine), beat = 3.4 + 0.77 * (number % 4);
+    const turn = Math.atan2(sine, cosine), beat = FACES.BLINK_EVERY + 0.77 * (number % 4);
     const load = springs.reduce((sum, [spring]) => sum + Math.abs(this.strain[spring]), 0) / springs.length;
-    const isSqueezed = load > 0.1, isShut = !isSqueezed && (this.seconds + 1.7 * number) % beat > beat - 0.13;
+    const isSqueezed = load > FACES.SQUEEZED;
+    const isShut = !isSqueezed && (this.seconds + 1.7 * number) % beat > beat - FACES.BLINK;
     context.save();
     context.translate(x, y);
     context.rotate(turn);
@@ -401,10 +496,12 @@ export class Picture {
     context.scale(size, size);
     // What is seen of a face turns with it, but for where it looks and where the light is.
     const back = angle - turn;
+    /** @type {(across: number, below: number) => Point} */
     const seen = (across, below) => [across * Math.cos(back) - below * Math.sin(back),
       across * Math.sin(back) + below * Math.cos(back)];
     const wide = (0.05 * Math.min(1, 0.3 + speed / 4)) / (speed || 1);
     const gaze = speed <= 0.25 ? seen(0, 0.015) : seen(right * wide, down * wide), light = seen(-0.021, -0.028);
+    /** @type {(way: string, half: number) => void} */
     const line = (way, half) => stroke(context, new Path2D(way), INK, Math.max(half, 0.9 / size));
     context.lineCap = context.lineJoin = 'round';
     for (const side of [-1, 1]) {
@@ -421,17 +518,19 @@ export class Picture {
     }
     const smile = 0.125 + 0.25 * (0.66 - Math.min(9 * load, 0.8));
     if (isSqueezed) line('M-0.125 0.125q0.042 -0.05 0.083 0t0.084 0t0.083 0', 0.02);
-    else if (speed <= 2.5) line(`M-0.125 0.125Q0 ${smile} 0.125 0.125`, 0.02);
+    else if (speed <= FACES.FAST) line(`M-0.125 0.125Q0 ${smile} 0.125 0.125`, 0.02);
     else {
       disc(context, 0, 0.145, 0.0725, INK);
-      disc(context, 0, 0.17, 0.041, '#f0708a');
+      disc(context, 0, 0.17, 0.041, FACES.TONGUE);
     }
     context.restore();
   }
 
-  // Balls that are there: a small one that is held is a pin.
+  /** Balls that are there: a small one that is held is a pin.
+   * @type {(act: (slot: number, x: number, y: number, radius: number, ball: Ball, k: number) => void) => void} */
   #eachBall(act) {
-    const [active, radius, inverse] = ['particle_active', 'radius', 'inverse_mass'].map((name) => this.#state(name));
+    const active = this.#state('particle_active'), radius = this.#state('radius');
+    const inverse = this.#state('inverse_mass');
     this.#scene.balls.forEach((one, k) => {
       if (!active[one.slot] || (inverse[one.slot] === 0 && radius[one.slot] <= LARGEST_PIN)) return;
       const size = Math.max(radius[one.slot] * this.camera.zoom, 2.5 * this.scale);
@@ -444,7 +543,7 @@ export class Picture {
     const angle = this.#state('angle'), inverse = this.#state('inverse_mass'), active = this.#state('particle_active');
     const context = this.#context, sizes = new Map();
     this.#eachBall((slot, x, y, radius, { kind, colour }, k) => {
-      ball(context, x, y, radius, angle[slot], kind, colour ?? (kind === 'sand' ? SANDS[k % 4] : '#8d99b0'));
+      ball(context, x, y, radius, angle[slot], kind, colour ?? (kind === 'sand' ? COLOURS.SANDS[k % 4] : '#8d99b0'));
       sizes.set(slot, kind === 'bumper' ? 0 : 0.55);
     });
     inverse.forEach((value, slot) => {

@@ -1,19 +1,28 @@
 // Drives: motors and hydraulics, driven while their keys are held.
+/** @import { Run } from './run.js' */
+/** @import { Level } from './types.js' */
 
-// Where a key is on the keyboard: what it is called changes with others that are down.
+/** Where a key is on the keyboard: what it is called changes with others that are down.
+ * @type {(event: Pick<KeyboardEvent, 'code' | 'key'>) => string} */
 const placeOf = ({ code, key }) => code || key.toLowerCase();
 
 export class Drives {
+  /** @type {Map<string, number>} */
   #held = new Map();
-  // Names of keys that a keyboard holds, by their places.
+  /** Names of keys that a keyboard holds, by their places.
+   * @type {Map<string, string>} */
   #typed = new Map();
 
-  // keys: parts and values by the name of a key; told: called with a key's name and whether it is held now.
+  /** keys: parts and values by the name of a key; told: called with a key's name and whether it is held now.
+   * @param {Run} run @param {Level['keys']} keys @param {(name: string, isHeld: boolean) => void} [told] */
   constructor(run, keys, told = () => {}) {
-    Object.assign(this, { run, keys, told });
+    this.run = run;
+    this.keys = keys;
+    this.told = told;
   }
 
-  // Whether a key that went down drives something; it does so until the key goes up.
+  /** Whether a key that went down drives something; it does so until the key goes up.
+   * @type {(event: KeyboardEvent) => boolean} */
   typed(event) {
     const name = event.key.replace('Arrow', '').toLowerCase();
     if (!(name in this.keys) || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return false;
@@ -24,13 +33,17 @@ export class Drives {
     return true;
   }
 
-  // A key went up. Of keys that go up while Meta is down a Mac tells nothing.
+  /** A key went up. Of keys that go up while Meta is down a Mac tells nothing.
+   * @type {(event: KeyboardEvent) => void} */
   lifted(event) {
     if (event.key === 'Meta') this.releaseTyped();
-    this.release(this.#typed.get(placeOf(event)));
+    const name = this.#typed.get(placeOf(event));
+    if (name === undefined) return;
+    this.release(name);
     this.#typed.delete(placeOf(event));
   }
 
+  /** @type {(name: string) => void} */
   press(name) {
     if (this.#held.has(name)) return;
     const gesture = this.run.newGesture();
@@ -39,10 +52,12 @@ export class Drives {
     this.told(name, true);
   }
 
-  // Stop what the key drove, or let the key go on that still drives it another way.
+  /** Stop what the key drove, or let the key go on that still drives it another way.
+   * @type {(name: string) => void} */
   release(name) {
     const gesture = this.#held.get(name);
-    if (!this.#held.delete(name)) return;
+    if (gesture === undefined) return;
+    this.#held.delete(name);
     for (const [part] of this.keys[name]) {
       const others = [...this.#held.keys()].flatMap((other) => this.keys[other]);
       const value = others.findLast(([other]) => other === part)?.[1] ?? 0;

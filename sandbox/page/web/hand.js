@@ -1,23 +1,56 @@
 // Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut; what holds nothing moves the view.
+import { HANDS } from './shared.js';
+/** @import { Camera } from './draw.js' */
+/** @import { Run } from './run.js' */
+/** @import { Command, HandEvents, Point, Theme } from './types.js' */
+/** @import { World } from './world.js' */
 
-const REACH = { mouse: 14, pen: 16, touch: 26 }, STRENGTH = 100, AT_LIMIT = 0.98, SOFT_REACH = 2;
+const { STRENGTH, AT_LIMIT, SOFT_REACH, PICK_RADIUS } = HANDS;
+// Units of force, and how many newtons each is.
+const FORCES = /** @type {[size: number, name: string][]} */ (HANDS.UNITS);
+/** @type {Record<string, number>} */
+const REACH = { mouse: PICK_RADIUS, pen: 16, touch: 26 };
 const NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
+/** @type {Record<string, Point>} */
+const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 // Two taps so soon after each other [ms] and so near to each other [pixels] are one gesture.
 const TWICE = 350, BESIDE = 30;
+/** @typedef {{ x: number, y: number }} Pixel */
+/** Where and when a finger came down [ms].
+ * @typedef {Pixel & { time: number }} Touch */
+/**
+ * What a pointer does, and where it is; hand: that it moves; point: where it cut last [m].
+ * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'done', began: Touch, isBeside: boolean, hand: number | null,
+ *   point: Point, gesture: number }} Pointer
+ */
+/**
+ * What a hand holds, where it draws it [m], how far that is from the pointer, and its largest force [N].
+ * @typedef {{ particle: number, gesture: number, beside: Point, target: Point, isMoved: boolean, limit: number }} Held
+ */
+/** @type {(one: Pixel, two: Pixel) => boolean} */
 const isNear = (one, two) => Math.hypot(one.x - two.x, one.y - two.y) < BESIDE;
-const UNITS = [[1e6, 'MN'], [1e3, 'kN'], [1, 'N'], [1e-3, 'mN']];
 
 // What of a world lies near a point [m].
 class Near {
+  /** @param {World} world */
   constructor(world) {
     this.world = world;
-    for (const name of ['position', 'radius', 'inverse_mass', 'particle_active', 'owner', 'origin', 'mass',
-      'particle_a', 'particle_b',
-      'spring_active', 'material']) this[name] = world.view(`state.${name}`);
+    this.position = world.view('state.position');
+    this.origin = world.view('state.origin');
+    this.radius = world.view('state.radius');
+    this.mass = world.view('state.mass');
+    this.inverse_mass = world.view('state.inverse_mass');
+    this.particle_active = world.view('state.particle_active');
+    this.owner = world.view('state.owner');
+    this.particle_a = world.view('state.particle_a');
+    this.particle_b = world.view('state.particle_b');
+    this.spring_active = world.view('state.spring_active');
+    this.material = world.view('state.material');
   }
 
+  /** @type {(count: number, distance: (k: number) => number, within: number) => number | null} */
   #nearest(count, distance, within) {
-    let best = null, least = within;
+    let best = /** @type {number | null} */ (null), least = within;
     for (let k = 0; k < count; k++) {
       const away = distance(k);
       if (away < least) [best, least] = [k, away];
@@ -25,22 +58,28 @@ class Near {
     return best;
   }
 
+  /** @type {(slot: number, point: Point) => number} */
   #away(slot, [x, y]) {
     return Math.hypot(this.position[2 * slot] - x, this.position[2 * slot + 1] - y);
   }
 
+  /** @type {(point: Point, within: number) => number | null} */
   particle(point, within) {
+    /** @type {(k: number) => number} */
     const away = (k) => (this.world.isShown(k) ? this.#away(k, point) - this.radius[k] : Infinity);
     return this.#nearest(this.mass.length, away, within);
   }
 
-  // The free particle that a press takes: one within reach, else the nearest of a body with springs around the point.
+  /** The free particle that a press takes: one within reach, else the nearest of a body with springs around the point.
+   * @type {(point: Point, within: number) => number | null} */
   free(point, within) {
     const pressed = this.particle(point, within);
     if (pressed !== null && this.inverse_mass[pressed] > 0) return pressed;
+    /** @type {Map<number, Set<string>>} */
     const sides = new Map();
     this.#eachSpring((s, a, b) => {
-      const of = sides.get(this.owner[a]) ?? sides.set(this.owner[a], new Set()).get(this.owner[a]);
+      const of = sides.get(this.owner[a]) ?? new Set();
+      sides.set(this.owner[a], of);
       for (const u of [0, 1]) {
         const low = this.position[2 * a + u], high = this.position[2 * b + u], v = 1 - u;
         if (low <= point[u] === high <= point[u]) continue;
@@ -49,18 +88,21 @@ class Near {
         of.add(`${u}${at <= point[v]}`);
       }
     });
+    /** @type {(k: number) => boolean} */
     const isTaken = (k) => this.world.canMove(k) && sides.get(this.owner[k])?.size === 4;
     return this.#nearest(this.mass.length, (k) => (isTaken(k) ? this.#away(k, point) : Infinity), Infinity);
   }
 
+  /** @type {(act: (spring: number, a: number, b: number) => void) => void} */
   #eachSpring(act) {
     for (let s = 0; s < this.spring_active.length; s++) {
       if (this.spring_active[s] && this.material[s] >= 0) act(s, this.particle_a[s], this.particle_b[s]);
     }
   }
 
+  /** @type {(point: Point, within: number) => number[]} */
   spring([x, y], within) {
-    let best = null, least = within;
+    let best = /** @type {number | null} */ (null), least = within;
     this.#eachSpring((s, a, b) => {
       const [ax, ay, bx, by] = this.#ends(a, b), dx = bx - ax, dy = by - ay;
       const part = Math.min(Math.max(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1), 0), 1);
@@ -70,16 +112,22 @@ class Near {
     return best === null ? [] : [best];
   }
 
+  /** @type {(a: number, b: number) => [number, number, number, number]} */
   #ends(a, b) {
     return [this.position[2 * a], this.position[2 * a + 1], this.position[2 * b], this.position[2 * b + 1]];
   }
 
+  /** @type {(p: Point, q: Point) => number[]} */
   crossing(p, q) {
-    const found = [], area = (ux, uy, vx, vy, wx, wy) => (vx - ux) * (wy - uy) - (vy - uy) * (wx - ux);
+    /** @type {number[]} */
+    const found = [];
+    /** @type {(ux: number, uy: number, vx: number, vy: number, wx: number, wy: number) => number} */
+    const area = (ux, uy, vx, vy, wx, wy) => (vx - ux) * (wy - uy) - (vy - uy) * (wx - ux);
     this.#eachSpring((s, a, b) => {
       const [ax, ay, bx, by] = this.#ends(a, b);
       const straddles = area(...p, ...q, ax, ay) * area(...p, ...q, bx, by) <= 0
         && area(ax, ay, bx, by, ...p) * area(ax, ay, bx, by, ...q) <= 0;
+      /** @type {(u: 0 | 1, start: number, end: number) => boolean} */
       const meets = (u, start, end) => Math.min(start, end) <= Math.max(p[u], q[u])
         && Math.max(start, end) >= Math.min(p[u], q[u]);
       if (straddles && meets(0, ax, bx) && meets(1, ay, by)) found.push(s);
@@ -87,11 +135,13 @@ class Near {
     return found;
   }
 
-  // How far a hand reaches into a soft body [m]; 0 where it is not soft.
+  /** How far a hand reaches into a soft body [m]; 0 where it is not soft.
+   * @type {(particle: number) => number} */
   grip(particle) {
-    const view = (name) => this.world.view(`state.constraint_${name}`), active = view('active'), kind = view('kind');
-    const first = view('first'), corner = this.world.view('state.corner_particle'), owner = this.owner[particle];
-    if (!active.some((is, k) => is && kind[k] === this.world.areaKind
+    const active = this.world.view('state.constraint_active'), kind = this.world.view('state.constraint_kind');
+    const first = this.world.view('state.constraint_first'), corner = this.world.view('state.corner_particle');
+    const owner = this.owner[particle];
+    if (!active.some((is, k) => is !== 0 && kind[k] === this.world.areaKind
       && this.owner[corner[first[k]]] === owner)) return 0;
     let most = 0;
     for (let k = 0; k < this.mass.length; k++) {
@@ -104,6 +154,7 @@ class Near {
     return SOFT_REACH * most;
   }
 
+  /** @type {(particle: number) => number} */
   bodyMass(particle) {
     return this.mass.reduce((sum, mass, k) =>
       sum + (this.particle_active[k] && this.owner[k] === this.owner[particle] ? mass : 0), 0);
@@ -112,22 +163,34 @@ class Near {
 
 export class Hands {
   tool = 'drag';
+  /** @type {number | null} */
   marked = null;
+  /** @type {Map<number, Pointer>} */
   #pointers = new Map();
-  // What each hand holds that a pointer or a key moves.
+  /** What each hand holds that a pointer or a key moves.
+   * @type {Map<number, Held>} */
   #held = new Map();
+  /** @type {Touch | null} */
   #tapped = null;
   #closing = new AbortController();
 
-  // changed: called when the view has been moved by hand; fit: shows all again; say: tells a person something in a line.
+  /** changed: called when the view has been moved by hand; fit: shows all again; say: tells a person something in a line.
+   * @param {HTMLCanvasElement} canvas @param {Run} run @param {Camera} camera @param {HandEvents} events */
   constructor(canvas, run, camera, { changed, fit, say }) {
-    Object.assign(this, { canvas, run, camera, changed, fit, say });
+    this.canvas = canvas;
+    this.run = run;
+    this.camera = camera;
+    this.changed = changed;
+    this.fit = fit;
+    this.say = say;
     const how = { signal: this.#closing.signal, passive: false };
+    /** @type {<N extends keyof HTMLElementEventMap>(name: N, act: (event: HTMLElementEventMap[N]) => void) => void} */
     const on = (name, act) => canvas.addEventListener(name, act, how);
     on('pointerdown', (event) => this.#press(event));
     on('pointermove', (event) => this.#move(event));
     // Whatever ends a press, it ends the capture.
-    for (const name of ['pointerup', 'lostpointercapture']) on(name, (event) => this.#lift(event));
+    on('pointerup', (event) => this.#lift(event));
+    on('lostpointercapture', (event) => this.#lift(event));
     on('contextmenu', (event) => event.preventDefault());
     on('wheel', (event) => this.#turn(event));
   }
@@ -136,7 +199,8 @@ export class Hands {
     this.#closing.abort();
   }
 
-  // A wheel zooms, unless it would scroll the page and the picture was not clicked before.
+  /** A wheel zooms, unless it would scroll the page and the picture was not clicked before.
+   * @type {(event: WheelEvent) => void} */
   #turn(event) {
     const { scrollHeight, clientHeight } = document.documentElement;
     if (scrollHeight > clientHeight && document.activeElement !== this.canvas && !event.ctrlKey) return;
@@ -145,21 +209,23 @@ export class Hands {
     this.changed();
   }
 
+  /** @type {(event: PointerEvent) => void} */
   #press(event) {
     event.preventDefault();
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(event.pointerId);
     const point = this.camera.toWorld(event.offsetX, event.offsetY),
       within = REACH[event.pointerType] / this.camera.zoom;
-    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan',
+    /** @type {Pointer} */
+    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', isBeside: false, hand: null, point, gesture: 0,
       began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
     this.#pointers.set(event.pointerId, pointer);
     if (event.button !== 0 || event.altKey) return;
     const near = new Near(this.run.world), touched = near.particle(point, within), free = near.free(point, within);
     pointer.isBeside = this.tool !== 'cut' && touched === null && free === null && this.#pointers.size === 1;
     if (this.tool === 'cut') {
-      Object.assign(pointer, { kind: 'cut', point, gesture: this.run.newGesture() });
-      this.#cut(pointer, near.spring(point, within / 2));
+      Object.assign(pointer, { kind: 'cut', gesture: this.run.newGesture() });
+      this.#cut(pointer.gesture, near.spring(point, within / 2));
     } else if (this.tool === 'pin') this.#pin(near, touched, pointer);
     else if (free !== null) {
       pointer.hand = this.hold(free, point, within);
@@ -167,13 +233,15 @@ export class Hands {
     } else if (touched !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
   }
 
-  // Two taps where nothing is show all again.
+  /** Two taps where nothing is show all again.
+   * @type {(began: Touch, ended: number) => void} */
   #tap(began, ended) {
-    const isSecond = ended - this.#tapped?.time < TWICE && isNear(began, this.#tapped);
+    const first = this.#tapped, isSecond = first !== null && ended - first.time < TWICE && isNear(began, first);
     this.#tapped = isSecond ? null : began;
     if (isSecond) this.fit();
   }
 
+  /** @type {(near: Near, particle: number | null, pointer: Pointer) => void} */
   #pin(near, particle, pointer) {
     if (particle === null) return;
     pointer.kind = 'done';
@@ -181,12 +249,14 @@ export class Hands {
     if (!this.run.submit({ type, particle }, this.run.newGesture())) this.say('This page cannot pin.');
   }
 
-  #cut(pointer, springs) {
-    if (springs.length && !this.run.submit({ type: 'cut_springs', springs },
-      pointer.gesture)) this.say('This page cannot cut.');
+  /** @type {(gesture: number, springs: number[]) => void} */
+  #cut(gesture, springs) {
+    if (!springs.length || this.run.submit({ type: 'cut_springs', springs }, gesture)) return;
+    this.say('This page cannot cut.');
   }
 
-  // Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
+  /** Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
+   * @type {(particle: number, point: Point, within: number) => number | null} */
   hold(particle, point, within) {
     const gesture = this.run.newGesture();
     this.run.takeUp(gesture);
@@ -194,17 +264,21 @@ export class Hands {
     const hand = Array.from({ length: world.hands.count }, (_, k) => k).find((k) => !world.isHeld(k));
     if (hand === undefined) return null;
     const dx = position[2 * particle] - point[0], dy = position[2 * particle + 1] - point[1];
-    // A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
+    /** A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
+     * @type {Point} */
     const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy];
+    /** @type {Point} */
     const target = [point[0] + beside[0], point[1] + beside[1]];
     // What a command changes may lie elsewhere after it: all is asked before.
-    const limit = STRENGTH * near.bodyMass(particle),
-      record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
+    const limit = STRENGTH * near.bodyMass(particle);
+    /** @type {Command} */
+    const record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
     if (!this.run.submit(record, gesture)) return null;
     this.#held.set(hand, { particle, gesture, beside, target, isMoved: false, limit });
     return hand;
   }
 
+  /** @type {(event: PointerEvent) => void} */
   #move(event) {
     const pointer = this.#pointers.get(event.pointerId);
     if (!pointer) return;
@@ -213,17 +287,18 @@ export class Hands {
       return;
     }
     const [x, y] = [event.offsetX, event.offsetY], point = this.camera.toWorld(x, y),
-      held = this.#held.get(pointer.hand);
+      held = this.#heldBy(pointer);
     if (held) this.#aim(held, point);
     else if (pointer.kind === 'cut') {
-      this.#cut(pointer, new Near(this.run.world).crossing(pointer.point, point));
+      this.#cut(pointer.gesture, new Near(this.run.world).crossing(pointer.point, point));
       pointer.point = point;
     } else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
     Object.assign(pointer, { x, y });
     if (!isNear(pointer, pointer.began)) pointer.isBeside = false;
   }
 
-  // One finger moves the view, two turn it larger or smaller as well.
+  /** One finger moves the view, two turn it larger or smaller as well.
+   * @type {(pointer: Pointer, x: number, y: number) => void} */
   #moveView(pointer, x, y) {
     const other = [...this.#pointers.values()].find((each) => each.kind === 'pan' && each !== pointer);
     const share = other ? 0.5 : 1;
@@ -236,20 +311,31 @@ export class Hands {
     this.changed();
   }
 
+  /** @type {(held: Held, point: Point) => void} */
   #aim(held, [x, y]) {
     held.target = [x + held.beside[0], y + held.beside[1]];
     held.isMoved = true;
   }
 
+  /** @type {(event: PointerEvent) => void} */
   #lift(event) {
     const pointer = this.#pointers.get(event.pointerId);
     this.#pointers.delete(event.pointerId);
-    if (this.#held.has(pointer?.hand)) this.release(pointer.hand);
-    else if (pointer?.isBeside && event.type === 'pointerup') this.#tap(pointer.began, event.timeStamp);
+    if (!pointer) return;
+    if (pointer.hand !== null && this.#heldBy(pointer)) this.release(pointer.hand);
+    else if (pointer.isBeside && event.type === 'pointerup') this.#tap(pointer.began, event.timeStamp);
   }
 
+  /** @type {(pointer: Pointer) => Held | undefined} */
+  #heldBy({ hand }) {
+    return hand === null ? undefined : this.#held.get(hand);
+  }
+
+  /** @type {(hand: number) => void} */
   release(hand) {
-    const { gesture } = this.#held.get(hand);
+    const held = this.#held.get(hand);
+    if (!held) return;
+    const { gesture } = held;
     this.#held.delete(hand);
     if (this.run.world.isHeld(hand)) this.run.submit({ type: 'release', grab: hand }, gesture);
   }
@@ -260,7 +346,7 @@ export class Hands {
 
   // End what pointers do, as if they were lifted.
   letGo() {
-    for (const { hand } of this.#pointers.values()) if (this.#held.has(hand)) this.release(hand);
+    for (const { hand } of this.#pointers.values()) if (hand !== null) this.release(hand);
     this.#pointers.clear();
   }
 
@@ -279,17 +365,17 @@ export class Hands {
     }
   }
 
-  // Keys: N marks the next particle, Enter takes it, arrows move it. Whether the key was of use.
+  /** Keys: N marks the next particle, Enter takes it, arrows move it. Whether the key was of use.
+   * @type {(event: KeyboardEvent) => boolean} */
   key(event) {
-    const near = new Near(this.run.world),
-      way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const near = new Near(this.run.world), way = Object.hasOwn(WAYS, event.key) ? WAYS[event.key] : null;
     const [hand, held] = [...this.#held].find(([, { particle }]) => particle === this.marked) ?? [];
     if (event.key === 'n' || event.key === 'N') {
       const free = Array.from(near.mass.keys()).filter((k) => near.world.canMove(k));
       this.marked = free.find((k) => k > (this.marked ?? -1)) ?? free[0] ?? null;
     } else if (event.key === 'Enter' && this.marked !== null) {
-      if (held) this.release(hand);
-      else this.hold(this.marked, Array.from(near.position.subarray(2 * this.marked, 2 * this.marked + 2)), 1);
+      if (hand !== undefined) this.release(hand);
+      else this.hold(this.marked, [near.position[2 * this.marked], near.position[2 * this.marked + 1]], 1);
     } else if (event.key === 'Escape') {
       this.marked = null;
       this.releaseAll();
@@ -300,7 +386,8 @@ export class Hands {
     return true;
   }
 
-  // Lines from what is held to its cursor, with the force of each hand.
+  /** Lines from what is held to its cursor, with the force of each hand.
+   * @type {(context: CanvasRenderingContext2D, at: Float64Array, theme: Theme) => void} */
   draw(context, at, theme) {
     const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'),
       force = world.view('state.hand_force');
@@ -317,7 +404,7 @@ export class Hands {
       context.lineTo(at[2 * (first + hand)], at[2 * (first + hand) + 1]);
       context.stroke();
       circle(context, at, held, 7, colour);
-      const [scale, unit] = UNITS.find(([size]) => pull >= size) ?? UNITS.at(-1),
+      const [scale, unit] = FORCES.find(([size]) => pull >= size) ?? FORCES[FORCES.length - 1],
         text = `${Number((pull / scale).toPrecision(3))} ${unit}`;
       context.font = '600 13px system-ui, sans-serif';
       context.lineWidth = 3;
@@ -328,6 +415,8 @@ export class Hands {
   }
 }
 
+/** @type {(context: CanvasRenderingContext2D, at: Float64Array, slot: number, radius: number,
+ *   colour: string) => void} */
 function circle(context, at, slot, radius, colour) {
   context.strokeStyle = colour;
   context.lineWidth = 2;

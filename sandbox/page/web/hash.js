@@ -15,7 +15,8 @@ const LANES = Uint8Array.from('048c159d26ae37bf05af16bc278d349e', (digit) => 2 *
 const BLOCK = 128;
 const state = new Uint32Array(32), words = new Uint32Array(32), bytes = new Uint8Array(words.buffer);
 
-// Mix four numbers of the state with two of a block; l and h are the low and the high half of each.
+/** Mix four numbers of the state with two of a block; l and h are the low and the high half of each.
+ * @type {(a: number, b: number, c: number, d: number, x: number, y: number) => void} */
 function mix(a, b, c, d, x, y) {
   let al = state[a], ah = state[a + 1], bl = state[b], bh = state[b + 1];
   let cl = state[c], ch = state[c + 1], dl = state[d], dh = state[d + 1];
@@ -54,6 +55,7 @@ function mix(a, b, c, d, x, y) {
   state[d + 1] = dh;
 }
 
+/** @type {(chain: Uint32Array, count: number, isLast: boolean) => void} */
 function compress(chain, count, isLast) {
   state.set(chain);
   state.set(START, 16);
@@ -70,7 +72,8 @@ function compress(chain, count, isLast) {
   for (let k = 0; k < 16; k++) chain[k] ^= state[k] ^ state[k + 16];
 }
 
-// blake2b of bytes: `size` bytes as hexadecimal digits.
+/** blake2b of bytes: `size` bytes as hexadecimal digits.
+ * @type {(content: Uint8Array, size: number) => string} */
 export function blake2b(content, size) {
   const chain = START.slice();
   chain[0] ^= 0x01010000 ^ size;
@@ -86,7 +89,8 @@ export function blake2b(content, size) {
   return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
-// A float as Python's float.hex() writes it.
+/** A float as Python's float.hex() writes it.
+ * @type {(value: number) => string} */
 export function hexOf(value) {
   const number = value + 0, view = new DataView(new ArrayBuffer(8));
   view.setFloat64(0, number);

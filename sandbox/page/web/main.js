@@ -1,16 +1,33 @@
 // Main: the page around a toy: its bars, panel, timeline and keys, and what it says.
+import { Refusal } from './commands.js';
+import { read } from './files.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
-import { read, Toy } from './toy.js';
-import { Refusal } from './commands.js';
+import { Toy } from './toy.js';
+/** @import { Fresh, Level, ToyEvents } from './types.js' */
 
-const SLOW = 0.2, NARROW = 640, ARROWS = { left: '←', right: '→', up: '↑', down: '↓' };
+const SLOW = 0.2, NARROW = 640;
+/** @type {Record<string, string | undefined>} */
+const ARROWS = { left: '←', right: '→', up: '↑', down: '↓' };
 const TOOLS = ['drag', 'pin', 'cut'];
+/** @type {Record<string, string | undefined>} */
 const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', m: 'sound', h: 'tune', '?': 'hint' };
-const byId = (id) => document.getElementById(id);
-const press = (button, isOn) => button.setAttribute('aria-pressed', isOn);
+/** Parts of the page that are no plain elements.
+ * @typedef {{ picture: HTMLCanvasElement, time: HTMLInputElement }} Parts */
+/** @template {string} I @typedef {I extends keyof Parts ? Parts[I] : HTMLElement} Part */
+/** @template {string} I @param {I} id @returns {Part<I>} */
+function byId(id) {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`this page has no ${id}`);
+  return /** @type {Part<I>} */ (found);
+}
+/** @type {(button: Element | undefined, isOn: boolean) => void} */
+const press = (button, isOn) => button?.setAttribute('aria-pressed', String(isOn));
+/** @type {(target: EventTarget | null) => boolean} */
+const isTypedInto = (target) => target instanceof Element && target.matches('input, select, .pad');
 
 class Page {
+  /** @param {Level} level @param {Fresh} fresh */
   constructor(level, fresh) {
     this.toy = new Toy(byId('picture'), level, fresh, window);
     this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level);
@@ -31,7 +48,9 @@ class Page {
   }
 
   #bind() {
-    const { toy } = this, acts = {
+    const { toy } = this;
+    /** @type {Record<string, () => unknown>} */
+    const acts = {
       play: () => toy.toggle(), step: () => toy.step(), again: () => toy.restart(), undo: () => toy.undo(),
       slow: () => {
         toy.speed = toy.speed === 1 ? SLOW : 1;
@@ -52,8 +71,8 @@ class Page {
     // The toy hears keys first.
     addEventListener('keydown', (event) => {
       const isCommand = event.ctrlKey || event.metaKey;
-      if (event.defaultPrevented || event.altKey || event.target.matches('input, select, .pad')) return;
-      const act = isCommand ? event.key === 'z' && acts.undo : acts[KEYS[event.key]];
+      if (event.defaultPrevented || event.altKey || isTypedInto(event.target)) return;
+      const act = isCommand ? event.key === 'z' && acts.undo : acts[KEYS[event.key] ?? ''];
       if (!act) return;
       act();
       event.preventDefault();
@@ -61,7 +80,11 @@ class Page {
   }
 
   #listen() {
-    const { toy } = this, on = (name, act) => toy.addEventListener(name, ({ detail }) => act(detail));
+    const { toy } = this;
+    /** @type {<N extends keyof ToyEvents>(name: N, act: (detail: ToyEvents[N]) => void) => void} */
+    const on = (name, act) => toy.addEventListener(name, (event) => {
+      if (event instanceof CustomEvent) act(event.detail);
+    });
     on('say', ({ text, kind }) => this.#say(text, kind));
     on('theme', ({ name }) => this.#theme(name));
     on('pace', ({ isBehind }) => { byId('pace').textContent = isBehind ? 'slower than real time' : ''; });
@@ -74,28 +97,33 @@ class Page {
       const button = byId('play');
       press(button, isPaused);
       button.setAttribute('aria-label', isPaused ? 'Play' : 'Pause');
-      button.querySelector('path').setAttribute('d', isPaused ? 'M8 5l11 7-11 7z' : 'M8 5v14M16 5v14');
+      button.querySelector('path')?.setAttribute('d', isPaused ? 'M8 5l11 7-11 7z' : 'M8 5v14M16 5v14');
     });
     // Who plays has read what there is to do.
-    byId('picture').addEventListener('pointerdown', () => byId('hints').hidden || this.#show('hints', 'hint'));
+    byId('picture').addEventListener('pointerdown', () => {
+      if (!byId('hints').hidden) this.#show('hints', 'hint');
+    });
   }
 
+  /** @type {(name: string) => void} */
   #theme(name) {
     document.documentElement.dataset.theme = name;
     this.panel.show();
   }
 
+  /** @type {(text: string, kind?: string) => void} */
   #say(text, kind = '') {
     byId('state').textContent = text;
     byId('state').className = kind;
   }
 
-  // Show a part of the page by its button, or hide it.
+  /** Show a part of the page by its button, or hide it.
+   * @type {(id: string, button: string) => void} */
   #show(id, button) {
     const part = byId(id);
     part.hidden = !part.hidden;
     press(byId(button), !part.hidden);
-    byId(button).setAttribute('aria-expanded', !part.hidden);
+    byId(button).setAttribute('aria-expanded', String(!part.hidden));
     this.panel.show();
     this.#makeRoom();
   }
@@ -106,6 +134,7 @@ class Page {
     this.toy.covered = covers ? innerHeight - byId('panel').getBoundingClientRect().top : byId('bars').offsetHeight;
   }
 
+  /** @type {(tool: string) => void} */
   #choose(tool) {
     this.toy.hands.tool = tool;
     for (const name of TOOLS) press(byId(name), name === tool);
@@ -113,15 +142,17 @@ class Page {
 
   #drawTime() {
     const { toy } = this, shown = byId('time'), text = `${toy.seconds.toFixed(2)} s`;
-    shown.max = toy.run.last;
-    if (document.activeElement !== shown || !toy.isPaused) shown.value = toy.run.time;
+    shown.max = String(toy.run.last);
+    if (document.activeElement !== shown || !toy.isPaused) shown.value = String(toy.run.time);
     shown.setAttribute('aria-valuetext', text);
     byId('clock').textContent = text;
   }
 
   // A button for each key that drives something.
   #addDriveKeys() {
-    const { drives } = this.toy, buttons = new Map();
+    const { drives } = this.toy;
+    /** @type {Map<string, HTMLButtonElement>} */
+    const buttons = new Map();
     drives.told = (name, isHeld) => press(buttons.get(name), isHeld);
     for (const name of Object.keys(drives.keys)) {
       const button = element('button', { type: 'button', textContent: ARROWS[name] ?? name.toUpperCase(),
@@ -134,14 +165,18 @@ class Page {
       });
       for (const end of ['lostpointercapture', 'blur', 'keyup']) button.addEventListener(end,
         () => drives.release(name));
-      button.addEventListener('keydown', (event) => [' ', 'Enter'].includes(event.key) && drives.press(name));
+      button.addEventListener('keydown', (event) => {
+        if ([' ', 'Enter'].includes(event.key)) drives.press(name);
+      });
       buttons.set(name, button);
     }
     byId('keys').append(...buttons.values());
   }
 
   async #verify() {
-    const { fresh, level: { recording } } = this.toy, count = recording.hashes.length - 1;
+    const { fresh, level: { recording } } = this.toy;
+    if (!recording) return;
+    const count = recording.hashes.length - 1;
     try {
       const wrong = await verified(fresh(), recording);
       if (wrong === null) this.#say(`Verified: every bit of ${count} ticks is that of the recording.`, 'good');
@@ -168,7 +203,8 @@ class Page {
   }
 }
 
-// Open the page of a toy whose parts a promise gives: what its file holds, and the kernels.
+/** Open the page of a toy whose parts a promise gives: what its file holds, and the kernels.
+ * @type {(parts: Promise<[Level, Fresh]>) => Promise<void>} */
 export async function start(parts) {
   try {
     globalThis.page = new Page(...await parts);
@@ -179,7 +215,8 @@ export async function start(parts) {
   }
 }
 
-// The parts that a page holds itself.
+/** The parts that a page holds itself.
+ * @type {() => Promise<[Level, Fresh]>} */
 export async function unpack() {
   const parts = await Promise.all(['toy', 'kernels'].map((id) => globalThis.unpacked(id))).catch(() => {
     throw new Refusal('This page was cut off or damaged. Ask for it again.');

@@ -1,38 +1,76 @@
 // Paint: colours, lit skins, strips with a texture and balls on a canvas. All sizes are pixels of the page.
+import { COLOURS } from './shared.js';
+/** @import { Box, LinePiece, Numbers, Point, Scene, SheetPart, SkinLook, Skinned, Splat, Theme } from './types.js' */
 
+/** @type {(value: number, low?: number, high?: number) => number} */
 export const clamp = (value, low = 0, high = 1) => Math.min(Math.max(value, low), high);
+/** @type {(colour: string) => number[]} */
 const parse = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+/** @type {(first: number[], second: number[], share: number) => number[]} */
 const mean = (first, second, share) => first.map((value, k) => value + (second[k] - value) * share);
 
-// The colour that has `share` (0..1) of the second in it; colours are '#rrggbb'.
+/** @typedef {{ width: number, height: number }} Size */
+/** A colour over a line at a spring, and how much of that.
+ * @typedef {(spring: number) => [colour: string, alpha: number] | null} TintOf */
+
+/** The colour that has `share` (0..1) of the second in it; colours are '#rrggbb'.
+ * @type {(first: string, second: string, share: number) => string} */
 export function mixed(first, second, share) {
   const channels = mean(parse(first), parse(second), share);
   return `#${channels.map((value) => Math.round(value).toString(16).padStart(2, '0')).join('')}`;
 }
 
+/** @type {(colour: string) => string} */
 export const outlineOf = (colour) => mixed(colour, '#28003c', 0.46);
 
-const WHITE = [255, 255, 255], kept = new Map();
+const WHITE = [255, 255, 255];
+/** @type {Map<string, unknown>} */
+const kept = new Map();
+/** Textures by their names in a scene.
+ * @type {Map<string, CanvasPattern>} */
+const textures = new Map();
+/** @type {(name: string) => CanvasPattern | string} */
+const textureOf = (name) => textures.get(name) ?? 'transparent';
 
-// What was made under a name, or is made now.
+/** What was made under a name, or is made now.
+ * @template T @param {string} name @param {() => T} make @returns {T} */
 function once(name, make) {
   if (!kept.has(name)) kept.set(name, make());
-  return kept.get(name);
+  return /** @type {T} */ (kept.get(name));
 }
 
+/** What draws on a canvas.
+ * @type {(canvas: HTMLCanvasElement, settings?: CanvasRenderingContext2DSettings) => CanvasRenderingContext2D} */
+export function contextOf(canvas, settings) {
+  const context = canvas.getContext('2d', settings);
+  if (!context) throw new Error('this canvas has no 2d context');
+  return context;
+}
+
+/** @type {(width: number, height: number, settings?: CanvasRenderingContext2DSettings) => CanvasRenderingContext2D} */
 export function canvasOf(width, height, settings) {
   const canvas = document.createElement('canvas');
   Object.assign(canvas, { width, height });
-  return canvas.getContext('2d', settings);
+  return contextOf(canvas, settings);
 }
 
+/** A picture as what fills all around it.
+ * @type {(context: CanvasRenderingContext2D) => CanvasPattern} */
+function tiled(context) {
+  const pattern = context.createPattern(context.canvas, 'repeat');
+  if (!pattern) throw new Error('a picture has no size');
+  return pattern;
+}
+
+/** @type {(image: ImageData) => CanvasPattern} */
 function patternOf(image) {
   const context = canvasOf(image.width, image.height);
   context.putImageData(image, 0, 0);
-  return context.createPattern(context.canvas, 'repeat');
+  return tiled(context);
 }
 
-// Closed loops of points [x, y, ...] as one path, with their corners cut by `keep` of their sides.
+/** Closed loops of points [x, y, ...] as one path, with their corners cut by `keep` of their sides.
+ * @type {(loops: Numbers[], keep?: number) => Path2D} */
 export function pathOf(loops, keep = 0) {
   const path = new Path2D(), cut = Math.min(2 * keep, 0.5);
   for (const points of loops) {
@@ -47,7 +85,8 @@ export function pathOf(loops, keep = 0) {
   return path;
 }
 
-// A loop of points moved outwards by so much; it runs anticlockwise, and a hole the other way.
+/** A loop of points moved outwards by so much; it runs anticlockwise, and a hole the other way.
+ * @type {(points: Float64Array, by: number) => Float64Array} */
 export function grown(points, by) {
   return points.map((value, k) => {
     const x = k & ~1, before = (x + points.length - 2) % points.length, after = (x + 2) % points.length;
@@ -56,23 +95,26 @@ export function grown(points, by) {
   });
 }
 
-// Left, top, right and bottom of points [x, y, ...].
+/** Left, top, right and bottom of points [x, y, ...].
+ * @type {(points: Numbers) => Box} */
 export function boxOf(points) {
+  /** @type {Box} */
   const box = [Infinity, Infinity, -Infinity, -Infinity];
-  points.forEach((value, k) => {
-    box[k % 2] = Math.min(box[k % 2], value);
-    box[2 + (k % 2)] = Math.max(box[2 + (k % 2)], value);
-  });
+  for (let k = 0; k < points.length; k++) {
+    box[k % 2] = Math.min(box[k % 2], points[k]);
+    box[2 + (k % 2)] = Math.max(box[2 + (k % 2)], points[k]);
+  }
   return box;
 }
 
 const INSIDE = 32, LIT = 128, STRONGEST = 1.5;
 
-// Colours of a skin by how far inside a place is, and how lit. look: colours near its edge and deep inside, the
-// strength of light, the colour and strength of shade, its gleam, how much shows through inside, and how little at all.
+/** Colours of a skin by how far inside a place is, and how lit. look: colours near its edge and deep inside, the
+ * strength of light, the colour and strength of shade, its gleam, how much shows through inside, and how little at all.
+ * @type {(look: SkinLook) => Uint32Array} */
 function table(look) {
   return once(look.join(), () => {
-    const [near, deep, up, shade, down, gloss, clear, alpha] = look.map((part) => (part.length ? parse(part) : part));
+    const [, , up, , down, gloss, clear, alpha] = look, [near, deep, shade] = [look[0], look[1], look[3]].map(parse);
     const colours = new Uint8ClampedArray(4 * INSIDE * LIT);
     for (let k = 0; k < INSIDE * LIT; k++) {
       const inside = Math.floor(k / LIT) / (INSIDE - 1), lit = STRONGEST * ((2 * (k % LIT)) / (LIT - 1) - 1);
@@ -86,7 +128,8 @@ function table(look) {
   });
 }
 
-// Blur cells in rows by the mean of `reach` of them to each side, so many times; cells at the border are empty.
+/** Blur cells in rows by the mean of `reach` of them to each side, so many times; cells at the border are empty.
+ * @type {(cells: Float32Array, columns: number, reach: number, times: number) => void} */
 function blur(cells, columns, reach, times) {
   const full = 2 * reach + 1;
   for (let time = 0; time < 2 * times; time++) {
@@ -106,7 +149,9 @@ function blur(cells, columns, reach, times) {
 // Pixels of the page to one of a shadow, and how often that is blurred.
 const SHADOW = 6, SOFTNESS = 3, shadowed = canvasOf(1, 1, { willReadFrequently: true });
 
-// Lay the soft shadow of what a function draws on a picture of this size: down and to the right.
+/** Lay the soft shadow of what a function draws on a picture of this size: down and to the right.
+ * @type {(onto: CanvasRenderingContext2D, size: Size, theme: Pick<Theme, 'shadow' | 'shadow_strength'>,
+ *   scale: number, draw: (context: CanvasRenderingContext2D) => void) => void} */
 export function castShadow(onto, { width, height }, { shadow: colour, shadow_strength: strength }, scale, draw) {
   const context = shadowed, { canvas } = context, columns = Math.ceil(width / SHADOW) + 2 * SOFTNESS;
   Object.assign(canvas, { width: columns, height: Math.ceil(height / SHADOW) + 2 * SOFTNESS });
@@ -136,11 +181,12 @@ export function castShadow(onto, { width, height }, { shadow: colour, shadow_str
 const CELL = 0.25, REACH = 3, TIMES = 3, AROUND = REACH * (TIMES - 1) + 1;
 // Light from above, a little from the left.
 const DOWNWARDS = 0.9, ACROSS = 0.42, STEEPNESS = 1.45 / CELL / 2;
-const FLUSH = 0.74, SQUEEZED = parse('#4a3fd8'), STRETCHED = parse('#fff0b0');
+const FLUSH = 0.74, SQUEEZED = parse(COLOURS.SQUEEZED), STRETCHED = parse(COLOURS.STRETCHED);
 
-// Make the skin of a shape that bulges, of which a view of this size is seen. The shape has a path, a box, a depth, a
-// look, and splats of strain or none: it is filled with cells; blurred they are how high its skin stands, and the slope
-// of that is how it is lit.
+/** Make the skin of a shape that bulges, of which a view of this size is seen. The shape has a path, a box, a depth, a
+ * look, and splats of strain or none: it is filled with cells; blurred they are how high its skin stands, and the slope
+ * of that is how it is lit.
+ * @type {(shape: Skinned, width: number, height: number) => void} */
 export function makeSkin(shape, width, height) {
   const { box: [left, top, right, bottom], depth, path, look } = shape, cell = Math.max(CELL * depth, 1);
   const room = AROUND * cell, x = Math.max(left, -room) - room, y = Math.max(top, -room) - room;
@@ -155,8 +201,9 @@ export function makeSkin(shape, width, height) {
   context.fill(path, 'evenodd');
   const image = context.getImageData(0, 0, columns, rows), pixels = new Uint32Array(image.data.buffer);
   const colours = table(look), high = new Float32Array(pixels.length);
-  const strain = shape.splats && strainOf(shape.splats.map(([across, down, amount]) =>
-    [(across - x) / cell, (down - y) / cell, amount]), Math.max(shape.reach / cell, 1), columns, rows);
+  const { splats, reach = 0 } = shape;
+  const strain = splats && strainOf(splats.map(([across, down, amount]) =>
+    [(across - x) / cell, (down - y) / cell, amount]), Math.max(reach / cell, 1), columns, rows);
   for (let k = 0; k < pixels.length; k++) high[k] = (pixels[k] >>> 24) / 255;
   blur(high, columns, REACH, TIMES);
   for (let k = columns; k < pixels.length - columns; k++) {
@@ -169,11 +216,12 @@ export function makeSkin(shape, width, height) {
     for (let at = 0; at < 3; at++) image.data[4 * k + at] += (over[at] - image.data[4 * k + at]) * share;
   }
   context.putImageData(image, 0, 0);
-  shape.fill = context.createPattern(canvas, 'repeat');
+  shape.fill = tiled(context);
   shape.fill.setTransform(new DOMMatrix([cell, 0, 0, cell, x, y]));
 }
 
-// How squeezed (-1) or stretched (1) cells are, by splats [x, y, amount] that reach so far.
+/** How squeezed (-1) or stretched (1) cells are, by splats [x, y, amount] that reach so far.
+ * @type {(splats: Splat[], reach: number, columns: number, rows: number) => Float32Array} */
 function strainOf(splats, reach, columns, rows) {
   const sum = new Float32Array(columns * rows), weight = new Float32Array(columns * rows).fill(0.25);
   for (const [x, y, amount] of splats) {
@@ -188,14 +236,16 @@ function strainOf(splats, reach, columns, rows) {
   return sum.map((value, k) => clamp(value / weight[k], -1, 1));
 }
 
-// Fill a shape with its skin.
+/** Fill a shape with its skin.
+ * @type {(context: CanvasRenderingContext2D, shape: Pick<Skinned, 'fill' | 'path'>) => void} */
 export function fillSkin(context, { fill, path }) {
   if (!fill) return;
   context.fillStyle = fill;
   context.fill(path, 'evenodd');
 }
 
-// Of each kind of line: the line around it and its own colour.
+/** Of each kind of line: the line around it and its own colour.
+ * @type {Record<string, [line: string | null, own: string] | []>} */
 const LINES = {
   rope: ['#5b3d20', '#c89b62'], cable: ['#3a4252', '#a3adbf'], deck: ['#4a2e16', '#c48e58'], chain: [],
   wood: ['#3a2614', '#c99258'], thread: [null, '#aeb5c2'], silk: [null, '#8c9bb2'], steel: ['#161b26', '#96a3ba'],
@@ -205,16 +255,19 @@ const ALONG = 32, HALF_TILE = 8;
 // Lines narrower than this have no texture, nor has any where there are so many.
 const THIN = 1.1, MOST_STRIPS = 1500;
 
-// Keep the pictures of a scene: textures of lines and sheets.
+/** Keep the pictures of a scene: textures of lines and sheets.
+ * @type {(pictures: Scene['pictures']) => void} */
 export function keepPictures(pictures) {
   for (const [name, { rows, bytes }] of Object.entries(pictures)) {
     const values = Uint8ClampedArray.from(atob(bytes), (letter) => letter.charCodeAt(0));
-    once(name, () => patternOf(new ImageData(values, values.length / 4 / rows)));
+    if (!textures.has(name)) textures.set(name, patternOf(new ImageData(values, values.length / 4 / rows)));
   }
 }
 
-// Fill a strip from a to b with a style, in the coordinates of a tile: between two places along it, and lit from above.
-// within: a path in those coordinates, of what there is of it.
+/** Fill a strip from a to b with a style, in the coordinates of a tile: between two places along it, and lit from above.
+ * within: a path in those coordinates, of what there is of it.
+ * @type {(context: CanvasRenderingContext2D, style: string | CanvasPattern, piece: LinePiece, half: number,
+ *   within?: Path2D) => void} */
 function strip(context, style, [ax, ay, bx, by, from = 0, to = 1], half, within) {
   const dx = bx - ax, dy = by - ay, length = Math.hypot(dx, dy), wide = half / HALF_TILE / length;
   if (!(length > 0) || !(to > from)) return;
@@ -227,17 +280,19 @@ function strip(context, style, [ax, ay, bx, by, from = 0, to = 1], half, within)
   context.setTransform(before);
 }
 
-// Draw pieces [ax, ay, bx, by, from, to, spring] as a bar of a kind, or of a colour, along a path through them.
-// tintOf(spring): a colour over it and how much of that, or nothing.
+/** Draw pieces [ax, ay, bx, by, from, to, spring] as a bar of a kind, or of a colour, along a path through them.
+ * tintOf(spring): a colour over it and how much of that, or nothing.
+ * @type {(context: CanvasRenderingContext2D, pieces: LinePiece[], path: Path2D, half: number, kind: string,
+ *   tintOf?: TintOf) => void} */
 export function drawBar(context, pieces, path, half, kind, tintOf) {
   const [line, own] = LINES[kind] ?? [outlineOf(kind), kind];
   context.lineCap = context.lineJoin = 'round';
   if (line && half > 0.7) stroke(context, path, line, half + 0.9, 0.8);
   if (own) stroke(context, path, own, half);
-  const style = half >= THIN && pieces.length < MOST_STRIPS && kept.get(kind);
+  const style = half >= THIN && pieces.length < MOST_STRIPS && textures.get(kind);
   for (const piece of pieces) {
     if (style) strip(context, style, piece, half);
-    const tint = tintOf?.(piece[6]);
+    const tint = tintOf?.(piece[6] ?? -1);
     if (!tint) continue;
     [, context.globalAlpha] = tint;
     strip(context, tint[0], piece, kind === 'chain' ? 0.3 * half : half);
@@ -245,36 +300,43 @@ export function drawBar(context, pieces, path, half, kind, tintOf) {
   }
 }
 
-// A muscle between two places, as thick as its belly.
+/** A muscle between two places, as thick as its belly.
+ * @type {(context: CanvasRenderingContext2D, ends: [number, number, number, number], belly: number) => void} */
 export function drawMuscle(context, ends, belly) {
   const lens = new Path2D('M0 6C19 -2.4 45 -2.4 64 6V10C45 18.4 19 18.4 0 10Z');
   strip(context, '#4a1622', [...ends, 0, 2], belly + 1.2, lens);
-  strip(context, kept.get('muscle'), [...ends, 0, 2], belly, lens);
+  strip(context, textureOf('muscle'), [...ends, 0, 2], belly, lens);
 }
 
-// Turf on those of the pieces [ax, ay, bx, by] of the ground's outline that face up.
+/** Turf on those of the pieces [ax, ay, bx, by] of the ground's outline that face up.
+ * @type {(context: CanvasRenderingContext2D, pieces: LinePiece[], theme: Theme, scale: number) => void} */
 export function drawTurf(context, pieces, theme, scale) {
   let along = 0;
-  const turf = pieces.map(([ax, ay, bx, by]) => {
+  /** @type {LinePiece[]} */
+  const turf = [];
+  for (const [ax, ay, bx, by] of pieces) {
     const length = Math.hypot(bx - ax, by - ay), from = along;
     along += length / (46 * scale);
-    return [ax, ay + 2 * scale, bx, by + 2 * scale, from, along, (ax - bx) / length > 0.8];
-  }).filter((piece) => piece[6]);
+    if ((ax - bx) / length > 0.8) turf.push([ax, ay + 2 * scale, bx, by + 2 * scale, from, along]);
+  }
   context.lineCap = 'butt';
   stroke(context, linesOf(turf), mixed(...theme.turf, 0.55), 3.2 * scale);
-  for (const piece of turf) strip(context, kept.get(`turf ${theme.name}`), piece, 12 * scale);
+  const grass = textureOf(`turf ${theme.name}`);
+  for (const piece of turf) strip(context, grass, piece, 12 * scale);
 }
 
-// A path of lines [ax, ay, bx, by].
+/** A path of lines [ax, ay, bx, by].
+ * @type {(pieces: (LinePiece | Float64Array)[]) => Path2D} */
 export function linesOf(pieces) {
   const path = new Path2D();
-  for (const [ax, ay, bx, by] of pieces) {
+  for (const [ax, ay, bx, by] of /** @type {LinePiece[]} */ (pieces)) {
     path.moveTo(ax, ay);
     path.lineTo(bx, by);
   }
   return path;
 }
 
+/** @type {(context: CanvasRenderingContext2D, path: Path2D, colour: string, half: number, alpha?: number) => void} */
 export function stroke(context, path, colour, half, alpha = 1) {
   context.globalAlpha = alpha;
   context.strokeStyle = colour;
@@ -283,6 +345,8 @@ export function stroke(context, path, colour, half, alpha = 1) {
   context.globalAlpha = 1;
 }
 
+/** @type {(context: CanvasRenderingContext2D, x: number, y: number, radius: number, colour: string,
+ *   alpha?: number) => void} */
 export function disc(context, x, y, radius, colour, alpha = 1) {
   context.globalAlpha = alpha;
   context.fillStyle = colour;
@@ -292,14 +356,17 @@ export function disc(context, x, y, radius, colour, alpha = 1) {
   context.globalAlpha = 1;
 }
 
-// Waves that tile and look like noise, of about so many to a picture; u and v: angles across and down.
+/** Waves that tile and look like noise, of about so many to a picture; u and v: angles across and down.
+ * @type {(u: number, v: number, count: number) => number} */
 const noise = (u, v, count) => [1, 2, 3, 4, 5, 6, 7].reduce((sum, k) => {
   const way = 2.4 * k + count, across = Math.round(count * Math.cos(way)), down = Math.round(count * Math.sin(way));
   return sum + Math.sin(across * u + down * v + k * k) / 1.9;
 }, 0);
 const GRAIN = 256, PEBBLES = 16;
+/** @type {(k: number) => number} */
 const chance = (k) => ((Math.sin(12.99 * k) * 43758.55) % 1 + 1) % 1;
 const PLACES = Array.from({ length: PEBBLES }, (_, k) => [1, 40, 80].map((from) => chance(k + from)));
+/** @type {Record<string, (u: number, v: number, x: number, y: number) => number>} */
 const GRAINS = {
   wood: (u, v) => 5 * Math.sin(18 * v + 1.5 * Math.sin(u)) + 3 * Math.sin(46 * v + Math.sin(2 * u)),
   earth: (u, v, x, y) => PLACES.reduce((sum, [left, top, size], k) => sum + (k % 2 ? 18 : -15)
@@ -307,7 +374,8 @@ const GRAINS = {
   1.3 * noise(u, v, 10) + 4 * Math.tanh(2 * Math.sin(4 * v + Math.sin(u) + 0.6 * noise(u, v, 4)))),
 };
 
-// Lay the grain of earth or wood over a path; its place on the page moves with x and y.
+/** Lay the grain of earth or wood over a path; its place on the page moves with x and y.
+ * @type {(context: CanvasRenderingContext2D, path: Path2D, kind: string, x: number, y: number) => void} */
 export function layGrain(context, path, kind, x, y) {
   const grain = once(`grain ${kind}`, () => [1, -1].map((sign) => {
     const image = new ImageData(GRAIN, GRAIN), unit = (2 * Math.PI) / GRAIN;
@@ -319,8 +387,8 @@ export function layGrain(context, path, kind, x, y) {
     }
     return patternOf(image);
   }));
-  // What is lighter is added, and what is darker taken away.
-  ['lighter', 'difference'].forEach((how, k) => {
+  /** What is lighter is added, and what is darker taken away.
+   * @type {const} */ (['lighter', 'difference']).forEach((how, k) => {
     context.globalCompositeOperation = how;
     grain[k].setTransform(new DOMMatrix([1, 0, 0, 1, x, y]));
     context.fillStyle = grain[k];
@@ -329,7 +397,8 @@ export function layGrain(context, path, kind, x, y) {
   context.globalCompositeOperation = 'source-over';
 }
 
-// A picture that is drawn once, between -1 and 1 each way.
+/** A picture that is drawn once, between -1 and 1 each way.
+ * @type {(name: string, size: number, draw: (context: CanvasRenderingContext2D) => void) => HTMLCanvasElement} */
 function sprite(name, size, draw) {
   return once(`${name} ${size}`, () => {
     const context = canvasOf(size, size);
@@ -339,7 +408,9 @@ function sprite(name, size, draw) {
   });
 }
 
-// Fill the square with a colour that changes from a place to the rim of a disc.
+/** Fill the square with a colour that changes from a place to the rim of a disc.
+ * @type {(context: CanvasRenderingContext2D, from: Point, rim: [x: number, y: number, radius: number],
+ *   stops: [at: number, colour: string][]) => void} */
 export function radial(context, [x, y], [middleX, middleY, radius], stops) {
   const fade = context.createRadialGradient(x, y, 0, middleX, middleY, radius);
   stops.forEach(([at, colour]) => fade.addColorStop(at, colour));
@@ -347,19 +418,25 @@ export function radial(context, [x, y], [middleX, middleY, radius], stops) {
   context.fillRect(-1, -1, 2, 2);
 }
 
-// A disc of a colour that fades out towards its rim.
+/** A disc of a colour that fades out towards its rim.
+ * @type {(context: CanvasRenderingContext2D, x: number, y: number, radius: number, colour: string,
+ *   alpha: number) => void} */
 export function glow(context, x, y, radius, colour, alpha) {
-  const stop = (_, k) => {
+  /** @type {(k: number) => [number, string]} */
+  const stop = (k) => {
     const fall = 1 - k / 8, share = Math.round(255 * fall * fall * (3 - 2 * fall));
     return [k / 8, colour + share.toString(16).padStart(2, '0')];
   };
-  const shape = sprite(`glow ${colour}`, 64, (own) => radial(own, [0, 0], [0, 0, 1], Array.from({ length: 9 }, stop)));
+  const shape = sprite(`glow ${colour}`, 64, (own) => radial(own, [0, 0], [0, 0, 1],
+    Array.from({ length: 9 }, (_, k) => stop(k))));
   context.globalAlpha = alpha;
   context.drawImage(shape, x - radius, y - radius, 2 * radius, 2 * radius);
   context.globalAlpha = 1;
 }
 
+/** @type {(context: CanvasRenderingContext2D) => void} */
 const band = (own) => own.fillRect(-1, -0.26, 2, 0.52);
+/** @type {Record<string, (context: CanvasRenderingContext2D) => void>} */
 const MARKS = {
   stripe: band, sand: band,
   marble: (own) => stroke(own, new Path2D('M-1 0.12C-0.5 0.8 0.5 -0.8 1 -0.12'), '#ffffff', 0.2),
@@ -369,7 +446,9 @@ const MARKS = {
   },
 };
 
-// A ball of a kind, lit from above, with its mark turned by an angle (anticlockwise).
+/** A ball of a kind, lit from above, with its mark turned by an angle (anticlockwise).
+ * @type {(context: CanvasRenderingContext2D, x: number, y: number, radius: number, angle: number, kind: string,
+ *   colour: string) => void} */
 export function ball(context, x, y, radius, angle, kind, colour) {
   if (radius < 3) {
     disc(context, x, y, radius, colour);
@@ -377,6 +456,7 @@ export function ball(context, x, y, radius, angle, kind, colour) {
   }
   // At most twice as fine as it is shown.
   const size = Math.min(2 ** Math.ceil(Math.log2(4 * radius)), 256);
+  /** @type {(name: string, draw: (context: CanvasRenderingContext2D) => void) => HTMLCanvasElement} */
   const whole = (name, draw) => sprite(name, size, (own) => {
     own.beginPath();
     own.arc(0, 0, 0.98, 0, 7);
@@ -402,19 +482,25 @@ export function ball(context, x, y, radius, angle, kind, colour) {
   context.restore();
 }
 
-// The corners of two triangles that are a cell of a sheet, around it, or null. texels: places of corners in its picture.
+/** The corners of two triangles that are a cell of a sheet, around it, or null. texels: places of corners in its picture.
+ * @type {(triangles: number[][], texels: number[][]) => SheetPart | null} */
 function cellOf(triangles, texels) {
+  /** @type {Map<number, number[]>} */
   const at = new Map(triangles.flatMap((slots, n) =>
     slots.map((slot, k) => [slot, texels[n].slice(2 * k, 2 * k + 2).map(Math.round)])));
   const [across, down] = [0, 1].map((axis) => [...new Set([...at.values()].map((place) => place[axis]))].sort(
     (one, other) => one - other));
   if (at.size !== 4 || across.length !== 2 || down.length !== 2) return null;
-  const corner = (u, v) => [...at].find(([, place]) => place[0] === across[u] && place[1] === down[v])?.[0];
-  const slots = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-  return slots.includes(undefined) ? null : { slots, texels: [across[0], down[0], across[1], down[1]] };
+  /** @type {(u: number, v: number) => number[]} */
+  const corner = (u, v) => [...at].filter(([, place]) => place[0] === across[u] && place[1] === down[v])
+    .map(([slot]) => slot);
+  const corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)], slots = corners.flat();
+  if (corners.some(({ length }) => length !== 1)) return null;
+  return { slots, texels: [across[0], down[0], across[1], down[1]] };
 }
 
-// Triangles of a sheet as its parts: pairs of them as cells, and the others.
+/** Triangles of a sheet as its parts: pairs of them as cells, and the others.
+ * @type {(triangles: number[][], texels: number[][]) => SheetPart[]} */
 export function partsOf(triangles, texels) {
   const parts = [];
   for (let k = 0; k < triangles.length; k++) {
@@ -429,10 +515,11 @@ export function partsOf(triangles, texels) {
 // that no seam shows.
 const ASKEW = 1, SEAM = 0.6;
 
-// Fill parts of a sheet with its picture; at: places on the page by slot.
+/** Fill parts of a sheet with its picture; at: places on the page by slot.
+ * @type {(context: CanvasRenderingContext2D, name: string, parts: SheetPart[], at: Numbers) => void} */
 export function fillParts(context, name, parts, at) {
   const before = context.getTransform();
-  context.fillStyle = kept.get(name);
+  context.fillStyle = textureOf(name);
   for (const { slots, texels } of parts) {
     const points = slots.flatMap((slot) => [at[2 * slot], at[2 * slot + 1]]);
     if (slots.length === 3) fillTriangle(context, points, texels);
@@ -441,6 +528,7 @@ export function fillParts(context, name, parts, at) {
   }
 }
 
+/** @type {(context: CanvasRenderingContext2D, points: number[], texels: number[]) => void} */
 function fillCell(context, points, [left, top, right, bottom]) {
   const [x0, y0, x1, y1, x2, y2, x3, y3] = points;
   if (Math.max(Math.abs(x0 - x1 + x2 - x3), Math.abs(y0 - y1 + y2 - y3)) < ASKEW) {
@@ -454,7 +542,8 @@ function fillCell(context, points, [left, top, right, bottom]) {
   fillTriangle(context, [x2, y2, x3, y3, x0, y0], [right, bottom, left, bottom, left, top]);
 }
 
-// Go over to the coordinates of a picture, of which three places lie on the page there.
+/** Go over to the coordinates of a picture, of which three places lie on the page there.
+ * @type {(context: CanvasRenderingContext2D, points: number[], texels: number[]) => void} */
 function lay(context, [x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]) {
   const area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
   // How x and y change across and down the picture.
@@ -465,6 +554,7 @@ function lay(context, [x0, y0, x1, y1, x2, y2], [u0, v0, u1, v1, u2, v2]) {
   context.transform(a, b, c, d, x0 - a * u0 - c * v0, y0 - b * u0 - d * v0);
 }
 
+/** @type {(context: CanvasRenderingContext2D, points: number[], texels: number[]) => void} */
 function fillTriangle(context, points, texels) {
   lay(context, points, texels);
   const [u0, v0, u1, v1, u2, v2] = texels, u = (u0 + u1 + u2) / 3, v = (v0 + v1 + v2) / 3;

@@ -1,39 +1,56 @@
 // Panel: Cs and Cd of each material by a pad, sliders and words, and the gravity of the world.
-
+import { contextOf } from './paint.js';
 import { PLAIN, SagMap, Scale } from './sag_map.js';
+import { PAD } from './shared.js';
+/** @import { Run } from './run.js' */
+/** @import { Level, MaterialRow, Point } from './types.js' */
 
 // Step of an arrow key, and around the pad's map [px].
 const STEP = 0.02, MARGIN = 14;
-// Sags that are said to be nothing.
-const UNSEEN = 1e-5;
+const WAYS = new Map(Object.entries({ ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP],
+  ArrowDown: [0, -STEP] }));
 
-// A share in per cent, of two digits.
+/** A share in per cent, of two digits.
+ * @type {(share: number) => string} */
 function perCent(share) {
-  return share < UNSEEN ? '0 %' : `${Number((100 * share).toPrecision(2))} %`;
+  return share < PAD.UNSEEN ? '0 %' : `${Number((100 * share).toPrecision(2))} %`;
 }
 
+/** @type {<N extends keyof HTMLElementTagNameMap>(name: N,
+ *   attributes?: Partial<HTMLElementTagNameMap[N]>,
+ *   ...children: (Node | string)[]) => HTMLElementTagNameMap[N]} */
 export const element = (name, attributes = {}, ...children) => {
   const made = Object.assign(document.createElement(name), attributes);
   made.append(...children);
   return made;
 };
 
+/** @typedef {MaterialRow & { sags: SagMap | null, scale: Scale }} Material */
+/**
+ * Where on the pad a place of an axis is, and the size of its map [pixels].
+ * @typedef {{ across: (place: number) => number, up: (place: number) => number, wide: number, high: number }} PadMap
+ */
+
 export class Panel {
+  /** @type {number | null} */
   #gesture = null;
   #shown = '';
+  /** @type {Material | null} */
+  chosen = null;
 
-  // materials: [{ name, slot, is_first, words, subject, says, map }], slot null for all; words: Cs and Cd by the words of
-  // firmness; what sags, the sentence that says how far, and the map of the pad, where something sags.
-  constructor(root, run, materials, level) {
-    Object.assign(this, { run, materials, level, chosen: materials.find((each) => each.is_first) ?? materials[0] });
-    for (const each of materials) {
-      each.sags = each.map ? new SagMap(each.map) : null;
-      each.scale = each.map ? new Scale(each.map.lowest, each.map.rest) : PLAIN;
-    }
+  /** rows: materials, by the words of firmness their Cs and Cd; what sags, the sentence that says how far, and the map of
+   * the pad, where something sags.
+   * @param {HTMLElement} root @param {Run} run @param {MaterialRow[]} rows @param {Level} level */
+  constructor(root, run, rows, level) {
+    this.run = run;
+    this.level = level;
+    const materials = this.materials = rows.map((row) => ({ ...row, sags: row.map ? new SagMap(row.map) : null,
+      scale: row.map ? new Scale(row.map.lowest, row.map.rest) : PLAIN }));
+    this.chosen = materials.find((each) => each.is_first) ?? materials[0] ?? null;
     this.choice = element('select', { id: 'material' });
-    materials.forEach((each, k) => this.choice.append(new Option(each.name, k)));
+    materials.forEach((each, k) => this.choice.append(new Option(each.name, String(k))));
     this.choice.addEventListener('change', () => {
-      this.chosen = materials[this.choice.value];
+      this.chosen = materials[Number(this.choice.value)];
       this.show();
     });
     const all = element('label', { hidden: materials.length < 2 }, 'Material ', this.choice);
@@ -45,49 +62,57 @@ export class Panel {
     this.pad = element('canvas', { tabIndex: 0, className: 'pad' });
     this.pad.setAttribute('role', 'img');
     this.sliders = ['Stiffness Cs', 'Damping Cd'].map((text, k) => {
-      const slider = element('input', { type: 'range', min: 0, max: 1, step: 'any', id: `slider${k}` }),
+      const slider = element('input', { type: 'range', min: '0', max: '1', step: 'any', id: `slider${k}` }),
         output = element('output');
-      slider.addEventListener('input',
-        () => this.#set(...this.pair.map((old, n) => (n === k ? this.chosen.scale.valueAt(Number(slider.value)) : old))));
+      slider.addEventListener('input', () => {
+        const { chosen, pair: [stiffness, damping] } = this, value = chosen?.scale.valueAt(Number(slider.value)) ?? 1;
+        this.#set(k === 0 ? value : stiffness, k === 1 ? value : damping);
+      });
       slider.addEventListener('change', () => this.#end());
       return { row: element('label', { htmlFor: slider.id, className: 'slider' },
         element('span', { textContent: text }), slider, output), slider, output };
     });
     this.gravity = ['x', 'y'].map((axis, k) => this.#gravityField(axis, k));
     this.springs.append(all, this.words, this.says, this.pad, ...this.sliders.map(({ row }) => row));
-    root.append(this.springs, element('h2', { textContent: 'World' }), element('div', { className: 'fields' }, ...this.gravity.map((field) => field.parentElement)));
-    for (const name of ['pointerdown', 'pointermove']) this.pad.addEventListener(name, (event) => this.#drag(event));
+    root.append(this.springs, element('h2', { textContent: 'World' }),
+      element('div', { className: 'fields' }, ...this.gravity.map(({ label }) => label)));
+    this.pad.addEventListener('pointerdown', (event) => this.#drag(event));
+    this.pad.addEventListener('pointermove', (event) => this.#drag(event));
     this.pad.addEventListener('lostpointercapture', () => this.#end());
     this.pad.addEventListener('keydown', (event) => this.#key(event));
     this.show();
   }
 
+  /** @type {(axis: string, k: number) => { field: HTMLInputElement, label: HTMLElement }} */
   #gravityField(axis, k) {
     const limit = this.level.gravity_limit, field = element('input', { type: 'number', step: 'any', required: true,
-      min: -limit, max: limit });
-    element('label', {}, `Gravity ${axis} [m/s²]`, field);
+      min: String(-limit), max: String(limit) });
     field.addEventListener('change', () => {
       const { gravity } = this.run.world.settings(), value = field.valueAsNumber;
       // What is wrong with it, the browser says.
-      if (!field.reportValidity()) field.value = gravity[k];
-      else if (value !== gravity[k]) this.run.submit({ type: 'set_gravity', gravity: gravity.map((old, n) => (n === k
-        ? value : old)), duration: this.level.ramp_ticks }, this.run.newGesture());
+      if (!field.reportValidity()) field.value = String(gravity[k]);
+      else if (value !== gravity[k]) {
+        gravity[k] = value;
+        this.run.submit({ type: 'set_gravity', gravity, duration: this.level.ramp_ticks }, this.run.newGesture());
+      }
     });
-    return field;
+    return { field, label: element('label', {}, `Gravity ${axis} [m/s²]`, field) };
   }
 
-  // Cs and Cd of the first spring of the material that is chosen.
+  /** Cs and Cd of the first spring of the material that is chosen.
+   * @type {Point} */
   get pair() {
-    const { world } = this.run, material = world.view('state.material'), { slot } = this.chosen;
+    const { world } = this.run, material = world.view('state.material'), slot = this.chosen?.slot ?? null;
     const spring = material.findIndex((own) => (slot === null ? own >= 0 : own === slot));
-    return spring < 0 ? [1, 1] : ['stiffness', 'damping'].map((name) => world.view(`state.${name}`)[spring]);
+    return spring < 0 ? [1, 1] : [world.view('state.stiffness')[spring], world.view('state.damping')[spring]];
   }
 
+  /** @type {(stiffness: number, damping: number) => void} */
   #set(stiffness, damping) {
+    if (!this.chosen) return;
     this.#gesture ??= this.run.newGesture();
     const { slot: material } = this.chosen, { ramp_ticks: duration } = this.level;
-    const record = { type: 'set_coefficients', stiffness, damping, material, duration };
-    this.run.submit(record, this.#gesture);
+    this.run.submit({ type: 'set_coefficients', stiffness, damping, material, duration }, this.#gesture);
     this.show();
   }
 
@@ -95,40 +120,47 @@ export class Panel {
     this.#gesture = null;
   }
 
+  /** @type {(event: PointerEvent) => void} */
   #drag(event) {
-    if (!(event.buttons & 1)) return;
+    if (!(event.buttons & 1) || !this.chosen) return;
     event.preventDefault();
     this.pad.setPointerCapture(event.pointerId);
-    const { clientWidth: width, clientHeight: tall } = this.pad,
-      inside = (at, size) => Math.min(Math.max((at - MARGIN) / (size - 2 * MARGIN), 0), 1);
+    const { clientWidth: width, clientHeight: tall } = this.pad;
+    /** @type {(at: number, size: number) => number} */
+    const inside = (at, size) => Math.min(Math.max((at - MARGIN) / (size - 2 * MARGIN), 0), 1);
     const { scale } = this.chosen;
     this.#set(scale.valueAt(inside(event.offsetX, width)), scale.valueAt(1 - inside(event.offsetY, tall)));
   }
 
+  /** @type {(event: KeyboardEvent) => void} */
   #key(event) {
-    const way = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] }[event.key];
-    if (!way) return;
+    const way = WAYS.get(event.key);
+    if (!way || !this.chosen) return;
     event.preventDefault();
     event.stopPropagation();
     const { scale } = this.chosen;
-    this.#set(...this.pair.map((value, k) =>
-      (way[k] ? scale.valueAt(Math.min(scale.placeOf(value) + way[k], 1)) : value)));
+    const [stiffness, damping] = this.pair.map((value, k) =>
+      (way[k] ? scale.valueAt(Math.min(scale.placeOf(value) + way[k], 1)) : value));
+    this.#set(stiffness, damping);
     this.#end();
   }
 
-  // The word for how far it sags; where nothing is known of that, the word whose stiffness Cs / (1 - Cd) is nearest.
-  #wordFor([stiffness, damping]) {
-    if (stiffness === 1 && damping === 1) return 'rigid';
-    if (this.chosen.sags) return this.chosen.sags.wordAt(stiffness, damping);
-    const firmness = ([cs, cd]) => Math.log(Math.max(cs, 1e-9) / (1 - cd + 1e-9)), own = firmness([stiffness, damping]);
-    return Object.entries(this.chosen.words).reduce((best, each) =>
+  /** The word for how far it sags; where nothing is known of that, the word whose stiffness Cs / (1 - Cd) is nearest.
+   * @type {(chosen: Material, pair: Point) => string} */
+  #wordFor({ sags, words }, [stiffness, damping]) {
+    if (stiffness === 1 && damping === 1) return PAD.RIGID;
+    if (sags) return sags.wordAt(stiffness, damping);
+    /** @type {(pair: Point) => number} */
+    const firmness = ([cs, cd]) => Math.log(Math.max(cs, 1e-9) / (1 - cd + 1e-9));
+    const own = firmness([stiffness, damping]);
+    return Object.entries(words).reduce((best, each) =>
       (Math.abs(firmness(each[1]) - own) < Math.abs(firmness(best[1]) - own) ? each : best))[0];
   }
 
-  // The sentence that says how far it sags.
-  #sentence(pair) {
-    const { says, sags } = this.chosen;
-    if (!says) return '';
+  /** The sentence that says how far it sags.
+   * @type {(chosen: Material, pair: Point) => string} */
+  #sentence({ says, sags }, pair) {
+    if (!says || !sags) return '';
     const sag = pair.every((value) => value === 1) ? 0 : sags.at(...pair);
     return `${sag >= says.flat_from ? says.flat : says.sag.replace('{}', perCent(sag))}.`;
   }
@@ -151,47 +183,52 @@ export class Panel {
 
   show() {
     const offered = this.#offered;
-    if (!offered.includes(this.chosen)) [this.chosen] = offered;
+    if (!this.chosen || !offered.includes(this.chosen)) this.chosen = offered[0] ?? null;
     this.springs.hidden = !this.chosen;
     this.materials.forEach((each, k) => { this.choice.options[k].disabled = !offered.includes(each); });
-    this.choice.value = this.materials.indexOf(this.chosen);
+    this.choice.value = String(this.chosen ? this.materials.indexOf(this.chosen) : -1);
     const { gravity } = this.run.world.settings();
-    this.gravity.forEach((field, k) => {
-      if (document.activeElement !== field) field.value = gravity[k];
+    this.gravity.forEach(({ field }, k) => {
+      if (document.activeElement !== field) field.value = String(gravity[k]);
     });
-    if (this.chosen) this.#showChosen(this.pair);
+    if (this.chosen) this.#showChosen(this.chosen, this.pair);
     this.#shown = this.#present;
   }
 
-  #showChosen(pair) {
-    const word = this.#wordFor(pair), { words } = this.chosen;
+  /** @type {(chosen: Material, pair: Point) => void} */
+  #showChosen(chosen, pair) {
+    const word = this.#wordFor(chosen, pair), { words } = chosen;
     if (this.words.childElementCount !== Object.keys(words).length) {
       this.words.replaceChildren(...Object.keys(words).map((name) =>
         element('button', { type: 'button', textContent: name, onclick: () => {
-        this.#set(...this.chosen.words[name]);
-        this.#end();
-      } })));
+          this.#set(...(this.chosen ?? chosen).words[name]);
+          this.#end();
+        } })));
     }
-    this.says.textContent = this.#sentence(pair);
-    for (const button of this.words.children) button.setAttribute('aria-pressed', button.textContent === word);
+    this.says.textContent = this.#sentence(chosen, pair);
+    for (const button of this.words.children) {
+      button.setAttribute('aria-pressed', String(button.textContent === word));
+    }
     this.sliders.forEach(({ slider, output }, k) => {
-      if (document.activeElement !== slider || !this.#gesture) slider.value = this.chosen.scale.placeOf(pair[k]);
+      if (document.activeElement !== slider || !this.#gesture) slider.value = String(chosen.scale.placeOf(pair[k]));
       slider.setAttribute('aria-valuetext', String(pair[k]));
-      output.textContent = Number(pair[k].toPrecision(3));
+      output.textContent = String(Number(pair[k].toPrecision(3)));
     });
     this.pad.setAttribute('aria-label', `Cs ${pair[0]} across, Cd ${pair[1]} up: ${word}. Arrow keys change them.`);
-    this.#draw(pair);
+    this.#draw(chosen, pair);
   }
 
-  #draw(pair) {
-    const context = this.pad.getContext('2d'), ratio = devicePixelRatio || 1, { scale, sags } = this.chosen,
-      { clientWidth: width, clientHeight: tall } = this.pad;
+  /** @type {(chosen: Material, pair: Point) => void} */
+  #draw(chosen, pair) {
+    const context = contextOf(this.pad), ratio = devicePixelRatio || 1, { scale, sags, subject = '' } = chosen;
+    const { clientWidth: width, clientHeight: tall } = this.pad;
     if (!width) return;
     this.pad.width = width * ratio;
     this.pad.height = tall * ratio;
     context.scale(ratio, ratio);
     const style = getComputedStyle(this.pad), wide = width - 2 * MARGIN, high = tall - 2 * MARGIN,
-      across = (place) => MARGIN + place * wide, up = (place) => tall - MARGIN - place * high;
+      across = (/** @type {number} */ place) => MARGIN + place * wide,
+      up = (/** @type {number} */ place) => tall - MARGIN - place * high;
     context.strokeStyle = style.getPropertyValue('--line');
     context.fillStyle = style.getPropertyValue('--muted');
     context.font = '11px system-ui, sans-serif';
@@ -205,11 +242,11 @@ export class Panel {
       context.moveTo(across(0), up(place));
       context.lineTo(across(1), up(place));
       if (across(place) - last < 28 || (value !== 1 && across(1) - across(place) < 14)) continue;
-      context.fillText(value, across(place), tall - 2);
+      context.fillText(String(value), across(place), tall - 2);
       last = across(place);
     }
     context.stroke();
-    if (sags) this.#drawWords(context, sags, style, { across, up, wide, high });
+    if (sags) this.#drawWords(context, sags, subject, style, { across, up, wide, high });
     context.fillStyle = style.getPropertyValue('--accent');
     context.strokeStyle = style.getPropertyValue('--surface');
     context.lineWidth = 3;
@@ -219,8 +256,10 @@ export class Panel {
     context.fill();
   }
 
-  // Lines between the words for how far it sags, and the words, as the window draws them.
-  #drawWords(context, sags, style, { across, up, wide, high }) {
+  /** Lines between the words for how far it sags, and the words, as the window draws them.
+   * @type {(context: CanvasRenderingContext2D, sags: SagMap, subject: string, style: CSSStyleDeclaration,
+   *   map: PadMap) => void} */
+  #drawWords(context, sags, subject, style, { across, up, wide, high }) {
     context.fillStyle = style.getPropertyValue('--accent');
     context.globalAlpha = 0.45;
     for (const [x, y] of sags.borders(Math.round(wide), Math.round(high)))
@@ -235,6 +274,6 @@ export class Panel {
     context.textAlign = 'right';
     context.font = '11px system-ui, sans-serif';
     context.fillStyle = style.getPropertyValue('--muted');
-    context.fillText(`sag of ${this.chosen.subject}`, across(1), up(1) - 3);
+    context.fillText(`sag of ${subject}`, across(1), up(1) - 3);
   }
 }

@@ -1,13 +1,18 @@
 // Recording: a run written line by line as the desktop's recordings are, and the run of a recording compared.
 import { blake2b } from './hash.js';
+import { RECORDING } from './shared.js';
 import { canonical } from './world.js';
+/** @import { About, Done, Recording, StateHash } from './types.js' */
+/** @import { World } from './world.js' */
 
-const TICK_DIGITS = 16, ARRAY_DIGITS = 6, CHAIN_DIGITS = 8, STATE_TICKS = 600, SLICE = 12;
+const { TICK_DIGITS, ARRAY_DIGITS, CHAIN_DIGITS, STATE_TICKS } = RECORDING, SLICE = 12;
 const encoder = new TextEncoder();
-// So that the page goes on meanwhile [ms].
+/** So that the page goes on meanwhile [ms].
+ * @type {() => Promise<void>} */
 const pause = () => new Promise((resolve) => setTimeout(resolve));
 
-// Run commands on a world from its start; gives every tick its hash, and the commands that follow it.
+/** Run commands on a world from its start; gives every tick its hash, and the commands that follow it.
+ * @type {(world: World, commands: Done[], ticks: number) => AsyncGenerator<{ hash: StateHash, commands: Done[] }>} */
 async function* repeated(world, commands, ticks) {
   let next = 0, since = performance.now();
   for (;;) {
@@ -24,7 +29,8 @@ async function* repeated(world, commands, ticks) {
   }
 }
 
-// The first tick of a recording that has not the hash that it says; null: each has.
+/** The first tick of a recording that has not the hash that it says; null: each has.
+ * @type {(world: World, recording: Recording) => Promise<number | null>} */
 export async function verified(world, { commands, hashes }) {
   for await (const { hash } of repeated(world, commands, hashes.length - 1)) {
     if (!hash.whole.startsWith(hashes[world.time])) return world.time;
@@ -32,18 +38,27 @@ export async function verified(world, { commands, hashes }) {
   return null;
 }
 
-// The file of a run, compressed. world: a fresh one; about: the table; header: the first line without its end.
+/** The file of a run, compressed. world: a fresh one; about: the table; header: the first line without its end.
+ * @type {(world: World, about: About, header: string, commands: Done[], ticks: number, progress: (done: number,
+ *   all: number) => void) => Promise<Blob>} */
 export async function written(world, about, header, commands, ticks, progress) {
-  const lines = [], columns = new Map(about.columns.map((column) => [column.stored, column]));
-  let chain = '', before = new Map(), stored = new Map();
+  /** @type {string[]} */
+  const lines = [];
+  const columns = new Map(about.columns.map((column) => [column.stored, column]));
+  let chain = '', before = /** @type {Map<string, string>} */ (new Map());
+  let stored = /** @type {Map<string, string>} */ (new Map());
+  /** @type {(body: string) => void} */
   const write = (body) => {
     chain = blake2b(encoder.encode(chain + body), 16);
     lines.push(`${body}, "chain": "${chain.slice(0, CHAIN_DIGITS)}"}\n`);
   };
+  /** @type {(values: object) => void} */
   const line = (values) => write(spaced(values).slice(0, -1));
+  /** @type {(hash: StateHash) => Promise<void>} */
   const writeState = async (hash) => {
     const present = new Map([...columns].map(([name, column]) =>
       [name, `${hash.arrays.get(name)} ${world.rows(column).length}`]));
+    /** @type {Record<string, string>} */
     const state = {};
     for (const [name, column] of columns) {
       if (present.get(name) !== stored.get(name)) state[name] = await packed(canonical(world.rows(column)));
@@ -52,9 +67,12 @@ export async function written(world, about, header, commands, ticks, progress) {
     line({ tick: world.time, state, settings: world.settings() });
   };
   write(header);
+  /** @type {{ hash: StateHash, isStored: boolean, isChanged: boolean } | null} */
   let last = null;
   for await (const { hash, commands: due } of repeated(world, commands, ticks)) {
-    const isStored = world.time % STATE_TICKS === 0, arrays = {};
+    const isStored = world.time % STATE_TICKS === 0;
+    /** @type {Record<string, string | null>} */
+    const arrays = {};
     for (const name of columns.keys()) {
       const digest = hash.arrays.get(name);
       if (isStored ? digest : digest !== before.get(name)) arrays[name] = digest ? digest.slice(0, ARRAY_DIGITS) : null;
@@ -62,24 +80,27 @@ export async function written(world, about, header, commands, ticks, progress) {
     before = hash.arrays;
     line({ tick: world.time, hash: isStored ? hash.whole : hash.whole.slice(0, TICK_DIGITS), arrays });
     if (isStored) await writeState(hash);
-    for (const { gesture, record, changes } of due) {
-      line({ tick: world.time, gesture, command: changes ? record : world.commands.named(record) });
+    for (const done of due) {
+      const command = done.changes ? done.record : world.commands.named(done.record);
+      line({ tick: world.time, gesture: done.gesture, command });
     }
     last = { hash, isStored, isChanged: due.length > 0 };
     progress(world.time, ticks);
   }
-  if (!last.isStored && !last.isChanged) await writeState(last.hash);
+  if (last && !last.isStored && !last.isChanged) await writeState(last.hash);
   line({ end: true, tick: world.time, hash: world.hash().whole });
   return new Blob([new Uint8Array(await through(encoder.encode(lines.join('')), new CompressionStream('gzip')))]);
 }
 
-// JSON with the spaces that Python puts into it.
+/** JSON with the spaces that Python puts into it.
+ * @type {(value: unknown) => string} */
 function spaced(value) {
   if (Array.isArray(value)) return `[${value.map(spaced).join(', ')}]`;
   if (value === null || typeof value !== 'object') return JSON.stringify(value);
   return `{${Object.entries(value).map(([key, each]) => `${JSON.stringify(key)}: ${spaced(each)}`).join(', ')}}`;
 }
 
+/** @type {(bytes: Uint8Array) => Promise<string>} */
 async function packed(bytes) {
   const content = await through(bytes, new CompressionStream('deflate'));
   let text = '';
@@ -87,6 +108,8 @@ async function packed(bytes) {
   return btoa(text);
 }
 
+/** @type {(bytes: Uint8Array, stream: CompressionStream) => Promise<Uint8Array<ArrayBuffer>>} */
 async function through(bytes, stream) {
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+  const content = new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (bytes)]).stream().pipeThrough(stream);
+  return new Uint8Array(await new Response(content).arrayBuffer());
 }

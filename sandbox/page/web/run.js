@@ -1,5 +1,7 @@
 // Run: what was done to a world and when, so that time can go back; the commands of a run make it again, bit for bit.
 import { Refusal } from './commands.js';
+/** @import { Command, Done } from './types.js' */
+/** @import { World } from './world.js' */
 
 // Ticks from one kept state to the next at first, and how many are kept before every second one is dropped.
 const KEEP_EVERY = 60, KEPT = 120;
@@ -8,11 +10,18 @@ export class Run {
   // Whether what goes on now was begun by what is told again, so that nobody is there to end it.
   #isTold = true;
 
-  // commands: [{ tick, gesture, record, changes }] of a recording in order, with slots in place of names but where
-  // there are changes; ticks: of it.
+  /** commands: [{ tick, gesture, record, changes }] of a recording in order, with slots in place of names but where
+   * there are changes; ticks: of it.
+   * @param {World} world @param {Done[]} [commands] @param {number} [ticks] */
   constructor(world, commands = [], ticks = 0) {
-    Object.assign(this, { world, commands, last: ticks, every: KEEP_EVERY, kept: [world.save()], next: 0,
-      revision: 0 });
+    this.world = world;
+    this.commands = commands;
+    this.last = ticks;
+    this.every = KEEP_EVERY;
+    this.kept = [world.save()];
+    // The command that comes next; how often what would come later was forgotten.
+    this.next = 0;
+    this.revision = 0;
     this.gesture = commands.reduce((most, each) => Math.max(most, each.gesture), 0);
     this.#follow();
   }
@@ -30,7 +39,8 @@ export class Run {
     return (this.gesture += 1);
   }
 
-  // Carry out a command now, and forget what would have come later. Throws a Refusal where it cannot be.
+  /** Carry out a command now, and forget what would have come later. Throws a Refusal where it cannot be.
+   * @type {(record: Command, gesture: number) => void} */
   command(record, gesture) {
     this.takeUp(gesture);
     const fault = this.world.commands.faultIn(this.world, record);
@@ -41,7 +51,8 @@ export class Run {
     this.last = this.time;
   }
 
-  // The same. Whether it could be.
+  /** The same. Whether it could be.
+   * @type {(record: Command, gesture: number) => boolean} */
   submit(record, gesture) {
     try {
       this.command(record, gesture);
@@ -52,18 +63,22 @@ export class Run {
     return true;
   }
 
-  // Go on from here by hand, with a gesture that ends what goes on.
+  /** Go on from here by hand, with a gesture that ends what goes on.
+   * @type {(gesture: number) => void} */
   takeUp(gesture) {
     if (this.isFollowing) this.takeOver();
     if (this.#isTold) this.#endAll(gesture);
   }
 
-  // Let go what hands hold and stop what is driven, which nobody does any more. gesture: null: each belongs to what
-  // began it.
+  /** Let go what hands hold and stop what is driven, which nobody does any more. gesture: null: each belongs to what
+   * began it.
+   * @type {(gesture?: number | null) => void} */
   #endAll(gesture = null) {
     this.#isTold = false;
+    /** @type {Map<string, [Extract<Command, { type: 'release' | 'set_drive' }>, number]>} */
     const going = new Map();
-    for (const { record, gesture: begun } of this.commands) {
+    for (const { record, changes, gesture: begun } of this.commands) {
+      if (changes) continue;
       if (record.type === 'grab') going.set(`hand ${record.grab}`, [{ type: 'release', grab: record.grab }, begun]);
       else if (record.type === 'set_drive') going.set(`part ${record.part}`, [{ ...record, value: 0 }, begun]);
     }
@@ -83,7 +98,7 @@ export class Run {
     if (this.#isTold && !this.isFollowing) this.#endAll();
     this.world.tick();
     this.last = Math.max(this.last, this.time);
-    if (this.time % this.every === 0 && this.time > this.kept.at(-1).time) {
+    if (this.time % this.every === 0 && this.time > this.kept[this.kept.length - 1].time) {
       this.kept.push(this.world.save());
       if (this.kept.length > KEPT) {
         this.every *= 2;
@@ -101,9 +116,10 @@ export class Run {
     }
   }
 
-  // Go to a tick that was reached, with those of its commands that come before one of this place.
+  /** Go to a tick that was reached, with those of its commands that come before one of this place.
+   * @type {(tick: number, place?: number) => Done[]} */
   seek(tick, place = Infinity) {
-    const state = this.kept.findLast((each) => each.time <= tick);
+    const state = this.kept.findLast((each) => each.time <= tick) ?? this.kept[0];
     this.world.restore(state);
     this.#isTold = true;
     this.next = this.commands.findIndex((each) => each.tick >= state.time);

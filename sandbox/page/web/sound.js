@@ -1,11 +1,13 @@
 // Sound: what is heard of a run: blows, breaks, jerks of strings and motors, made of a few sines and a little noise.
+import { SOUND } from './shared.js';
+/** @import { Sounds } from './types.js' */
+/** @import { World } from './world.js' */
 
-const SOFTEST = 0.35, HARDEST = 9, NEWS = 1.5, MEMORY = 0.25, MOST = 4, JERK = 1, HARD_JERK = 8, REST = 90, VOICES = 12;
-const FADE = 0.12;
-const LEVELS = { thud: 0.8, pluck: 0.45, snap: 0.85, motor: 0.22 };
-const SCALE = [0, 2, 4, 7, 9], LOWEST = 65.41, STEPS = 26;
+const { SOFTEST, HARDEST, NEWS, MEMORY, MOST, JERK, HARD_JERK, REST, VOICES, LEVELS, MOTOR_FADE: FADE } = SOUND;
+const { SCALE, LOWEST, STEPS, TUNED, HIGHEST_STRING, SNAP_PITCH, MOTOR_PITCH, MOTOR_RISE, WIDTH } = SOUND;
 
-// The nearest note [Hz] of a scale of five steps, on which all things sound well together.
+/** The nearest note [Hz] of a scale of five steps, on which all things sound well together.
+ * @type {(pitch: number) => number} */
 function noteOf(pitch) {
   let best = LOWEST;
   for (let step = 0; step < STEPS; step++) {
@@ -15,36 +17,52 @@ function noteOf(pitch) {
   return best;
 }
 
+/** How far to the right a particle is, -1..1.
+ * @typedef {(particle: number) => number} Pan */
+
 export class Sound {
+  /** @type {AudioContext | null} */
   #context = null;
-  #noise;
+  /** @type {AudioBuffer | null} */
+  #noise = null;
+  /** @type {Float64Array} */
   #usual;
+  /** @type {Float64Array} */
   #jerks;
+  /** @type {Map<string, number>} */
   #last = new Map();
+  /** @type {Map<number, { hum: OscillatorNode, out: GainNode }>} */
   #motors = new Map();
   #voices = 0;
   isOn = false;
+  /** @type {{ time: number, velocity: Float64Array } | null} */
+  before = null;
 
-  // bodies: of each particle its body; of each body mass, pitch, weight, stuff, if it is a string. stuffs: modes.
+  /** bodies: of each particle its body; of each body mass, pitch, weight, stuff, if it is a string. stuffs: modes.
+   * @param {World} world @param {Sounds} sounds */
   constructor(world, { bodies, stuffs, motors }) {
-    Object.assign(this, { world, bodies, stuffs, motors });
+    this.world = world;
+    this.bodies = bodies;
+    this.stuffs = stuffs;
+    this.motors = motors;
+    this.#usual = this.#jerks = new Float64Array();
     this.forget();
   }
 
   // Only a touch may begin sound.
   toggle() {
     this.isOn = !this.isOn;
-    this.#context ??= new AudioContext();
+    const context = (this.#context ??= new AudioContext());
     if (!this.#noise) {
-      this.#noise = this.#context.createBuffer(1, this.#context.sampleRate / 2, this.#context.sampleRate);
+      this.#noise = context.createBuffer(1, context.sampleRate / 2, context.sampleRate);
       const samples = this.#noise.getChannelData(0);
       for (let k = 0, seed = 1; k < samples.length; k++) {
         seed = (seed * 16807) % 2147483647;
         samples[k] = (2 * seed) / 2147483647 - 1;
       }
     }
-    if (this.isOn) this.#context.resume();
-    else this.#context.suspend();
+    if (this.isOn) context.resume();
+    else context.suspend();
   }
 
   close() {
@@ -60,10 +78,11 @@ export class Sound {
 
   // Let motors fall silent until the next tick: time stands.
   rest() {
-    for (const { out } of this.#motors.values()) out.gain.setTargetAtTime(0, this.#context.currentTime, FADE);
+    for (const { out } of this.#motors.values()) out.gain.setTargetAtTime(0, out.context.currentTime, FADE);
   }
 
-  // Take in a tick. pan: of a place across the view, -1..1.
+  /** Take in a tick. pan: of a place across the view, -1..1.
+   * @type {(pan: Pan) => void} */
   hear(pan) {
     const { world, before } = this, velocity = world.view('state.velocity');
     if (this.isOn && before?.time === world.time - 1) {
@@ -75,9 +94,12 @@ export class Sound {
     this.before = { time: world.time, velocity: velocity.slice() };
   }
 
-  // What there is much more of than of late, the loudest bodies first.
+  /** What there is much more of than of late, the loudest bodies first.
+   * @type {(now: Float64Array, usual: Float64Array, least: number) => number[]} */
   #new(now, usual, least) {
-    const keep = Math.exp(-1 / (MEMORY * this.world.settings().tick_rate)), found = [];
+    const keep = Math.exp(-1 / (MEMORY * this.world.settings().tick_rate));
+    /** @type {number[]} */
+    const found = [];
     now.forEach((value, b) => {
       if (value > NEWS * usual[b] + least) found.push(b);
       usual[b] = usual[b] === Infinity ? value : Math.max(usual[b] * keep, value);
@@ -85,11 +107,11 @@ export class Sound {
     return found.sort((a, b) => now[b] - now[a]).slice(0, MOST);
   }
 
+  /** @type {(velocity: Float64Array, earlier: Float64Array, pan: Pan) => void} */
   #hearBlows(velocity, earlier, pan) {
-    const { of, mass, pitch, weight, stuff } = this.bodies, view = (name) => this.world.view(`state.${name}`),
-      count = mass.length;
-    const { gravity, tick_rate } = this.world.settings(), own = view('mass'), inverse = view('inverse_mass'),
-      scale = view('gravity_scale');
+    const { of, mass, pitch, weight, stuff } = this.bodies, { world } = this, count = mass.length;
+    const { gravity, tick_rate } = world.settings(), own = world.view('state.mass');
+    const inverse = world.view('state.inverse_mass'), scale = world.view('state.gravity_scale');
     const speed = new Float64Array(count), blow = new Float64Array(count), place = new Int32Array(count);
     for (const p of new Set(this.world.contacts())) {
       if (!inverse[p]) continue;
@@ -104,6 +126,7 @@ export class Sound {
     }
   }
 
+  /** @type {(pan: Pan) => void} */
   #hearStrings(pan) {
     const { of, mass, strand } = this.bodies;
     if (!strand.some(Boolean)) return;
@@ -121,25 +144,31 @@ export class Sound {
     const jerk = most.map((value, b) => value / mass[b]);
     for (const b of this.#new(jerk, this.#jerks, JERK)) {
       const pull = Math.max(most[b] * tick_rate, 3 * mass[b]),
-        pitch = Math.min((24 * Math.sqrt((pull * long[b]) / mass[b])) / (2 * long[b]), 700);
+        pitch = Math.min((TUNED * Math.sqrt((pull * long[b]) / mass[b])) / (2 * long[b]), HIGHEST_STRING);
       this.#play('pluck', b, pitch, 0.8 * (jerk[b] / HARD_JERK) ** 0.8, pan(place[b]));
     }
   }
 
+  /** @type {(springs: number[], pan: Pan) => void} */
   #hearBreak(springs, pan) {
     const [spring] = springs, p = this.world.view('state.particle_a')[spring],
       length = this.world.view('state.rest_length')[spring];
-    const pitch = 420 * Math.sqrt(0.3 / Math.max(length, 1e-3)) * (0.6 + this.world.view('state.stiffness')[spring]);
+    const stiffness = this.world.view('state.stiffness')[spring];
+    const pitch = SNAP_PITCH * Math.sqrt(0.3 / Math.max(length, 1e-3)) * (0.6 + stiffness);
     this.#play('snap', this.bodies.of[p], pitch, 0.55 + 0.12 * Math.log2(springs.length), pan(p));
   }
 
+  /** @type {(kind: 'thud' | 'pluck' | 'snap', body: number, wanted: number, loudness: number, pan: number,
+   *   stuff?: string) => void} */
   #play(kind, body, wanted, loudness, pan, stuff) {
-    const context = this.#context, now = context.currentTime, key = `${kind}${body}`, pitch = noteOf(wanted);
-    if (this.#voices >= VOICES || 1000 * (now - (this.#last.get(key) ?? -1)) < REST
+    const context = this.#context;
+    if (!context) return;
+    const now = context.currentTime, key = `${kind}${body}`, pitch = noteOf(wanted);
+    if (this.#voices >= VOICES || now - (this.#last.get(key) ?? -1) < REST
       || !Number.isFinite(pitch * loudness)) return;
     this.#last.set(key, now);
-    const gain = LEVELS[kind] * Math.min(loudness, 1), out = this.#out(gain, pan);
-    if (kind === 'thud') {
+    const gain = LEVELS[kind] * Math.min(loudness, 1), out = this.#out(context, gain, pan);
+    if (kind === 'thud' && stuff !== undefined) {
       const { modes, noise, cut, blow, glide } = this.stuffs[stuff];
       for (const [ratio, decay, strength] of modes) this.#tone(out, pitch * ratio, 0.4 * strength, decay, glide);
       this.#burst(out, 0.6 * noise, cut, blow);
@@ -151,14 +180,17 @@ export class Sound {
     }
   }
 
-  #out(gain, pan) {
-    const context = this.#context, volume = new GainNode(context, { gain: 0.6 * gain });
-    volume.connect(new StereoPannerNode(context, { pan: 0.7 * pan })).connect(context.destination);
+  /** @type {(context: AudioContext, gain: number, pan: number) => GainNode} */
+  #out(context, gain, pan) {
+    const volume = new GainNode(context, { gain: 0.6 * gain });
+    volume.connect(new StereoPannerNode(context, { pan: WIDTH * pan })).connect(context.destination);
     return volume;
   }
 
+  /** @type {(source: AudioScheduledSourceNode, out: AudioNode, strength: number, decay: number,
+   *   at?: number) => GainNode} */
   #fading(source, out, strength, decay, at = 0) {
-    const begin = this.#context.currentTime + at, fade = new GainNode(this.#context, { gain: 0 });
+    const begin = out.context.currentTime + at, fade = new GainNode(out.context, { gain: 0 });
     fade.gain.setValueAtTime(0, begin);
     fade.gain.linearRampToValueAtTime(strength, begin + 0.002);
     fade.gain.setTargetAtTime(0, begin + 0.002, decay);
@@ -170,21 +202,25 @@ export class Sound {
     return fade;
   }
 
+  /** @type {(out: AudioNode, pitch: number, strength: number, decay: number, glide: number) => void} */
   #tone(out, pitch, strength, decay, glide) {
-    const tone = new OscillatorNode(this.#context, { frequency: pitch });
-    tone.frequency.setValueAtTime(pitch * glide, this.#context.currentTime);
-    tone.frequency.setTargetAtTime(pitch, this.#context.currentTime, 0.03);
+    const tone = new OscillatorNode(out.context, { frequency: pitch }), { currentTime } = out.context;
+    tone.frequency.setValueAtTime(pitch * glide, currentTime);
+    tone.frequency.setTargetAtTime(pitch, currentTime, 0.03);
     tone.connect(this.#fading(tone, out, strength, decay));
   }
 
+  /** @type {(out: AudioNode, strength: number, cut: number, decay: number, at?: number) => void} */
   #burst(out, strength, cut, decay, at = 0) {
-    const noise = new AudioBufferSourceNode(this.#context, { buffer: this.#noise, loop: true });
-    noise.connect(new BiquadFilterNode(this.#context, { type: 'lowpass', frequency: cut })).connect(this.#fading(noise,
+    const noise = new AudioBufferSourceNode(out.context, { buffer: this.#noise, loop: true });
+    noise.connect(new BiquadFilterNode(out.context, { type: 'lowpass', frequency: cut })).connect(this.#fading(noise,
       out, strength, decay, at));
   }
 
   // Motors that are driven hum, the faster the higher.
   #hearMotors() {
+    const context = this.#context;
+    if (!context) return;
     const value = this.world.view('state.actuator_value'), position = this.world.view('state.position'),
       velocity = this.world.view('state.velocity');
     for (const { part, hub, rim, speed } of this.motors) {
@@ -194,16 +230,19 @@ export class Sound {
         const u = velocity[2 * p] - velocity[2 * hub], v = velocity[2 * p + 1] - velocity[2 * hub + 1];
         turning += Math.abs(x * v - y * u) / (x * x + y * y || 1) / rim.length;
       }
-      if (!this.#motors.has(part)) {
-        const hum = new OscillatorNode(this.#context, { type: 'sawtooth' }), out = this.#out(1, 0);
-        hum.connect(new BiquadFilterNode(this.#context, { type: 'lowpass', frequency: 500 })).connect(out);
-        hum.start();
-        this.#motors.set(part, { hum, out });
-      }
-      const { hum, out } = this.#motors.get(part),
+      const { hum, out } = this.#motors.get(part) ?? this.#newMotor(context, part),
         effort = value[part] ? 0.2 + 0.8 * Math.min(turning / (Math.abs(speed) || 1), 1) : 0;
-      hum.frequency.setTargetAtTime(70 + 9 * turning, this.#context.currentTime, 0.05);
-      out.gain.setTargetAtTime(0.35 * LEVELS.motor * effort, this.#context.currentTime, FADE);
+      hum.frequency.setTargetAtTime(MOTOR_PITCH + MOTOR_RISE * turning, context.currentTime, 0.05);
+      out.gain.setTargetAtTime(0.35 * LEVELS.motor * effort, context.currentTime, FADE);
     }
+  }
+
+  /** @type {(context: AudioContext, part: number) => { hum: OscillatorNode, out: GainNode }} */
+  #newMotor(context, part) {
+    const hum = new OscillatorNode(context, { type: 'sawtooth' }), out = this.#out(context, 1, 0);
+    hum.connect(new BiquadFilterNode(context, { type: 'lowpass', frequency: 500 })).connect(out);
+    hum.start();
+    this.#motors.set(part, { hum, out });
+    return { hum, out };
   }
 }

@@ -3,16 +3,20 @@ import { Checks } from './checks.js';
 import { Refusal } from './commands.js';
 import { Camera, Picture } from './draw.js';
 import { Drives } from './drives.js';
+import { load } from './files.js';
 import { Hands } from './hand.js';
 import { Pace } from './pace.js';
+import { contextOf } from './paint.js';
 import { written } from './recording.js';
 import { Run } from './run.js';
 import { Sound } from './sound.js';
-import { World } from './world.js';
+/** @import { Fresh, Level, NamedRecord, Theme, ToyEvents } from './types.js' */
 
 const KEY_ZOOM = 1.15;
 const TYPED_INTO = 'input, select, textarea, [contenteditable], .pad';
 const light = matchMedia('(prefers-color-scheme: light)');
+
+/** @typedef {'dark' | 'light'} ThemeName */
 
 // It tells what happens as events: tick, break { springs }, check { name, holds, value }, say { text, kind }, pause,
 // pace { isBehind }, jump, theme and draw.
@@ -21,9 +25,11 @@ export class Toy extends EventTarget {
   #isDirty = true;
   #isMoved = false;
   #isSeen = true;
+  /** @type {number} */
   #frame = 0;
   #checks;
   #previous;
+  /** @type {ThemeName | null} */
   #chosenTheme = null;
   #covered = 0;
   #closing = new AbortController();
@@ -33,10 +39,20 @@ export class Toy extends EventTarget {
   // How fast time passes: 1 as in the world.
   speed = 1;
 
-  // level: what Python says of it; fresh: gives its world before the first tick; keyboard: what keys are listened to.
+  /**
+   * level: what Python says of it; fresh: gives its world before the first tick; keyboard: what keys are listened to.
+   * @param {HTMLCanvasElement} canvas
+   * @param {Level} level
+   * @param {Fresh} fresh
+   * @param {HTMLElement | Window} [keyboard]
+   */
   constructor(canvas, level, fresh, keyboard = canvas) {
     super();
-    Object.assign(this, { canvas, level, fresh, world: fresh(), camera: new Camera() });
+    this.canvas = canvas;
+    this.level = level;
+    this.fresh = fresh;
+    this.world = fresh();
+    this.camera = new Camera();
     const { commands = [], hashes = [''] } = level.recording ?? {};
     this.run = new Run(this.world, commands, hashes.length - 1);
     if (level.begin) this.run.seek(level.begin);
@@ -52,9 +68,11 @@ export class Toy extends EventTarget {
     this.#frame = requestAnimationFrame((now) => this.#play(now));
   }
 
+  /** @type {(keyboard: HTMLElement | Window) => void} */
   #listen(keyboard) {
-    const { canvas } = this, { signal } = this.#closing, on = (target, name, act) =>
-      target.addEventListener(name, act, { signal });
+    const { canvas } = this, { signal } = this.#closing;
+    /** @type {<E extends Event>(target: EventTarget, name: string, act: (event: E) => void) => void} */
+    const on = (target, name, act) => target.addEventListener(name, /** @type {EventListener} */ (act), { signal });
     if (!canvas.hasAttribute('tabindex')) canvas.tabIndex = 0;
     canvas.style.touchAction = 'none';
     const size = new ResizeObserver(() => this.#resize()), sight = new IntersectionObserver(([{ isIntersecting }]) => {
@@ -64,8 +82,8 @@ export class Toy extends EventTarget {
     size.observe(canvas);
     sight.observe(canvas);
     signal.addEventListener('abort', () => [size, sight].forEach((each) => each.disconnect()));
-    on(keyboard, 'keydown', (event) => this.#key(event));
-    on(keyboard, 'keyup', (event) => this.drives.lifted(event));
+    on(keyboard, 'keydown', (/** @type {KeyboardEvent} */ event) => this.#key(event));
+    on(keyboard, 'keyup', (/** @type {KeyboardEvent} */ event) => this.drives.lifted(event));
     on(keyboard, 'blur', () => this.drives.releaseTyped());
     for (const name of ['blur', 'pagehide']) on(globalThis, name, () => this.#letGo());
     on(document, 'visibilitychange', () => this.#letGo());
@@ -82,15 +100,18 @@ export class Toy extends EventTarget {
     this.sound.rest();
   }
 
+  /** @type {(event: KeyboardEvent) => void} */
   #key(event) {
-    if (event.target.matches?.(TYPED_INTO)) return;
-    if (event.target.matches?.('button, a') && [' ', 'Enter'].includes(event.key)) return;
+    const on = event.target instanceof Element ? event.target : this.canvas;
+    if (on.matches(TYPED_INTO)) return;
+    if (on.matches('button, a') && [' ', 'Enter'].includes(event.key)) return;
     if (!this.drives.typed(event) && !this.#does(event)) return;
     this.refresh();
     event.preventDefault();
   }
 
-  // Whether a key of no drive was of use.
+  /** Whether a key of no drive was of use.
+   * @type {(event: KeyboardEvent) => boolean} */
   #does(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return false;
     if (event.key === ' ') this.toggle();
@@ -108,24 +129,29 @@ export class Toy extends EventTarget {
     this.#isDirty = true;
   }
 
+  /** @type {<N extends keyof ToyEvents>(name: N, detail?: ToyEvents[N]) => void} */
   #tell(name, detail) {
     this.dispatchEvent(new CustomEvent(name, { detail }));
   }
 
-  // Tell a person something in a line; kind: '', 'good' or 'bad'.
+  /** Tell a person something in a line; kind: '', 'good' or 'bad'.
+   * @type {(text: string, kind?: '' | 'good' | 'bad') => void} */
   say(text, kind = '') {
     this.#tell('say', { text, kind });
   }
 
+  /** @type {ThemeName} */
   get #themeName() {
     return this.#chosenTheme ?? this.level.scene.theme ?? (light.matches ? 'light' : 'dark');
   }
 
+  /** @type {Theme} */
   get theme() {
     return this.level.scene.themes[this.#themeName];
   }
 
-  // 'dark', 'light', or null: that of the level, or else of the viewer.
+  /** 'dark', 'light', or null: that of the level, or else of the viewer.
+   * @param {ThemeName | null} name */
   set theme(name) {
     this.#chosenTheme = name;
     this.#follow();
@@ -136,7 +162,8 @@ export class Toy extends EventTarget {
     this.refresh();
   }
 
-  // How many pixels of the lower edge something covers.
+  /** How many pixels of the lower edge something covers.
+   * @param {number} pixels */
   set covered(pixels) {
     this.#covered = pixels;
     this.#resize();
@@ -155,6 +182,7 @@ export class Toy extends EventTarget {
     this.#resize();
   }
 
+  /** @type {(now: number) => void} */
   #play(now) {
     const pace = this.#pace;
     if (this.isPaused || !this.#isSeen) pace.rest(now);
@@ -172,14 +200,16 @@ export class Toy extends EventTarget {
     this.#frame = requestAnimationFrame((next) => this.#play(next));
   }
 
+  /** @type {(seconds: number) => void} */
   #draw(seconds) {
     this.#isDirty = false;
     this.picture.draw(this.camera, this.theme, this.#previous, this.isPaused ? 1 : this.#pace.part, seconds);
-    this.hands.draw(this.canvas.getContext('2d'), this.picture.at, this.theme);
+    this.hands.draw(contextOf(this.canvas), this.picture.at, this.theme);
     this.#tell('draw');
   }
 
-  // Do something; where it fails, time stands and a line says why.
+  /** Do something; where it fails, time stands and a line says why.
+   * @type {(act: () => void) => void} */
   #guarded(act) {
     try {
       act();
@@ -237,7 +267,8 @@ export class Toy extends EventTarget {
     this.#guarded(() => this.tick());
   }
 
-  // Go to a tick that was reached.
+  /** Go to a tick that was reached.
+   * @type {(tick: number) => void} */
   seek(tick) {
     this.#jump(() => this.run.seek(tick));
   }
@@ -262,7 +293,8 @@ export class Toy extends EventTarget {
     return isDone;
   }
 
-  // Go elsewhere in time: nothing is compared with what was before.
+  /** Go elsewhere in time: nothing is compared with what was before.
+   * @type {(go: () => void) => void} */
   #jump(go) {
     this.hands.forget();
     this.drives.forget();
@@ -280,25 +312,30 @@ export class Toy extends EventTarget {
     return this.world.particles.map((slot) => this.level.about.names.particle[slot]);
   }
 
-  // Where a particle is [m], its velocity [m/s], and whether it is pinned.
+  /** Where a particle is [m], its velocity [m/s], and whether it is pinned.
+   * @type {(name: string) => { x: number, y: number, vx: number, vy: number, isPinned: boolean }} */
   particle(name) {
-    const { world } = this, slot = world.commands.slot({ names: 'particle' }, name, world.counts),
-      of = (array) => world.view(`state.${array}`);
-    const [x, y] = of('position').subarray(2 * slot), [vx, vy] = of('velocity').subarray(2 * slot);
-    return { x, y, vx, vy, isPinned: of('inverse_mass')[slot] === 0 };
+    const { world } = this, slot = world.commands.slot({ names: 'particle' }, name, world.counts);
+    const [x, y] = world.view('state.position').subarray(2 * slot);
+    const [vx, vy] = world.view('state.velocity').subarray(2 * slot);
+    return { x, y, vx, vy, isPinned: world.view('state.inverse_mass')[slot] === 0 };
   }
 
-  // Carry out a command as recordings have it, with names: { type: 'set_drive', part: 'wheel', value: 1 }.
+  /** Carry out a command as recordings have it, with names: { type: 'set_drive', part: 'wheel', value: 1 }.
+   * @type {(record: NamedRecord) => void} */
   command(record) {
     this.run.command(this.world.commands.read(record, this.world.counts), this.run.newGesture());
     this.refresh();
   }
 
-  // The file of what was done, a Blob that `sandbox replay` verifies.
+  /** The file of what was done, a Blob that `sandbox replay` verifies.
+   * @type {() => Promise<Blob>} */
   async recording() {
     const { run, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
-    const progress = (done, all) => done % 60 === 0
-      && this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`);
+    /** @type {(done: number, all: number) => void} */
+    const progress = (done, all) => {
+      if (done % 60 === 0) this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`);
+    };
     return written(this.fresh(), level.about, level.header, commands, run.time, progress);
   }
 
@@ -311,36 +348,8 @@ export class Toy extends EventTarget {
   }
 }
 
-// Level and worlds of a toy's file, which begins with the length of what is JSON, and of the kernels' module.
-export async function read(content, kernels) {
-  const bytes = new Uint8Array(content), begin = 4;
-  const end = begin + new DataView(content).getUint32(0, true), image = bytes.subarray(end);
-  const level = JSON.parse(new TextDecoder().decode(bytes.subarray(begin, end)));
-  const module = await kernels;
-  return [level, () => new World(new WebAssembly.Instance(module, {}).exports, image, level.about)];
-}
-
-const modules = new Map();
-
-async function fetched(address) {
-  const answer = await fetch(address).catch(() => null);
-  if (!answer?.ok) throw new Refusal(`There is no file ${address} here.`);
-  return answer;
-}
-
-// The level and the worlds of files at addresses; kernels are fetched once for all toys of a page.
-export async function load(address, kernels = new URL('kernels.wasm', import.meta.url)) {
-  if (!globalThis.WebAssembly || !globalThis.DecompressionStream) throw new Refusal('This browser is too old for it.');
-  const key = String(kernels);
-  if (!modules.has(key)) modules.set(key, fetched(kernels).then((answer) => answer.arrayBuffer()).then(
-    WebAssembly.compile));
-  const file = await fetched(address);
-  const content = await new Response(file.body.pipeThrough(new DecompressionStream('gzip'))).arrayBuffer().catch(
-    () => { throw new Refusal(`${address} was cut off or damaged.`); });
-  return read(content, modules.get(key));
-}
-
-// Play a toy's file on a canvas. kernels: the address of kernels.wasm, where it is not beside this module.
+/** Play a toy's file on a canvas. kernels: the address of kernels.wasm, where it is not beside this module.
+ * @type {(canvas: HTMLCanvasElement, address: string, options?: { kernels?: string | URL }) => Promise<Toy>} */
 export async function open(canvas, address, { kernels } = {}) {
   return new Toy(canvas, ...await load(address, kernels));
 }

@@ -1,43 +1,68 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
 import { Commands } from './commands.js';
 import { blake2b, hexOf } from './hash.js';
+/**
+ * @import { About, AnyArray, Column, Command, Counts, Done, Kernels, NameKind, Runs, SavedState, Settings, StateHash,
+ *   View } from './types.js'
+ */
 
 const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
+/** @type {Record<string, new (buffer: ArrayBuffer, offset: number, length: number) => AnyArray>} */
 const KINDS = {
   f8: Float64Array, f4: Float32Array, i8: BigInt64Array, u4: Uint32Array, i4: Int32Array, i1: Int8Array, b1: Uint8Array,
 };
 // What is derived, in this order, each by a kernel of its own with an arena of its own; and words that one begins with.
 const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_ARENA = 4096, MORE = 2;
 const HANDS = ['derive_hands'], ROOM = ['make_room'];
-const CONTACTS = ['particle', 'feature', 'impulse', 'impact'].map((name) => `collisions.kept.${name}`);
+const CONTACTS = /** @type {const} */ (['collisions.kept.particle', 'collisions.kept.feature',
+  'collisions.kept.impulse', 'collisions.kept.impact']);
 // What a tick moves.
-const MOTION = ['position', 'velocity', 'angle', 'spin'];
+const MOTION = /** @type {const} */ (['position', 'velocity', 'angle', 'spin']);
+const IMPULSES = /** @type {const} */ (['collisions.kept.impulse', 'collisions.kept.impact']);
 // Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
-const ARGUMENTS = 64, RECORD = 16;
+const ARGUMENTS = 64, RECORD = 16, NONE = new Float64Array();
+/** @type {(size: number) => number} */
 const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 
+/** @typedef {[address: number, count: number, size: number]} Span */
+
 export class World {
+  /** @type {Kernels} */
   #kernels;
+  /** @type {About} */
   #about;
+  /** @type {number} */
   #arguments;
+  /** @type {number} */
   #base;
+  /** @type {number} */
   #end;
+  /** @type {Record<string, Span>} */
   #arenas = {};
-  // The words of what the block was given: what kernels derived lies in place of the others.
+  /** The words of what the block was given: what kernels derived lies in place of the others.
+   * @type {Uint8Array} */
   #given;
+  /** @type {Map<string, { word: number, kind: string, dimensions: number }>} */
   #table = new Map();
+  /** @type {Map<string, AnyArray>} */
   #views = new Map();
+  /** @type {Map<string, { array: AnyArray, digest: string | null }>} */
   #hashed = new Map();
+  /** @type {Map<string, AnyArray>} */
   #saved = new Map();
-  // Rows in use, by family: a page has room for what a recording adds later.
+  /** Rows in use, by family: a page has room for what a recording adds later.
+   * @type {Counts} */
   counts;
-  // What of records is right, and what kernels take of it.
+  /** What of records is right, and what kernels take of it.
+   * @type {Commands} */
   commands;
   // Ticks since the level's start; springs that broke in the last one.
   time = 0;
+  /** @type {number[]} */
   broken = [];
 
-  // kernels: what the module exports; image: the block as bytes; about: what Python says of both, see about.py.
+  /** kernels: what the module exports; image: the block as bytes; about: what Python says of both, see about.py.
+   * @param {Kernels} kernels @param {Uint8Array} image @param {About} about */
   constructor(kernels, image, about) {
     this.#kernels = kernels;
     this.#about = about;
@@ -62,7 +87,8 @@ export class World {
     this.#derive(DERIVATIONS);
   }
 
-  // Where there are so many more bytes of memory.
+  /** Where there are so many more bytes of memory.
+   * @type {(size: number) => number} */
   #reserve(size) {
     const address = this.#end, { memory } = this.#kernels;
     this.#end = aligned(address + size);
@@ -71,15 +97,17 @@ export class World {
     return address;
   }
 
-  // Where a word of the block is, as an index of numbers of 32 bits.
+  /** Where a word of the block is, as an index of numbers of 32 bits.
+   * @type {(word: number) => number} */
   #place(word) {
     return (this.#base + WORD * word) / 4;
   }
 
-  // The array at a path of the block, such as 'state.position', flat.
+  /** The array at a path of the block, such as 'state.position', flat.
+   * @template {string} P @param {P} path @returns {View<P>} */
   view(path) {
     const found = this.#views.get(path);
-    if (found && found.buffer === this.#kernels.memory.buffer) return found;
+    if (found && found.buffer === this.#kernels.memory.buffer) return /** @type {View<P>} */ (found);
     const place = this.#table.get(path);
     if (!place) throw new Error(`there is no array ${path}`);
     const { word, kind, dimensions } = place, words = new Uint32Array(this.#kernels.memory.buffer),
@@ -88,10 +116,11 @@ export class World {
     for (let k = 0; k < dimensions; k++) size *= words[at + 2 * (SHAPE + k)];
     const view = new KINDS[kind](this.#kernels.memory.buffer, words[at + 2 * ADDRESS], size);
     this.#views.set(path, view);
-    return view;
+    return /** @type {View<P>} */ (view);
   }
 
-  // Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
+  /** Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
+   * @type {(name: string, ...given: (number | Span)[]) => number} */
   #call(name, ...given) {
     const words = given.flatMap((each) => {
       if (!Array.isArray(each)) return [each];
@@ -104,10 +133,12 @@ export class World {
     return Number(new BigInt64Array(this.#kernels.memory.buffer, this.#arguments, 1)[0]);
   }
 
+  /** @type {Span} */
   get #block() {
     return [this.#base, 1, WORD * this.#about.words];
   }
 
+  /** @type {(name: keyof About['progress']) => number} */
   #progress(name) {
     return Number(this.view('progress')[this.#about.progress[name]]);
   }
@@ -141,8 +172,9 @@ export class World {
   // Quarantine, as sanitise.py has it: impulses that no physics gives are begun again, and a particle whose motion is
   // such gets its last good one back and is frozen.
   #contain() {
+    /** @type {(value: number) => boolean} */
     const isOutside = (value) => !(Math.abs(value) <= this.#about.absurd);
-    for (const path of CONTACTS.slice(2)) this.view(path).forEach((value, k, all) => {
+    for (const path of IMPULSES) this.view(path).forEach((value, k, all) => {
       if (isOutside(value)) all[k] = 0;
     });
     const lost = this.particles.filter((p) => MOTION.some((name) => {
@@ -152,12 +184,14 @@ export class World {
     for (const particle of lost) this.command({ type: 'freeze', particle });
   }
 
-  // Carry out what was done: a command, or what it changes where no kernel carries it out.
-  carryOut({ record, changes, counts }) {
-    if (!changes) {
-      this.command(record);
+  /** Carry out what was done: a command, or what it changes where no kernel carries it out.
+   * @type {(done: Done) => void} */
+  carryOut(done) {
+    if (!done.changes) {
+      this.command(done.record);
       return;
     }
+    const { changes, counts } = done;
     this.counts = counts ?? this.counts;
     for (const [path, runs] of Object.entries(changes)) {
       this.#change(path, runs);
@@ -167,16 +201,18 @@ export class World {
     if (this.#about.topology.some((path) => path in changes)) this.#derive(DERIVATIONS);
   }
 
-  // Write rows of an array: the first, how many, and what each is to hold.
+  /** Write rows of an array: the first, how many, and what each is to hold.
+   * @type {(path: string, runs: Runs) => void} */
   #change(path, runs) {
-    const view = this.view(path), number = view instanceof BigInt64Array ? BigInt : Number;
+    const view = this.view(path);
     for (const [first, count, ...row] of runs) {
-      const values = row.map(number);
-      for (let k = first; k < first + count; k++) view.set(values, row.length * k);
+      const values = view instanceof BigInt64Array ? BigInt64Array.from(row, BigInt) : Float64Array.from(row, Number);
+      for (let k = first; k < first + count; k++) put(view, values, row.length * k);
     }
   }
 
-  // Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
+  /** Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
+   * @type {(record: Command) => void} */
   command(record) {
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
@@ -184,26 +220,31 @@ export class World {
     const at = this.#arguments + ARGUMENTS * WORD;
     new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
     new Float64Array(buffer, at, numbers.length).set(numbers);
+    /** @type {(number | Span)[]} */
     const given = [code, [at + RECORD * WORD, slots.length, WORD], [at, numbers.length, WORD]];
     this.commands.answer(record, packed, this.#inArena('command', ...given));
     if (changes) this.#derive(changes === 'hands' ? HANDS : DERIVATIONS);
   }
 
-  // Whether what a command would end goes on: a hand holds something, or a part is driven.
-  isGoing({ type, grab, part }) {
-    return type === 'release' ? this.isHeld(grab) : this.view('state.actuator_value')[part] !== 0;
+  /** Whether what a command would end goes on: a hand holds something, or a part is driven.
+   * @type {(ending: Extract<Command, { type: 'release' | 'set_drive' }>) => boolean} */
+  isGoing(ending) {
+    if (ending.type === 'release') return this.isHeld(ending.grab);
+    return this.view('state.actuator_value')[ending.part] !== 0;
   }
 
-  // Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
+  /** Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
+   * @type {(names: string[], contacts?: AnyArray[]) => void} */
   #derive(names, contacts = this.#contactRows()) {
     if (names === DERIVATIONS) new Uint8Array(this.#kernels.memory.buffer).set(this.#given, this.#base);
     this.#views.clear();
     this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
     for (const name of names) this.#inArena(name);
-    if (names !== HANDS) CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
+    if (names !== HANDS) CONTACTS.forEach((path, k) => put(this.view(path), contacts[k]));
   }
 
-  // Call a kernel with the block and its own arena, which grows until there is room.
+  /** Call a kernel with the block and its own arena, which grows until there is room.
+   * @type {(name: string, ...given: (number | Span)[]) => number} */
   #inArena(name, ...given) {
     let arena = (this.#arenas[name] ??= this.#newArena(FIRST_ARENA));
     let result = this.#call(name, this.#block, arena, ...given);
@@ -215,14 +256,17 @@ export class World {
     return result;
   }
 
+  /** @type {(words: number) => Span} */
   #newArena(words) {
     return [this.#reserve(words * WORD), words, WORD];
   }
 
+  /** @type {(range: Span) => number} */
   #used([address]) {
     return new Uint32Array(this.#kernels.memory.buffer, address, 1)[0];
   }
 
+  /** @type {() => AnyArray[]} */
   #contactRows() {
     const count = Number(this.view('collisions.counts')[this.#about.progress.KEPT]);
     return CONTACTS.map((path, k) => this.view(path).slice(0, count * (k === 2 ? 2 : 1)));
@@ -237,24 +281,28 @@ export class World {
     return this.#about.area;
   }
 
-  // Whether a particle is the cursor of a hand.
+  /** Whether a particle is the cursor of a hand.
+   * @type {(particle: number) => boolean} */
   isCursor(particle) {
     const first = this.hands.particle;
     return particle >= first && particle < first + this.hands.count;
   }
 
-  // Whether what a name stands for is in use, and no hand's; parts and materials always are.
+  /** Whether what a name stands for is in use, and no hand's; parts and materials always are.
+   * @type {(kind: NameKind, slot: number) => boolean} */
   isInUse(kind, slot) {
+    if (kind !== 'particle' && kind !== 'spring') return true;
     const { [kind]: first, count } = this.hands;
-    if (first === undefined) return true;
     return Boolean(this.view(`state.${kind}_active`)[slot]) && (slot < first || slot >= first + count);
   }
 
-  // Whether people see a particle, and whether it can move.
+  /** Whether people see a particle, and whether it can move.
+   * @type {(particle: number) => boolean} */
   isShown(particle) {
     return this.isInUse('particle', particle);
   }
 
+  /** @type {(particle: number) => boolean} */
   canMove(particle) {
     return this.isShown(particle) && this.view('state.inverse_mass')[particle] > 0;
   }
@@ -269,6 +317,7 @@ export class World {
     return Array.from({ length: spring }, (_, s) => s).filter((s) => s < first || s >= first + count);
   }
 
+  /** @type {(hand: number) => boolean} */
   isHeld(hand) {
     return Boolean(this.view('state.spring_active')[this.hands.spring + hand]);
   }
@@ -279,8 +328,10 @@ export class World {
     return this.view('collisions.kept.particle').subarray(0, count);
   }
 
-  // What ticks keep from one to the next, as a copy; arrays that have not changed are those of the copy before.
+  /** What ticks keep from one to the next, as a copy; arrays that have not changed are those of the copy before.
+   * @type {() => SavedState} */
   save() {
+    /** @type {Map<string, AnyArray>} */
     const arrays = new Map();
     for (const path of this.#about.kept) {
       const present = this.view(path), last = this.#saved.get(path);
@@ -290,26 +341,30 @@ export class World {
     return { time: this.time, counts: this.counts, arrays, contacts: this.#contactRows() };
   }
 
+  /** @type {(state: SavedState) => void} */
   restore({ time, counts, arrays, contacts }) {
-    const isOther = this.#about.topology.some((path) => !isEqual(this.view(path), arrays.get(path)));
-    for (const [path, kept] of arrays) this.view(path).set(kept);
-    Object.assign(this, { time, counts, broken: [] });
+    const isOther = this.#about.topology.some((path) => !isEqual(this.view(path), arrays.get(path) ?? NONE));
+    for (const [path, kept] of arrays) put(this.view(path), kept);
+    [this.time, this.counts, this.broken] = [time, counts, []];
     if (isOther) this.#derive(DERIVATIONS, contacts);
     else if (contacts[0].length > this.view(CONTACTS[0]).length) this.#derive(ROOM, contacts);
     else {
       this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
-      CONTACTS.forEach((path, k) => this.view(path).set(contacts[k]));
+      CONTACTS.forEach((path, k) => put(this.view(path), contacts[k]));
     }
   }
 
-  // The rows of a state array that are in use, flat.
+  /** The rows of a state array that are in use, flat.
+   * @type {(column: Column) => AnyArray} */
   rows(column) {
     const count = column.isContact ? this.contacts().length : this.counts[column.family];
     return this.view(column.path).subarray(0, column.width * count);
   }
 
-  // The hash of the whole state, and those of its arrays that are in use, by their names in files.
+  /** The hash of the whole state, and those of its arrays that are in use, by their names in files.
+   * @type {() => StateHash} */
   hash() {
+    /** @type {Map<string, string>} */
     const arrays = new Map();
     for (const column of this.#about.columns) {
       const present = this.rows(column);
@@ -327,7 +382,8 @@ export class World {
     return { whole: blake2b(new TextEncoder().encode(text), 16), arrays };
   }
 
-  // The settings of a tick, in the order in which they are hashed and stored.
+  /** The settings of a tick, in the order in which they are hashed and stored.
+   * @type {() => Settings} */
   settings() {
     const [x, y, windX, windY, drag, warm] = this.view('numbers');
     const [solver, rate, substeps, isAuto, iterations] = Array.from(this.view('choices'), Number);
@@ -338,6 +394,14 @@ export class World {
   }
 }
 
+/** Write numbers into an array that holds such, from a place on.
+ * @type {(array: AnyArray, values: AnyArray, at?: number) => void} */
+function put(array, values, at = 0) {
+  // Both are of 64 bits and whole, or neither is.
+  /** @type {Float64Array} */ (array).set(/** @type {Float64Array} */ (values), at);
+}
+
+/** @type {(one: AnyArray, other: AnyArray) => boolean} */
 function isEqual(one, other) {
   if (one.length !== other.length) return false;
   const a = new Uint8Array(one.buffer, one.byteOffset, one.byteLength);
@@ -346,13 +410,15 @@ function isEqual(one, other) {
   return true;
 }
 
-// The bytes that are hashed and stored: -0 as 0, and every NaN as the same.
+/** The bytes that are hashed and stored: -0 as 0, and every NaN as the same.
+ * @type {(array: AnyArray) => Uint8Array} */
 export function canonical(array) {
   const copy = array instanceof Float64Array ? array.map((value) => value + 0) : array;
   return new Uint8Array(copy.buffer, copy.byteOffset, copy.byteLength);
 }
 
-// Nothing of an array of which all is as usual, and which is left out then.
+/** Nothing of an array of which all is as usual, and which is left out then.
+ * @type {(column: Column, array: AnyArray) => string | null} */
 function digestOf(column, array) {
   if (column.isSparse && array.every((value) => Number(value) === column.usual)) return null;
   return blake2b(canonical(array), 8);

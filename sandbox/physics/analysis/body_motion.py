@@ -24,6 +24,8 @@ from sandbox.physics.world import World
 FLAT = 0.5
 # A body is called rigid where its springs take back all of their errors at once, and it sags by no more than this.
 UNSEEN_SAG = 5e-4
+# What a body is called that does not sag at all.
+RIGID = "rigid"
 _RANKED = sorted(WORDS.items(), key=lambda item: -item[1])
 
 
@@ -152,6 +154,6 @@ def word_for(sag: float, is_rigid: bool) -> str:
     Only a rigid body (`BodyReading`) that does not visibly sag is called rigid.
     """
     if is_rigid and sag <= UNSEEN_SAG:
-        return "rigid"
+        return RIGID
     words, edges = word_edges()
     return words[sum(sag < edge for edge in edges)]

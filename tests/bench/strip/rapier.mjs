@@ -28,7 +28,8 @@ function build({ position, mass, pinned, links, gravity, moment, method }) {
 }
 
 const scene = JSON.parse(readFileSync(0, "utf8"));
-let seconds = [], places = [];
+const seconds = [];
+let places = [];
 for (let run = 0; run < scene.runs; run++) {
   const { world, bodies } = build(scene);
   const times = [];

@@ -1,0 +1,96 @@
+"""Shared values: what the window and pages go by alike, as a module for pages.
+
+python -m sandbox.app.site.shared_values writes it.
+"""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from sandbox.app.base import coefficient_scale, loop
+from sandbox.app.draw import looks, themes
+from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, wheels
+from sandbox.app.panel import readings
+from sandbox.app.play import hand_labels, stage
+from sandbox.app.run import playback
+from sandbox.app.sound import bank, sound_events, voices, waves
+from sandbox.level import checks
+from sandbox.page.page import WEB
+from sandbox.physics import world
+from sandbox.physics.analysis import body_motion, pulls, query
+from sandbox.session import summary
+from sandbox.session.replay import format
+
+MODULE = WEB / "shared.js"
+_HEAD = """// Shared: values that the window goes by too. Made by `python -m sandbox.app.site.shared_values`.
+"""
+
+
+def shared_values() -> dict[str, dict[str, Any]]:
+    """Values by their names, by what goes by them; colours are "#rrggbb", times in seconds, lengths in pixels."""
+    return {
+        "RECORDING": _of(format, "TICK_DIGITS", "ARRAY_DIGITS", "STATE_TICKS")
+        | {"CHAIN_DIGITS": format.CHAIN_DIGITS[format.VERSION]},
+        "CHECKS": _of(checks, "STILL") | _of(summary, "STRAIN_WINDOW"),
+        "PACE": {"LONGEST": loop.LONGEST_FRAME, "BUDGET": playback.TICK_BUDGET},
+        "HANDS": {
+            "STRENGTH": world.HAND_STRENGTH, "SOFT_REACH": query.REACH, "AT_LIMIT": pulls.AT_LIMIT,
+            "PICK_RADIUS": stage.PICK_RADIUS, "UNITS": hand_labels.UNITS,
+        },
+        "PAD": _of(coefficient_scale, "NUMBERED", "DIGITS", "END")
+        | {"LOWEST": coefficient_scale.PLAIN.lowest, "REST": coefficient_scale.PLAIN.rest}
+        | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},
+        "SOUND": _of(
+            sound_events, "SOFTEST", "HARDEST", "NEWS", "MEMORY", "MOST", "JERK", "HARD_JERK", "TUNED",
+            "HIGHEST_STRING", "SNAP_PITCH", "MOTOR_PITCH", "MOTOR_RISE",
+        )
+        | _of(waves, "SCALE", "LOWEST", "STEPS")
+        | _of(voices, "VOICES", "REST", "MOTOR_FADE", "WIDTH")
+        | _of(bank, "LEVELS"),
+        "THINGS": _of(looks, "STRANDS")
+        | {"WORKING": drawables.WORKING, "LAID": drawables.CRATES, "HANGER": strands.HANGER}
+        | _of(members, "TRUSS", "MESH", "LOOSE", "BRACE"),
+        "STRAIN": _of(frame, "FLUSH_FROM", "FLUSH_RANGE") | _of(soft, "LEAST_FLUSH"),
+        "LINES": _of(strands, "HALF", "PERIOD", "USUAL_PERIOD", "MOST_OF_STEP", "LEAST", "LEAST_BEND")
+        | {"PLANKS": members.PLANKS_A_CELL, "BOLTS_FROM": members.BOLTS_FROM, "CYLINDER": _hex(springs.CYLINDER)},
+        "SHAPES": _of(soft, "LEAST_ROUNDING", "MOST_ROUNDING", "MOST_GROWN", "LINE_HALF")
+        | _of(sheets, "CLOTH_TEXELS", "LAID_TEXELS", "HEM_HALF"),
+        "WHEELS": _of(wheels, "RIM_FROM", "LUGS_FROM", "LUG"),
+        "FACES": _of(faces, "LARGEST", "SMALLEST", "SQUEEZED", "FAST", "BLINK", "BLINK_EVERY", "MOST_COMPARED")
+        | {"TONGUE": _hex(faces.TONGUE)},
+        "COLOURS": {
+            "SQUEEZED": _hex(themes.SQUEEZED_FLUSH), "STRETCHED": _hex(themes.STRETCHED_FLUSH),
+            "SANDS": list(map(_hex, themes.SANDS)),
+        },
+    }  # fmt: skip
+
+
+def _of(module: Any, *names: str) -> dict[str, Any]:
+    return {name: getattr(module, name) for name in names}
+
+
+def _hex(colour: int) -> str:
+    return f"#{colour:06x}"
+
+
+def as_module(values: Mapping[str, Mapping[str, Any]]) -> str:
+    """The values as a module of JavaScript."""
+    return _HEAD + "".join(f"export const {name} = {_written(found)};\n" for name, found in values.items())
+
+
+def _written(values: Mapping[str, Any]) -> str:
+    rows = [f"  {name}: {json.dumps(_plain(value))},\n" for name, value in values.items()]
+    return "".join(["{\n", *rows, "}"]).replace('"', "'")
+
+
+def _plain(value: Any) -> Any:
+    """A value with whole numbers as JavaScript writes them."""
+    if isinstance(value, Mapping):
+        return {name: _plain(each) for name, each in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(each) for each in value]
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+if __name__ == "__main__":
+    MODULE.write_text(as_module(shared_values()), encoding="utf-8", newline="\n")

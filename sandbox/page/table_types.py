@@ -1,0 +1,70 @@
+"""Types of tables: arrays of the state and commands, for whoever checks the modules of pages by TypeScript.
+
+python -m sandbox.page.table_types writes them.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from sandbox.page.about import is_done_by_pages
+from sandbox.page.bundle import WEB
+from sandbox.physics import command
+from sandbox.physics.state import COLUMNS
+from sandbox.session.commands.command import COMMAND_TYPES
+from sandbox.session.commands.for_pages import table_of
+
+FILE = WEB / "tables.d.ts"
+_HEAD = "// Types of the tables of Python. Made by `python -m sandbox.page.table_types`.\n"
+_ARRAYS = {
+    "float64": "Float64Array", "int64": "BigInt64Array", "int32": "Int32Array", "int8": "Int8Array",
+    "bool": "Uint8Array",
+}  # fmt: skip
+# What a kernel takes that a world carries out by itself.
+_OF_SLOTS = {"particle": "number", "springs": "number[]"}
+
+
+def table_types() -> str:
+    """The types of all state arrays, and of the commands that pages carry out, with slots in place of names."""
+    arrays = [f"  {column.name}: {_ARRAYS[np.dtype(column.dtype).name]};" for column in COLUMNS]
+    return "\n".join(
+        [
+            _HEAD + "export interface StateArrays {",
+            *arrays,
+            "}",
+            "",
+            "export interface Commands {",
+            *_commands(),
+            "}",
+            "",
+        ]
+    )
+
+
+def _commands() -> Iterator[str]:
+    entries = table_of(set(filter(is_done_by_pages, COMMAND_TYPES)))["commands"]
+    for name, kind in command.KINDS.items():
+        if entries.get(name):
+            fields = {field: _type_of(schema) for field, schema in entries[name]["fields"].items()}
+            optional = {field for field, schema in entries[name]["fields"].items() if "isRequired" not in schema}
+        else:
+            fields, optional = {slot: _OF_SLOTS[slot] for slot in kind.slots if slot in _OF_SLOTS}, set()
+        yield f"  {name}: {{"
+        yield f"    type: '{name}';"
+        yield from (f"    {field}{'?' * (field in optional)}: {kind};" for field, kind in fields.items())
+        yield "  };"
+
+
+def _type_of(schema: dict[str, Any]) -> str:
+    if "prefixItems" in schema:
+        found = f"[{', '.join(map(_type_of, schema['prefixItems']))}]"
+    elif "items" in schema:
+        found = f"{_type_of(schema['items'])}[]"
+    else:
+        found = "number"
+    return found + (" | null" if schema.get("isNullable") else "")
+
+
+if __name__ == "__main__":
+    FILE.write_text(table_types(), encoding="utf-8", newline="\n")

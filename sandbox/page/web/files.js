@@ -1,0 +1,40 @@
+// Files: a toy's file, which has the level and the image of its world, and the kernels that all toys share.
+import { Refusal } from './commands.js';
+import { World } from './world.js';
+/** @import { Fresh, Kernels, Level } from './types.js' */
+
+/** Level and worlds of a toy's file, which begins with the length of what is JSON, and of the kernels' module.
+ * @type {(content: ArrayBuffer, kernels: WebAssembly.Module | Promise<WebAssembly.Module>) => Promise<[Level,
+ *   Fresh]>} */
+export async function read(content, kernels) {
+  const bytes = new Uint8Array(content), begin = 4;
+  const end = begin + new DataView(content).getUint32(0, true), image = bytes.subarray(end);
+  const level = JSON.parse(new TextDecoder().decode(bytes.subarray(begin, end)));
+  const module = await kernels;
+  const exports = () => /** @type {Kernels} */ (new WebAssembly.Instance(module, {}).exports);
+  return [level, () => new World(exports(), image, level.about)];
+}
+
+/** @type {Map<string, Promise<WebAssembly.Module>>} */
+const modules = new Map();
+
+/** @type {(address: string) => Promise<Response>} */
+async function fetched(address) {
+  const answer = await fetch(address).catch(() => null);
+  if (!answer?.ok) throw new Refusal(`There is no file ${address} here.`);
+  return answer;
+}
+
+/** The level and the worlds of files at addresses; kernels are fetched once for all toys of a page.
+ * @type {(address: string, kernels?: string | URL) => Promise<[Level, Fresh]>} */
+export async function load(address, kernels = new URL('kernels.wasm', import.meta.url)) {
+  if (!globalThis.WebAssembly || !globalThis.DecompressionStream) throw new Refusal('This browser is too old for it.');
+  const key = String(kernels);
+  const module = modules.get(key) ?? fetched(key).then((answer) => answer.arrayBuffer()).then(WebAssembly.compile);
+  modules.set(key, module);
+  const file = await fetched(address);
+  const unpacked = async () => (await file.blob()).stream().pipeThrough(new DecompressionStream('gzip'));
+  const content = await unpacked().then((stream) => new Response(stream).arrayBuffer()).catch(
+    () => { throw new Refusal(`${address} was cut off or damaged.`); });
+  return read(content, module);
+}

@@ -1,0 +1,108 @@
+// Shared: values that the window goes by too. Made by `python -m sandbox.app.site.shared_values`.
+export const RECORDING = {
+  TICK_DIGITS: 16,
+  ARRAY_DIGITS: 6,
+  STATE_TICKS: 600,
+  CHAIN_DIGITS: 8,
+};
+export const CHECKS = {
+  STILL: 0.05,
+  STRAIN_WINDOW: 2,
+};
+export const PACE = {
+  LONGEST: 0.1,
+  BUDGET: 0.05,
+};
+export const HANDS = {
+  STRENGTH: 100,
+  SOFT_REACH: 2,
+  AT_LIMIT: 0.99,
+  PICK_RADIUS: 14,
+  UNITS: [[1000000000, 'GN'], [1000000, 'MN'], [1000, 'kN'], [1, 'N'], [0.001, 'mN']],
+};
+export const PAD = {
+  NUMBERED: [1e-05, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1],
+  DIGITS: 3,
+  END: 0.997,
+  LOWEST: 0.003,
+  REST: 0.02,
+  RIGID: 'rigid',
+  UNSEEN: 1e-05,
+};
+export const SOUND = {
+  SOFTEST: 0.35,
+  HARDEST: 9,
+  NEWS: 1.5,
+  MEMORY: 0.25,
+  MOST: 4,
+  JERK: 1,
+  HARD_JERK: 8,
+  TUNED: 24,
+  HIGHEST_STRING: 700,
+  SNAP_PITCH: 420,
+  MOTOR_PITCH: 70,
+  MOTOR_RISE: 9,
+  SCALE: [0, 2, 4, 7, 9],
+  LOWEST: 65.41,
+  STEPS: 26,
+  VOICES: 12,
+  REST: 0.09,
+  MOTOR_FADE: 0.12,
+  WIDTH: 0.7,
+  LEVELS: {'thud': 0.8, 'pluck': 0.45, 'snap': 0.85, 'squeak': 0.16, 'motor': 0.22},
+};
+export const THINGS = {
+  STRANDS: ['rope', 'cable', 'chain', 'deck', 'thread', 'silk'],
+  WORKING: ['coil', 'muscle', 'piston'],
+  LAID: ['wood', 'stone', 'brick'],
+  HANGER: 0.62,
+  TRUSS: [0.11, 1.6, 4.2],
+  MESH: [0.075, 1, 3.4],
+  LOOSE: [0.1, 1.2, 2.6],
+  BRACE: 0.62,
+};
+export const STRAIN = {
+  FLUSH_FROM: 0.03,
+  FLUSH_RANGE: 0.22,
+  LEAST_FLUSH: 0.02,
+};
+export const LINES = {
+  HALF: {'rope': 3.4, 'cable': 2.6, 'chain': 4.6, 'deck': 6, 'thread': 1.2, 'silk': 0.9},
+  PERIOD: {'chain': 5.6, 'deck': 2},
+  USUAL_PERIOD: 6.5,
+  MOST_OF_STEP: 0.45,
+  LEAST: 0.55,
+  LEAST_BEND: 2.5,
+  PLANKS: 3,
+  BOLTS_FROM: 9,
+  CYLINDER: '#f6b83e',
+};
+export const SHAPES = {
+  LEAST_ROUNDING: 6,
+  MOST_ROUNDING: 34,
+  MOST_GROWN: 40,
+  LINE_HALF: 0.75,
+  CLOTH_TEXELS: 16,
+  LAID_TEXELS: 14,
+  HEM_HALF: 1.5,
+};
+export const WHEELS = {
+  RIM_FROM: 14,
+  LUGS_FROM: 22,
+  LUG: 0.075,
+};
+export const FACES = {
+  LARGEST: 120,
+  SMALLEST: 24,
+  SQUEEZED: 0.1,
+  FAST: 2.5,
+  BLINK: 0.13,
+  BLINK_EVERY: 3.4,
+  MOST_COMPARED: 1000000,
+  TONGUE: '#f0708a',
+};
+export const COLOURS = {
+  SQUEEZED: '#4a3fd8',
+  STRETCHED: '#fff0b0',
+  SANDS: ['#f2c879', '#e3ae58', '#f7da9a', '#d99a4a'],
+};

@@ -1,0 +1,481 @@
+// Types of what Python gives a page, and of what its modules give each other. Slots are numbers of rows of a world.
+import type { Commands, StateArrays } from './tables.js';
+import type { World } from './world.js';
+
+export type Point = [x: number, y: number];
+// Left, top, right and bottom; of places [m]: left, low, right and high.
+export type Box = [number, number, number, number];
+// Numbers in a row, whatever keeps them.
+export type Numbers = ArrayLike<number> & Iterable<number>;
+export type AnyArray = Float64Array | Float32Array | BigInt64Array | Uint32Array | Int32Array | Int8Array | Uint8Array;
+
+// ---- A world: about.py and start.py
+
+export type Family = 'particle' | 'spring' | 'constraint' | 'corner' | 'actuator' | 'hand' | 'setting';
+// Rows in use.
+export type Counts = Record<Family | 'material', number>;
+export type NameKind = 'particle' | 'spring' | 'material' | 'part';
+
+// A line of the table of state arrays.
+export interface Column {
+  stored: string;
+  path: string;
+  width: number;
+  family: Family;
+  isContact: boolean;
+  isSparse: boolean;
+  usual: number;
+}
+
+// A field of a command, or a part of it, as JSON Schema has it; limits in the digits that messages have.
+export interface Field {
+  type: string;
+  names?: NameKind;
+  noun?: string;
+  isRequired?: boolean;
+  isNullable?: boolean;
+  default?: unknown;
+  maxItems?: number;
+  items?: Field;
+  prefixItems?: Field[];
+  minimum?: string;
+  exclusiveMinimum?: string;
+  maximum?: string;
+  exclusiveMaximum?: string;
+}
+
+export interface CommandEntry {
+  fields: Record<string, Field>;
+  // Field, array of the state, whether it has to be set there, and words where it is not so.
+  conditions: [string, keyof StateArrays, boolean, string][];
+  nothing: string;
+}
+
+// What a kernel takes of a command.
+export interface Kind {
+  code: number;
+  slots: string[];
+  numbers: string[];
+  changes: string;
+}
+
+export interface About {
+  kernels: Record<string, string>;
+  words: number;
+  codes: Record<'FINISHED' | 'UNSOUND' | 'NO_ROOM' | 'LOST' | 'BROKE', number>;
+  progress: Record<'TICK' | 'MAY_FLY' | 'COUNT' | 'DONE' | 'BROKEN' | 'CHECKED' | 'KEPT', number>;
+  kinds: Record<string, Kind>;
+  badSlot: number;
+  messages: Record<string, string>;
+  // null: pages do not carry it out.
+  commands: Record<string, CommandEntry | null>;
+  solvers: string[];
+  hands: { particle: number; spring: number; count: number };
+  area: number;
+  absurd: number;
+  columns: Column[];
+  topology: string[];
+  kept: string[];
+  names: Record<NameKind, string[]>;
+  second: Partial<Record<NameKind, Record<string, number>>>;
+  // By path: the type of its numbers, and how many dimensions it has.
+  table: Record<string, ['f8' | 'f4' | 'i8' | 'u4' | 'i4' | 'i1' | 'b1', number]>;
+  copies: [to: number, from: number, size: number][];
+  counts: Counts;
+}
+
+// What the module of kernels exports.
+export type Kernels = { memory: WebAssembly.Memory; __heap_base: WebAssembly.Global<'i32'> }
+  & Record<string, (address: number) => number>;
+
+// Arrays of a block by their paths.
+export type Views = { [N in keyof StateArrays as `state.${N}`]: StateArrays[N] }
+  & { [N in keyof StateArrays as `good.${N}`]: StateArrays[N] } & {
+    numbers: Float64Array;
+    choices: BigInt64Array;
+    progress: BigInt64Array;
+    'limits.broken': BigInt64Array;
+    'collisions.counts': BigInt64Array;
+    'collisions.kept.particle': Int32Array;
+    'collisions.kept.feature': BigInt64Array;
+    'collisions.kept.impulse': Float64Array;
+    'collisions.kept.impact': Float64Array;
+  };
+export type View<P extends string> = P extends keyof Views ? Views[P] : AnyArray;
+
+export interface SavedState {
+  time: number;
+  counts: Counts;
+  arrays: Map<string, AnyArray>;
+  contacts: AnyArray[];
+}
+
+export interface Settings {
+  gravity: Point;
+  tick_rate: number;
+  substeps: number | 'auto';
+  solver: string;
+  iterations: number;
+  warm_start: number;
+  wind: Point;
+  drag: number;
+}
+
+export interface StateHash {
+  whole: string;
+  arrays: Map<string, string>;
+}
+
+// ---- Commands and recordings: recorded.py
+
+// A command with slots in place of names, by its type.
+export type Command = Commands[keyof Commands];
+// As files have it: with names.
+export type NamedRecord = { type: string } & Record<string, unknown>;
+// A command as a table of its fields.
+export type Fields = { type: string } & Record<string, unknown>;
+
+// Rows of an array: the first, how many, and what each is to hold.
+export type Runs = [first: number, count: number, ...row: (number | string | boolean)[]][];
+
+// Something done. What no kernel carries out comes as what it changes, by array, and is written down as it is.
+export type Done = { tick: number; gesture: number; record: Command; changes?: undefined; counts?: undefined }
+  | { tick: number; gesture: number; record: NamedRecord; changes: Record<string, Runs>; counts?: Counts };
+
+export interface Recording {
+  commands: Done[];
+  hashes: string[];
+}
+
+// ---- A level: playing.py
+
+export interface Check {
+  name: string;
+  metric: string;
+  from: number;
+  to: number;
+  particles?: number[];
+  springs?: number[];
+  box?: Box;
+  is_eventual?: boolean;
+  at_least?: number;
+  at_most?: number;
+}
+
+export interface CheckResult {
+  name: string;
+  holds: boolean;
+  value: number;
+}
+
+export interface SagMapData {
+  lowest: number;
+  rest: number;
+  size: number;
+  step: number;
+  logs: number[];
+  names: string[];
+  edges: number[];
+  places: Record<string, Point>;
+}
+
+// A material of the panel; slot null: all of them.
+export interface MaterialRow {
+  name: string;
+  slot: number | null;
+  is_first: boolean;
+  words: Record<string, Point>;
+  subject?: string;
+  says?: { sag: string; flat: string; flat_from: number };
+  map?: SagMapData;
+}
+
+export interface Stuff {
+  modes: [ratio: number, decay: number, strength: number][];
+  noise: number;
+  cut: number;
+  blow: number;
+  glide: number;
+}
+
+export interface Motor {
+  part: number;
+  hub: number;
+  rim: number[];
+  speed: number;
+}
+
+export interface Sounds {
+  bodies: { of: number[]; mass: number[]; pitch: number[]; weight: number[]; stuff: string[]; strand: boolean[] };
+  stuffs: Record<string, Stuff>;
+  motors: Motor[];
+}
+
+export interface Level {
+  name: string;
+  scene: Scene;
+  sounds: Sounds;
+  materials: MaterialRow[];
+  gravity_limit: number;
+  ramp_ticks: number;
+  checks: Check[];
+  keys: Record<string, [part: number, value: number][]>;
+  header: string;
+  recording: Recording | null;
+  begin: number;
+  about: About;
+}
+
+// Gives a world of its own before the first tick.
+export type Fresh = () => World;
+
+// ---- A scene: scene.py
+
+export interface Theme {
+  name: 'dark' | 'light';
+  stage: string[];
+  lamp: string;
+  vignette: number;
+  shadow: string;
+  shadow_strength: number;
+  strain: string[];
+  turf: [string, string];
+  metal: string[];
+  tyre: string;
+  accent: string;
+  card: string;
+}
+
+// Of a skin: colours near its edge and deep inside, the strength of light, the colour and strength of shade, its gleam,
+// how much shows through inside, and how little at all.
+export type SkinLook = [near: string, deep: string, up: number, shade: string, down: number, gloss: number,
+  clear: number, alpha: number];
+
+export interface SceneLook {
+  skin: string;
+  line: string;
+  colour: string;
+  width: number;
+}
+
+export interface SceneShape {
+  loops: number[][];
+  look: SkinLook;
+  line: string | null;
+  rounding: number;
+  layer: number;
+  grown: number;
+  extra: number;
+  keep: number;
+  shows_strain: boolean;
+}
+
+export interface Wheel {
+  hub: number;
+  radius: number;
+  is_tyre: boolean;
+  inner: number[];
+  outer: number[];
+  spokes: number[];
+}
+
+// Where in its form the middle of a face lies, and how large it may be [m].
+export type Spot = [x: number, y: number, room: number];
+
+export interface SceneBody extends SceneLook {
+  type: string;
+  cell: number;
+  angle: number;
+  slots: [first: number, count: number][];
+  spring: number;
+  springs: number;
+  segments: number | null;
+  shapes: SceneShape[];
+  needs: number[];
+  triangles?: number[];
+  keeps_area?: boolean;
+  spacing?: number;
+  spot?: Spot;
+  face?: boolean;
+  knots?: number[];
+  wheel?: Wheel;
+}
+
+export interface Join extends SceneLook {
+  spring: number;
+  ends: [number, number];
+}
+
+export interface Ball {
+  slot: number;
+  kind: string;
+  colour: string | null;
+}
+
+export interface Ground {
+  kind: string;
+  points: Point[];
+  rounding?: number;
+  grain?: 'earth' | 'wood' | null;
+  themes?: Record<string, { look: SkinLook; line: string }>;
+}
+
+export interface Scene {
+  view: Box;
+  theme: 'dark' | 'light' | null;
+  themes: Record<'dark' | 'light', Theme>;
+  palette: string[];
+  bodies: SceneBody[];
+  joins: Join[];
+  balls: Ball[];
+  pieces: { own: number; kept: number; crumb: number; flat: unknown[] };
+  ground: Ground[];
+  pictures: Record<string, { rows: number; bytes: string }>;
+}
+
+// ---- What is drawn: things.js, pieces.js, draw.js, paint.js
+
+// A spring and its ends.
+export type SpringEnds = [spring: number, a: number, b: number];
+
+// A body with all its slots and springs.
+export interface Body extends Omit<SceneBody, 'slots' | 'springs'> {
+  slots: number[];
+  springs: SpringEnds[];
+}
+
+// A body of triangles, with the springs along the sides of each.
+export interface FilledBody extends Body {
+  triangles: number[];
+  sides: (number | undefined)[];
+  spot: Spot;
+  spacing: number;
+}
+
+export type Unfolded = Omit<Scene, 'bodies'> & { bodies: (Body | FilledBody)[] };
+
+export interface Piece {
+  left: number[][];
+  slots: number[];
+  loops: number[][];
+  inside: SpringEnds[];
+  face?: Face | false;
+  isCrumb?: boolean;
+}
+
+export interface Face {
+  slots: number[];
+  springs: SpringEnds[];
+  angle: number;
+  spot: Spot;
+}
+
+export type Flag = ArrayLike<number>;
+
+// What makeSkin() takes of a shape, and what it leaves in it.
+export interface Skinned {
+  box: Box;
+  depth: number;
+  path: Path2D;
+  look: SkinLook;
+  splats?: Splat[] | null;
+  reach?: number;
+  fill?: CanvasPattern | null;
+  cells?: CanvasRenderingContext2D;
+}
+
+// Where strain shows, and how much of it: -1 squeezed to 1 stretched.
+export type Splat = [x: number, y: number, amount: number];
+
+export interface Shape extends SceneShape, Skinned {
+  springs: SpringEnds[];
+  cell: number;
+  splats: Splat[] | null;
+  reach: number;
+}
+
+// A piece of a line: from and to: places along its texture.
+export type LinePiece = [ax: number, ay: number, bx: number, by: number, from?: number, to?: number, spring?: number];
+
+interface Line {
+  kind: string;
+  width: number;
+  half: number;
+  pieces: LinePiece[];
+  path: Path2D;
+}
+
+export interface Strand extends Line {
+  particles: number[];
+  springs: number[];
+}
+
+export interface Bars extends Line {
+  particles?: undefined;
+  colour: string;
+  cell?: number;
+  size: number[];
+  springs: SpringEnds[];
+  raised?: number;
+  bolts?: number[];
+  isTruss?: boolean;
+}
+
+export interface Working {
+  kind: string;
+  spring: number;
+  ends: [number, number];
+  width: number;
+}
+
+// A part of a sheet: three corners with their places in its picture, or four with left, top, right and bottom there.
+export interface SheetPart {
+  slots: number[];
+  texels: number[];
+}
+
+export interface Sheet {
+  body: FilledBody;
+  triangles: number[][];
+  loops: number[][];
+  isCloth: boolean;
+  parts?: SheetPart[];
+}
+
+export interface Things {
+  shapes: Shape[];
+  lines: (Strand | Bars)[];
+  working: Working[];
+  wheels: Wheel[];
+  sheets: Sheet[];
+  faces: Face[];
+  balloons: (Body & { knots: number[] })[];
+}
+
+// ---- Around a toy
+
+// What a toy tells, by the names of its events.
+export interface ToyEvents {
+  tick: undefined;
+  break: { springs: string[] };
+  check: CheckResult;
+  say: { text: string; kind: '' | 'good' | 'bad' };
+  pause: { isPaused: boolean };
+  pace: { isBehind: boolean };
+  jump: undefined;
+  theme: { name: 'dark' | 'light' };
+  draw: undefined;
+}
+
+// What a hand does to the page around it.
+export interface HandEvents {
+  changed: () => void;
+  fit: () => void;
+  say: (text: string) => void;
+}
+
+declare global {
+  // The page, once it is open, and what a page holds under an id.
+  var page: object | undefined;
+  function unpacked(id: string): Promise<ArrayBuffer>;
+}

@@ -1,0 +1,59 @@
+"""Modules of pages that need no browser, tested in node: the tests are in tests/page/modules."""
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from sandbox import load_level
+from sandbox.app.share.playing import playable
+from sandbox.page.page import KERNELS
+from sandbox.replay import read_replay, verify
+from sandbox.session.check_run import run_checks
+from tests.determinism.golden import golden_path
+from tests.support.wants import needs
+
+NODE = shutil.which("node")
+TESTS = Path(__file__).with_name("modules")
+LEVELS = ("rope", "jelly_wheel", "newtons_cradle")
+CHECKED = ("newtons_cradle", "rope")
+# Goldens with what was done in them, and so many ticks of each.
+GOLDENS, TICKS = ("rope", "walker", "breaking_bridge", "jelly_wheel"), 240
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the tests in node read: toys, and what they come to here."""
+    made = tmp_path_factory.mktemp("toys")
+    for name in LEVELS:
+        (made / name).write_bytes(playable(load_level(name)).content)
+    for name in GOLDENS:
+        replay = read_replay(golden_path(name))
+        played = playable(replay.level, replay.script, min(replay.ticks, TICKS))
+        (made / f"{name}-golden").write_bytes(played.content)
+    checks = {
+        name: {each.check.name: {"passed": each.passed, "value": each.value} for each in run_checks(load_level(name))}
+        for name in CHECKED
+    }
+    given = {"goldens": [f"{name}-golden" for name in GOLDENS], "checks": checks}
+    (made / "given.json").write_text(json.dumps(given), encoding="utf-8")
+    return made
+
+
+def run_in_node(name: str, folder: Path) -> None:
+    """Run a file of tests."""
+    environment = {**os.environ, "SANDBOX_TOYS": str(folder), "SANDBOX_KERNELS": str(KERNELS)}
+    command = [str(NODE), "--test", "--test-reporter=spec", str(TESTS / f"{name}.test.mjs")]
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, encoding="utf-8", check=False)
+    assert ended.returncode == 0, ended.stdout[-6000:] + ended.stderr[-2000:]
+
+
+@needs("node", NODE)
+@pytest.mark.parametrize("name", sorted(path.name.partition(".")[0] for path in TESTS.glob("*.test.mjs")))
+def test_a_module_of_pages_does_in_node_what_it_promises(name: str, folder: Path) -> None:
+    run_in_node(name, folder)
+    if name == "recording":
+        assert verify(read_replay(folder / "written.replay.gz")) is None
