@@ -12,6 +12,7 @@ from sandbox.physics.driving import drive_muscles
 from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.pipeline.tick import find_broken
 from sandbox.physics.step import step
+from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
 
 
@@ -23,6 +24,7 @@ def call_every_kernel() -> None:
     world.add_springs(["s", "t"], [0, 1], [1, 2])
     world.add_constraints(AREA, [[0, 1, 2]])
     motors = Motors(one, np.ones(1), np.ones(1), one, np.array([0, 1]), one + 1)
+    world.terrain = make_terrain([Chain(places[:2])])
     world.fit(Actuators(("a",), Muscles(one, np.zeros(1), one + 2, np.zeros(1)), motors=motors), [1.0])
     drive_muscles(world, 0)
     step(world)
