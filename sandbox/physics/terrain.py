@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.geometry.polygon import signed_area, winding_number
 from sandbox.physics.geometry.segment import lengths
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, kernel
+from sandbox.physics.topology.sorting import sort_by_value
 
 # Cells of the grid along its longer side, at most: more cost memory, fewer make particles look at edges far away.
 MOST_CELLS = 256
@@ -97,18 +98,14 @@ def make_terrain(chains: Sequence[Chain], tips: bool = True) -> Terrain:
         first += len(corners)
     vertex, pairs = np.concatenate(vertices), np.concatenate(ends)
     table = np.array(rows, dtype=np.float64).reshape(-1, 4)
-    grid = _grid(vertex[pairs[:, 0]], vertex[pairs[:, 1]])
-    return Terrain(
-        vertex,
-        np.ascontiguousarray(pairs[:, 0]),
-        np.ascontiguousarray(pairs[:, 1]),
-        table[:, 1].astype(np.int64),
-        table[:, 0].astype(np.int64),
-        np.ascontiguousarray(table[:, 2]),
-        np.ascontiguousarray(table[:, 3]),
-        *grid,
-        *_tips(vertex if tips else vertex[:0], vertex, pairs, table[:, 1] > 0.0, *grid),
-    )
+    none, of_surface = np.zeros(0, np.int64), np.ascontiguousarray(table.T)
+    edges = _with_grid(Terrain(
+        vertex, np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), of_surface[1].astype(np.int64),
+        of_surface[0].astype(np.int64), of_surface[2].copy(), of_surface[3].copy(), np.zeros(2), np.ones(1),
+        np.zeros(2, np.int64), np.zeros(1, np.int64), none, none, none, np.zeros((0, 2)), none, none,
+    ))  # fmt: skip
+    tip, way_start, way, tip_start, cell_tip = _tips(vertex if tips else vertex[:0], pairs, edges)
+    return edges._replace(tip=tip, way_start=way_start, way=way, tip_start=tip_start, cell_tip=cell_tip)
 
 
 def _oriented(chain: Chain) -> Floats:
@@ -118,51 +115,125 @@ def _oriented(chain: Chain) -> Floats:
     return np.ascontiguousarray(corners[::-1]) if chain.kind != "line" and turned else corners
 
 
-def _grid(a: Floats, b: Floats) -> tuple[Floats, Floats, Slots, Slots, Slots]:
-    """Corner, cell, size, and the edges (e, 2) a to b by cell: every cell that an edge crosses holds it."""
-    if not len(a):
-        return np.zeros(2), np.ones(1), np.zeros(2, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros(0, np.int64)
-    low, high = np.minimum(a, b).min(axis=0), np.maximum(a, b).max(axis=0)
-    length = lengths(b - a)
-    # Cells are about as large as the shorter edges, so that a cell holds few and an edge lies in few.
-    cell = max(float(np.quantile(length, 0.25)), float((high - low).max()) / (MOST_CELLS - 2), LEAST_CELL)
-    corner = low - cell
-    size = ((high - corner) / cell).astype(np.int64) + 2
-    in_cell: list[list[int]] = [[] for _ in range(int(size[0] * size[1]))]
-    for edge, (start, end) in enumerate(
-        zip(((a - corner) / cell).tolist(), ((b - corner) / cell).tolist(), strict=True)
-    ):
-        for column, row in _cells(start, end):
-            in_cell[row * int(size[0]) + column].append(edge)
-    first = np.append(0, np.cumsum([len(edges) for edges in in_cell]))
-    return corner, np.array([cell]), size, first, np.array([e for edges in in_cell for e in edges], dtype=np.int64)
-
-
-def _cells(start: list[float], end: list[float]) -> list[tuple[int, int]]:
-    """Cells (column, row) that a segment crosses, in units of cells, and those that it comes close to."""
-    (ax, ay), (bx, by) = sorted([start, end], key=lambda point: point[1])
-    found = []
-    for row in range(int(ay - CELL_SLACK), int(by + CELL_SLACK) + 1):
-        # The part of the segment that lies in this row.
-        share = [(min(max(level, ay), by) - ay) / (by - ay) if by > ay else level - row for level in (row, row + 1)]
-        across = [ax + (bx - ax) * part for part in share]
-        columns = range(int(min(across) - CELL_SLACK), int(max(across) + CELL_SLACK) + 1)
-        found += [(column, row) for column in columns]
+def _with_grid(edges: Terrain) -> Terrain:
+    """Edges of terrain with the grid that finds them, of which there is nothing yet."""
+    count = len(edges.edge_a)
+    if not count:
+        return edges
+    _size_grid(edges, GridScratch(np.zeros(count), np.zeros(count, np.int64), np.zeros(count, np.int64)))
+    # Without room for entries they are counted.
+    found = edges._replace(cell_start=np.zeros(int(edges.size[0] * edges.size[1]) + 1, np.int64))
+    found = found._replace(cell_edge=np.zeros(_fill_cells(found), np.int64))
+    _fill_cells(found)
     return found
 
 
-def _tips(
-    looked_at: Floats,
-    vertex: Floats,
-    pairs: Slots,
-    solid: NDArray[np.bool_],
-    corner: Floats,
-    cell: Floats,
-    size: Slots,
-    cell_start: Slots,
-    cell_edge: Slots,
-) -> tuple[Slots, Slots, Floats, Slots, Slots]:
+class GridScratch(NamedTuple):
+    """Scratch, as long as the edges."""
+
+    length: Floats
+    order: Slots
+    spare: Slots
+
+
+@inner_kernel
+def _reach(count: int, axis: int, edges: Terrain) -> tuple[float, float]:
+    # The lowest and the highest coordinate of the edges.
+    low = high = edges.vertex[edges.edge_a[0], axis]
+    for k in range(count):
+        a, b = edges.vertex[edges.edge_a[k], axis], edges.vertex[edges.edge_b[k], axis]
+        low = min(low, min(a, b))
+        high = max(high, max(a, b))
+    return low, high
+
+
+@inner_kernel
+def size_grid(count: int, edges: Terrain, work: GridScratch) -> None:
+    """Find corner, cell and size of the grid for the first `count` edges.
+
+    Cells are about as large as the shorter edges, of which a quarter is below: so a cell holds few, and an edge lies in
+    few.
+    """
+    for k in range(count):
+        a, b = edges.edge_a[k], edges.edge_b[k]
+        dx, dy = edges.vertex[b, 0] - edges.vertex[a, 0], edges.vertex[b, 1] - edges.vertex[a, 1]
+        work.length[k] = math.sqrt(dx * dx + dy * dy)
+        work.order[k] = k
+    sort_by_value(work.length, work.order, 0, count, work.spare)
+    place = 0.25 * (count - 1)
+    below = math.floor(place)
+    share = place - below
+    shorter = work.length[work.order[below]]
+    longer = work.length[work.order[min(below + 1, count - 1)]]
+    apart = longer - shorter
+    cell = longer - apart * (1.0 - share) if share >= 0.5 else shorter + apart * share
+    left, right = _reach(count, 0, edges)
+    bottom, top = _reach(count, 1, edges)
+    cell = max(cell, max(right - left, top - bottom) / (MOST_CELLS - 2), LEAST_CELL)
+    edges.cell[0] = cell
+    edges.corner[0] = left - cell
+    edges.corner[1] = bottom - cell
+    edges.size[0] = math.floor((right - edges.corner[0]) / cell) + 2
+    edges.size[1] = math.floor((top - edges.corner[1]) / cell) + 2
+
+
+@kernel
+def _size_grid(edges: Terrain, work: GridScratch) -> None:
+    size_grid(edges.edge_a.shape[0], edges, work)
+
+
+@inner_kernel
+def _enter(k: int, edges: Terrain, fills: bool) -> None:
+    # Count edge k in every cell that it crosses or comes close to, or enter it there, from the ends of their lists.
+    corner, cell, start, a, b = edges.corner, edges.cell[0], edges.cell_start, edges.edge_a[k], edges.edge_b[k]
+    ax = (edges.vertex[a, 0] - corner[0]) / cell
+    ay = (edges.vertex[a, 1] - corner[1]) / cell
+    bx = (edges.vertex[b, 0] - corner[0]) / cell
+    by = (edges.vertex[b, 1] - corner[1]) / cell
+    if by < ay:
+        ax, ay, bx, by = bx, by, ax, ay
+    for row in range(math.floor(ay - CELL_SLACK), math.floor(by + CELL_SLACK) + 1):
+        # The part of the edge that lies in this row.
+        one = (min(max(row, ay), by) - ay) / (by - ay) if by > ay else 0.0
+        other = (min(max(row + 1.0, ay), by) - ay) / (by - ay) if by > ay else 1.0
+        one = ax + (bx - ax) * one
+        other = ax + (bx - ax) * other
+        last = math.floor(max(one, other) + CELL_SLACK)
+        for column in range(math.floor(min(one, other) - CELL_SLACK), last + 1):
+            at = row * edges.size[0] + column
+            if fills:
+                start[at] -= 1
+                edges.cell_edge[start[at]] = k
+            else:
+                start[at] += 1
+
+
+@inner_kernel
+def fill_cells(count: int, edges: Terrain) -> int:
+    """Enter the first `count` edges in the cells of their grid; how many entries there are, which may lack room."""
+    start = edges.cell_start
+    for at in range(start.shape[0]):
+        start[at] = 0
+    for k in range(count):
+        _enter(k, edges, False)
+    total = 0
+    for at in range(start.shape[0]):
+        total += start[at]
+        start[at] = total
+    if total <= edges.cell_edge.shape[0]:
+        for back in range(count):
+            _enter(count - 1 - back, edges, True)
+    return total
+
+
+@kernel
+def _fill_cells(edges: Terrain) -> int:
+    return fill_cells(edges.edge_a.shape[0], edges)
+
+
+def _tips(looked_at: Floats, pairs: Slots, edges: Terrain) -> tuple[Slots, Slots, Floats, Slots, Slots]:
     """The tips of terrain with the ways from them, and tips by cell; see Terrain."""
+    vertex, solid, corner, cell, size = edges.vertex, edges.solid != 0, edges.corner, edges.cell, edges.size
     cells = int(size[0] * size[1])
     tips, starts, ways, at = [], [0], [np.zeros((0, 2))], []
     a, b = vertex[pairs[:, 0]], vertex[pairs[:, 1]]
@@ -174,12 +245,11 @@ def _tips(
         left, bottom = ((place - WELD - corner) / cell).astype(np.int64).tolist()
         right, top = ((place + WELD - corner) / cell).astype(np.int64).tolist()
         rows = range(bottom * int(size[0]), top * int(size[0]) + 1, int(size[0]))
-        edges = np.unique(
-            np.concatenate([cell_edge[cell_start[row + left] : cell_start[row + right + 1]] for row in rows])
-        )
-        along = b[edges] - a[edges]
+        near_cells = [slice(edges.cell_start[row + left], edges.cell_start[row + right + 1]) for row in rows]
+        close = np.unique(np.concatenate([edges.cell_edge[part] for part in near_cells]))
+        along = b[close] - a[close]
         length = lengths(along)
-        from_a = place - a[edges]
+        from_a = place - a[close]
         share = np.clip(np.sum(from_a * along, axis=1) / np.maximum(length * length, 1e-300), 0.0, 1.0)
         off = from_a - share[:, None] * along
         near = (np.sum(off * off, axis=1) <= WELD * WELD) & (length > 0.0)
@@ -187,7 +257,7 @@ def _tips(
         found = np.concatenate([
             unit[(1.0 - share[near]) * length[near] > WELD], -unit[share[near] * length[near] > WELD]
         ])  # fmt: skip
-        if not len(found) or (found @ found.T < FLAT - 1.0).any() or _is_hollow(v, pairs[edges], solid[edges], along):
+        if not len(found) or (found @ found.T < FLAT - 1.0).any() or _is_hollow(v, pairs[close], solid[close], along):
             continue
         if not (_polar(found) @ found.T <= 1e-9).all(axis=1).any() or _is_buried(place, rim_a, rim_b):
             continue

@@ -144,6 +144,21 @@ def test_pinned_edges_are_the_terrain_that_their_ends_make(seed):
     assert not len(laid_out(pinned_edges, state_of(world), none, none, none).edge_a)
 
 
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_cell_that_an_edge_of_terrain_crosses_holds_it_once_and_few_hold_it_else(seed):
+    generator = np.random.default_rng(seed)
+    terrain = make_terrain([Chain(np.cumsum(generator.normal(size=(12, 2)), axis=0)) for _ in range(3)])
+    a, b = terrain.vertex[terrain.edge_a], terrain.vertex[terrain.edge_b]
+    share = np.linspace(0.0, 1.0, 400)[:, None, None]
+    cell = np.floor((a + (b - a) * share - terrain.corner) / terrain.cell).astype(np.int64)
+    crossed = [set(own) for own in (cell[..., 1] * terrain.size[0] + cell[..., 0]).T.tolist()]
+    held = lists(terrain.cell_start, terrain.cell_edge)
+    assert len(held) == terrain.size.prod() and all(own == sorted(set(own)) for own in held)
+    holding = [{at for at, own in enumerate(held) if edge in own} for edge in range(len(a))]
+    assert all(own <= cells for own, cells in zip(crossed, holding, strict=True))
+    assert sum(map(len, holding)) <= 1.1 * sum(map(len, crossed))
+
+
 def apart(one, other, form):
     """How far apart two segments are; None where they cross."""
     found, sides = [], []
