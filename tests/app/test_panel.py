@@ -60,17 +60,23 @@ def test_the_menu_shows_the_material_that_the_keyboard_chose(driver):
     driver.panel.choose_material(None)
     driver.app.ui.focus_on(menu)
     for wanted in ("default", "steel", "rubber"):
-        driver.key(pygame.K_DOWN)
-        assert menu.selected_option[0] == menu.current_state.selected_option_button.text == wanted
-    driver.key(pygame.K_UP)
-    assert menu.current_state.selected_option_button.text == "steel"
+        for key in (pygame.K_RETURN, pygame.K_DOWN, pygame.K_RETURN):
+            driver.key(key)
+        assert menu.chosen == wanted and driver.app.ui.focus is menu
+    for key in (pygame.K_DOWN, pygame.K_UP, pygame.K_SPACE):
+        driver.key(key)
+    assert menu.chosen == "steel"
+    driver.key(pygame.K_SPACE)
+    driver.key(pygame.K_HOME)
+    driver.key(pygame.K_ESCAPE)
+    assert menu.chosen == "steel" and not driver.app.ui.has_sheet
 
 
 def test_the_chosen_material_stays_chosen_in_a_window_of_another_size(driver):
     driver.panel._choose_material("rubber")
     driver.app.display.window.size = (900, 620)
     driver.frames(2)
-    assert driver.panel.menu.selected_option[0] == "rubber"
+    assert driver.panel.menu.chosen == "rubber"
     driver.fill(driver.panel.stiffness_field, "0.5")
     assert coefficients(driver) == (0.3, 0.3, 0.5)
 

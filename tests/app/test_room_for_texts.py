@@ -7,6 +7,7 @@ import pygame_gui.elements as gui
 import pytest
 
 from sandbox.app.widgets.painted import Painted, TextBlock, wrapped
+from sandbox.app.widgets.picker import WordPicker
 from sandbox.editor.items import items_of
 from tests.app.conftest import small_level
 
@@ -44,11 +45,10 @@ def texts_cut(ui):
     """Texts of widgets that are wider than these, or end in an ellipsis before all is said."""
     found = []
     for widget in shown(ui):
-        if isinstance(widget, gui.UIDropDownMenu):
-            # Beside the button that opens it.
-            wide = widget.rect.width - widget.open_button_width
-            options = [option[0] for option in widget.options_list]
-            found += [text for text in options if ui.font(13).size(text)[0] > wide]
+        if isinstance(widget, WordPicker):
+            # Beside the mark that says that it opens.
+            wide = widget.rect.width - ui.px(32)
+            found += [text for text in widget.words if ui.font(12.5).size(text)[0] > wide]
         elif isinstance(widget, TextBlock):
             found += [widget.text] if is_shortened(ui, widget) else []
         elif isinstance(widget, (gui.UIButton, gui.UILabel)) and widget.text:
@@ -71,12 +71,10 @@ def is_shortened(ui, block):
 
 def shown(ui):
     """What can be pressed, typed into or read, that is in sight."""
-    kinds = (gui.UIButton, gui.UILabel, gui.UITextEntryLine, gui.UIDropDownMenu, Painted)
+    kinds = (gui.UIButton, gui.UILabel, gui.UITextEntryLine, Painted)
     found = []
     for widget in ui.manager.get_sprite_group().sprites():
-        # Buttons of a menu are the menu's.
-        is_own = not isinstance(widget.ui_container.parent_element, gui.UIDropDownMenu)
-        if isinstance(widget, kinds) and widget.visible and is_own and in_sight(widget, ui).size != (0, 0):
+        if isinstance(widget, kinds) and widget.visible and in_sight(widget, ui).size != (0, 0):
             found.append(widget)
     return found
 

@@ -9,6 +9,7 @@ from sandbox.app.base.desktop import copy_text
 from sandbox.app.draw.colours import MUTED, TEXT
 from sandbox.app.widgets.code_block import CodeBlock, code_height
 from sandbox.app.widgets.painted import TextBlock, text_height
+from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.export.chosen_body import NoSuchBody, body_names
@@ -65,7 +66,7 @@ class _TakeHomePage:
         self._box = ui.panel(ui.rect(left, top, self._width, self._height), self._sheet, "@dialog")
         ui.label(ui.rect(MARGIN, 18, 220, 28), "Take it home" if target is None else target, self._box, "@title")
         menu = ui.rect(self._width - MARGIN - MENU_WIDTH, 18, MENU_WIDTH, ROW)
-        ui.menu(menu, names, take.body, lambda name: self._go(target, name), self._box)
+        WordPicker(ui, menu, names, take.body, lambda name: self._go(target, name), self._box)
         (self._ask if target is None else self._answer)()
 
     def _close(self) -> None:

@@ -8,7 +8,8 @@ import pygame
 
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.widgets.painted import TextBlock, text_height
-from sandbox.app.widgets.rows import MENU_ROWS, Row, RowList
+from sandbox.app.widgets.picker import MENU_ROWS
+from sandbox.app.widgets.rows import Row, RowList
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.ui import Again, Ui
 

@@ -1,4 +1,4 @@
-"""RowList: a list of rows of which one is chosen, of any length; and menus that open over the window."""
+"""RowList: a list of rows of which one is chosen, of any length."""
 
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
@@ -7,8 +7,8 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, CHOSEN, FIELD, LINE, MENU, MUTED, TEXT, Colour, mixed
-from sandbox.app.widgets.painted import ENTER_KEYS, Lit, Painted, Pressable, wrapped
+from sandbox.app.draw.colours import ACCENT, CHOSEN, FIELD, LINE, MUTED, TEXT, Colour, mixed
+from sandbox.app.widgets.painted import ENTER_KEYS, Painted, wrapped
 from sandbox.app.widgets.scroll import WHEEL_STEP
 from sandbox.app.widgets.ui import Ui
 
@@ -19,7 +19,6 @@ INSET = 10.0
 SWATCH = 11.0
 INDENT = 14.0
 TEXT_SIZE, DETAIL_SIZE = 12.5, 11.0
-MENU_ROWS = 12
 
 
 @dataclass(frozen=True)
@@ -249,127 +248,3 @@ class RowList(Painted):
             for text in texts:
                 surface.blit(ui.font(size).render(text, True, colour), (left, y))
                 y += line
-
-
-class Picker(Lit, Pressable):
-    """A value that a menu of rows changes: opens below it, by a click, Enter, Space or an arrow key."""
-
-    ui: Ui
-
-    press_keys = (*Pressable.press_keys, pygame.K_DOWN)
-
-    def __init__(self, ui: Ui, rect: pygame.Rect, choose: Callable[[int], None], container: Any = None) -> None:
-        super().__init__(ui, rect, container)
-        self.rows: Sequence[Row] = ()
-        self.shown = Row("")
-        self._choose = choose
-        ui.add(self)
-        self.repaint()
-
-    def show_value(self, rows: Sequence[Row], shown: Row) -> None:
-        """Offer rows, and show one row as the value, which need not be among them."""
-        if (rows, shown) != (self.rows, self.shown):
-            self.rows, self.shown = rows, shown
-            self.repaint()
-
-    def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The value and a chevron."""
-        ui = self.ui
-        surface = pygame.Surface(size, pygame.SRCALPHA)
-        place = surface.get_rect()
-        back = mixed(FIELD, TEXT, 0.06) if self.hovered else FIELD
-        pygame.draw.rect(surface, back, place, border_radius=ui.px(6))
-        pygame.draw.rect(surface, LINE, place, 1, border_radius=ui.px(6))
-        left = ui.px(8)
-        if self.shown.swatch is not None:
-            swatch = ui.px(SWATCH)
-            at = pygame.Rect(left, (size[1] - swatch) // 2, swatch, swatch)
-            pygame.draw.rect(surface, self.shown.swatch, at, border_radius=ui.px(3))
-            left += swatch + ui.px(7)
-        text = wrapped(self.shown.text, ui.font(TEXT_SIZE), size[0] - left - ui.px(24), 1)[0]
-        picture = ui.font(TEXT_SIZE).render(text, True, self.shown.colour)
-        surface.blit(picture, (left, (size[1] - picture.get_height()) // 2))
-        self.paint_chevron(surface)
-        return surface
-
-    def paint_chevron(self, surface: pygame.Surface) -> None:
-        """Show at the right that there is a menu."""
-        (wide, tall), half = surface.get_size(), self.ui.px(4)
-        x, y = wide - self.ui.px(14), tall // 2
-        chevron = [(x - half, y - half // 2), (x, y + half // 2), (x + half, y - half // 2)]
-        pygame.draw.lines(surface, MUTED, False, chevron, 2)
-
-    def press(self) -> None:
-        """Offer the rows."""
-        chosen = next((index for index, row in enumerate(self.rows) if row.text == self.shown.text), None)
-
-        def take(index: int) -> None:
-            self.ui.focus_on(self)
-            self._choose(index)
-
-        open_menu(self.ui, self.rect, self.rows, chosen, take)
-
-
-def open_menu(
-    ui: Ui, below: pygame.Rect, rows: Sequence[Row], chosen: int | None, take: Callable[[int], object]
-) -> RowList:
-    """Open a menu of rows below a place [pixels], or above it; Escape or a click beside end it."""
-    height = _menu_height(ui, rows[:MENU_ROWS])
-    down, up = ui.size[1] - below.bottom, below.top
-    if height > down and up > down:
-        height = min(height, up)
-        place = pygame.Rect(below.left, below.top - height, below.width, height)
-    else:
-        place = pygame.Rect(below.left, below.bottom, below.width, min(height, down))
-    return _menu(ui, place, rows, chosen, take)
-
-
-def open_menu_at(
-    ui: Ui, pixel: tuple[float, float], width: int, rows: Sequence[Row], take: Callable[[int], object]
-) -> RowList:
-    """Open a menu of rows at a place [pixels], or as near to it as the window lets it stand whole; as `open_menu`."""
-    height = min(_menu_height(ui, rows), ui.size[1])
-    left, top = min(round(pixel[0]), ui.size[0] - width), min(round(pixel[1]), ui.size[1] - height)
-    return _menu(ui, pygame.Rect(max(left, 0), top, width, height), rows, None, take)
-
-
-def _menu_height(ui: Ui, rows: Sequence[Row]) -> int:
-    return sum((2 if row.detail else 1) * ui.px(LINE_HEIGHT) + 2 * ui.px(PADDING) for row in rows)
-
-
-def _menu(
-    ui: Ui, place: pygame.Rect, rows: Sequence[Row], chosen: int | None, take: Callable[[int], object]
-) -> RowList:
-    def close() -> None:
-        ui.close_sheet(sheet)
-
-    def choose(index: int) -> None:
-        close()
-        take(index)
-
-    sheet = ui.open_sheet(close, "@clear")
-    _Beside(ui, pygame.Rect((0, 0), ui.size), close, sheet)
-    menu = RowList(ui, place, choose, sheet, at_once=False, background=MENU)
-    menu.show_rows(rows, chosen, reveal=True)
-    ui.focus_on(menu)
-    return menu
-
-
-class _Beside(Painted):
-    """What lies around a menu: a click there closes it."""
-
-    def __init__(self, ui: Ui, rect: pygame.Rect, close: Callable[[], None], container: Any) -> None:
-        super().__init__(ui, rect, container)
-        self._close = close
-        self.repaint()
-
-    def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """Nothing."""
-        return pygame.Surface(size, pygame.SRCALPHA)
-
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Close on any press of a button; the wheel is none."""
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button in (1, 2, 3):
-            self._close()
-            return True
-        return False

@@ -11,7 +11,7 @@ from typing import Any
 import pygame
 import pygame_gui
 from pygame_gui.core import ObjectID, UIContainer, UIElement
-from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
+from pygame_gui.elements import UIButton, UILabel, UIPanel, UITextEntryLine
 
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.widgets.button import Button
@@ -29,7 +29,6 @@ SHEET_HEIGHT = 40
 KEY_REPEAT = (400, 40)
 ANSWERS = (
     pygame_gui.UI_BUTTON_PRESSED,
-    pygame_gui.UI_DROP_DOWN_MENU_CHANGED,
     pygame_gui.UI_TEXT_ENTRY_FINISHED,
 )
 
@@ -62,7 +61,6 @@ class Ui(WindowLayout):
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
         super().__init__(size, scale, pixel_ratio)
         self._actions: dict[UIElement, Callable[[], None]] = {}
-        self._choosers: dict[UIDropDownMenu, Callable[[str], None]] = {}
         self._fields: dict[UIElement, Field] = {}
         self._sheets: list[Sheet] = []
         self._page: list[UIElement] = []
@@ -132,50 +130,6 @@ class Ui(WindowLayout):
         self._add_focusable(entry)
         return self._fields[entry]
 
-    def menu(
-        self,
-        rect: pygame.Rect,
-        options: Sequence[str],
-        chosen: str,
-        choose: Callable[[str], None],
-        container: Any = None,
-    ) -> UIDropDownMenu:
-        """A menu that opens to a list."""
-        menu = UIDropDownMenu(list(options), chosen, rect, self.manager, container=container)
-        self._choosers[menu] = choose
-        self._add_focusable(menu)
-        return menu
-
-    def replace_menu(self, menu: UIDropDownMenu, chosen: str) -> None:
-        """Show another chosen option on a menu, which then keeps its place among the widgets; nothing if it is that."""
-        if menu.selected_option[0] == chosen:
-            return
-        menu.selected_option = (chosen, chosen)
-        # The menu's state, closed or open, has a copy of the option and a button that shows it.
-        state: Any = menu.current_state
-        state.selected_option = menu.selected_option
-        state.selected_option_button.set_text(chosen)
-
-    def offer(self, menu: UIDropDownMenu, options: Sequence[str], chosen: str) -> None:
-        """Let a menu have these options, one of them chosen, in place of those it had."""
-        had = [option if isinstance(option, str) else option[0] for option in menu.options_list]
-        if had != list(options):
-            menu.remove_options(had)
-            menu.add_options(list(options))
-        self.replace_menu(menu, chosen)
-
-    def pointed_option(self, menu: UIDropDownMenu) -> str | None:
-        """The option under the mouse, in the list of an open menu, or what a closed one shows; None: none is."""
-        state: Any = menu.current_state
-        options = getattr(state, "options_selection_list", None)
-        if options is None:
-            return str(menu.selected_option[0]) if menu.hover_point(*self.manager.get_mouse_position()) else None
-        for option in options.item_list:
-            button = option["button_element"]
-            if button is not None and button.hovered:
-                return str(option["text"])
-        return None
-
     def add(self, widget: Painted) -> None:
         """Let a painted widget be reached by Tab."""
         self._add_focusable(widget)
@@ -194,8 +148,6 @@ class Ui(WindowLayout):
     def _forget(self, widget: UIElement) -> None:
         self._actions.pop(widget, None)
         self._fields.pop(widget, None)
-        if isinstance(widget, UIDropDownMenu):
-            self._choosers.pop(widget, None)
 
     # Sheets: modal pages on top of all else.
 
@@ -265,7 +217,7 @@ class Ui(WindowLayout):
         self.manager.clear_and_reset()
         # The library would find out what is still to be seen when it draws next.
         self.manager.ui_group.update_visibility()
-        for widgets in (self._actions, self._choosers, self._fields, self._sheets, self._page):
+        for widgets in (self._actions, self._fields, self._sheets, self._page):
             widgets.clear()
         self._focus = self._left = None
 
@@ -292,9 +244,6 @@ class Ui(WindowLayout):
             self.manager.mouse_position = self.manager.calculate_scaled_mouse_position(event.pos)
         if event.type == pygame_gui.UI_BUTTON_PRESSED and event.ui_element in self._actions:
             self._actions[event.ui_element]()
-            return True
-        if event.type == pygame_gui.UI_DROP_DOWN_MENU_CHANGED and event.ui_element in self._choosers:
-            self._choosers[event.ui_element](event.text)
             return True
         if event.type == pygame_gui.UI_TEXT_ENTRY_FINISHED and event.ui_element in self._fields:
             field = self._fields[event.ui_element]
@@ -375,9 +324,6 @@ class Ui(WindowLayout):
         if isinstance(self._focus, UIButton) and self._sheets and event.key in ARROWS:
             self._step_to_button(*ARROWS[event.key])
             return True
-        if isinstance(self._focus, UIDropDownMenu) and event.key in (pygame.K_UP, pygame.K_DOWN):
-            self._turn_menu(self._focus, -1 if event.key == pygame.K_UP else 1)
-            return True
         return False
 
     def _step_to_button(self, dx: int, dy: int) -> None:
@@ -394,11 +340,6 @@ class Ui(WindowLayout):
             self._set_focus(min(ways, key=lambda way: way[0])[1])
 
     def _escape(self, typed_into: Field | None) -> bool:
-        open_menus = [menu for menu in self._choosers if menu.current_state is menu.menu_states["expanded"]]
-        for menu in open_menus:
-            menu._close_dropdown_if_open()
-        if open_menus:
-            return True
         if typed_into is not None:
             typed_into.revert()
         if typed_into is not None or self._focus is not None:
@@ -409,11 +350,6 @@ class Ui(WindowLayout):
             self._sheets[-1].close()
             return True
         return False
-
-    def _turn_menu(self, menu: UIDropDownMenu, by: int) -> None:
-        options = [option[0] if isinstance(option, tuple) else option for option in menu.options_list]
-        chosen = menu.selected_option[0] if isinstance(menu.selected_option, tuple) else menu.selected_option
-        self._choosers[menu](options[(options.index(chosen) + by) % len(options)])
 
     def _move_focus(self, by: int) -> None:
         ring = self._ring()

@@ -19,7 +19,8 @@ from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.fields import Field
 from sandbox.app.widgets.fold import FoldHeading
 from sandbox.app.widgets.painted import TextBlock, wrapped
-from sandbox.app.widgets.rows import Picker, Row
+from sandbox.app.widgets.picker import Picker
+from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups

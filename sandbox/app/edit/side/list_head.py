@@ -8,17 +8,8 @@ import pygame
 from sandbox.app.draw.colours import FIELD, LINE, MUTED, TEXT, mixed
 from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.widgets.painted import wrapped
-from sandbox.app.widgets.rows import (
-    DETAIL_SIZE,
-    INSET,
-    LINE_HEIGHT,
-    PADDING,
-    SWATCH,
-    TEXT_SIZE,
-    Picker,
-    Row,
-    RowList,
-)
+from sandbox.app.widgets.picker import Picker
+from sandbox.app.widgets.rows import DETAIL_SIZE, INSET, LINE_HEIGHT, PADDING, SWATCH, TEXT_SIZE, Row, RowList
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
 

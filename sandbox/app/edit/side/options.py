@@ -13,7 +13,8 @@ from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.widgets.fields import Field
-from sandbox.app.widgets.rows import Picker, Row
+from sandbox.app.widgets.picker import Picker
+from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.panel.typed import read_number
