@@ -227,7 +227,7 @@ class CountsPage:
         self.list.show_rows([Row(f"{len(self._screen.document.level.bodies)} bodies")], 0)
 
     def close(self):
-        self._screen.ui.remove(self.list)
+        self.list.remove()
 '''
 
 CLOCK = '''

@@ -27,7 +27,7 @@ def test_a_name_that_is_typed_survives_a_new_layout_and_the_next_letter_is_added
     lay_out_anew(driver)
     driver.type("wheel")
     lay_out_anew(driver)
-    assert field(driver).get_text() == "my wheel"
+    assert field(driver).typed == "my wheel"
     driver.choose("Save")
     assert read_level(documents / "my wheel.json") == driver.editor.document.level
     assert not driver.app.ui.has_sheet
@@ -40,7 +40,7 @@ def test_a_form_survives_a_larger_scale_by_its_key(edit):
     driver.choose("Along a line")
     driver.type("3")
     driver.key(pygame.K_EQUALS, CTRL)
-    assert driver.app.scale > 1.0 and field(driver).get_text() == "3"
+    assert driver.app.scale > 1.0 and field(driver).typed == "3"
     driver.choose("Make")
     assert len(driver.editor.document.level.bodies) == 4
 
@@ -91,7 +91,7 @@ def test_the_widgets_of_a_layout_end_with_it(edit):
 
     buttons = driver.app.ui.buttons()
     lay_out_anew(driver)
-    assert buttons and not any(button.alive() for button in buttons)
+    assert buttons and not any(button.is_there for button in buttons)
 
 
 def test_a_layout_leaves_nothing_that_the_texts_of_the_next_are_looked_up_in(driver):

@@ -81,7 +81,7 @@ class _Buttons:
             self._back,
             icon=self._icon(action, TEXT),
             tip=tip_of(action, "edit"),
-            style="@quiet",
+            style="quiet",
         )
         self._shown[action] = TEXT
 
@@ -89,9 +89,7 @@ class _Buttons:
         """A button with a letter in place of a picture."""
         ui, place = self._ui, self._ui.rect(x, y, self._size, self._size)
         tip = tip_of(action, "edit")
-        self.by_action[action] = ui.button(
-            place, text, lambda: self._press(action), self._back, tip=tip, style="@quiet"
-        )
+        self.by_action[action] = ui.button(place, text, lambda: self._press(action), self._back, tip=tip, style="quiet")
 
     def show(self, action: str, enabled: bool = True, on: bool = False) -> None:
         """Show an action as possible or not, and on or off, changing what differs."""
@@ -101,8 +99,8 @@ class _Buttons:
         self._shown[action] = colour
         button = self.by_action[action]
         button.show_icon(self._icon(action, colour))
-        (button.enable if enabled else button.disable)()
-        (button.select if on else button.unselect)()
+        button.is_enabled = enabled
+        button.is_selected = on
 
     def _icon(self, action: str, colour: Colour) -> pygame.Surface:
         ui = self._ui
@@ -204,7 +202,7 @@ class Palette:
         self._buttons = _Buttons(ui, press, self.back, pitch - 1.0)
         y = 4.0
         for group, tools in TOOL_GROUPS.items():
-            ui.label(ui.rect(10.0, y + 3.0, NAMED_WIDTH - 12.0, HEADING - 4.0), group, self.back, "@muted")
+            ui.label(ui.rect(10.0, y + 3.0, NAMED_WIDTH - 12.0, HEADING - 4.0), group, self.back, "muted")
             y += HEADING
             for tool in tools:
                 self._buttons.add(tool.action, tool.icon, 6.0, y, tool.title.capitalize(), NAMED_WIDTH - 12.0)

@@ -4,12 +4,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
-from pygame_gui.elements import UIButton
-
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import TEXT
-from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.button import Button
+from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui
 
@@ -32,10 +31,10 @@ class Header:
         self._ui, self._sheet = ui, sheet
         width = ui.units[0]
         self._is_wide = width >= ROOM_FOR_ONE_ROW
-        self._sections: dict[str, UIButton] = {}
+        self._sections: dict[str, Button] = {}
         self._marked = ""
         title = "Edit a level" if app.mode == "edit" else "Spring Sandbox"
-        ui.label(ui.rect(MARGIN, 20, 230, 36), title, sheet, "@display")
+        ui.label(ui.rect(MARGIN, 20, 230, 36), title, sheet, "display")
         right = width - MARGIN
         right = self._buttons(app, right)
         second = 72.0
@@ -82,7 +81,7 @@ class Header:
         for title in titles:
             wide = ui.font(12).size(title)[0] / ui.scale + 22
             place = ui.rect(x, 70, wide, 26)
-            self._sections[title] = ui.button(place, title, partial(go, title), self._sheet, style="@chip")
+            self._sections[title] = ui.button(place, title, partial(go, title), self._sheet, style="chip")
             x += wide + 4
 
     def mark(self, title: str) -> None:
@@ -90,5 +89,5 @@ class Header:
         if title == self._marked:
             return
         for name, button in self._sections.items():
-            (button.select if name == title else button.unselect)()
+            button.is_selected = name == title
         self._marked = title

@@ -13,9 +13,10 @@ from sandbox.app.base.sag_sentences import subject_words
 from sandbox.app.base.sentences import capitalised
 from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.fields import DASH, MIXED, Choice, Field, typed_number
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.button import Choice
+from sandbox.app.widgets.field import DASH, MIXED, Field, typed_number
 from sandbox.app.widgets.picker import WordPicker
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
 from sandbox.physics.analysis.body_motion import BodyMotion, present_coefficients, read_body, word_for

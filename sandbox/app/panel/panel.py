@@ -22,11 +22,11 @@ from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.fields import DASH, MIXED, typed_number
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.field import DASH, MIXED, typed_number
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
@@ -149,7 +149,7 @@ class Panel:
 
     def _build_firmness(self) -> None:
         ui, rows, firmness = self._ui, self.rows, self.firmness
-        ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "@heading")
+        ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "heading")
         names = [ALL_BODIES, *firmness.bodies]
         place = rows.row(ROW, 6, MARGIN + 90, INSIDE - 90)
         firmness.menu = WordPicker(ui, place, names, firmness.body, self.choose_body, rows.back)
@@ -158,9 +158,9 @@ class Panel:
         width = ENTRY_WIDTH - 20
         firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 52), "", rows.back, 13.0, TEXT)
         x = MARGIN + INSIDE - width
-        ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "@muted")
+        ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "muted")
         firmness.sag = ui.field(rows.place(x, 14, width, ROW - 2), "", firmness.type_sag, rows.back, 24)
-        firmness.sag.entry.set_tooltip(SAG_TIP)
+        firmness.sag.tip = SAG_TIP
         rows.row(52, 6)
 
     def build_springs(self) -> None:
@@ -213,7 +213,7 @@ class Panel:
     def _slider(self, tip: str, changed: Callable[[float], None]) -> Slider:
         rows = self.rows
         made = Slider(self._ui, rows.row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, rows.back)
-        made.set_tooltip(tip)
+        made.tip = tip
         return made
 
     def _first_material(self) -> int | None:

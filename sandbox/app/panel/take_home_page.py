@@ -8,9 +8,9 @@ import pygame
 from sandbox.app.base.desktop import copy_text
 from sandbox.app.draw.colours import MUTED, TEXT
 from sandbox.app.widgets.code_block import CodeBlock, code_height
-from sandbox.app.widgets.painted import TextBlock, text_height
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
+from sandbox.app.widgets.texts import TextBlock, text_height
 from sandbox.app.widgets.ui import Ui
 from sandbox.export.chosen_body import NoSuchBody, body_names
 from sandbox.export.paste import pasted
@@ -63,8 +63,8 @@ class _TakeHomePage:
         self._height = min(high, HEIGHT, ui.units[1] - 16)
         self._sheet = ui.open_sheet(self._close, is_page=True, again=self._again)
         left, top = (ui.units[0] - self._width) / 2, (ui.units[1] - self._height) / 2
-        self._box = ui.panel(ui.rect(left, top, self._width, self._height), self._sheet, "@dialog")
-        ui.label(ui.rect(MARGIN, 18, 220, 28), "Take it home" if target is None else target, self._box, "@title")
+        self._box = ui.panel(ui.rect(left, top, self._width, self._height), self._sheet, "dialog")
+        ui.label(ui.rect(MARGIN, 18, 220, 28), "Take it home" if target is None else target, self._box, "title")
         menu = ui.rect(self._width - MARGIN - MENU_WIDTH, 18, MENU_WIDTH, ROW)
         WordPicker(ui, menu, names, take.body, lambda name: self._go(target, name), self._box)
         (self._ask if target is None else self._answer)()
@@ -131,7 +131,7 @@ class _TakeHomePage:
         ui = self._ui
         wide = (self._width - 2 * MARGIN - 2 * GAP) / 3
         actions = (
-            ("Copy", self._copy, "@primary"),
+            ("Copy", self._copy, "primary"),
             ("Another engine", self._go_back, ""),
             ("Close", self._close, ""),
         )

@@ -28,7 +28,7 @@ class ViewRow:
             place = pygame.Rect(rect.left + left, rect.top, right - left, rect.height)
             icon = painted_icon(ICONS[name], ui.px(ICON), TEXT)
             self.buttons[name] = ui.button(
-                place, "", partial(toggle, name), container, style="@segment", icon=icon, tip=tip_of(name, "play")
+                place, "", partial(toggle, name), container, style="segment", icon=icon, tip=tip_of(name, "play")
             )
 
     def show(self, shown: Set[str]) -> None:
@@ -36,5 +36,5 @@ class ViewRow:
         for name in self._shown ^ shown:
             is_on = name in shown
             self.buttons[name].show_icon(painted_icon(ICONS[name], self._ui.px(ICON), ACCENT if is_on else TEXT))
-            (self.buttons[name].select if is_on else self.buttons[name].unselect)()
+            self.buttons[name].is_selected = is_on
         self._shown = frozenset(shown)

@@ -95,14 +95,14 @@ class PartsPalette:
         width, tall = columns * (BUTTON + GAP) - GAP + 2 * EDGE, rows * LEAST_STEP - GAP + 2 * EDGE
         # Its right edge [layout units].
         self.right = LEFT + width
-        self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall), style="@card")
+        self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall), style="card")
         self.buttons: dict[str, Any] = {}
         for number, name in enumerate(shown):
             column, row = divmod(number, rows)
             place = ui.rect(EDGE + column * (BUTTON + GAP), EDGE + row * LEAST_STEP, BUTTON, BUTTON)
             tip = "More buttons" if name == MORE else tip_of(_action_of(name), "play")
             do = self._show_menu if name == MORE else functools.partial(press, _action_of(name))
-            self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="@quiet")
+            self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="quiet")
 
     def _show_menu(self) -> None:
         """Offer what has no room on the strip."""
@@ -118,7 +118,7 @@ class PartsPalette:
         for name, button in self.buttons.items():
             is_chosen = name == tool or (name == MORE and tool in self.left_out)
             button.show_icon(self._icon(name, ACCENT if is_chosen else TEXT))
-            (button.select if is_chosen else button.unselect)()
+            button.is_selected = is_chosen
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
         if name in DRAWN:

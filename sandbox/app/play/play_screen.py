@@ -197,8 +197,8 @@ class PlayScreen:
         self.troubles.build(ui, left, BAR_HEIGHT + below)
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
         place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
-        self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
-        self.again.hide()
+        self.again = ui.button(place, "Again", self._reset, style="primary", tip=tip_of("reset", "play"))
+        self.again.visible = False
         # Beside a panel in a narrow window they have no room: they lie below it.
         wide, below_panel = self.area[2] / ui.scale, 0.0
         if wide < ROOM_BESIDE_PANEL:
@@ -513,7 +513,7 @@ class PlayScreen:
     def _show_again(self) -> None:
         is_over = self.troubles.out_of_view.is_over
         if is_over != bool(self.again.visible):
-            (self.again.show if is_over else self.again.hide)()
+            self.again.visible = is_over
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""

@@ -21,7 +21,7 @@ class Remedies:
             name: ui.button(self._place(0), "", _pressing(press, name), tip=tip_of(name, "play")) for name in names
         }
         for button in self.buttons.values():
-            button.hide()
+            button.visible = False
 
     def _place(self, row: int) -> pygame.Rect:
         return self._ui.rect(self._left, self._top + row * (HEIGHT + GAP), WIDTH, HEIGHT)
@@ -32,10 +32,10 @@ class Remedies:
             return
         self._shown = dict(words)
         for row, (name, text) in enumerate(words.items()):
-            self.buttons[name].set_text(text)
-            self.buttons[name].set_relative_position(self._place(row).topleft)
+            self.buttons[name].show_text(text)
+            self.buttons[name].move_to(self._place(row).topleft)
         for name, button in self.buttons.items():
-            (button.show if name in words else button.hide)()
+            button.visible = name in words
 
 
 def _pressing(press: Callable[[str], None], name: str) -> Callable[[], None]:

@@ -170,11 +170,11 @@ class Toolbar:
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
             self._mark(name, TEXT if on else DISABLED, False)
             if name in self.buttons:
-                (self.buttons[name].enable if on else self.buttons[name].disable)()
+                self.buttons[name].is_enabled = on
         slow = self.buttons.get("slow")
         if slow is not None:
-            slow.set_text(words_of(state.speed))
-            (slow.unselect if state.speed == 1.0 else slow.select)()
+            slow.show_text(words_of(state.speed))
+            slow.is_selected = state.speed != 1.0
         if self.title is not None:
             self.title.show_text(state.name)
 
@@ -183,7 +183,7 @@ class Toolbar:
         button = self.buttons.get(action)
         if button is not None:
             button.show_icon(self._icon(picture or self._pictures[action], colour))
-            (button.select if on else button.unselect)()
+            button.is_selected = on
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
         return painted_icon(ICONS[name], self._ui.px(ICON), colour)
@@ -201,5 +201,5 @@ class Toolbar:
             self.back,
             icon=None if words else self._icon(picture, TEXT),
             tip=tip or tip_of(action, "play"),
-            style="" if action == "share" and words else "@quiet",
+            style="" if action == "share" and words else "quiet",
         )

@@ -7,10 +7,10 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import TEXT, WARNING
-from sandbox.app.widgets.painted import TextBlock, text_height
 from sandbox.app.widgets.picker import MENU_ROWS
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
+from sandbox.app.widgets.texts import TextBlock, text_height
 from sandbox.app.widgets.ui import Again, Ui
 
 # Sizes in layout units.
@@ -38,8 +38,8 @@ def _box(
     width, tall = ui.units
     box_width = min(widest, width - 40)
     sheet = ui.open_sheet(close, again=again, is_question=is_question, is_page=is_page)
-    box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "@dialog")
-    ui.label(ui.rect(MARGIN, MARGIN - 6, box_width - 2 * MARGIN, 28), title, box, "@title")
+    box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "dialog")
+    ui.label(ui.rect(MARGIN, MARGIN - 6, box_width - 2 * MARGIN, 28), title, box, "title")
     return sheet, box, box_width
 
 
@@ -68,7 +68,7 @@ def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None
     TextBlock(ui, pygame.Rect(0, 0, inside, tall), text, area.content, 13.0, TEXT)
     area.set_height(tall)
     bottom = height - MARGIN - 34
-    button = ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), "Close", close, box, style="@primary")
+    button = ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), "Close", close, box, style="primary")
     if other is not None:
         ui.button(ui.rect(width - MARGIN - 310, bottom, 190, 34), other[0], do_other, box)
     ui.focus_on(button)
@@ -107,7 +107,7 @@ def ask(
             other[1]()
 
     def accept() -> None:
-        take(field.entry.get_text())
+        take(field.typed)
 
     def take(typed: str) -> bool:
         fault = answer(typed.strip())
@@ -120,7 +120,7 @@ def ask(
         return False
 
     def again(other_ui: Ui) -> None:
-        ask(other_ui, title, hint, field.entry.get_text(), verb, answer, other, then)
+        ask(other_ui, title, hint, field.typed, verb, answer, other, then)
 
     sheet, box, width = _box(ui, title, height, close, again)
     inside = width - 2 * MARGIN
@@ -130,9 +130,9 @@ def ask(
     field.enter = take
     note = TextBlock(ui, ui.rect(MARGIN, top + 42, inside, 50), "", box, 12.0, WARNING)
     bottom = height - MARGIN - 34
-    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
+    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="primary")
     ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), other[0] if other else "Cancel", do_other, box)
-    ui.focus_on(field.entry)
+    ui.focus_on(field)
 
 
 def choose(
@@ -169,11 +169,11 @@ def choose(
     wide = (inside - COLUMN_GAP * (columns - 1)) / columns
     for index, (label, action) in enumerate(choices):
         x, y = RING + index % columns * (wide + COLUMN_GAP), RING + index // columns * CHOICE_ROW
-        style = "@primary" if index == 0 and columns == 1 else ""
+        style = "primary" if index == 0 and columns == 1 else ""
         place = ui.rect(x, y, wide, CHOICE_ROW - 8)
         buttons.append(ui.button(place, label, partial(do, action), area.content, style=style))
     area.set_height(ui.px(rows * CHOICE_ROW))
-    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="quiet")
     ui.focus_on(buttons[0])
 
 
@@ -202,7 +202,7 @@ def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], ob
     sheet, box, width = _box(ui, title, height, close, again)
     listed = RowList(ui, ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, tall), do, box, at_once=False)
     listed.show_rows(rows, None)
-    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="quiet")
     ui.focus_on(listed)
 
 
@@ -222,14 +222,14 @@ def fill_in(
         ui.close_sheet(sheet)
 
     def accept(_: object = None) -> None:
-        fault = answer([entry.entry.get_text().strip() for entry in entries])
+        fault = answer([entry.typed.strip() for entry in entries])
         if fault is None:
             close()
         else:
             note.show_text(fault)
 
     def again(other_ui: Ui) -> None:
-        typed = [(label, entry.entry.get_text()) for (label, _), entry in zip(fields, entries, strict=True)]
+        typed = [(label, entry.typed) for (label, _), entry in zip(fields, entries, strict=True)]
         fill_in(other_ui, title, hint, typed, verb, answer)
 
     sheet, box, width = _box(ui, title, height, close, again)
@@ -244,6 +244,6 @@ def fill_in(
         entries.append(entry)
     note = TextBlock(ui, ui.rect(MARGIN, height - MARGIN - 74, inside, 34), "", box, 12.0, WARNING)
     bottom = height - MARGIN - 34
-    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
+    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="primary")
     ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), "Cancel", close, box)
-    ui.focus_on(entries[0].entry)
+    ui.focus_on(entries[0])

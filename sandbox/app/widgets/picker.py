@@ -6,16 +6,19 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import FIELD, LINE, MENU, MUTED, TEXT, mixed
-from sandbox.app.widgets.painted import Lit, Painted, Pressable, wrapped
 from sandbox.app.widgets.rows import LINE_HEIGHT, PADDING, SWATCH, TEXT_SIZE, Row, RowList
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Pressable
 
 # A menu is no higher than so many rows.
 MENU_ROWS = 12
 
 
-class Picker(Lit, Pressable):
+class Picker(Pressable):
     """A value that a menu of rows changes: opens below it, by a click, Enter, Space or an arrow key."""
+
+    is_lit = True
 
     ui: Ui
 
@@ -27,8 +30,6 @@ class Picker(Lit, Pressable):
         self.shown = Row("")
         self._choose = choose
         self._menu: RowList | None = None
-        ui.add(self)
-        self.repaint()
 
     def show_value(self, rows: Sequence[Row], shown: Row) -> None:
         """Offer rows, and show one row as the value, which need not be among them."""
@@ -76,7 +77,7 @@ class Picker(Lit, Pressable):
     @property
     def pointed(self) -> Row | None:
         """The row under the mouse in the menu, or while that is closed the value under it; None: neither is."""
-        if self._menu is not None and self._menu.alive():
+        if self._menu is not None and self._menu.is_there:
             return None if self._menu.pointed is None else self.rows[self._menu.pointed]
         return self.shown if self.hovered else None
 
@@ -147,29 +148,8 @@ def _menu(
         close()
         take(index)
 
-    sheet = ui.open_sheet(close, "@clear")
-    _Beside(ui, pygame.Rect((0, 0), ui.size), close, sheet)
+    sheet = ui.open_sheet(close, "clear", is_menu=True)
     menu = RowList(ui, place, choose, sheet, at_once=False, background=MENU)
     menu.show_rows(rows, chosen, reveal=True)
     ui.focus_on(menu)
     return menu
-
-
-class _Beside(Painted):
-    """What lies around a menu: a click there closes it."""
-
-    def __init__(self, ui: Ui, rect: pygame.Rect, close: Callable[[], None], container: Any) -> None:
-        super().__init__(ui, rect, container)
-        self._close = close
-        self.repaint()
-
-    def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """Nothing."""
-        return pygame.Surface(size, pygame.SRCALPHA)
-
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Close on any press of a button; the wheel is none."""
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button in (1, 2, 3):
-            self._close()
-            return True
-        return False

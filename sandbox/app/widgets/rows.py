@@ -8,9 +8,10 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, CHOSEN, FIELD, LINE, MUTED, TEXT, Colour, mixed
-from sandbox.app.widgets.painted import ENTER_KEYS, Painted, wrapped
 from sandbox.app.widgets.scroll import WHEEL_STEP
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget
 
 # Sizes in layout units.
 LINE_HEIGHT = 17.0
@@ -40,12 +41,14 @@ class Row:
 SHORTEST_THUMB, THUMB_REACH = 20.0, 12.0
 
 
-class RowList(Painted):
+class RowList(Widget):
     """Rows to choose from; choose(index) is called by a click, Enter or Space; only what is seen is painted.
 
     empty: what it says without rows. at_once: arrow keys choose as they go. most_lines: of a row's text, and of what is
     below it, which wrap.
     """
+
+    is_focusable = True
 
     def __init__(
         self,
@@ -72,8 +75,6 @@ class RowList(Painted):
         self._pointed: int | None = None
         self._cursor: int | None = None
         self._grip: float | None = None
-        ui.add(self)
-        self.repaint()
 
     def show_rows(
         self, rows: Sequence[Row], chosen: int | None, reveal: bool = False, also: frozenset[int] = frozenset()
@@ -110,12 +111,9 @@ class RowList(Painted):
 
     # Where things are.
 
-    def _row_at(self, pos: tuple[int, int]) -> int | None:
-        x, y = self.ui.manager.calculate_scaled_mouse_position(pos)
-        if not self.hover_point(x, y):
-            return None
-        index = bisect_right(self._tops, y - self.rect.top + self._offset) - 1
-        return index if 0 <= index < len(self.rows) else None
+    def _row_at(self, at: Pixel) -> int | None:
+        index = bisect_right(self._tops, at[1] - self.rect.top + self._offset) - 1
+        return index if self.rect.collidepoint(at) and 0 <= index < len(self.rows) else None
 
     def _scroll_to(self, offset: float) -> None:
         self._offset = min(max(offset, 0.0), max(0.0, float(self._tops[-1] - self.rect.height)))
@@ -129,52 +127,59 @@ class RowList(Painted):
 
     # What mouse and keys do.
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Choose by a click, scroll by the wheel and by the thumb."""
-        if event.type == pygame.MOUSEMOTION and self._grip is not None:
-            self._drag_thumb(event.pos)
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._grip is not None:
-            self._grip = None
-            return True
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._is_at_thumb(event.pos):
-            y = self.ui.manager.calculate_scaled_mouse_position(event.pos)[1] - self.rect.top
+    def on_press(self, at: Pixel, clicks: int) -> bool:
+        """Choose by a click, or take the thumb."""
+        if self._is_long and at[0] >= self.rect.right - self.ui.px(THUMB_REACH):
             top, tall = self._thumb()
+            y = at[1] - self.rect.top
             self._grip = y - top if top <= y <= top + tall else tall / 2
-            self._drag_thumb(event.pos)
+            self.on_drag(at)
             return True
-        if event.type == pygame.MOUSEMOTION:
-            hovered = self._row_at(event.pos)
-            if hovered != self._pointed:
-                self._pointed = hovered
-                self.repaint()
-        elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            index = self._row_at(event.pos)
-            if index is not None:
-                self._cursor = index
-                self._choose(index)
-            return self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos))
-        elif event.type == pygame.MOUSEWHEEL and self.hover_point(*self.ui.manager.get_mouse_position()):
-            self._scroll_to(self._offset - (event.precise_y or event.y) * self.ui.px(WHEEL_STEP))
-            return True
-        return False
+        index = self._row_at(at)
+        if index is not None:
+            self._cursor = index
+            self._choose(index)
+        return True
+
+    def on_drag(self, at: Pixel) -> None:
+        """Scroll by the thumb."""
+        if self._grip is not None:
+            room = max(self.rect.height - self._thumb()[1], 1)
+            share = (at[1] - self.rect.top - self._grip) / room
+            self._scroll_to(share * (self._tops[-1] - self.rect.height))
+
+    def on_release(self, at: Pixel) -> None:
+        """Let the thumb go."""
+        self._grip = None
+
+    def on_move(self, at: Pixel) -> None:
+        """Mark the row under the mouse."""
+        self._point_to(self._row_at(at))
+
+    def on_hover(self) -> None:
+        """Mark none while the mouse is elsewhere."""
+        if not self.hovered:
+            self._point_to(None)
+
+    def _point_to(self, row: int | None) -> None:
+        if row != self._pointed:
+            self._pointed = row
+            self.repaint()
+
+    def on_wheel(self, notches: float) -> bool:
+        """Scroll, where there is more than is seen."""
+        self._scroll_to(self._offset - notches * self.ui.px(WHEEL_STEP))
+        return self._is_long
+
+    @property
+    def _is_long(self) -> bool:
+        return self._tops[-1] > self.rect.height
 
     def _thumb(self) -> tuple[float, int]:
         """Top and height of the thumb [pixels]."""
         height = self.rect.height
         tall = max(height * height // max(self._tops[-1], 1), self.ui.px(SHORTEST_THUMB))
         return (height - tall) * self._offset / max(self._tops[-1] - height, 1), tall
-
-    def _is_at_thumb(self, pos: tuple[int, int]) -> bool:
-        x, y = self.ui.manager.calculate_scaled_mouse_position(pos)
-        needed = self._tops[-1] > self.rect.height
-        return bool(needed and self.hover_point(x, y) and x >= self.rect.right - self.ui.px(THUMB_REACH))
-
-    def _drag_thumb(self, pos: tuple[int, int]) -> None:
-        assert self._grip is not None
-        y = self.ui.manager.calculate_scaled_mouse_position(pos)[1] - self.rect.top
-        room = max(self.rect.height - self._thumb()[1], 1)
-        self._scroll_to((y - self._grip) / room * (self._tops[-1] - self.rect.height))
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Arrows go from row to row, Page keys by a page, Home and End to the ends; Enter and Space choose."""

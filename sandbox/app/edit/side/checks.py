@@ -103,8 +103,8 @@ class ChecksPage:
         rows = [_row(check, results.get(check), is_running, has_keys) for check in checks]
         self.list.show_rows(rows, self.chosen if checks else None, reveal=True)
         for button in self.buttons[1:]:
-            (button.enable if checks else button.disable)()
-        self.buttons[2].set_text("Running" if is_running else "Run now")
+            button.is_enabled = bool(checks)
+        self.buttons[2].show_text("Running" if is_running else "Run now")
         self.form.show(check_properties(document, self.chosen))
         self._screen.show_box(checks[self.chosen].box if checks else None)
 

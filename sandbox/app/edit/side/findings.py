@@ -31,10 +31,10 @@ class FindingsPage:
         gap, top, tall = ui.px(GAP), place.bottom - ui.px(ROW + 4), ui.px(ROW)
         narrow = ui.px(IGNORE_WIDTH)
         row = pygame.Rect(place.left, top, upper.width - narrow - gap, tall)
-        self.mend = ui.button(row, "", self._mend, container, style="@segment", tip="Fix the finding chosen above")
+        self.mend = ui.button(row, "", self._mend, container, style="segment", tip="Fix the finding chosen above")
         row = pygame.Rect(row.right + gap, top, narrow, tall)
         tip = "Do not show the chosen finding again while this level is open"
-        self.ignore = ui.button(row, "Ignore", self._ignore, container, style="@segment", tip=tip)
+        self.ignore = ui.button(row, "Ignore", self._ignore, container, style="segment", tip=tip)
         self._chosen: Finding | None = None
         self._offer(None)
         self.findings: list[Finding] = []
@@ -71,8 +71,8 @@ class FindingsPage:
     def _offer(self, remedy: Remedy | None) -> None:
         """Let the button do what mends the chosen finding."""
         self._remedy = remedy
-        self.mend.set_text(NO_REMEDY if remedy is None else remedy.label)
-        (self.mend.disable if remedy is None else self.mend.enable)()
+        self.mend.show_text(NO_REMEDY if remedy is None else remedy.label)
+        self.mend.is_enabled = remedy is not None
 
     def _ignore(self) -> None:
         if self._chosen is not None:
@@ -85,6 +85,6 @@ class FindingsPage:
 
     def close(self) -> None:
         """Take the page away."""
-        self._ui.remove(self.list)
-        self._ui.remove(self.mend)
-        self._ui.remove(self.ignore)
+        self.list.remove()
+        self.mend.remove()
+        self.ignore.remove()

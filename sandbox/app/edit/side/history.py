@@ -37,4 +37,4 @@ class HistoryPage:
 
     def close(self) -> None:
         """Take the page away."""
-        self._ui.remove(self.list)
+        self.list.remove()

@@ -15,7 +15,7 @@ from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.panel.readings import number
 from sandbox.app.widgets.boxes import Scrub
-from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.editor.document import Document, EditError
@@ -87,7 +87,7 @@ class MaterialsPage:
                 "frequency", "Frequency [Hz]", self._type_frequency, "How fast a spring of this material swings."
             )
             self._add_field("ratio", "Damping ratio", self._type_ratio, "At 1 it comes to rest without swinging.")
-        heading = ui.label(ui.rect(0, self._y + 6, self._inside, ROW - 4), "BREAKS AND YIELDS", content, "@heading")
+        heading = ui.label(ui.rect(0, self._y + 6, self._inside, ROW - 4), "BREAKS AND YIELDS", content, "heading")
         self._widgets.append(heading)
         self._y += ROW + 4
         for name in LIMITS:
@@ -95,9 +95,9 @@ class MaterialsPage:
         self.look = Form(self._screen, self.area, above=self._y + 6)
 
     def _label(self, text: str, tip: str = "") -> None:
-        label = self._ui.label(self._ui.rect(0, self._y, self._inside, ROW), text, self.area.content, "@muted")
+        label = self._ui.label(self._ui.rect(0, self._y, self._inside, ROW), text, self.area.content, "muted")
         if tip:
-            label.set_tooltip(tip)
+            label.tip = tip
         self._widgets.append(label)
 
     def _add_field(
@@ -108,8 +108,8 @@ class MaterialsPage:
             self._label(label, tip)
         place = ui.rect(self._inside - width, self._y, width, ROW)
         self.fields[name] = ui.field(place, "", commit, self.area.content, 600)
-        self.fields[name].entry.set_tooltip(tip)
-        self._widgets.append(self.fields[name].entry)
+        self.fields[name].tip = tip
+        self._widgets.append(self.fields[name])
         self._y += ROW + GAP
 
     def _add_coefficient(self, name: str, about: FieldInfo) -> None:
@@ -127,18 +127,18 @@ class MaterialsPage:
         turn, done = partial(self._scrub_limit, name), self._screen.history.end_merge
         place = self._ui.rect(0, self._y, self._inside - FIELD_WIDTH - GAP, ROW)
         scrub = Scrub(self._ui, place, about.title, turn, done, self.area.content)
-        scrub.set_tooltip(f"{about.tooltip} Drag to change it.")
+        scrub.tip = f"{about.tooltip} Drag to change it."
         self._widgets.append(scrub)
         self._add_field(name, "", partial(self._type_limit, name), about.tooltip)
         if about.empty:
-            self.fields[name].entry.placeholder_text = f"({about.empty})"
-            self.fields[name].entry.set_text("")
+            self.fields[name].hint = f"({about.empty})"
+            self.fields[name].typed = ""
 
     def _drop(self) -> None:
-        if any(field.entry.is_focused for field in self.fields.values()):
+        if any(field.focused for field in self.fields.values()):
             self._ui.blur()
         for widget in self._widgets:
-            self._ui.remove(widget)
+            widget.remove()
         self._widgets, self.fields, self.sliders = [], {}, {}
         if self.look is not None:
             self.look.close()
@@ -171,7 +171,7 @@ class MaterialsPage:
         is_default = self.chosen == DEFAULT_MATERIAL
         if not is_default:
             self.fields["name"].show(line_text(self.chosen))
-        (self.buttons["Delete"].disable if is_default else self.buttons["Delete"].enable)()
+        self.buttons["Delete"].is_enabled = not is_default
         self.law.show("hooke" if isinstance(material, HookeMaterial) else "nissen")
         for name in self.fields.keys() & type(material).model_fields.keys():
             value = getattr(material, name)
@@ -318,7 +318,7 @@ class MaterialsPage:
         if self._screen.edit("Add a material", lambda document: add_material(document, name, material)):
             self.chosen = name
             self.refresh()
-            self._ui.focus_on(self.fields["name"].entry)
+            self._ui.focus_on(self.fields["name"])
 
     def _delete(self) -> None:
         name = self.chosen

@@ -34,12 +34,12 @@ class PropertiesPage:
 
     def refresh(self) -> None:
         """Show the selection as it is now."""
-        document, wanted = self._screen.document, self.search.entry.get_text().strip()
+        document, wanted = self._screen.document, self.search.typed.strip()
         if document is not self._shown or wanted != self._wanted:
             if document.selection != (self._shown or document).selection and wanted == self._wanted:
                 # Something else is selected: it is shown whole.
                 wanted = ""
-                self.search.entry.set_text("")
+                self.search.typed = ""
             self._shown, self._wanted = document, wanted
             sections = _sections(document)
             self.form.show(found_sections(sections, wanted) if wanted else sections)
@@ -48,8 +48,8 @@ class PropertiesPage:
     def close(self) -> None:
         """Take the page away."""
         self.form.close()
-        self._screen.ui.remove(self.search.entry)
-        self._area.kill()
+        self.search.remove()
+        self._area.remove()
 
 
 def _sections(document: Document) -> tuple[Section, ...]:

@@ -10,8 +10,8 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.trails import MOST, attempt_colour
 from sandbox.app.edit.side.form import GAP, ROW
-from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.rows import Row, RowList
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.panel.typed import number_text, read_integer, read_number
 from sandbox.editor.range_trial import Attempt, Number, RangeTrial, between, numbers
@@ -67,17 +67,17 @@ class RangePage:
         self._number = number
         ui, place, gap, row = self._ui, self._place, self._ui.px(GAP), self._ui.px(ROW)
         width, top = place.width - ui.px(6), place.top
-        title = ui.label(pygame.Rect(place.left, top, width, row), number.title, self._container, "@title")
+        title = ui.label(pygame.Rect(place.left, top, width, row), number.title, self._container, "title")
         top += row + gap
         self._widgets.append(title)
         self.fields = {}
         for name, text in (("From", low), ("To", high), ("How many", count)):
-            label = ui.label(pygame.Rect(place.left, top, ui.px(LABEL), row), name, self._container, "@muted")
+            label = ui.label(pygame.Rect(place.left, top, ui.px(LABEL), row), name, self._container, "muted")
             at = pygame.Rect(place.left + ui.px(LABEL), top, width - ui.px(LABEL), row)
             field = ui.field(at, text, lambda _: True, self._container, 40)
             field.enter = lambda _: self._try()
             self.fields[name] = field
-            self._widgets += [label, field.entry]
+            self._widgets += [label, field]
             top += row + gap
         half = (width - gap) // 2
         tip = "Run the level once with each value"
@@ -94,7 +94,7 @@ class RangePage:
         self._shown = None
 
     def _add_button(self, text: str, place: pygame.Rect, do: Any, tip: str) -> None:
-        self._widgets.append(self._ui.button(place, text, do, self._container, style="@segment", tip=tip))
+        self._widgets.append(self._ui.button(place, text, do, self._container, style="segment", tip=tip))
 
     def _try(self) -> None:
         number, screen = self._number, self._screen
@@ -102,8 +102,8 @@ class RangePage:
         # It is tried in the level as it is now.
         now = next((each for each in numbers(screen.document) if each.title == number.title), number)
         try:
-            low, high = (read_number(name, self.fields[name].entry.get_text()) for name in ("From", "To"))
-            count = read_integer("How many", self.fields["How many"].entry.get_text())
+            low, high = (read_number(name, self.fields[name].typed) for name in ("From", "To"))
+            count = read_integer("How many", self.fields["How many"].typed)
             values = between(low, high, count, whole=now.about.about.kind == "integer")
         except EditError as error:
             screen.say(sentence(error))
@@ -164,7 +164,7 @@ class RangePage:
 
     def _clear(self) -> None:
         for widget in self._widgets:
-            self._ui.remove(widget)
+            widget.remove()
         self._widgets = []
 
     def close(self) -> None:

@@ -44,16 +44,14 @@ class SettingsPage:
         row = pygame.Rect(0, gap, wide, tall)
         tip = "Change the tick rate and adapt Cs and Cd, so that springs move as they do now"
         self.pace = self._ui.button(
-            row, "Tick rate, at the same pace…", self._ask_rate, self._foot, style="@segment", tip=tip
+            row, "Tick rate, at the same pace…", self._ask_rate, self._foot, style="segment", tip=tip
         )
         row = pygame.Rect(0, row.bottom + gap, (wide - gap) // 2, tall)
         tip = "The level opens with what you see now"
-        self.from_camera = self._ui.button(
-            row, "View from here", self._take_view, self._foot, style="@segment", tip=tip
-        )
+        self.from_camera = self._ui.button(row, "View from here", self._take_view, self._foot, style="segment", tip=tip)
         row = row.move(row.width + gap, 0)
         tip = "The level opens with everything in view"
-        self.no_view = self._ui.button(row, "View: everything", self._drop_view, self._foot, style="@segment", tip=tip)
+        self.no_view = self._ui.button(row, "View: everything", self._drop_view, self._foot, style="segment", tip=tip)
 
     def refresh(self) -> None:
         """Show the level as it is now."""
@@ -62,7 +60,7 @@ class SettingsPage:
             self._shown = document.level
             self.form.show(level_properties(document))
             if self._moves_foot:
-                self._foot.set_relative_position((0, self._ui.px(self.form.end)))
+                self._foot.move_to((0, self._ui.px(self.form.end)))
         self.form.refresh()
 
     def _take_view(self) -> None:
@@ -102,8 +100,8 @@ class SettingsPage:
     def close(self) -> None:
         """Take the page away."""
         self.form.close()
-        self._ui.remove(self.from_camera)
-        self._ui.remove(self.no_view)
-        self._ui.remove(self.pace)
-        self._foot.kill()
-        self._area.kill()
+        self.from_camera.remove()
+        self.no_view.remove()
+        self.pace.remove()
+        self._foot.remove()
+        self._area.remove()

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import pygame
-from pygame_gui.elements import UIButton
 
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.edit.side.catalogue import CataloguePage
@@ -17,6 +16,7 @@ from sandbox.app.edit.side.objects import ObjectsPage
 from sandbox.app.edit.side.properties import PropertiesPage
 from sandbox.app.edit.side.range_page import RangePage
 from sandbox.app.edit.side.settings import SettingsPage
+from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -102,9 +102,9 @@ class Side:
         if isinstance(self.page, CataloguePage):
             self.page.focus(path)
         elif isinstance(self.page, ObjectsPage):
-            self._ui.focus_on(self.page.search.entry)
+            self._ui.focus_on(self.page.search)
 
-    def _tab_button(self, tab: str) -> UIButton:
+    def _tab_button(self, tab: str) -> Button:
         return next(row.buttons[tab] for row in self._rows if tab in row.buttons)
 
     def _made(self) -> SidePage:
@@ -130,12 +130,12 @@ class Side:
         button = self._tab_button("findings")
         text = f"Findings {count}" if count else "Findings"
         if button.text != text:
-            button.set_text(text)
+            button.show_text(text)
 
     def close(self) -> None:
         """Take what is being typed, and take the panel away."""
         self.page.close()
         for row in self._rows:
             for button in row.buttons.values():
-                self._ui.remove(button)
-        self.back.kill()
+                button.remove()
+        self.back.remove()

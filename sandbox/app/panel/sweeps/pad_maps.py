@@ -7,8 +7,8 @@ import pygame
 from sandbox.app.panel.coefficient_pad import CoefficientPad
 from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps, measures_of
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.painted import wrapped
 from sandbox.app.widgets.picker import WordPicker
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 
 THEORY = "Theory"
