@@ -126,6 +126,11 @@ def test_ctrl_z_takes_back_and_ctrl_y_and_shift_bring_it_again():
     person.type("x")
     person.key(pygame.K_y, CTRL)
     assert person.field.typed == "one x"
+    # What replaced a selection goes as a whole.
+    person.key(pygame.K_a, CTRL)
+    person.type("all else")
+    person.key(pygame.K_z, CTRL)
+    assert person.field.typed == "one x" and person.field.selected == (0, 5)
 
 
 def test_keys_move_by_letters_and_words_and_select_with_shift():

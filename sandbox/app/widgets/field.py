@@ -136,7 +136,7 @@ class Field(Widget):
         text = text[: max(self.limit - len(self.typed) + high - low, 0)]
         if text or low != high:
             end = low + len(text)
-            self._change(_Line(self.typed[:low] + text + self.typed[high:], end, end), joins=low == high)
+            self._change(_Line(self.typed[:low] + text + self.typed[high:], end, end), joins=True)
 
     def compose(self, text: str) -> None:
         """Show what an input method has of a text so far."""
@@ -233,6 +233,7 @@ class Field(Widget):
             if key == pygame.K_x:
                 self._delete(0, False)
         elif key == pygame.K_v:
+            self._joins = False
             self.insert(copied_text())
             self._joins = False
         elif key == pygame.K_y or (key == pygame.K_z and with_shift):
