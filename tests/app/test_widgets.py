@@ -5,12 +5,18 @@ import pytest
 
 from sandbox.app.base.display import Display
 from sandbox.app.draw.colours import TEXT, Tone
+from sandbox.app.edit.bar import LEFT, RIGHT
+from sandbox.app.play import time_bar
 from sandbox.app.widgets import plate as plates
-from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.plate import box
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.styles import BoxLook
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.tools.palette import TOOLS
+from sandbox.level.format.shipped import shipped_folder
+from sandbox.tools.parts import PARTS
+from sandbox.tools.play_tools import PLAY_TOOLS
 
 PLACE = pygame.Rect(10, 10, 120, 34)
 RED, BLUE = Tone((200, 0, 0), (200, 0, 0)), Tone((0, 0, 200), (0, 0, 200))
@@ -148,7 +154,7 @@ def test_boxes_are_kept_in_so_many_bytes(monkeypatch):
 
 
 def test_a_picture_that_is_shown_later_looks_as_one_that_was_given_at_once(ui):
-    play, stop = (painted_icon(ICONS[name], 20, TEXT) for name in ("play", "stop"))
+    play, stop = (painted_icon(name, 20, TEXT) for name in ("play", "stop"))
     button, fresh = (ui.button(PLACE, "", lambda: None, icon=icon) for icon in (play, stop))
     assert pygame.image.tobytes(button.image, "RGBA") != pygame.image.tobytes(fresh.image, "RGBA")
     button.show_icon(stop)
@@ -173,3 +179,21 @@ def test_a_text_that_has_no_room_ends_in_an_ellipsis_and_never_leaves_its_widget
         for widget in (label, button):
             assert widget.image.get_size() == widget.rect.size
             assert widget.font.size(widget.text)[0] > widget.rect.width
+
+
+def test_an_icon_is_the_file_of_its_name_in_any_size_and_colour_and_without_one_a_letter(ui):
+    for size in (12, 20, 41):
+        icon = painted_icon("play", size, (10, 200, 30))
+        assert icon.get_size() == (size, size) and icon.get_at((size // 2, size // 2)) == (10, 200, 30, 255)
+        assert icon.get_at((0, 0)).a == 0 and painted_icon("play", size, (10, 200, 30)) is icon
+    letters = [painted_icon(name, 24, (10, 200, 30)) for name in ("lift", "loft", "mast")]
+    first, same, other = (pygame.image.tobytes(each, "RGBA") for each in letters)
+    assert first == same != other and letters[0].get_bounding_rect().width > 4
+
+
+def test_every_tool_and_every_button_of_the_bars_has_its_icon():
+    wanted = {*TOOLS, *(name for group in (*LEFT, RIGHT) for _, name in group), "settings", "more", "part"}
+    wanted |= {picture for _, picture in (*time_bar.LEFT, *time_bar.RIGHT)} | {"pause", "stop", "muted", "play"}
+    wanted |= {name for name, tool in PLAY_TOOLS.items() if name not in PARTS}
+    folder = shipped_folder("assets") / "icons"
+    assert not [name for name in wanted if not (folder / f"{name}.svg").is_file()]

@@ -8,12 +8,10 @@ import pygame
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour
-from sandbox.app.edit.edit_icons import EDIT_ICONS
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
 from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.tools.icons import Icon
 from sandbox.editor.tools.palette import TOOL_GROUPS, TOOLS
 
 # Groups of actions from the left, and those at the right end, with their pictures.
@@ -64,11 +62,11 @@ class _Buttons:
     def __init__(self, ui: Ui, press: Callable[[str], None], back: Any, size: float) -> None:
         self._ui, self._press, self._back, self._size = ui, press, back, size
         self.by_action: dict[str, Any] = {}
-        self._icons: dict[str, Icon] = {}
+        self._icons: dict[str, str] = {}
         self._names: dict[str, tuple[str, float]] = {}
         self._shown: dict[str, Colour] = {}
 
-    def add(self, action: str, icon: Icon, x: float, y: float, name: str = "", width: float = 0.0) -> None:
+    def add(self, action: str, icon: str, x: float, y: float, name: str = "", width: float = 0.0) -> None:
         """A button of an action at a place [layout units]; with a name beside its icon it is as wide as is said."""
         ui = self._ui
         self._icons[action] = icon
@@ -132,7 +130,7 @@ class Bar:
         for group in LEFT:
             for action, picture in group:
                 if action not in self.left_out:
-                    self.buttons.add(action, EDIT_ICONS[picture], x, y)
+                    self.buttons.add(action, picture, x, y)
                     x += pitch
             x += gaps / len(LEFT)
         at_right = [entry for entry in RIGHT if entry[0] not in self.left_out]
@@ -141,7 +139,7 @@ class Bar:
         if width >= ROOM_FOR_NAME:
             self.title = BarTitle(ui, ui.rect(x + 8, 0, right - x - 16, BAR_HEIGHT), self.back)
         for action, picture in at_right:
-            self.buttons.add(action, EDIT_ICONS[picture], right, y)
+            self.buttons.add(action, picture, right, y)
             right += pitch
         self.buttons.add_text("help", "?", right, y)
 
@@ -205,7 +203,7 @@ class Palette:
             ui.label(ui.rect(10.0, y + 3.0, NAMED_WIDTH - 12.0, HEADING - 4.0), group, self.back, "muted")
             y += HEADING
             for tool in tools:
-                self._buttons.add(tool.action, tool.icon, 6.0, y, tool.title.capitalize(), NAMED_WIDTH - 12.0)
+                self._buttons.add(tool.action, tool.name, 6.0, y, tool.title.capitalize(), NAMED_WIDTH - 12.0)
                 y += pitch
 
     def _add_icons(self, ui: Ui, press: Callable[[str], None], width: float, height: float) -> None:
@@ -218,7 +216,7 @@ class Palette:
         for index, tool in enumerate(TOOLS.values()):
             column, row = divmod(index, rows)
             x = 4.0 + column * across + (across - size) / 2
-            self._buttons.add(tool.action, tool.icon, x, 6 + row * pitch)
+            self._buttons.add(tool.action, tool.name, x, 6 + row * pitch)
 
     def show(self, tool: str) -> None:
         """Mark the tool in use."""

@@ -9,7 +9,7 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.draw.colours import TEXT
 from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.field import Field
-from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -59,7 +59,7 @@ class Header:
     def _buttons(self, app: Application, right: float) -> float:
         """New, Open file and Settings, up to the right; where they begin."""
         ui, sheet = self._ui, self._sheet
-        icon = painted_icon(ICONS["settings"], ui.px(18), TEXT)
+        icon = painted_icon("settings", ui.px(18), TEXT)
         documents = app.documents
         new = documents.new_place if app.mode == "edit" else documents.play_new
         buttons = [(58.0, "New", new), (94.0, "Open file", app.files.ask_to_open)]

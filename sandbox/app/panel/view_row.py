@@ -9,7 +9,7 @@ import pygame
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT, TEXT
 from sandbox.app.draw.views.overlays import NAMES
-from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
 
 ICON = 17.0
@@ -26,7 +26,7 @@ class ViewRow:
         for index, name in enumerate(NAMES):
             left, right = round(index * step), round((index + 1) * step - ui.px(GAP))
             place = pygame.Rect(rect.left + left, rect.top, right - left, rect.height)
-            icon = painted_icon(ICONS[name], ui.px(ICON), TEXT)
+            icon = painted_icon(name, ui.px(ICON), TEXT)
             self.buttons[name] = ui.button(
                 place, "", partial(toggle, name), container, style="segment", icon=icon, tip=tip_of(name, "play")
             )
@@ -35,6 +35,6 @@ class ViewRow:
         """Mark those that are shown."""
         for name in self._shown ^ shown:
             is_on = name in shown
-            self.buttons[name].show_icon(painted_icon(ICONS[name], self._ui.px(ICON), ACCENT if is_on else TEXT))
+            self.buttons[name].show_icon(painted_icon(name, self._ui.px(ICON), ACCENT if is_on else TEXT))
             self.buttons[name].is_selected = is_on
         self._shown = frozenset(shown)

@@ -11,9 +11,8 @@ from sandbox.app.draw.colours import ACCENT, TEXT, Colour
 from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.tools.icons import Icon, IconPen
 from sandbox.tools.parts import PARTS
 from sandbox.tools.play_tools import PLAY_TOOLS
 
@@ -25,50 +24,9 @@ ICON, PICTURE = 18.0, 30.0
 LEAST_STEP = BUTTON + GAP
 
 
-def _push(pen: IconPen) -> None:
-    pen.disc(12, 12, 3.2)
-    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-        pen.line((12 + 6 * dx, 12 + 6 * dy), (12 + 10 * dx, 12 + 10 * dy))
-
-
-def _wind(pen: IconPen) -> None:
-    pen.line((3, 8), (14, 8))
-    pen.arc(14, 5.5, 2.5, 270, 520)
-    pen.line((3, 13), (18, 13))
-    pen.line((3, 18), (12, 18))
-    pen.arc(18, 15.5, 2.5, 200, 450)
-
-
-def _delete(pen: IconPen) -> None:
-    pen.line((4, 6.5), (20, 6.5))
-    pen.line((9.5, 6), (9.5, 3.5), (14.5, 3.5), (14.5, 6))
-    pen.line((6, 7), (7, 20.5), (17, 20.5), (18, 7))
-    pen.line((10.2, 10.5), (10.5, 17))
-    pen.line((13.8, 10.5), (13.5, 17))
-
-
-def _freeze(pen: IconPen) -> None:
-    for ends in (((12, 3), (12, 21)), ((4.2, 7.5), (19.8, 16.5)), ((4.2, 16.5), (19.8, 7.5))):
-        pen.line(*ends)
-    for x, y in ((12, 6), (12, 18)):
-        pen.line((9.5, y - 2.5 if y < 12 else y + 2.5), (x, y), (14.5, y - 2.5 if y < 12 else y + 2.5))
-
-
-def _catalogue(pen: IconPen) -> None:
-    pen.line((3.5, 3.5), (10, 3.5), (10, 10), (3.5, 10), (3.5, 3.5))
-    pen.disc(17.2, 6.8, 3.6, 1.6)
-    pen.line((6.8, 14), (10.4, 20.5), (3.2, 20.5), (6.8, 14))
-    pen.line((17.2, 13.6), (17.2, 20.8))
-    pen.line((13.6, 17.2), (20.8, 17.2))
-
-
 NAMES = tuple(name for name, tool in PLAY_TOOLS.items() if tool.group == "Parts")
 # The button of the catalogue goes by the name of the tool that has a part of it in hand.
 MORE = "more"
-DRAWN: dict[str, Icon] = {
-    "push": _push, "wind": _wind, "delete": _delete, "freeze": _freeze, CATALOGUE: _catalogue, MORE: ICONS[MORE],
-    **{name: tool.icon for name, tool in PLAY_TOOLS.items() if tool.icon is not None},
-}  # fmt: skip
 
 
 def _action_of(name: str) -> str:
@@ -121,6 +79,6 @@ class PartsPalette:
             button.is_selected = is_chosen
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        if name in DRAWN:
-            return painted_icon(DRAWN[name], self._ui.px(ICON), colour)
-        return self._pictures[name]
+        if name in self._pictures:
+            return self._pictures[name]
+        return painted_icon(name, self._ui.px(ICON), colour)

@@ -12,7 +12,7 @@ from sandbox.app.play.time_track import TimeTrack
 from sandbox.app.run.playback import Playback
 from sandbox.app.run.travel import Mark
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -83,7 +83,7 @@ class TimeBar:
     def _add(self, action: str, picture: str, x: float, back: Any) -> None:
         ui = self._ui
         place = ui.rect(x, (HEIGHT - BUTTON) / 2, BUTTON, BUTTON)
-        icon = painted_icon(ICONS[picture], ui.px(ICON), TEXT)
+        icon = painted_icon(picture, ui.px(ICON), TEXT)
         do, tip = partial(self._app.act, action), tip_of(action, "play")
         self.buttons[action] = ui.button(place, "", do, back, icon=icon, tip=tip, style="quiet")
 
@@ -117,7 +117,7 @@ class TimeBar:
             if on != button.is_selected:
                 button.is_selected = on
                 picture = dict(LEFT + RIGHT)[action]
-                button.show_icon(painted_icon(ICONS[picture], self._ui.px(ICON), ACCENT if on else TEXT))
+                button.show_icon(painted_icon(picture, self._ui.px(ICON), ACCENT if on else TEXT))
 
     # Actions.
 

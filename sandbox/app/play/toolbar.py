@@ -12,7 +12,7 @@ from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, TEXT, Colour
 from sandbox.app.play.speeds import words_of
 from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -186,7 +186,7 @@ class Toolbar:
             button.is_selected = on
 
     def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        return painted_icon(ICONS[name], self._ui.px(ICON), colour)
+        return painted_icon(name, self._ui.px(ICON), colour)
 
     def _add(self, action: str, do: Callable[[], None] | None = None, tip: str = "") -> None:
         """A button of an action at the next place; do: in place of what the table of shortcuts has."""
