@@ -234,5 +234,5 @@ def _rect_of(target: Target, editor: EditScreen) -> pygame.Rect | None:
     field = editor.options.fields.get(target)
     if field is not None:
         return field.rect.copy()
-    button = editor.palette.tools.get(target.removeprefix("tool_")) or editor.bar.buttons.by_action.get(target)
+    button = editor.palette.tools.get(target.removeprefix("tool_")) or editor.bar.buttons.get(target)
     return button.rect.copy() if button is not None else None

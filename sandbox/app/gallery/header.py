@@ -6,10 +6,8 @@ from typing import Any
 
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.application import Application
-from sandbox.app.draw.colours import TEXT
 from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.field import Field
-from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -59,7 +57,6 @@ class Header:
     def _buttons(self, app: Application, right: float) -> float:
         """New, Open file and Settings, up to the right; where they begin."""
         ui, sheet = self._ui, self._sheet
-        icon = painted_icon("settings", ui.px(18), TEXT)
         documents = app.documents
         new = documents.new_place if app.mode == "edit" else documents.play_new
         buttons = [(58.0, "New", new), (94.0, "Open file", app.files.ask_to_open)]
@@ -70,7 +67,7 @@ class Header:
             ui.button(ui.rect(x, 24, width, BUTTON), text, action, sheet, tip=tip)
             x += width + GAP
         place = ui.rect(x, 24, BUTTON, BUTTON)
-        ui.button(place, "", lambda: app.act("settings"), sheet, icon=icon, tip=tip_of("settings", app.mode))
+        ui.button(place, "", lambda: app.act("settings"), sheet, icon="settings", tip=tip_of("settings", app.mode))
         return left
 
     def show_sections(self, titles: Sequence[str], go: Callable[[str], None]) -> None:

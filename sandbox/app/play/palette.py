@@ -4,14 +4,10 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-import pygame
-
 from sandbox.app.base.shortcuts import tip_of
-from sandbox.app.draw.colours import ACCENT, TEXT, Colour
 from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.ui import Ui
 from sandbox.tools.parts import PARTS
 from sandbox.tools.play_tools import PLAY_TOOLS
@@ -19,7 +15,7 @@ from sandbox.tools.play_tools import PLAY_TOOLS
 # Sizes in layout units.
 LEFT, TOP, BUTTON, GAP, EDGE = 10.0, 10.0, 34.0, 3.0, 5.0
 WIDTH = BUTTON + 2 * EDGE
-ICON, PICTURE = 18.0, 30.0
+PICTURE = 30.0
 # Where the window has less height for a button, there are two columns.
 LEAST_STEP = BUTTON + GAP
 
@@ -41,8 +37,6 @@ class PartsPalette:
 
     def __init__(self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float) -> None:
         self._ui, self._press = ui, press
-        self._tool: str | None = None
-        self._pictures = {part: picture_of(part, ui.px(PICTURE)) for part in PARTS}
         names = [*NAMES, CATALOGUE]
         rows, most = (max(1, int((room - 2 * TOP - 2 * EDGE + GAP) // LEAST_STEP)) for room in (height, width))
         shown = names if len(names) <= rows * most else [*names[: max(rows * most - 1, 0)], MORE]
@@ -60,7 +54,8 @@ class PartsPalette:
             place = ui.rect(EDGE + column * (BUTTON + GAP), EDGE + row * LEAST_STEP, BUTTON, BUTTON)
             tip = "More buttons" if name == MORE else tip_of(_action_of(name), "play")
             do = self._show_menu if name == MORE else functools.partial(press, _action_of(name))
-            self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="quiet")
+            icon = picture_of(name, ui.px(PICTURE)) if name in PARTS else name
+            self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="quiet", icon=icon)
 
     def _show_menu(self) -> None:
         """Offer what has no room on the strip."""
@@ -69,16 +64,6 @@ class PartsPalette:
         choose(self._ui, "More", "", choices)
 
     def show(self, tool: str) -> None:
-        """Show the tool in use, changing what differs."""
-        before, self._tool = self._tool, tool
-        if tool == before:
-            return
+        """Show the tool in use."""
         for name, button in self.buttons.items():
-            is_chosen = name == tool or (name == MORE and tool in self.left_out)
-            button.show_icon(self._icon(name, ACCENT if is_chosen else TEXT))
-            button.is_selected = is_chosen
-
-    def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        if name in self._pictures:
-            return self._pictures[name]
-        return painted_icon(name, self._ui.px(ICON), colour)
+            button.is_selected = name == tool or (name == MORE and tool in self.left_out)

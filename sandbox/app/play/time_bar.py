@@ -7,12 +7,10 @@ from typing import Any
 from sandbox.app.base.loop import BACKWARD_SPEEDS, FAST_SPEEDS
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.application import Application
-from sandbox.app.draw.colours import ACCENT, TEXT
 from sandbox.app.play.time_track import TimeTrack
 from sandbox.app.run.playback import Playback
 from sandbox.app.run.travel import Mark
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -83,9 +81,8 @@ class TimeBar:
     def _add(self, action: str, picture: str, x: float, back: Any) -> None:
         ui = self._ui
         place = ui.rect(x, (HEIGHT - BUTTON) / 2, BUTTON, BUTTON)
-        icon = painted_icon(picture, ui.px(ICON), TEXT)
         do, tip = partial(self._app.act, action), tip_of(action, "play")
-        self.buttons[action] = ui.button(place, "", do, back, icon=icon, tip=tip, style="quiet")
+        self.buttons[action] = ui.button(place, "", do, back, icon=picture, icon_size=ICON, tip=tip, style="quiet")
 
     def show(self) -> None:
         """Show where the run is."""
@@ -112,12 +109,8 @@ class TimeBar:
         if self._clock is not None:
             font, widest = self._ui.font(CLOCK_TEXT), self._ui.px(CLOCK_WIDTH)
             self._clock.show_text(wrapped(text, font, widest, 1)[0])
-        for action, on in (("backwards", playback.clock.speed < 0.0), ("loop", travel.looping)):
-            button = self.buttons[action]
-            if on != button.is_selected:
-                button.is_selected = on
-                picture = dict(LEFT + RIGHT)[action]
-                button.show_icon(painted_icon(picture, self._ui.px(ICON), ACCENT if on else TEXT))
+        self.buttons["backwards"].is_selected = playback.clock.speed < 0.0
+        self.buttons["loop"].is_selected = travel.looping
 
     # Actions.
 

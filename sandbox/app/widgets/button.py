@@ -5,11 +5,18 @@ from dataclasses import dataclass
 
 import pygame
 
+from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour
+from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.plate import box
 from sandbox.app.widgets.styles import BUTTONS, State
 from sandbox.app.widgets.texts import shortened
 from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget
+
+# The name of an icon, or a picture with straight alpha.
+Icon = str | pygame.Surface
+# Middle of an icon with a text behind it [layout units].
+ICON_MIDDLE = 16.0
 
 
 class Button(Widget):
@@ -20,11 +27,12 @@ class Button(Widget):
 
     def __init__(
         self, ui: WindowLayout, rect: pygame.Rect, text: str, action: Callable[[], object],
-        parent: Widget | None = None, *, style: str = "", icon: pygame.Surface | None = None,
+        parent: Widget | None = None, *, style: str = "", icon: Icon = "", icon_size: float = 18.0,
     ) -> None:  # fmt: skip
         super().__init__(ui, rect, parent)
         self.text, self.action = text, action
-        self._style, self._icon = BUTTONS[style], icon
+        self._style, self._icon, self._icon_size = BUTTONS[style], icon, icon_size
+        self._tint: Colour | None = None
         self._is_selected = False
 
     @property
@@ -49,10 +57,10 @@ class Button(Widget):
             self.text = text
             self.repaint()
 
-    def show_icon(self, icon: pygame.Surface) -> None:
-        """Show another picture, with straight alpha."""
-        if icon is not self._icon:
-            self._icon = icon
+    def show_icon(self, icon: Icon, tint: Colour | None = None) -> None:
+        """Show another icon; tint: its colour, None = that of the button's state."""
+        if (icon, tint) != (self._icon, self._tint):
+            self._icon, self._tint = icon, tint
             self.repaint()
 
     @property
@@ -65,15 +73,22 @@ class Button(Widget):
         return "selected" if self.is_selected else "hovered" if self.hovered else "normal"
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The box, and the picture or the text in its middle."""
+        """The box, with the icon or the text in its middle, or the icon and the text behind it."""
         ui, look = self.ui, self._style.looks[self.state]
         rim = max(ui.px(1), 1)
         surface = box(size, look, ui.px(self._style.radius), rim).copy()
-        if self._icon is not None:
-            surface.blit(self._icon, self._icon.get_rect(center=surface.get_rect().center))
+        tint = self._tint or (ACCENT if self.is_selected else TEXT if self.is_enabled else DISABLED)
+        icon, left = self._icon, 0
+        if isinstance(icon, str) and icon:
+            icon = painted_icon(icon, ui.px(self._icon_size), tint)
+        if isinstance(icon, pygame.Surface):
+            middle = (ui.px(ICON_MIDDLE) if self.text else size[0] // 2, size[1] // 2)
+            surface.blit(icon, icon.get_rect(center=middle))
+            left = ui.px(2 * ICON_MIDDLE)
         if self.text:
-            text = self.font.render(shortened(self.text, self.font, size[0] - 2 * rim), True, look.text)
-            surface.blit(text, ((size[0] - text.width) // 2, (size[1] - text.height) // 2))
+            words = shortened(self.text, self.font, size[0] - 2 * rim - left)
+            text = self.font.render(words, True, tint if left else look.text)
+            surface.blit(text, (left or (size[0] - text.width) // 2, (size[1] - text.height) // 2))
         return surface
 
     def on_press(self, at: Pixel, clicks: int) -> bool:

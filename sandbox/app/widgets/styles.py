@@ -74,6 +74,7 @@ BUTTONS = {
     "": ButtonStyle(_BUTTON),
     "segment": ButtonStyle(_BUTTON, 12.0),
     "quiet": ButtonStyle(_BUTTON | _QUIET),
+    "tool": ButtonStyle(_BUTTON | _QUIET, 12.0),
     "primary": ButtonStyle(_BUTTON | _PRIMARY),
     "chip": ButtonStyle(_BUTTON | _CHIP, 12.0, 13.0),
 }

@@ -7,7 +7,7 @@ from functools import partial
 import pygame
 
 from sandbox.app.draw.colours import ACCENT
-from sandbox.app.widgets.button import Button, Choice
+from sandbox.app.widgets.button import Button, Choice, Icon
 from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.plate import Plate
@@ -80,11 +80,12 @@ class Ui(WindowLayout):
         container: Widget | None = None,
         *,
         style: str = "",
-        icon: pygame.Surface | None = None,
+        icon: Icon = "",
+        icon_size: float = 18.0,
         tip: str = "",
     ) -> Button:
         """A button with text or an icon."""
-        button = Button(self, rect, text, action, container, style=style, icon=icon)
+        button = Button(self, rect, text, action, container, style=style, icon=icon, icon_size=icon_size)
         button.tip = tip
         return button
 
