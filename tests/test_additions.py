@@ -206,19 +206,17 @@ COMMAND = Subcommand("greet", "say the name of a level", GreetOptions, greet)
 COUNTS = '''
 """CountsPage: how many bodies there are."""
 
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.rows import Row, RowList
 
 
-class CountsPage:
+class CountsPage(SidePage):
     def __init__(self, screen, place, container):
         self._screen = screen
         self.list = RowList(screen.ui, place, lambda index: None, container)
 
     def refresh(self):
         self.list.show_rows([Row(f"{len(self._screen.document.level.bodies)} bodies")], 0)
-
-    def close(self):
-        self.list.remove()
 '''
 
 CLOCK = '''

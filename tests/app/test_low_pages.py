@@ -98,4 +98,4 @@ def test_the_buttons_of_the_level_follow_its_last_row(driver):
 
 
 def end_of(form):
-    return max(widget.rect.bottom for widget in form._widgets)
+    return max(widget.rect.bottom for widget in form._holder.children)

@@ -367,7 +367,7 @@ def test_tab_goes_through_the_fields_and_keeps_them_in_sight(driver):
         driver.key(pygame.K_TAB)
         focus = driver.app.ui.focus
         seen.append(focus)
-        if focus.parent is form(driver).area.content:
+        if focus.parent is form(driver)._holder:
             assert form(driver).area.view.rect.contains(focus.rect)
     assert entry(driver, "group") in seen
     assert form(driver).area.offset > 0.0
@@ -606,12 +606,12 @@ def test_a_finding_is_selected_and_shown_by_a_click(edit):
 
 def test_nothing_is_made_anew_while_nothing_changes(driver):
     choose(driver, ROPE)
-    widgets = list(form(driver)._widgets)
+    widgets = list(form(driver)._holder.children)
     driver.frames(5)
-    assert form(driver)._widgets == widgets
+    assert form(driver)._holder.children == widgets
     driver.editor.select(frozenset({PAIR}))
     driver.frames(2)
-    assert form(driver)._widgets == widgets and entry(driver, "segments").text == "1"
+    assert form(driver)._holder.children == widgets and entry(driver, "segments").text == "1"
 
 
 def test_a_list_too_long_for_a_line_is_counted(edit):
@@ -619,7 +619,7 @@ def test_a_list_too_long_for_a_line_is_counted(edit):
     driver = edit(small_level(bodies=[{"type": "mesh", "id": "dust", "particles": particles}]))
     driver.editor.folds["More"] = False
     choose(driver, Item("body", "dust"))
-    button = next(widget for widget in form(driver)._widgets if getattr(widget, "text", "") == "400 of them")
+    button = next(widget for widget in form(driver)._holder.children if getattr(widget, "text", "") == "400 of them")
     press(driver, button)
     assert driver.app.ui.has_sheet
     driver.key(pygame.K_ESCAPE)

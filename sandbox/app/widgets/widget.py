@@ -138,10 +138,14 @@ class Widget:
         self.is_there = False
         self._picture, self._is_stale = None, False
         self.ui.forget(self)
-        self.ui.is_laid = False
+        self.clear()
+
+    def clear(self) -> None:
+        """Take away all that is in it."""
         for child in self.children:
             child._end()
         self.children.clear()
+        self.ui.is_laid = False
 
     # What mouse and keys do.
 

@@ -12,6 +12,7 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.pointer import DrawTool
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.parts.part_card import PartCard, card_places, fill_card
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.scroll import ScrollArea
@@ -36,7 +37,7 @@ LOOK_EVERY = 30
 NOTHING_OWN = "Select something, and keep it as a part."
 
 
-class CataloguePage:
+class CataloguePage(SidePage):
     """The cards of all parts; the one that is in hand is the part tool's."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -268,9 +269,3 @@ class CataloguePage:
         """Show the files as they are now, that of a path as chosen."""
         self._looked = 0
         self._chosen = next((part for part in catalogue() if part.path == path), None)
-
-    def close(self) -> None:
-        """Take the page away."""
-        for widget in (*self.cards, *self._labels, self.keep, self.rename, self.delete, self._text):
-            widget.remove()
-        self.area.remove()

@@ -7,6 +7,7 @@ import pygame
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, WARNING, Colour
 from sandbox.app.edit.side.form import GAP, ROW
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.items import items_of
 from sandbox.editor.lint.finding import SEVERITIES, Finding, Remedy
@@ -19,7 +20,7 @@ IGNORE_WIDTH = 72.0
 NO_REMEDY = "Choose a finding to see it"
 
 
-class FindingsPage:
+class FindingsPage(SidePage):
     """Findings, the gravest first."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -82,9 +83,3 @@ class FindingsPage:
     def _mend(self) -> None:
         if self._remedy is not None:
             self._screen.edit(self._remedy.label, self._remedy.edit)
-
-    def close(self) -> None:
-        """Take the page away."""
-        self.list.remove()
-        self.mend.remove()
-        self.ignore.remove()

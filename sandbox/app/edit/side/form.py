@@ -22,6 +22,7 @@ from sandbox.app.widgets.picker import Picker
 from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.texts import TextBlock, wrapped
+from sandbox.app.widgets.widget import Widget
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.extra_values import HOW_TO_ADD
@@ -94,7 +95,7 @@ class Form:
         self.keys: dict[str, KeyBox] = {}
         self.scrubs: dict[str, Scrub] = {}
         self._notes: dict[str, TextBlock] = {}
-        self._widgets: list[Any] = []
+        self._holder = Widget(self._ui, pygame.Rect(0, 0, 0, 0), area.content)
         self._named: dict[str, Any] = {}
         self._structure: object = None
         self._sections: Sequence[Section] = ()
@@ -139,11 +140,10 @@ class Form:
 
     def close(self) -> None:
         """Take what is being typed, and take the widgets away."""
-        if any(field.focused for fields in self.fields.values() for field in fields):
+        if self._ui.focus in [field for fields in self.fields.values() for field in fields]:
             self._ui.blur()
-        for widget in self._widgets:
-            widget.remove()
-        self._widgets, self._named = [], {}
+        self._holder.clear()
+        self._named = {}
 
     # Making rows.
 
@@ -184,7 +184,7 @@ class Form:
         self._y = self._above
         if not sections and self._empty:
             place = ui.rect(0, self._y + 4, self._inside, 120)
-            self._keep(TextBlock(ui, place, self._empty, self.area.content, 12.5))
+            TextBlock(ui, place, self._empty, self._holder, 12.5)
         for number, section in enumerate(sections):
             self._y += SECTION_GAP if number else 0.0
             self._add_heading(section, is_first=number == 0)
@@ -192,6 +192,7 @@ class Form:
                 continue
             for each in section.properties:
                 self._add(each)
+        self._holder.resize((self.area.content.place.width, ui.px(self.end)))
         self.area.set_height(ui.px(self.end + self._below))
         if focused in self._named:
             ui.focus_on(self._named[focused])
@@ -201,19 +202,17 @@ class Form:
         ui = self._ui
         if not is_first:
             fold, place = partial(self._fold, section), self._rect(0, self._inside, HEADING - 4)
-            heading = FoldHeading(ui, place, section.title, self.is_folded(section), fold, self.area.content)
+            heading = FoldHeading(ui, place, section.title, self.is_folded(section), fold, self._holder)
             self._keep(heading, f"fold {section.title}")
             self._y += HEADING
             return
         # What several selected things are may take two lines.
         for line in wrapped(section.title, ui.font(15, True), ui.px(self._inside), 2):
-            self._keep(ui.label(self._rect(0, self._inside, HEADING - 4), line, self.area.content, "title"))
+            ui.label(self._rect(0, self._inside, HEADING - 4), line, self._holder, "title")
             self._y += HEADING
 
-    def _keep(self, widget: Any, name: str = "") -> Any:
-        self._widgets.append(widget)
-        if name:
-            self._named[name] = widget
+    def _keep(self, widget: Any, name: str) -> Any:
+        self._named[name] = widget
         return widget
 
     def _rect(self, x: float, width: float, height: float = ROW) -> pygame.Rect:
@@ -221,7 +220,7 @@ class Form:
 
     def _add(self, each: Property) -> None:
         about, ui = each.about, self._ui
-        content = self.area.content
+        content = self._holder
         self._add_label(each)
         width = self._inside - LABEL_WIDTH
         if each.remove is not None:
@@ -232,7 +231,7 @@ class Form:
         if not each.editable:
             height = max(ROW - 8, self._lines(each) * NOTE_LINE + 2)
             place = ui.rect(LABEL_WIDTH, self._y + 7, width, height)
-            self._notes[each.field] = self._keep(TextBlock(ui, place, "", content, 11.5))
+            self._notes[each.field] = TextBlock(ui, place, "", content, 11.5)
             self._y += max(ROW, height + 8)
             return
         if about.kind == "point":
@@ -275,20 +274,20 @@ class Form:
         text = about.title + (f" [{SQUARED.get(about.unit, about.unit)}]" if about.unit else "")
         tip = about.tooltip
         if each.editable and about.kind in ("number", "integer"):
-            scrub = Scrub(self._ui, place, text, partial(self._scrub, each.field), self._end_scrub, self.area.content)
+            scrub = Scrub(self._ui, place, text, partial(self._scrub, each.field), self._end_scrub, self._holder)
             scrub.tip = f"{tip} Drag to change it."
-            self.scrubs[each.field] = self._keep(scrub)
+            self.scrubs[each.field] = scrub
             return
-        self._keep(self._ui.label(place, text, self.area.content, "muted")).tip = tip
+        self._ui.label(place, text, self._holder, "muted").tip = tip
 
     def _add_key(self, each: Property, width: float) -> None:
-        box = KeyBox(self._ui, self._rect(LABEL_WIDTH, width), partial(self._press_key, each.field), self.area.content)
+        box = KeyBox(self._ui, self._rect(LABEL_WIDTH, width), partial(self._press_key, each.field), self._holder)
         box.tip = f"{each.about.tooltip} Click here, then press it; Delete takes it away."
         self.keys[each.field] = self._keep(box, each.field)
 
     def _entry(self, each: Property, x: float, width: float, axis: int) -> Field:
         commit = partial(self._type, each.field, axis)
-        field = self._ui.field(self._rect(x, width), "", commit, self.area.content, TEXT_LENGTH)
+        field = self._ui.field(self._rect(x, width), "", commit, self._holder, TEXT_LENGTH)
         if each.about.empty:
             field.hint = f"({each.about.empty})"
             field.typed = ""
@@ -303,11 +302,11 @@ class Form:
         self.boxes[each.field] = {}
         for number, label in enumerate(labels):
             place = self._rect(LABEL_WIDTH + number * wide, wide - GAP)
-            box = CheckBox(self._ui, place, label, partial(self._tick, each.field, label), self.area.content)
+            box = CheckBox(self._ui, place, label, partial(self._tick, each.field, label), self._holder)
             self.boxes[each.field][label] = self._keep(box, f"{each.field} {label}")
 
     def _add_choice(self, each: Property, width: float) -> None:
-        about, content = each.about, self.area.content
+        about, content = each.about, self._holder
         few = len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and not about.optional
         if few and sum(map(len, about.choices)) <= SIDE_BY_SIDE:
             options = [(value, value, about.tooltip) for value in about.choices]

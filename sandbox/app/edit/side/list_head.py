@@ -109,9 +109,3 @@ class ListHead:
         self.top = end / ui.scale if is_low else 0.0
         if not is_low:
             self.area = ScrollArea(ui, pygame.Rect(place.left, end, place.width, place.bottom - end), container)
-
-    def close(self) -> None:
-        """Take it away, with the area."""
-        for widget in (self.list, *self.buttons.values()):
-            widget.remove()
-        self.area.remove()

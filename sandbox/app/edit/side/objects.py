@@ -10,6 +10,7 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import DISABLED, TEXT, material_colours
 from sandbox.app.edit.side.form import GAP, ROW
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import ask
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.document import EditError
@@ -27,7 +28,7 @@ LISTED = 2_000
 HIDE, SHOW, LOCK, OPEN = "Hide", "Show", "Lock", "Unlock"
 
 
-class ObjectsPage:
+class ObjectsPage(SidePage):
     """A line to search in, the list, and buttons for what is selected."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -176,5 +177,3 @@ class ObjectsPage:
     def close(self) -> None:
         """Take the page away."""
         self._screen.light_up(frozenset())
-        for widget in (self.search, self.list, *self.buttons.values()):
-            widget.remove()

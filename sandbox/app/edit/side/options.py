@@ -49,7 +49,6 @@ class OptionsRow:
         self._made_for: tuple[object, ...] = ()
         self._x = 0.0
         self._page = 0
-        self._made: list[Any] = []
         self.more: Any = None
         self.fields: dict[str, Field] = {}
         self.flags: dict[str, Any] = {}
@@ -77,9 +76,8 @@ class OptionsRow:
         return tool.corner_place if isinstance(tool, SelectTool) else None
 
     def _remake(self) -> None:
-        for widget in self._made:
-            widget.remove()
-        self._made, self.fields, self.flags, self.menus, self.more, self._x = [], {}, {}, {}, None, GAP
+        self.back.clear()
+        self.fields, self.flags, self.menus, self.more, self._x = {}, {}, {}, None, GAP
         tool, chosen = self._screen.pointer_tool, bool(self._screen.document.selection)
         items: list[Item] = []
         if isinstance(tool, DrawTool):
@@ -114,7 +112,6 @@ class OptionsRow:
         place = self._ui.rect(left, (OPTIONS_HEIGHT - HEIGHT) / 2, MORE_WIDTH, HEIGHT)
         tip = f"Shows more fields: part {self._page + 1} of {count} is shown"
         self.more = self._ui.button(place, "More", self._turn_page, self.back, style="segment", tip=tip)
-        self._made.append(self.more)
 
     def _turn_page(self) -> None:
         has_keyboard = self._ui.focus is self.more
@@ -139,7 +136,7 @@ class OptionsRow:
         return self._ui.font(12).size(text)[0] / self._ui.scale
 
     def _add_label(self, text: str, style: str = "muted") -> None:
-        self._made.append(self._ui.label(self._rect(self._text_width(text) + 4), text, self.back, style))
+        self._ui.label(self._rect(self._text_width(text) + 4), text, self.back, style)
         self._x += LABEL_GAP
 
     def _labelled(self, label: str, width: float, add: Callable[[], None], gap: float = GAP) -> Item:
@@ -154,7 +151,6 @@ class OptionsRow:
         field = self._ui.field(self._rect(width), "", commit, self.back, 24, hint=empty)
         field.tip = tip
         self.fields[name] = field
-        self._made.append(field)
 
     def _numbers(self) -> list[Item]:
         """Place and size of the selection, or the place of a corner of it."""
@@ -191,7 +187,6 @@ class OptionsRow:
         toggle = partial(self._toggle, tool, name)
         button = self._ui.button(self._rect(width), about.label, toggle, self.back, style="segment", tip=about.text)
         self.flags[name] = button
-        self._made.append(button)
         self._x += LABEL_GAP
 
     def _add_value(self, tool: DrawTool, name: str, about: OptionInfo) -> None:
@@ -211,7 +206,6 @@ class OptionsRow:
         picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, tool, name), self.back)
         picker.tip = about.text
         self.menus[name] = picker
-        self._made.append(picker)
 
     # Showing.
 

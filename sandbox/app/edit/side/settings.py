@@ -8,6 +8,7 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import ROOM_FOR_LIST
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import ask
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document, EditError
@@ -22,7 +23,7 @@ VIEW_DECIMALS = 3
 BUTTONS = 2 * ROW + 3 * GAP
 
 
-class SettingsPage:
+class SettingsPage(SidePage):
     """Settings of the level as a whole."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -96,12 +97,3 @@ class SettingsPage:
             return sentence(error)
         self._screen.apply("Tick rate at the same pace", document)
         return None
-
-    def close(self) -> None:
-        """Take the page away."""
-        self.form.close()
-        self.from_camera.remove()
-        self.no_view.remove()
-        self.pace.remove()
-        self._foot.remove()
-        self._area.remove()

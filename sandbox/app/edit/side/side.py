@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import pygame
 
@@ -16,6 +16,7 @@ from sandbox.app.edit.side.objects import ObjectsPage
 from sandbox.app.edit.side.properties import PropertiesPage
 from sandbox.app.edit.side.range_page import RangePage
 from sandbox.app.edit.side.settings import SettingsPage
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.ui import Ui
 
@@ -26,18 +27,6 @@ GAP = 4.0
 LOW = 400.0
 TAB, TOP, BELOW = 26.0, 10.0, 8.0
 LOW_TAB, LOW_TOP, LOW_BELOW = 22.0, 4.0, 4.0
-
-
-class SidePage(Protocol):
-    """A page of the panel."""
-
-    def refresh(self) -> None:
-        """Show the document as it is now; costs nothing where it has not changed."""
-        ...
-
-    def close(self) -> None:
-        """Take the page away."""
-        ...
 
 
 PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], SidePage]]] = {
@@ -86,7 +75,7 @@ class Side:
             if self.tab in UNLISTED:
                 # What it shows on the sheet goes with it.
                 self._screen.watch.range_trial = None
-            self.page.close()
+            self._drop_page()
             self.tab = tab
             self.page = self._made()
 
@@ -111,9 +100,17 @@ class Side:
         for row in self._rows:
             row.show(self.tab if self.tab in row.buttons else "")
         make = UNLISTED[self.tab] if self.tab in UNLISTED else PAGES[self.tab][2]
-        page = make(self._screen, self._place, self.back)
+        self._holder = self._ui.area(self._place, self.back)
+        page = make(self._screen, pygame.Rect((0, 0), self._place.size), self._holder)
         page.refresh()
         return page
+
+    def _drop_page(self) -> None:
+        if self._ui.typing:
+            # What is being typed counts.
+            self._ui.blur()
+        self.page.close()
+        self._holder.remove()
 
     def refresh(self) -> None:
         """Show the document as it is now."""
@@ -134,8 +131,5 @@ class Side:
 
     def close(self) -> None:
         """Take what is being typed, and take the panel away."""
-        self.page.close()
-        for row in self._rows:
-            for button in row.buttons.values():
-                button.remove()
+        self._drop_page()
         self.back.remove()
