@@ -1,6 +1,5 @@
 """Modal pages: what they hold when the window is laid out anew or another screen comes."""
 
-import i18n
 import pygame
 import pytest
 
@@ -88,14 +87,6 @@ def test_pages_of_a_screen_end_with_it_but_questions_do_not(edit):
 
 def test_the_widgets_of_a_layout_end_with_it(edit):
     driver = edit(small_level())
-
     buttons = driver.app.ui.buttons()
     lay_out_anew(driver)
     assert buttons and not any(button.is_there for button in buttons)
-
-
-def test_a_layout_leaves_nothing_that_the_texts_of_the_next_are_looked_up_in(driver):
-    before = len(i18n.load_path)
-    for _ in range(3):
-        lay_out_anew(driver)
-    assert len(i18n.load_path) == before == 0

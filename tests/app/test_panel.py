@@ -72,6 +72,18 @@ def test_the_menu_shows_the_material_that_the_keyboard_chose(driver):
     assert menu.chosen == "steel" and not driver.app.ui.has_sheet
 
 
+def test_a_run_goes_on_while_a_menu_is_open_and_stands_under_a_page(driver):
+    driver.click_widget(driver.panel.menu)
+    before = driver.playback.session.tick
+    driver.frames(20)
+    assert driver.app.ui.has_sheet and driver.playback.session.tick > before
+    driver.key(pygame.K_ESCAPE)
+    driver.app.act("settings")
+    before = driver.playback.session.tick
+    driver.frames(20)
+    assert driver.playback.session.tick == before
+
+
 def test_the_chosen_material_stays_chosen_in_a_window_of_another_size(driver):
     driver.panel._choose_material("rubber")
     driver.app.display.window.size = (900, 620)

@@ -65,9 +65,9 @@ def test_a_panel_lets_no_press_through_and_a_page_covers_what_lies_under_it(ui):
     assert not press(ui, (300, 200), 3)
     ui.panel(pygame.Rect(200, 100, 200, 200))
     assert press(ui, (300, 200)) and release(ui, (300, 200)) and press(ui, (300, 200), 3)
-    sheet = ui.open_sheet(lambda: None)
+    sheet = ui.open_sheet()
     assert press(ui, PLACE.center) and release(ui, PLACE.center) and not done and not button.hovered
-    ui.close_sheet(sheet)
+    sheet.remove()
     press(ui, PLACE.center)
     release(ui, PLACE.center)
     assert done == [1] and button.hovered

@@ -120,7 +120,7 @@ class Gallery:
 
     def close(self) -> None:
         """Take the page away."""
-        self._ui.close_sheet(self.sheet)
+        self.sheet.remove()
 
     def _escape(self) -> None:
         if self.query:

@@ -133,12 +133,12 @@ class PlayScreen:
     def moves(self) -> bool:
         """Whether the run moves, which it does not while a page is open, or pictures of parts are to come."""
         is_filling = self.part_page is not None and self.part_page.moves
-        return is_filling or (self.playback.moves and not self._ui.has_sheet and not self.rests)
+        return is_filling or (self.playback.moves and not self._ui.is_covered and not self.rests)
 
     @property
     def runs(self) -> bool:
         """Whether time passes in the run."""
-        return not (self.playback.clock.paused or self._ui.has_sheet)
+        return not (self.playback.clock.paused or self._ui.is_covered)
 
     @property
     def rests(self) -> bool:
@@ -461,7 +461,7 @@ class PlayScreen:
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Let time pass, where no page is open."""
         before = self.playback.session.tick
-        self.stage.update(frame_time if not self._ui.has_sheet else 0.0, pointer, profile)
+        self.stage.update(frame_time if not self._ui.is_covered else 0.0, pointer, profile)
         self._app.scenes.follow(self.playback, self.source, frame_time)
         self._measure(self.playback.session.tick - before, profile)
         self._tell()

@@ -40,7 +40,7 @@ class SettingsSheet:
         width, height = ui.units
         box_width, box_height = min(WIDTH, width - 16), min(HEIGHT, height - 16)
         self._width = box_width - 2 * MARGIN - 12
-        self._sheet = ui.open_sheet(self.close, is_page=True, again=self._again)
+        self._sheet = ui.open_sheet(is_page=True, again=self._again)
         place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
         box = ui.panel(place, self._sheet, "dialog")
         ui.label(ui.rect(MARGIN, 16, 220, 28), "Settings", box, "title")
@@ -53,7 +53,7 @@ class SettingsSheet:
         bottom = box_height - MARGIN - 26
         ui.button(ui.rect(box_width - MARGIN - 226, bottom, 116, BUTTON), "Defaults", self._reset, box)
         done = ui.button(
-            ui.rect(box_width - MARGIN - 100, bottom, 100, BUTTON), "Close", self.close, box, style="primary"
+            ui.rect(box_width - MARGIN - 100, bottom, 100, BUTTON), "Close", self._sheet.remove, box, style="primary"
         )
         if page == "general":
             self._add_settings()
@@ -64,16 +64,12 @@ class SettingsSheet:
         ui.focus_on(done)
         ui.focus_at(focus)
 
-    def close(self) -> None:
-        """Take the page away."""
-        self._ui.close_sheet(self._sheet)
-
     def _again(self, ui: Ui) -> None:
         SettingsSheet(ui, self._chosen, self._page, self._note.text, self.area.offset, self._ui.focus_place)
 
     def _turn(self, page: str) -> None:
         if page != self._page:
-            self.close()
+            self._sheet.remove()
             SettingsSheet(self._ui, self._chosen, page)
 
     def _reset(self) -> None:
@@ -92,7 +88,7 @@ class SettingsSheet:
         # What was chosen may have laid all widgets out again, and this page with them, by `_again`.
         if self._sheet.is_there:
             focus = self._ui.focus_place
-            self.close()
+            self._sheet.remove()
             SettingsSheet(self._ui, self._chosen, self._page, self._note.text, self.area.offset, focus)
 
     # Rows.

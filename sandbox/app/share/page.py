@@ -55,7 +55,7 @@ class SharePage:
 
     def _close(self) -> None:
         if self.page is not None:
-            self._app.ui.close_sheet(self.page.sheet)
+            self.page.sheet.remove()
             self.page = None
 
     def _build(self, ui: Ui) -> None:

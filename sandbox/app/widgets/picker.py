@@ -141,14 +141,11 @@ def _menu_height(ui: Ui, rows: Sequence[Row]) -> int:
 def _menu(
     ui: Ui, place: pygame.Rect, rows: Sequence[Row], chosen: int | None, take: Callable[[int], object]
 ) -> RowList:
-    def close() -> None:
-        ui.close_sheet(sheet)
-
     def choose(index: int) -> None:
-        close()
+        sheet.remove()
         take(index)
 
-    sheet = ui.open_sheet(close, "clear", is_menu=True)
+    sheet = ui.open_sheet(style="clear", is_menu=True)
     menu = RowList(ui, place, choose, sheet, at_once=False, background=MENU)
     menu.show_rows(rows, chosen, reveal=True)
     ui.focus_on(menu)

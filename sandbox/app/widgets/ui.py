@@ -34,7 +34,7 @@ class Sheet:
     """
 
     panel: Plate
-    close: Callable[[], None]
+    close: Callable[[], object]
     is_page: bool
     again: Again | None
     is_question: bool
@@ -141,7 +141,7 @@ class Ui(WindowLayout):
 
     def open_sheet(
         self,
-        close: Callable[[], None],
+        close: Callable[[], object] | None = None,
         style: str = "shade",
         *,
         is_page: bool = False,
@@ -149,18 +149,19 @@ class Ui(WindowLayout):
         is_question: bool = False,
         is_menu: bool = False,
     ) -> Plate:
-        """Cover the window by a modal page; close is called when Escape asks for it; the others are those of Sheet."""
+        """Cover the window by a modal page, which goes as any widget does; the others are those of Sheet.
+
+        close: what Escape does; None: it takes the page away.
+        """
         self.blur()
         panel = Plate(self, pygame.Rect((0, 0), self.size), None, style)
-        self._sheets.append(Sheet(panel, close, is_page, again, is_question, is_menu))
+        self._sheets.append(Sheet(panel, close or panel.remove, is_page, again, is_question, is_menu))
         return panel
 
-    def close_sheet(self, panel: Plate) -> None:
-        """Take a modal page away."""
-        if self.focus is not None and not self._is_in(self.focus, panel):
-            self.blur()
-        self._sheets = [sheet for sheet in self._sheets if sheet.panel is not panel]
-        panel.remove()
+    def forget(self, widget: Widget) -> None:
+        """A widget is gone, which may be a modal page."""
+        super().forget(widget)
+        self._sheets = [sheet for sheet in self._sheets if sheet.panel is not widget]
 
     def take_over(self, before: "Ui", questions_alone: bool = False) -> None:
         """Open the modal pages of an earlier layout, and end that; questions_alone: pages of its screen are left."""
@@ -399,12 +400,6 @@ class Ui(WindowLayout):
         while widget is not None and holder is not None:
             holder.reveal(widget)
             holder = holder.parent
-
-    @staticmethod
-    def _is_in(widget: Widget | None, holder: Widget) -> bool:
-        while widget is not None and widget is not holder:
-            widget = widget.parent
-        return widget is holder
 
     # Frames.
 

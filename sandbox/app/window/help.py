@@ -42,19 +42,16 @@ def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
     box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
     box_height = min(TOP + max(map(_height, columns)) + MARGIN, height - 16)
 
-    def close() -> None:
-        ui.close_sheet(sheet)
-
     def begin_tour() -> None:
-        close()
+        sheet.remove()
         tour()
 
-    sheet = ui.open_sheet(close, is_page=True, again=lambda other: show_help(other, mode, tour))
+    sheet = ui.open_sheet(is_page=True, again=lambda other: show_help(other, mode, tour))
     place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
     box = ui.panel(place, sheet, "dialog")
     ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "title")
     ui.button(ui.rect(box_width - MARGIN - 218, 16, 120, 32), "Take the tour", begin_tour, box, style="quiet")
-    button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", close, box)
+    button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", sheet.remove, box)
     needed = max(map(_height, columns))
     area = ScrollArea(ui, ui.rect(MARGIN, TOP, box_width - 2 * MARGIN + 12, box_height - TOP - 12), box)
     area.set_height(ui.px(needed))
