@@ -263,6 +263,7 @@ class Ui(WindowLayout):
             notches = event.precise_y or event.y
             return any(widget.on_wheel(notches) for widget in self._under(self.pointer) if widget.is_enabled)
         if event.type == pygame.KEYDOWN:
+            self.tip.hide(until_moved=True)
             return self._press_key(event)
         if event.type in (pygame.TEXTINPUT, pygame.TEXTEDITING) and isinstance(self.focus, Field):
             (self.focus.insert if event.type == pygame.TEXTINPUT else self.focus.compose)(event.text)
