@@ -90,9 +90,7 @@ class HookeLesson(CompareScreen):
         super()._tell()
 
     def _show_again(self) -> None:
-        is_over = self.exploded_at is not None
-        if is_over != bool(self.again.visible):
-            self.again.visible = is_over
+        self.again.visible = self.exploded_at is not None
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw both, and the word for what happened."""

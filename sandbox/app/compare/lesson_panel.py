@@ -98,11 +98,8 @@ class LessonPanel:
         self.masses.show(f"{trial.mass:g}")
         self.rates.show(str(trial.rate))
         self.springs.show(str(trial.springs))
-        for button, goes_on in (
-            (self.stiffer, trial.doublings < MOST_DOUBLINGS), (self.softer, trial.doublings > 0)
-        ):  # fmt: skip
-            if goes_on != button.is_enabled:
-                button.is_enabled = goes_on
+        self.stiffer.is_enabled = trial.doublings < MOST_DOUBLINGS
+        self.softer.is_enabled = trial.doublings > 0
 
     def show_choices(self, strength: str, views: Set[str]) -> None:
         """The lesson shows neither the strength of the hand nor overlays."""

@@ -84,8 +84,6 @@ class Guide:
         self._panel, self._made_for, self.buttons = None, (), {}
 
     def _take_away(self) -> None:
-        for button in self.buttons.values():
-            button.remove()
         if self._panel is not None:
             self._panel.remove()
         self._card = None

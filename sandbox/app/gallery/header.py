@@ -30,7 +30,6 @@ class Header:
         width = ui.units[0]
         self._is_wide = width >= ROOM_FOR_ONE_ROW
         self._sections: dict[str, Button] = {}
-        self._marked = ""
         title = "Edit a level" if app.mode == "edit" else "Spring Sandbox"
         ui.label(ui.rect(MARGIN, 20, 230, 36), title, sheet, "display")
         right = width - MARGIN
@@ -83,8 +82,5 @@ class Header:
 
     def mark(self, title: str) -> None:
         """Mark the section that is seen."""
-        if title == self._marked:
-            return
         for name, button in self._sections.items():
             button.is_selected = name == title
-        self._marked = title

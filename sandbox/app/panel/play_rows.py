@@ -63,11 +63,8 @@ class PlayRows:
         settings = world.settings
         has_springs = bool((world.spring_active & (world.material >= 0)).any())
         for button in (self.melt, self.take_home):
-            if button.is_enabled != has_springs:
-                button.is_enabled = has_springs
-        words = "Make whole" if settings.solver == "single_pass" else "Melt"
-        if words != self.melt.text:
-            self.melt.show_text(words)
+            button.is_enabled = has_springs
+        self.melt.show_text("Make whole" if settings.solver == "single_pass" else "Melt")
         for dial, block, value, unit in (
             (self.gravity, self._gravity_words, settings.gravity, "m/s\u00b2"),
             (self.wind, self._wind_words, settings.wind, "m/s"),

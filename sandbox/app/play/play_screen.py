@@ -511,9 +511,7 @@ class PlayScreen:
         self.playback.messages.clear()
 
     def _show_again(self) -> None:
-        is_over = self.troubles.out_of_view.is_over
-        if is_over != bool(self.again.visible):
-            self.again.visible = is_over
+        self.again.visible = self.troubles.out_of_view.is_over
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""

@@ -137,9 +137,8 @@ class ShareForm:
             self._row("Show the level's name", TOP - 4 + 2 * step), NAMED,
             lambda value: sharing.choose(named=value == "yes"), self._box,
         )  # fmt: skip
-        if not sharing.level_name:
-            for button in self.named.buttons.values():
-                button.is_enabled = False
+        for button in self.named.buttons.values():
+            button.is_enabled = bool(sharing.level_name)
         row = self._row("File name", TOP - 4 + 3 * step)
         row.width -= ui.px(44)
         self.field = ui.field(row, sharing.wanted.name, self._type_name, self._box, 120)

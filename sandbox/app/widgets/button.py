@@ -10,7 +10,7 @@ from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.plate import box
 from sandbox.app.widgets.styles import BUTTONS, State
-from sandbox.app.widgets.texts import shortened
+from sandbox.app.widgets.texts import Written, shortened
 from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget
 
 # The name of an icon, or a picture with straight alpha.
@@ -19,7 +19,7 @@ Icon = str | pygame.Surface
 ICON_MIDDLE = 16.0
 
 
-class Button(Widget):
+class Button(Written):
     """A button in one of the styles; action() is called once a click on it ends, and by Enter and Space."""
 
     is_focusable = True
@@ -49,12 +49,6 @@ class Button(Widget):
     def is_selected(self, is_selected: bool) -> None:
         if is_selected != self._is_selected:
             self._is_selected = is_selected
-            self.repaint()
-
-    def show_text(self, text: str) -> None:
-        """Show another text."""
-        if text != self.text:
-            self.text = text
             self.repaint()
 
     def show_icon(self, icon: Icon, tint: Colour | None = None) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, CHOSEN, FIELD, LINE, MUTED, TEXT, Colour, mixed
-from sandbox.app.widgets.scroll import WHEEL_STEP
+from sandbox.app.widgets.scroll import BAR_WIDTH, WHEEL_STEP, ScrollBar
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget
@@ -35,10 +35,6 @@ class Row:
     colour: Colour = TEXT
     aside: str = ""
     indent: int = 0
-
-
-# Shortest thumb, and how far from the right a press takes it [layout units].
-SHORTEST_THUMB, THUMB_REACH = 20.0, 12.0
 
 
 class RowList(Widget):
@@ -74,7 +70,11 @@ class RowList(Widget):
         self._offset = 0.0
         self._pointed: int | None = None
         self._cursor: int | None = None
-        self._grip: float | None = None
+        wide = ui.px(BAR_WIDTH)
+        place = pygame.Rect(self.rect.width - wide, ui.px(2), wide, self.rect.height - 2 * ui.px(2))
+        self._bar = ScrollBar(ui, place, self._scroll_to, self)
+        # Arrow keys scroll the list.
+        self._bar.is_focusable = False
 
     def show_rows(
         self, rows: Sequence[Row], chosen: int | None, reveal: bool = False, also: frozenset[int] = frozenset()
@@ -117,6 +117,7 @@ class RowList(Widget):
 
     def _scroll_to(self, offset: float) -> None:
         self._offset = min(max(offset, 0.0), max(0.0, float(self._tops[-1] - self.rect.height)))
+        self._bar.show_place(self._offset, self._tops[-1], self.rect.height)
         self.repaint()
 
     def _reveal(self, index: int) -> None:
@@ -128,29 +129,12 @@ class RowList(Widget):
     # What mouse and keys do.
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
-        """Choose by a click, or take the thumb."""
-        if self._is_long and at[0] >= self.rect.right - self.ui.px(THUMB_REACH):
-            top, tall = self._thumb()
-            y = at[1] - self.rect.top
-            self._grip = y - top if top <= y <= top + tall else tall / 2
-            self.on_drag(at)
-            return True
+        """Choose by a click."""
         index = self._row_at(at)
         if index is not None:
             self._cursor = index
             self._choose(index)
         return True
-
-    def on_drag(self, at: Pixel) -> None:
-        """Scroll by the thumb."""
-        if self._grip is not None:
-            room = max(self.rect.height - self._thumb()[1], 1)
-            share = (at[1] - self.rect.top - self._grip) / room
-            self._scroll_to(share * (self._tops[-1] - self.rect.height))
-
-    def on_release(self, at: Pixel) -> None:
-        """Let the thumb go."""
-        self._grip = None
 
     def on_move(self, at: Pixel) -> None:
         """Mark the row under the mouse."""
@@ -169,17 +153,7 @@ class RowList(Widget):
     def on_wheel(self, notches: float) -> bool:
         """Scroll, where there is more than is seen."""
         self._scroll_to(self._offset - notches * self.ui.px(WHEEL_STEP))
-        return self._is_long
-
-    @property
-    def _is_long(self) -> bool:
-        return self._tops[-1] > self.rect.height
-
-    def _thumb(self) -> tuple[float, int]:
-        """Top and height of the thumb [pixels]."""
-        height = self.rect.height
-        tall = max(height * height // max(self._tops[-1], 1), self.ui.px(SHORTEST_THUMB))
-        return (height - tall) * self._offset / max(self._tops[-1] - height, 1), tall
+        return self._bar.needed
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Arrows go from row to row, Page keys by a page, Home and End to the ends; Enter and Space choose."""
@@ -209,7 +183,7 @@ class RowList(Widget):
     # Painting.
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The rows that are seen, and a thumb where there are more."""
+        """The rows that are seen."""
         ui = self.ui
         surface = pygame.Surface(size, pygame.SRCALPHA)
         pygame.draw.rect(surface, self._background, surface.get_rect(), border_radius=ui.px(6))
@@ -222,10 +196,6 @@ class RowList(Widget):
             if self._tops[index] - self._offset > size[1]:
                 break
             self._paint_row(surface, index, self._tops[index] - round(self._offset))
-        if self._tops[-1] > size[1]:
-            top, tall = self._thumb()
-            place = pygame.Rect(size[0] - ui.px(6), round(top), ui.px(4), tall)
-            pygame.draw.rect(surface, mixed(LINE, MUTED, 0.35), place, border_radius=ui.px(2))
         pygame.draw.rect(surface, LINE, surface.get_rect(), 1, border_radius=ui.px(6))
         return surface
 

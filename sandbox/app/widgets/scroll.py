@@ -49,14 +49,14 @@ class ScrollBar(Widget):
         size = min(max(tall * self.page / max(self.height, 1), self.ui.px(SHORTEST_THUMB)), tall)
         return (tall - size) * self.offset / max(self.height - self.page, 1), size
 
-    def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The thumb alone."""
+    def paint(self, size: tuple[int, int]) -> pygame.Surface | None:
+        """The thumb alone, where there is more than is seen."""
+        if not self.needed:
+            return None
         surface = pygame.Surface(size, pygame.SRCALPHA)
-        if self.needed:
-            top, height = self._thumb()
-            wide = self.ui.px(5)
-            place = pygame.Rect(size[0] - wide - self.ui.px(1), round(top), wide, round(height))
-            pygame.draw.rect(surface, ACCENT if self._grip is not None else LINE, place, border_radius=wide // 2)
+        (top, height), wide = self._thumb(), self.ui.px(5)
+        place = pygame.Rect(size[0] - wide - self.ui.px(1), round(top), wide, round(height))
+        pygame.draw.rect(surface, ACCENT if self._grip is not None else LINE, place, border_radius=wide // 2)
         return surface
 
     def on_press(self, at: Pixel, clicks: int) -> bool:

@@ -43,7 +43,19 @@ def text_height(text: str, font: pygame.font.Font, widest: int) -> int:
     return sum(len(wrapped(each, font, widest, len(each) + 1)) for each in text.split("\n")) * line_height(font)
 
 
-class Label(Widget):
+class Written(Widget):
+    """A widget with a text on it."""
+
+    text = ""
+
+    def show_text(self, text: str) -> None:
+        """Show another text."""
+        if text != self.text:
+            self.text = text
+            self.repaint()
+
+
+class Label(Written):
     """One line of text in one of the styles, in the middle of the height."""
 
     def __init__(
@@ -57,12 +69,6 @@ class Label(Widget):
         """What it is written in."""
         return self.ui.font(self.style.size, self.style.is_bold)
 
-    def show_text(self, text: str) -> None:
-        """Show another text."""
-        if text != self.text:
-            self.text = text
-            self.repaint()
-
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """As much of the text as fits."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
@@ -71,7 +77,7 @@ class Label(Widget):
         return surface
 
 
-class TextBlock(Widget):
+class TextBlock(Written):
     """Text that wraps; colour, and size in layout units."""
 
     def __init__(
@@ -87,12 +93,6 @@ class TextBlock(Widget):
     ) -> None:
         super().__init__(ui, rect, parent)
         self.text, self.text_size, self.colour, self.is_bold = text, size, colour, is_bold
-
-    def show_text(self, text: str) -> None:
-        """Show another text."""
-        if text != self.text:
-            self.text = text
-            self.repaint()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """As many lines as fit."""

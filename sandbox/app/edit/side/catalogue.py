@@ -98,13 +98,9 @@ class CataloguePage(SidePage):
             card.mark(card.part == self._chosen and (drawing is not None or card.part.is_own))
         self._describe()
         is_own = self._chosen is not None and self._chosen.is_own
-        for button, possible in (
-            (self.keep, bool(self._screen.document.selection)),
-            (self.rename, is_own and self._chosen is not None and self._chosen.level is not None),
-            (self.delete, is_own),
-        ):
-            if possible != button.is_enabled:
-                button.is_enabled = possible
+        self.keep.is_enabled = bool(self._screen.document.selection)
+        self.rename.is_enabled = is_own and self._chosen is not None and self._chosen.level is not None
+        self.delete.is_enabled = is_own
 
     def _drawing(self) -> PartDrawing | None:
         """The drawing that has a part in hand, where it is the tool in use."""

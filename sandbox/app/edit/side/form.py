@@ -332,7 +332,7 @@ class Form:
         for label, box in self.boxes.get(name, {}).items():
             state = each.value[label] if each.about.kind == "flags" else each.value
             box.show_state(state is True, state is MIXED)
-        if each.about.kind == "part" and self.buttons[name].text != OBJECT_TEXTS[each.value]:
+        if each.about.kind == "part":
             self.buttons[name].show_text(OBJECT_TEXTS[each.value])
         if name in self.keys:
             self.keys[name].show_key(MIXED.value if is_mixed else each.value)

@@ -215,9 +215,7 @@ class OptionsRow:
             value = getattr(options, name)
             field.show("" if value is None else f"{value:g}")
         for name, button in self.flags.items():
-            if getattr(options, name) != button.is_selected:
-                button.is_selected = getattr(options, name)
-
+            button.is_selected = getattr(options, name)
         for name, picker in self.menus.items():
             colours = material_colours(self._screen.scene.materials)
             rows = tuple(Row(material, swatch=colour) for material, colour in colours.items())

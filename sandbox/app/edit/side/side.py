@@ -125,9 +125,7 @@ class Side:
     def _count_findings(self) -> None:
         count = len(self._screen.watch.findings)
         button = self._tab_button("findings")
-        text = f"Findings {count}" if count else "Findings"
-        if button.text != text:
-            button.show_text(text)
+        button.show_text(f"Findings {count}" if count else "Findings")
 
     def close(self) -> None:
         """Take what is being typed, and take the panel away."""
