@@ -25,7 +25,7 @@ ELSEWHERE = {
     ".github/": ("tests/test_packaging.py",),
     "examples/": ("tests/test_examples.py",),
     "levels/": ("tests/level/test_shipped_levels.py", "tests/level/test_levels_keep_their_word.py"),
-    "assets/": ("tests/app/test_theme.py", "tests/test_packaging.py"),
+    "assets/": ("tests/app/test_fonts.py", "tests/test_packaging.py"),
     "pyproject.toml": ("tests/test_packaging.py",),
     "package.json": ("tests/page/test_bundle.py",),
     "package-lock.json": ("tests/page/test_bundle.py",),

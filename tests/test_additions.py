@@ -81,7 +81,6 @@ from sandbox.editor.tools.drawing_options import Options, mass_option
 from sandbox.editor.tools.drawing_particles import new_particle
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 
 
@@ -113,11 +112,7 @@ class TriangleDrawing(Drawing[TriangleOptions]):
         return False
 
 
-def _draw_triangle(pen: IconPen) -> None:
-    pen.shape((4, 20), (20, 20), (12, 6))
-
-
-TRIANGLE = EditorTool("triangle", "Shift+A", "Triangle", _draw_triangle, TriangleDrawing)
+TRIANGLE = EditorTool("triangle", "Shift+A", "Triangle", TriangleDrawing)
 '''
 
 LIFT = '''
@@ -159,11 +154,7 @@ class LiftTool(PlacedTool):
         return [] if self.place is None else [[self.place, (self.place[0], self.place[1] + self.size)]]
 
 
-def draw_lift(pen):
-    pen.line((12, 20), (12, 4))
-
-
-LIFT = PlayTool("lift", ("Shift+I",), "Lift: click throws up", "Parts", LiftTool, draw_lift)
+LIFT = PlayTool("lift", ("Shift+I",), "Lift: click throws up", "Parts", LiftTool)
 '''
 
 GENTLE = '''
@@ -215,19 +206,17 @@ COMMAND = Subcommand("greet", "say the name of a level", GreetOptions, greet)
 COUNTS = '''
 """CountsPage: how many bodies there are."""
 
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.rows import Row, RowList
 
 
-class CountsPage:
+class CountsPage(SidePage):
     def __init__(self, screen, place, container):
         self._screen = screen
         self.list = RowList(screen.ui, place, lambda index: None, container)
 
     def refresh(self):
         self.list.show_rows([Row(f"{len(self._screen.document.level.bodies)} bodies")], 0)
-
-    def close(self):
-        self._screen.ui.remove(self.list)
 '''
 
 CLOCK = '''

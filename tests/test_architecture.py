@@ -152,7 +152,7 @@ def test_only_app_imports_pygame():
     for name in sources():
         libraries = {other.partition(".")[0] for other in imported(name)}
         if room(name) != "app":
-            assert not libraries & {"pygame", "pygame_gui"}, name
+            assert not libraries & {"pygame"}, name
 
 
 def test_each_room_imports_the_libraries_that_it_may():
@@ -191,7 +191,7 @@ def test_physics_level_export_and_session_load_no_pygame():
     rooms = [name for name in sources() if room(name) in without]
     loaded = loaded_after(f"import {', '.join(rooms)}")
     assert "sandbox.physics.step" in loaded
-    assert not loaded & {"pygame", "pygame_gui"}
+    assert not loaded & {"pygame"}
 
 
 def test_importing_the_package_loads_none_of_its_rooms_until_a_name_is_used():
@@ -208,19 +208,19 @@ def test_help_loads_neither_pygame_nor_numpy(arguments):
         "except SystemExit as end:\n    assert not end.code, end.code"
     )
     assert "sandbox.cli" in loaded
-    assert not loaded & {"pygame", "pygame_gui", "numpy", "pydantic"}
+    assert not loaded & {"pygame", "numpy", "pydantic"}
 
 
 def test_the_plugin_of_pytest_loads_nothing_heavy():
     loaded = loaded_after("import sandbox.testing.plugin")
     assert "sandbox.testing.items" in loaded
-    assert not loaded & {"pygame", "pygame_gui", "numpy", "pydantic", "sandbox.level", "sandbox.app"}
+    assert not loaded & {"pygame", "numpy", "pydantic", "sandbox.level", "sandbox.app"}
 
 
 def test_the_window_needs_none_of_the_libraries_that_take_long_to_import():
     loaded = loaded_after("from sandbox.app.window.opening import open_app")
     assert "pygame" in loaded
-    assert not loaded & {"pygame_gui", "numpy", "pydantic", "platformdirs", "sandbox.physics.jit"}
+    assert not loaded & {"numpy", "pydantic", "platformdirs", "sandbox.physics.jit"}
 
 
 def test_no_file_is_longer_than_600_lines():

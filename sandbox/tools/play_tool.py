@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from sandbox.tools.tool import Tool
 
@@ -14,8 +14,8 @@ Group = Literal["Tools", "Parts"]
 class PlayTool:
     """A tool: its name, the keys that take it up, its line on the help page and in its tip, and its group.
 
-    make: the tool, for a function that gives the number of a new gesture. icon: draws its button with an IconPen; None:
-    the strip has a picture of its own for it.
+    make: the tool, for a function that gives the number of a new gesture. Its icon is the file of its name in
+    assets/icons, unless the strip has a picture of its own for it.
     """
 
     name: str
@@ -23,7 +23,6 @@ class PlayTool:
     label: str
     group: Group
     make: Callable[[Callable[[], int]], Tool]
-    icon: Callable[[Any], None] | None = None
 
     @property
     def action(self) -> str:

@@ -176,14 +176,14 @@ class Driver:
     def click_in_panel(self, widget):
         """Scroll the panel to a widget, and click it."""
         area = self.panel.area
-        area.scroll_to(widget.relative_rect.top - area.view.rect.height / 2)
+        area.scroll_to(widget.place.top - area.view.rect.height / 2)
         self.frames(2)
         self.click_widget(widget)
 
     def fill(self, field, text):
         """Focus a field that is there, replace its text and press Enter."""
-        assert field.entry.visible
-        self.app.ui.focus_on(field.entry)
+        assert field.visible
+        self.app.ui.focus_on(field)
         self.type(text)
         self.key(pygame.K_RETURN)
 

@@ -39,7 +39,7 @@ def keep(driver, name):
     driver.key(pygame.K_ESCAPE)
     driver.click_at(1, 2)
     driver.key(pygame.K_k, CTRL)
-    driver.app.ui.focus.set_text(name)
+    driver.app.ui.focus.typed = name
     driver.key(pygame.K_RETURN)
     driver.frames(2)
 
@@ -170,7 +170,7 @@ def test_own_parts_are_renamed_and_deleted_by_buttons_that_others_do_not_have(dr
     assert not page(driver).rename.is_enabled and not page(driver).delete.is_enabled
     keep(driver, "My pair")
     driver.click_widget(page(driver).rename)
-    driver.app.ui.focus.set_text("Two")
+    driver.app.ui.focus.typed = "Two"
     driver.key(pygame.K_RETURN)
     driver.frames(2)
     assert own() == ["Two"]
@@ -214,7 +214,7 @@ def test_a_low_page_shows_two_whole_rows_of_three_with_texts_as_tips_and_its_but
     shown = page(driver)
     whole = [card for card in shown.cards if shown.area.view.rect.contains(card.rect)]
     assert len(whole) == 6 and len({card.rect.top for card in whole}) == 2
-    assert "D drives it" in card(driver, "Car").tool_tip_text
+    assert "D drives it" in card(driver, "Car").tip
     driver.key(pygame.K_DOWN)
     assert driver.app.ui.focus is shown.cards[3]
     shown.area.scroll_to(9999)

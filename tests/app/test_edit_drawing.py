@@ -192,17 +192,17 @@ def test_options_in_the_row_change_what_is_drawn_next_and_a_wrong_one_is_said(ed
 def test_the_wheel_over_an_option_and_the_arrows_in_it_step_its_value(edit):
     driver = edit()
     driver.key(pygame.K_a)
-    mass = driver.editor.options.fields["mass"].entry
+    mass = driver.editor.options.fields["mass"]
     zoom = driver.editor.camera.zoom
     driver.move(mass.rect.center)
     for _ in range(4):
         driver.post(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0)
     driver.frames()
-    assert mass.get_text() == "20" and driver.editor.camera.zoom == zoom
+    assert mass.typed == "20" and driver.editor.camera.zoom == zoom
     driver.app.ui.focus_on(mass)
     driver.type("70")
     driver.key(pygame.K_UP)
-    assert mass.get_text() == "100"
+    assert mass.typed == "100"
     driver.key(pygame.K_ESCAPE)
     driver.click_at(0, 0)
     assert driver.editor.document.level.particles[0].mass == 100.0
@@ -212,13 +212,13 @@ def test_the_wheel_turned_before_the_next_frame_steps_the_option_that_the_mouse_
     driver = edit()
     driver.key(pygame.K_a)
     fields = driver.editor.options.fields
-    mass, radius = fields["mass"].entry, fields["radius"].entry
+    mass, radius = fields["mass"], fields["radius"]
     driver.move(mass.rect.center)
-    before = mass.get_text(), radius.get_text()
+    before = mass.typed, radius.typed
     driver.post(pygame.MOUSEMOTION, pos=radius.rect.center, rel=(0, 0), buttons=(0, 0, 0))
     driver.post(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0)
     driver.frames()
-    assert mass.get_text() == before[0] and float(radius.get_text()) > float(before[1])
+    assert mass.typed == before[0] and float(radius.typed) > float(before[1])
 
 
 def test_the_material_of_what_is_drawn_is_chosen_from_a_menu(edit):
@@ -298,7 +298,7 @@ def test_all_options_can_be_reached_at_every_scale_and_none_lies_beyond_the_wind
     options, reached, pages = driver.editor.options, [], 0
     names = list(described(driver.editor.pointer_tool.drawing.options))
     while not set(names) <= set(reached):
-        shown = {name: field.entry for name, field in options.fields.items()} | options.flags | options.menus
+        shown = {name: field for name, field in options.fields.items()} | options.flags | options.menus
         assert all(options.back.rect.contains(widget.rect) for widget in shown.values())
         lefts = sorted(widget.rect.left for widget in shown.values())
         rights = sorted(widget.rect.right for widget in shown.values())

@@ -193,7 +193,7 @@ def test_the_gallery_opens_a_shipped_level_as_a_copy_and_my_levels_to_edit(edit,
     driver = edit()
     driver.key(pygame.K_o, CTRL)
     card = next(card for card in driver.app.gallery.cards if card.name == "Spider web")
-    driver.app.gallery.area.scroll_to(card.relative_rect.top)
+    driver.app.gallery.area.scroll_to(card.place.top)
     driver.frames()
     driver.click_widget(card)
     assert driver.editor.document.level.name == "Spider web" and driver.editor.level_file.path is None
@@ -361,7 +361,7 @@ def test_a_level_that_nobody_has_named_is_called_as_its_file_and_others_keep_the
     for name, wanted in (("bridge one", "bridge one"), ("bridge two", "bridge one")):
         draw(driver)
         driver.key(pygame.K_s, CTRL | SHIFT)
-        driver.app.ui.focus.set_text(str(tmp_path / name))
+        driver.app.ui.focus.typed = str(tmp_path / name)
         driver.key(pygame.K_RETURN)
         driver.frames(2)
         assert read_level(tmp_path / f"{name}.json").name == wanted == driver.editor.document.level.name

@@ -46,16 +46,15 @@ def test_the_panel_folds_in_a_narrow_window_comes_back_with_room_and_obeys_the_p
 
 
 def test_a_tip_of_the_panel_lies_beside_it_and_there_is_one_at_a_time(driver):
-    side, manager = driver.editor.side, driver.app.ui.manager
-    tips = []
+    side, tip, places = driver.editor.side, driver.app.ui.tip, []
     for tab in ("materials", "level"):
-        owner = side._tab_button(tab)
-        tips.append(
-            manager.create_tool_tip(
-                text="A long line about it", position=owner.rect.center, hover_distance=(0, 20), parent_element=owner,
-                object_id=None,
-            )
-        )  # fmt: skip
-        assert not tips[-1].rect.colliderect(side.back.rect)
-        assert pygame.Rect((0, 0), driver.app.ui.size).contains(tips[-1].rect)
-    assert not tips[0].alive() and tips[1].alive()
+        button = side._tab_button(tab)
+        driver.move(button.rect.center)
+        assert tip.place is None
+        driver.pass_unseen(60)
+        assert tip.text == button.tip and not tip.place.colliderect(side.back.rect)
+        assert pygame.Rect((0, 0), driver.app.ui.size).contains(tip.place)
+        places.append(tip.place)
+    assert places[0] != places[1]
+    driver.press(side._tab_button("level").rect.center)
+    assert tip.text == ""

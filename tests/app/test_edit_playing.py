@@ -40,7 +40,7 @@ def test_what_is_being_typed_is_in_the_run_and_is_asked_about_before_it_is_left(
     editor = driver.editor
     editor.side.choose("level")
     for name, leave in (("Ann", driver.app.documents.play), ("Bea", driver.app.documents.new)):
-        driver.app.ui.focus_on(editor.side.page.form.fields["author"][0].entry)
+        driver.app.ui.focus_on(editor.side.page.form.fields["author"][0])
         driver.type(name)
         leave()
         driver.frames(2)

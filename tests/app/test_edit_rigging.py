@@ -40,5 +40,5 @@ def test_it_begins_at_rest_by_a_key_and_by_the_button_and_undo_takes_it_back(dri
     assert driver.editor.history.labels[-1] == "Begin at rest" and not driver.editor.watch.forecasts
     driver.key(pygame.K_z, CTRL)
     assert driver.editor.document.level is before
-    driver.click_widget(driver.editor.bar.buttons.by_action["rest"])
+    driver.click_widget(driver.editor.bar.buttons["rest"])
     assert driver.editor.watch.forecasts

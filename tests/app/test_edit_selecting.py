@@ -335,7 +335,7 @@ def test_an_array_fills_rows_and_columns_in_one_step(driver):
     driver.key(pygame.K_d, CTRL | SHIFT)
     driver.choose("In rows and columns")
     for text in ("3", "2", "2", "1.5"):
-        driver.app.ui.focus.set_text("")
+        driver.app.ui.focus.typed = ""
         driver.type(text)
         driver.key(pygame.K_TAB)
     driver.choose("Make")

@@ -183,15 +183,13 @@ def test_everything_that_is_done_by_key_is_done_by_a_button_too(driver):
         "next_page",
         "previous_page",
     }
-    shown = (
-        set(driver.editor.bar.buttons.by_action) | {f"tool_{name}" for name in driver.editor.palette.tools} | set(MENU)
-    )
+    shown = set(driver.editor.bar.buttons) | {f"tool_{name}" for name in driver.editor.palette.tools} | set(MENU)
     in_boxes = {"group", "ungroup", "break_apart", "unjoin", "tour"}
     assert set(driver.app.actions) - shown - by_gesture - by_other_means - in_boxes == set()
 
 
 def test_the_menu_offers_what_has_no_button(driver):
-    driver.click_widget(driver.editor.bar.buttons.by_action["menu"])
+    driver.click_widget(driver.editor.bar.buttons["menu"])
     driver.choose("Select everything  [Ctrl+A]")
     assert len(driver.editor.document.selection) == 2
 

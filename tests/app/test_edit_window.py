@@ -40,7 +40,7 @@ class Maker:
     def place(self, action):
         """Where the button of an action is."""
         tip = tip_of(action, self.twin.app.mode)
-        return next(button for button in self.twin.app.ui.buttons() if button.tool_tip_text == tip).rect.center
+        return next(button for button in self.twin.app.ui.buttons() if button.tip == tip).rect.center
 
     def place_of_label(self, label):
         """Where the button of that label is, on the page that is open."""
@@ -87,8 +87,8 @@ class Maker:
     def turn(self, option, notches):
         """Turn the wheel over an option of the tool."""
         field = self.twin.editor.options.fields[option]
-        self.person.move(field.entry.rect.center)
-        self.twin.move(field.entry.rect.center)
+        self.person.move(field.rect.center)
+        self.twin.move(field.rect.center)
         for _ in range(abs(notches)):
             assert self.person.seen("click", 4 if notches > 0 else 5)
             field.step(1 if notches > 0 else -1)

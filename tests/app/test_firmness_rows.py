@@ -137,19 +137,16 @@ def test_the_editor_s_panel_takes_the_nearest_and_says_so(edit):
 
 
 def test_the_menus_follow_bodies_that_join_a_run_and_are_taken_back(jelly):
-    def offered(menu):
-        return [name for name, _ in menu.options_list]
-
     panel, session = jelly.panel, jelly.playback.session
-    bodies, materials = offered(panel.firmness.menu), offered(panel.menu)
+    bodies, materials = panel.firmness.menu.words, panel.menu.words
     definition = {"type": "jelly", "position": [0, 4], "shape": {"box": [1, 1]}, "spacing": 0.25, "material": "dough"}
     session.submit(AddBody(definition, materials={"dough": {"stiffness": 0.4, "damping": 0.9}}))
     jelly.frames(10)
-    assert offered(panel.firmness.menu) == [*bodies, "+1"] and len(offered(panel.menu)) == len(materials) + 1
+    assert panel.firmness.menu.words == [*bodies, "+1"] and len(panel.menu.words) == len(materials) + 1
     panel.choose_body("+1")
     panel.choose_material(len(materials) - 1)
     jelly.playback.session.undo()
     jelly.frames(20)
-    assert (offered(panel.firmness.menu), offered(panel.menu)) == (bodies, materials)
-    assert panel.firmness.menu.selected_option[0] == bodies[0] and panel.menu.selected_option[0] == materials[0]
+    assert (panel.firmness.menu.words, panel.menu.words) == (bodies, materials)
+    assert panel.firmness.menu.chosen == bodies[0] and panel.menu.chosen == materials[0]
     assert texts(jelly) == AS_MADE

@@ -92,5 +92,5 @@ def test_the_panel_opens_on_the_material_that_the_level_names(open_app):
     named = parse_level(
         json.dumps({**json.loads(level_text(level)), "look": {"material": "rubber"}}).encode(), "rubber first"
     )
-    assert open_app(named).panel.menu.selected_option[0] == "rubber"
+    assert open_app(named).panel.menu.chosen == "rubber"
     assert build_world(named).particle_count == build_world(level).particle_count

@@ -63,7 +63,7 @@ def test_from_the_search_down_goes_to_the_first_hit_and_a_new_layout_keeps_what_
     page.app.rebuild()
     page.frames(2)
     assert [card.name for card in shown(page)] == ["Girder"]
-    page.app.ui.focus_on(page.app.gallery.header.search.entry)
+    page.app.ui.focus_on(page.app.gallery.header.search)
     page.key(pygame.K_DOWN)
     assert page.app.ui.focus is shown(page)[0]
     page.key(pygame.K_ESCAPE)
@@ -102,7 +102,7 @@ def played_for(page, name, frames=40):
     while gallery._unfilled:
         page.frames()
     card = next(card for card in shown(page) if card.name == name)
-    gallery.area.scroll_to(card.relative_rect.top - 20)
+    gallery.area.scroll_to(card.place.top - 20)
     still = card.picture
     page.move(card.rect.center)
     page.frames(frames)

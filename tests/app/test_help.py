@@ -8,7 +8,7 @@ from sandbox.app.window.help import ShortcutTable
 
 
 def table(driver):
-    sprites = driver.app.ui.manager.get_sprite_group().sprites()
+    sprites = driver.app.ui.walk()
     return next(sprite for sprite in sprites if isinstance(sprite, ShortcutTable))
 
 
@@ -21,7 +21,7 @@ def test_all_keys_are_seen_at_once_in_the_usual_window(edit, mode):
         driver.app.act("play")
     driver.key(pygame.K_F1)
     shown = table(driver)
-    assert driver.app.mode == mode and shown.ui_container.rect.contains(shown.rect)
+    assert driver.app.mode == mode and shown.parent.rect.contains(shown.rect)
     assert not isinstance(driver.app.ui.focus, ScrollBar)
     driver.key(pygame.K_RETURN)
     assert not driver.app.ui.has_sheet

@@ -4,7 +4,6 @@ import gc
 import weakref
 
 import pytest
-from pygame_gui.core.utility import get_default_manager
 
 from sandbox.app.base.idle import ENOUGH, REST, IdleCollector
 from sandbox.app.draw.raster.painter import _scratch_for, _scratches
@@ -97,7 +96,7 @@ def test_a_layout_that_is_over_keeps_none_of_its_widgets_whoever_has_it_still(ed
     driver.app.show_screen(driver.editor)
     driver.frames(2)
     gc.collect()
-    assert get_default_manager() is driver.app.ui.manager is not before.manager
+    assert before is not driver.app.ui
     assert card() is None and picture() is None
 
 

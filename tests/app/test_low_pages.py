@@ -52,11 +52,11 @@ def test_materials_are_chosen_from_a_menu_and_their_fields_have_the_whole_page(d
     driver.key(pygame.K_DOWN)
     driver.key(pygame.K_RETURN)
     assert page.chosen == page.list.shown.text == "rubber"
-    scroll_to(driver, page.area, page.fields["damping"].entry)
-    assert sum(in_sight(page.area, field.entry) for field in page.fields.values()) >= 2
+    scroll_to(driver, page.area, page.fields["damping"])
+    assert sum(in_sight(page.area, field) for field in page.fields.values()) >= 2
     driver.fill(page.fields["damping"], "0.6")
     assert driver.editor.document.level.materials["rubber"].damping == 0.6
-    scroll_to(driver, page.area, list(page.fields.values())[-1].entry)
+    scroll_to(driver, page.area, list(page.fields.values())[-1])
 
 
 def test_checks_show_the_chosen_one_and_what_came_of_it(driver):
@@ -71,7 +71,7 @@ def test_checks_show_the_chosen_one_and_what_came_of_it(driver):
     page.trial.wait()
     driver.frames(2)
     assert page.list.shown.detail.startswith("holds with 0")
-    entry = page.form.fields["after"][0].entry
+    entry = page.form.fields["after"][0]
     scroll_to(driver, area, entry)
     driver.fill(page.form.fields["after"][0], "0.2")
     assert driver.editor.document.level.checks[2].after == 0.2
@@ -98,4 +98,4 @@ def test_the_buttons_of_the_level_follow_its_last_row(driver):
 
 
 def end_of(form):
-    return max(widget.rect.bottom for widget in form._widgets)
+    return max(widget.rect.bottom for widget in form._holder.children)

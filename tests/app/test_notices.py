@@ -139,7 +139,7 @@ def test_what_went_out_of_bounds_is_said_in_plain_words_and_its_numbers_behind_d
     driver.click_widget(details)
     lines = driver.playback.stopped.details(driver.world.tick)
     assert len(lines) == 2 and "rope.2" in lines[0] and lines[0].startswith("tick ")
-    sprites = driver.app.ui.manager.get_sprite_group().sprites()
+    sprites = driver.app.ui.walk()
     block = next(each for each in sprites if getattr(each, "text", "") == "\n".join(lines))
     assert block.visible
     driver.key(pygame.K_ESCAPE)

@@ -57,12 +57,12 @@ def test_lines_select_on_the_sheet_and_the_sheet_marks_lines(driver):
 
 
 def test_words_narrow_the_list_while_they_are_typed(driver):
-    driver.app.ui.focus_on(page(driver).search.entry)
+    driver.app.ui.focus_on(page(driver).search)
     driver.type("rub")
     assert names(driver) == ["pair"]
     driver.key(pygame.K_RETURN)
     assert selected(driver) == {PAIR} and driver.app.ui.focus is page(driver).list
-    driver.app.ui.focus_on(page(driver).search.entry)
+    driver.app.ui.focus_on(page(driver).search)
     driver.type("x")
     assert names(driver) == []
 

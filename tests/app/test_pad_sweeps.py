@@ -53,15 +53,22 @@ def is_whole(sweeps):
     return sweeps._finding is None and known == runs > 0
 
 
+def map_of(pad):
+    """The map that is painted once the pad is seen."""
+    assert pad.image is not None
+    return pygame.image.tobytes(pad._map, "RGB")
+
+
 def test_a_measure_is_found_by_children_shown_and_kept_for_the_next_time(padded, monkeypatch):
-    pad, plain = padded.panel.pad, pygame.image.tobytes(padded.panel.pad._map, "RGB")
+    pad = padded.panel.pad
+    plain = map_of(pad)
     padded.panel.maps._choose("Largest strain")
     wait(padded, is_whole)
-    assert sweeps_of(padded)._work is None and pygame.image.tobytes(pad._map, "RGB") != plain
+    assert sweeps_of(padded)._work is None and map_of(pad) != plain
     assert sweeps_of(padded).layer.values["max_strain"].shape == (3, 3)
     padded.panel.maps._choose("Theory")
     padded.frames(2)
-    assert pygame.image.tobytes(pad._map, "RGB") == plain
+    assert map_of(pad) == plain
     sweeps_of(padded)._thread.submit(lambda: None).result()
     monkeypatch.setattr(pad_sweeps, "BackgroundSweep", None)
     padded.panel.maps._choose("Blew up")

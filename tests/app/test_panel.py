@@ -60,17 +60,35 @@ def test_the_menu_shows_the_material_that_the_keyboard_chose(driver):
     driver.panel.choose_material(None)
     driver.app.ui.focus_on(menu)
     for wanted in ("default", "steel", "rubber"):
-        driver.key(pygame.K_DOWN)
-        assert menu.selected_option[0] == menu.current_state.selected_option_button.text == wanted
-    driver.key(pygame.K_UP)
-    assert menu.current_state.selected_option_button.text == "steel"
+        for key in (pygame.K_RETURN, pygame.K_DOWN, pygame.K_RETURN):
+            driver.key(key)
+        assert menu.chosen == wanted and driver.app.ui.focus is menu
+    for key in (pygame.K_DOWN, pygame.K_UP, pygame.K_SPACE):
+        driver.key(key)
+    assert menu.chosen == "steel"
+    driver.key(pygame.K_SPACE)
+    driver.key(pygame.K_HOME)
+    driver.key(pygame.K_ESCAPE)
+    assert menu.chosen == "steel" and not driver.app.ui.has_sheet
+
+
+def test_a_run_goes_on_while_a_menu_is_open_and_stands_under_a_page(driver):
+    driver.click_widget(driver.panel.menu)
+    before = driver.playback.session.tick
+    driver.frames(20)
+    assert driver.app.ui.has_sheet and driver.playback.session.tick > before
+    driver.key(pygame.K_ESCAPE)
+    driver.app.act("settings")
+    before = driver.playback.session.tick
+    driver.frames(20)
+    assert driver.playback.session.tick == before
 
 
 def test_the_chosen_material_stays_chosen_in_a_window_of_another_size(driver):
     driver.panel._choose_material("rubber")
     driver.app.display.window.size = (900, 620)
     driver.frames(2)
-    assert driver.panel.menu.selected_option[0] == "rubber"
+    assert driver.panel.menu.chosen == "rubber"
     driver.fill(driver.panel.stiffness_field, "0.5")
     assert coefficients(driver) == (0.3, 0.3, 0.5)
 
@@ -90,12 +108,12 @@ def test_a_typed_value_out_of_range_is_refused_with_a_line_and_the_old_one_stays
     driver.panel._choose_material("steel")
     driver.frames()
     field = driver.panel.stiffness_field
-    driver.app.ui.focus_on(field.entry)
+    driver.app.ui.focus_on(field)
     driver.key(pygame.K_DELETE)
     driver.fill(field, typed)
     driver.app.ui.blur()
     assert coefficients(driver)[0] == 0.3
-    assert field.entry.get_text() == "0.3"
+    assert field.typed == "0.3"
     assert any(notice.startswith("Cs: ") for notice in driver.notices)
 
 
@@ -199,7 +217,7 @@ def test_arrow_keys_move_the_focused_slider_and_tab_reaches_every_widget(driver)
         panel.stiffness,
         panel.damping,
         panel.menu,
-        panel.engineers.frequency.entry,
+        panel.engineers.frequency,
         *panel.engineers.solving.substeps.buttons.values(),
     ]
     assert all(widget in reached for widget in wanted)

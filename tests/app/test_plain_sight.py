@@ -77,13 +77,13 @@ def test_the_wheel_scrolls_a_menu_and_the_last_metric_is_chosen_by_mouse(edit):
         driver.post(pygame.MOUSEBUTTONUP, button=5, pos=menu.rect.center)
         driver.post(pygame.MOUSEWHEEL, x=0, y=-1, precise_x=0.0, precise_y=-1.0)
         driver.frames(1)
-    assert menu.alive() and menu._row_at((menu.rect.centerx, menu.rect.bottom - 8)) == len(menu.rows) - 1
+    assert menu.is_there and menu._row_at((menu.rect.centerx, menu.rect.bottom - 8)) == len(menu.rows) - 1
     wanted = menu.rows[-1].text
     at = menu.rect.centerx, menu.rect.bottom - 8
     driver.press(at)
     driver.release(at)
     driver.frames(2)
-    assert not menu.alive() and METRICS[driver.editor.document.level.checks[0].metric].label == wanted
+    assert not menu.is_there and METRICS[driver.editor.document.level.checks[0].metric].label == wanted
 
 
 def test_the_thumb_of_a_menu_scrolls_and_chooses_nothing(edit):
@@ -94,7 +94,7 @@ def test_the_thumb_of_a_menu_scrolls_and_chooses_nothing(edit):
     driver.move((top[0], menu.rect.bottom - 4))
     driver.release((top[0], menu.rect.bottom - 4))
     driver.frames(1)
-    assert menu.alive() and driver.editor.document.level is before
+    assert menu.is_there and driver.editor.document.level is before
     assert menu._row_at((menu.rect.centerx, menu.rect.bottom - 8)) == len(menu.rows) - 1
 
 

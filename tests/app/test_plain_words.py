@@ -68,9 +68,7 @@ def test_the_status_line_shows_rates_and_the_work_of_a_frame_apart(driver):
 def test_sliders_begin_on_the_material_of_the_most_springs_and_all_is_a_choice_that_says_how_to_undo(driver):
     panel = driver.panel
     assert driver.world.material_names[panel.material] == "steel"
-    assert panel.menu.selected_option[0] == "steel" and ALL_MATERIALS in [
-        option[0] for option in panel.menu.options_list
-    ]
+    assert panel.menu.chosen == "steel" and ALL_MATERIALS in panel.menu.words
     rubber = driver.world.material == list(driver.world.material_names).index("rubber")
     before = driver.world.stiffness.copy()
     panel._set(0.2, True)

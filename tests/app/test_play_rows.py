@@ -28,9 +28,9 @@ def asked_for(panel, name):
     """Widgets of a section that a level's text can mean."""
     solving = panel.engineers.solving
     return {
-        "springs": [panel.menu, panel.stiffness_field.entry, panel.damping_field.entry],
-        "engineers": [*solving.solver.buttons.values(), solving.iterations.entry, solving.rate.entry],
-        "world": [panel.world.gravity_x.entry],
+        "springs": [panel.menu, panel.stiffness_field, panel.damping_field],
+        "engineers": [*solving.solver.buttons.values(), solving.iterations, solving.rate],
+        "world": [panel.world.gravity_x],
     }[name]
 
 
@@ -43,7 +43,7 @@ def test_a_player_sees_what_play_needs_and_one_word_opens_the_rest_for_later_run
     assert in_sight(player, panel.play.gravity) and in_sight(player, panel.play.melt)
     rest = [widget for name in SECTIONS for widget in asked_for(panel, name)]
     assert not any(widget.visible for widget in rest)
-    heading = next(each for each in panel.area.content.elements if getattr(each, "text", "") == "More")
+    heading = next(each for each in panel.area.content.children if getattr(each, "text", "") == "More")
     player.click_widget(heading)
     assert all(widget.visible for name in SECTIONS for widget in asked_for(player.panel, name))
     assert open_app(small_level(), more=False).panel.is_open(MORE)
@@ -126,4 +126,4 @@ def test_the_first_body_that_joins_a_run_brings_the_rows_of_its_firmness(player)
     player.click((left + width // 2, top + height // 2))
     player.frames(5)
     assert player.panel.firmness.shown and len(player.panel.firmness.bodies) == 1
-    assert in_sight(player, player.panel.firmness.sag.entry)
+    assert in_sight(player, player.panel.firmness.sag)

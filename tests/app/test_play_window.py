@@ -63,20 +63,18 @@ def test_a_name_has_a_line_or_two_smaller_ones_and_what_does_not_fit_is_its_tool
     name = "Truss bridge with a heavy load"
     driver = open_app(small_level(name=name))
     title = title_of(driver, name, 1600)
-    assert title.lines == [name] and title.tool_tip_text is None
+    assert title.lines == [name] and title.tip == ""
     title = title_of(driver, name, 1280)
-    assert len(title.lines) == 2 and " ".join(title.lines) == name and title.tool_tip_text is None
+    assert len(title.lines) == 2 and " ".join(title.lines) == name and title.tip == ""
     long = ("A name of many words <& more> " * 6).strip()
     driver = open_app(small_level(name=long))
     title = title_of(driver, long, 1280)
-    assert title.lines[-1].endswith("…") and title.tool_tip_text == long.replace("&", "&amp;").replace(
-        "<", "&lt;"
-    ).replace(">", "&gt;")
+    assert title.lines[-1].endswith("…") and title.tip == long
     driver.move(title.rect.center)
     driver.pass_unseen(90)
-    assert title.tool_tip is not None
+    assert driver.app.ui.tip.text == long
     unbroken = "Llanfairpwllgwyngyllgogerychwyrndrobwll"
-    assert title_of(open_app(small_level(name=unbroken)), unbroken, 1280).tool_tip_text == unbroken
+    assert title_of(open_app(small_level(name=unbroken)), unbroken, 1280).tip == unbroken
 
 
 def test_what_has_no_room_is_done_from_the_menu(driver):

@@ -3,10 +3,12 @@
 from itertools import combinations
 
 import pygame
-import pygame_gui.elements as gui
 import pytest
 
-from sandbox.app.widgets.painted import Painted, TextBlock, wrapped
+from sandbox.app.widgets.button import Button
+from sandbox.app.widgets.picker import WordPicker
+from sandbox.app.widgets.plate import Plate
+from sandbox.app.widgets.texts import Label, TextBlock, wrapped
 from sandbox.editor.items import items_of
 from tests.app.conftest import small_level
 
@@ -44,15 +46,14 @@ def texts_cut(ui):
     """Texts of widgets that are wider than these, or end in an ellipsis before all is said."""
     found = []
     for widget in shown(ui):
-        if isinstance(widget, gui.UIDropDownMenu):
-            # Beside the button that opens it.
-            wide = widget.rect.width - widget.open_button_width
-            options = [option[0] for option in widget.options_list]
-            found += [text for text in options if ui.font(13).size(text)[0] > wide]
+        if isinstance(widget, WordPicker):
+            # Beside the mark that says that it opens.
+            wide = widget.rect.width - ui.px(32)
+            found += [text for text in widget.words if ui.font(12.5).size(text)[0] > wide]
         elif isinstance(widget, TextBlock):
             found += [widget.text] if is_shortened(ui, widget) else []
-        elif isinstance(widget, (gui.UIButton, gui.UILabel)) and widget.text:
-            found += [widget.text] if widget.font.get_rect(widget.text).width > widget.rect.width else []
+        elif isinstance(widget, (Button, Label)) and widget.text:
+            found += [widget.text] if widget.font.size(widget.text)[0] > widget.rect.width else []
     return found
 
 
@@ -71,22 +72,20 @@ def is_shortened(ui, block):
 
 def shown(ui):
     """What can be pressed, typed into or read, that is in sight."""
-    kinds = (gui.UIButton, gui.UILabel, gui.UITextEntryLine, gui.UIDropDownMenu, Painted)
     found = []
-    for widget in ui.manager.get_sprite_group().sprites():
-        # Buttons of a menu are the menu's.
-        is_own = not isinstance(widget.ui_container.parent_element, gui.UIDropDownMenu)
-        if isinstance(widget, kinds) and widget.visible and is_own and in_sight(widget, ui).size != (0, 0):
+    for widget in ui.walk():
+        is_solid = not isinstance(widget, Plate) and widget.image is not None
+        if is_solid and widget.visible and in_sight(widget, ui).size != (0, 0):
             found.append(widget)
     return found
 
 
 def in_sight(widget, ui):
     """What of a widget its containers do not clip."""
-    place, holder = widget.rect.copy(), widget.ui_container
+    place, holder = widget.rect.copy(), widget.parent
     while holder is not None:
         place = place.clip(holder.rect)
-        holder = holder.ui_container if holder is not ui.root else None
+        holder = holder.parent if holder is not ui.root else None
     return place
 
 
@@ -94,7 +93,7 @@ def overlaps(ui):
     """Pairs of widgets of one container of which one lies over the other."""
     homes = {}
     for widget in shown(ui):
-        homes.setdefault(widget.ui_container, []).append(widget)
+        homes.setdefault(widget.parent, []).append(widget)
     return [
         (one, other)
         for own in homes.values()
@@ -106,11 +105,11 @@ def overlaps(ui):
 def filled(widget):
     """Where a widget shows anything: labels may have more room than text."""
     place = widget.rect.copy()
-    if isinstance(widget, (gui.UILabel, TextBlock)):
+    if isinstance(widget, (Label, TextBlock)):
         wide = place.width if widget.text else 0
-        if isinstance(widget, gui.UILabel):
-            wide = min(wide, widget.font.get_rect(widget.text or " ").width)
-            place.left += (place.width - wide) // 2 if "@middle" in (widget.class_ids or []) else 0
+        if isinstance(widget, Label):
+            wide = min(wide, widget.font.size(widget.text or " ")[0])
+            place.left += round((place.width - wide) * widget.style.side)
         place.width = wide
     return place
 

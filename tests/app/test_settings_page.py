@@ -12,7 +12,7 @@ from sandbox.app.draw.detail import FULL, NO_EFFECTS
 from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
 from sandbox.app.settings.key_row import KeyRow
 from sandbox.app.settings.system_theme import theme_of
-from sandbox.app.widgets.painted import Painted
+from sandbox.app.widgets.widget import Widget
 from sandbox.editor.storage.preferences import (
     preference,
     preferences_file,
@@ -45,7 +45,7 @@ def entry(action, mode="play"):
 
 
 def rows(driver):
-    sprites = driver.app.ui.manager.get_sprite_group().sprites()
+    sprites = driver.app.ui.walk()
     return {sprite.entry.action: sprite for sprite in sprites if isinstance(sprite, KeyRow)}
 
 
@@ -168,7 +168,7 @@ def test_an_action_takes_another_key_from_the_one_that_had_it_and_it_is_said(pag
     page.key(pygame.K_s)
     assert action_of(pygame.K_s, 0) == "reset" and action_of(pygame.K_r, 0) is None
     assert entry("slow").keys == ()
-    texts = [sprite.text for sprite in page.app.ui.manager.get_sprite_group().sprites() if hasattr(sprite, "show_text")]
+    texts = [sprite.text for sprite in page.app.ui.walk() if hasattr(sprite, "show_text")]
     assert any("has none now" in text for text in texts)
     page.choose("Defaults")
     assert action_of(pygame.K_s, 0) == "slow" and action_of(pygame.K_r, 0) == "reset"
@@ -179,7 +179,7 @@ def test_escape_leaves_keys_as_they_are_delete_takes_them_away_and_the_page_stay
     page.app.ui.focus_on(rows(page)["fit"])
     page.frames(2)
     page.click_widget(rows(page)["fit"])
-    assert isinstance(page.app.ui.focus, Painted) and page.app.ui.focus.takes_all_keys
+    assert isinstance(page.app.ui.focus, Widget) and page.app.ui.focus.takes_all_keys
     page.key(pygame.K_ESCAPE)
     assert action_of(pygame.K_f, 0) == "fit" and page.app.ui.has_sheet
     page.click_widget(rows(page)["fit"])

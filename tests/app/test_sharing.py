@@ -352,7 +352,7 @@ def test_the_page_shows_the_film_and_outlives_a_new_size_of_the_window(driver, f
     driver.frames(3)
     page = driver.app.share_page.page
     assert page.preview.picture is not None
-    everything = [*driver.app.ui.buttons(), page.preview, page.slider, page.field.entry, page.note]
+    everything = [*driver.app.ui.buttons(), page.preview, page.slider, page.field, page.note]
     assert all(driver.app.display.surface.get_rect().contains(widget.rect) for widget in everything)
     driver.key(pygame.K_ESCAPE)
     driver.key(pygame.K_ESCAPE)

@@ -2,12 +2,13 @@
 
 import pygame
 import pytest
-from pygame_gui.elements import UIDropDownMenu
 
 from sandbox.app.panel.take_home_page import ALL, ENGINES, LANGUAGES, QUESTION, TARGETS
 from sandbox.app.widgets.code_block import CodeBlock, _broken
 from sandbox.app.widgets.fonts import code_font
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.picker import WordPicker
+from sandbox.app.widgets.rows import RowList
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.level.reading.files import load_level
 from tests.app.test_room_for_texts import faults
 
@@ -33,10 +34,8 @@ def clipboard(monkeypatch):
 
 
 def blocks(driver, kind):
-    sprites = driver.app.ui.manager.get_sprite_group().sprites()
-    return [
-        each.text for each in sprites if isinstance(each, kind) and each.ui_container is not driver.panel.area.content
-    ]
+    sprites = driver.app.ui.walk()
+    return [each.text for each in sprites if isinstance(each, kind) and each.parent is not driver.panel.area.content]
 
 
 def shown(driver):
@@ -73,8 +72,13 @@ def test_the_body_can_be_another_one_on_either_page(page):
     for target in (None, "Godot"):
         if target is not None:
             page.choose(target)
-        (menu,) = [widget for widget in page.app.ui._ring() if isinstance(widget, UIDropDownMenu)]
-        page.app.ui._choosers[menu]("plank 7")
+        (menu,) = [widget for widget in page.app.ui.ring() if isinstance(widget, WordPicker)]
+        page.click_widget(menu)
+        (listed,) = [widget for widget in page.app.ui.ring() if isinstance(widget, RowList)]
+        page.app.ui.focus_on(listed)
+        for _ in range(menu.words.index("plank 7") - menu.words.index(menu.chosen)):
+            page.key(pygame.K_DOWN)
+        page.key(pygame.K_RETURN)
         page.frames(2)
     assert shown(page).startswith('"plank 7"') and "joint.stiffness" in blocks(page, CodeBlock)[0]
 

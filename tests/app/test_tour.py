@@ -32,7 +32,7 @@ def test_a_whole_tour_by_mouse_ends_with_the_makers_own_bridge_played(driver):
     titles = [title(driver)]
     driver.click_widget(editor().palette.tools["rope"])
     titles.append(title(driver))
-    driver.move(editor().options.fields["slack"].entry.rect.center)
+    driver.move(editor().options.fields["slack"].rect.center)
     for _ in range(2):
         driver.post(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0)
     driver.frames()
@@ -46,7 +46,7 @@ def test_a_whole_tour_by_mouse_ends_with_the_makers_own_bridge_played(driver):
     driver.fill(editor().options.fields["mass"], "30")
     driver.click_at(*editor().scene.position[editor().scene.slot("rope.12")].tolist())
     titles.append(title(driver))
-    driver.click_widget(editor().bar.buttons.by_action["play"])
+    driver.click_widget(editor().bar.buttons["play"])
     assert titles == ["A rope", "Some slack", "Across", "A pin", "A weight", "Play"]
     assert guide.tour.is_over and driver.app.mode == "play"
     driver.frames(120)

@@ -23,7 +23,7 @@ def test_a_person_drags_slides_pauses_records_and_saves_and_the_replay_verifies(
     twin: Driver = open_app(level, more=False)
     twin.app.display.window.size = WINDOW_SIZE
     twin.frames(2)
-    more = next(each for each in twin.panel.area.content.elements if getattr(each, "text", "") == "More").rect.center
+    more = next(each for each in twin.panel.area.content.children if getattr(each, "text", "") == "More").rect.center
     twin.click(more)
     start = twin.pixel_of("rope.4")
     pad = twin.panel.pad

@@ -73,7 +73,6 @@ from sandbox.editor.kinds.motion import Motion
 from sandbox.editor.tools.drawing_bodies import BodyDrawing, length
 from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.ladder import LadderDef
 
@@ -98,16 +97,10 @@ class LadderDrawing(BodyDrawing[LadderOptions]):
         return {"position": points[0].point, "width": length(points), "segments": self.options.segments}
 
 
-def draw_ladder(pen: IconPen) -> None:
-    """Two rails."""
-    for x in (8, 16):
-        pen.line((x, 3), (x, 21))
-
-
 class LadderEditing(BodyEditing[LadderDef]):
     """A ladder hangs straight down."""
 
-    tools: ClassVar = (EditorTool("ladder", "Shift+K", "Ladder", draw_ladder, LadderDrawing),)
+    tools: ClassVar = (EditorTool("ladder", "Shift+K", "Ladder", LadderDrawing),)
     formless = frozenset({"particle_mass", "pin"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:

@@ -67,6 +67,14 @@ def copy_text(text: str) -> bool:
     return True
 
 
+def copied_text() -> str:
+    """The text on the system's clipboard; nothing where there is none."""
+    try:
+        return pygame.scrap.get_text() if pygame.scrap.has_text() else ""
+    except pygame.error:
+        return ""
+
+
 def open_path(path: Path) -> bool:
     """Open a folder in the system's file manager, or a file in what the system has for it; whether there is that."""
     if sys.platform == "win32":

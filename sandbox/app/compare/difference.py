@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, SURFACE, TEXT, Colour
-from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.energy import spring_lengths
 from sandbox.physics.analysis.query import shown_particles

@@ -52,7 +52,7 @@ class HookeLesson(CompareScreen):
         left, top, width, height = self.viewport
         place = self.again.rect.copy()
         place.midtop = (left + width // 2, top + height // 2 + ui.px(BELOW_WORDS))
-        self.again.set_relative_position(place.topleft)
+        self.again.move_to(place.topleft)
 
     def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
         panel = LessonPanel(ui, self.playback, self.trial, self.try_out, self._reset, BAR_HEIGHT, height)
@@ -90,9 +90,7 @@ class HookeLesson(CompareScreen):
         super()._tell()
 
     def _show_again(self) -> None:
-        is_over = self.exploded_at is not None
-        if is_over != bool(self.again.visible):
-            (self.again.show if is_over else self.again.hide)()
+        self.again.visible = self.exploded_at is not None
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw both, and the word for what happened."""

@@ -11,9 +11,9 @@ from sandbox.app.draw.colours import TEXT
 from sandbox.app.panel.coefficient_pad import CoefficientPad
 from sandbox.app.panel.panel_rows import INSIDE, MARGIN, PANEL_WIDTH
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.fields import Choice
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.button import Choice
 from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -48,7 +48,7 @@ class LessonPanel:
         half = (place.width - ui.px(8)) // 2
         first, second = place.copy(), place.move(half + ui.px(8), 0)
         first.width = second.width = half
-        self.stiffer = ui.button(first, "Stiffer × 2", lambda: self._stiffen(1), back, style="@primary")
+        self.stiffer = ui.button(first, "Stiffer × 2", lambda: self._stiffen(1), back, style="primary")
         self.softer = ui.button(second, "Softer ÷ 2", lambda: self._stiffen(-1), back)
         self.hooke = LimitGauge(ui, self._next(GAUGE, 4), FIRST_K / 2, FIRST_K * 2.0**MOST_DOUBLINGS, back)
         self.article = LimitGauge(ui, self._next(GAUGE, 8), FIRST_CS / 2, FIRST_CS * 2.0**MOST_DOUBLINGS, back)
@@ -63,7 +63,7 @@ class LessonPanel:
         return place
 
     def _choice(self, title: str, options: list[tuple[str, str]], choose: Callable[[str], None]) -> Choice:
-        self._ui.label(self._next(18, 1), title, self._back, "@muted")
+        self._ui.label(self._next(18, 1), title, self._back, "muted")
         return self._ui.choice(self._next(26, 8), [(value, text, "") for value, text in options], choose, self._back)
 
     # Changing.
@@ -98,11 +98,8 @@ class LessonPanel:
         self.masses.show(f"{trial.mass:g}")
         self.rates.show(str(trial.rate))
         self.springs.show(str(trial.springs))
-        for button, goes_on in (
-            (self.stiffer, trial.doublings < MOST_DOUBLINGS), (self.softer, trial.doublings > 0)
-        ):  # fmt: skip
-            if goes_on != button.is_enabled:
-                (button.enable if goes_on else button.disable)()
+        self.stiffer.is_enabled = trial.doublings < MOST_DOUBLINGS
+        self.softer.is_enabled = trial.doublings > 0
 
     def show_choices(self, strength: str, views: Set[str]) -> None:
         """The lesson shows neither the strength of the hand nor overlays."""

@@ -6,21 +6,20 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, LINE, MUTED, SURFACE, TEXT, mixed
-from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Widget
 
 # Sizes in layout units.
 TEXT_SIZE, TRACK, KNOB, SIDE = 11.5, 5.0, 6.0, 8.0
 
 
-class LimitGauge(Painted):
+class LimitGauge(Widget):
     """A track from low to high; beyond its limit it is hatched."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, low: float, high: float, container: Any = None) -> None:
         super().__init__(ui, rect, container)
         self._low, self._high = low, high
         self._shown: tuple[float, float, str, str] = (low, high, "", "")
-        self.repaint()
 
     def show_value(self, value: float, limit: float, text: str, limit_text: str) -> None:
         """Show a value and its limit, with what stands above at the left and at the right."""

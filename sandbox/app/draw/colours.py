@@ -1,4 +1,4 @@
-"""Colours of all that is drawn over the world, in the theme that is shown; those of widgets: assets/theme.json."""
+"""Colours of all that is drawn over the world, in the theme that is shown; those of widgets: `widgets/styles.py`."""
 
 from collections.abc import Iterable, Sequence
 from itertools import cycle
@@ -19,7 +19,7 @@ class Tone(Sequence[int]):
         self._colours: dict[ThemeName, Colour] = {"dark": dark, "light": light}
 
     def __len__(self) -> int:
-        return 3
+        return len(self._colours[_shown[0]])
 
     @overload
     def __getitem__(self, index: int) -> int: ...
@@ -30,6 +30,11 @@ class Tone(Sequence[int]):
 
 
 _shown: list[ThemeName] = ["dark"]
+
+
+def tone(dark: str, light: str) -> Tone:
+    """A colour as RRGGBB, or with an alpha as RRGGBBAA, in each theme."""
+    return Tone(tuple(bytes.fromhex(dark)), tuple(bytes.fromhex(light)))
 
 
 def show_theme(name: ThemeName) -> None:

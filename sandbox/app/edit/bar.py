@@ -1,19 +1,17 @@
 """Bar and palette of the editor: a button for everything that is done often, and one for every tool."""
 
 from collections.abc import Callable
-from typing import Any
+from functools import partial
 
 import pygame
 
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.editing import Editing
-from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour
-from sandbox.app.edit.edit_icons import EDIT_ICONS
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
 from sandbox.app.widgets.bar_title import BarTitle
-from sandbox.app.widgets.icons import painted_icon
+from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.tools.icons import Icon
+from sandbox.app.widgets.widget import Widget
 from sandbox.editor.tools.palette import TOOL_GROUPS, TOOLS
 
 # Groups of actions from the left, and those at the right end, with their pictures.
@@ -58,63 +56,15 @@ LEAST_NAMED_PITCH, NAMED_PITCH = 21.0, 27.0
 GROUP_GAP = 14.0
 
 
-class _Buttons:
-    """Icon buttons on a panel, by the action that each starts."""
-
-    def __init__(self, ui: Ui, press: Callable[[str], None], back: Any, size: float) -> None:
-        self._ui, self._press, self._back, self._size = ui, press, back, size
-        self.by_action: dict[str, Any] = {}
-        self._icons: dict[str, Icon] = {}
-        self._names: dict[str, tuple[str, float]] = {}
-        self._shown: dict[str, Colour] = {}
-
-    def add(self, action: str, icon: Icon, x: float, y: float, name: str = "", width: float = 0.0) -> None:
-        """A button of an action at a place [layout units]; with a name beside its icon it is as wide as is said."""
-        ui = self._ui
-        self._icons[action] = icon
-        if name:
-            self._names[action] = (name, width)
-        self.by_action[action] = ui.button(
-            ui.rect(x, y, width or self._size, self._size),
-            "",
-            lambda: self._press(action),
-            self._back,
-            icon=self._icon(action, TEXT),
-            tip=tip_of(action, "edit"),
-            style="@quiet",
-        )
-        self._shown[action] = TEXT
-
-    def add_text(self, action: str, text: str, x: float, y: float) -> None:
-        """A button with a letter in place of a picture."""
-        ui, place = self._ui, self._ui.rect(x, y, self._size, self._size)
-        tip = tip_of(action, "edit")
-        self.by_action[action] = ui.button(
-            place, text, lambda: self._press(action), self._back, tip=tip, style="@quiet"
-        )
-
-    def show(self, action: str, enabled: bool = True, on: bool = False) -> None:
-        """Show an action as possible or not, and on or off, changing what differs."""
-        colour = ACCENT if on else TEXT if enabled else DISABLED
-        if self._shown.get(action) == colour:
-            return
-        self._shown[action] = colour
-        button = self.by_action[action]
-        button.show_icon(self._icon(action, colour))
-        (button.enable if enabled else button.disable)()
-        (button.select if on else button.unselect)()
-
-    def _icon(self, action: str, colour: Colour) -> pygame.Surface:
-        ui = self._ui
-        if action not in self._names:
-            return painted_icon(self._icons[action], ui.px(ICON * self._size / BUTTON), colour)
-        (name, width), size = self._names[action], ui.px(self._size)
-        picture = pygame.Surface((ui.px(width), size), pygame.SRCALPHA)
-        icon = painted_icon(self._icons[action], ui.px(min(self._size - 5.0, ICON)), colour)
-        picture.blit(icon, icon.get_rect(center=(ui.px(16.0), size // 2)))
-        words = ui.font(12.0).render(name, True, colour)
-        picture.blit(words, words.get_rect(midleft=(ui.px(32.0), size // 2)))
-        return picture
+def _add_button(
+    ui: Ui, press: Callable[[str], None], back: Widget, action: str, icon: str, place: pygame.Rect, name: str = ""
+) -> Button:
+    """A button that starts an action; with a name beside its icon where there is one."""
+    size = place.height / ui.scale
+    return ui.button(
+        place, name, partial(press, action), back, icon=icon, tip=tip_of(action, "edit"),
+        icon_size=min(size - 5.0, ICON) if name else ICON * size / BUTTON, style="tool" if name else "quiet",
+    )  # fmt: skip
 
 
 class Bar:
@@ -129,12 +79,13 @@ class Bar:
         self.left_out = LEAVING[: max(0, count - int(room // LEAST_PITCH))]
         pitch = min(BUTTON + GAP, room / (count - len(self.left_out)))
         size = min(BUTTON, pitch - 2)
-        self.buttons = _Buttons(ui, press, self.back, size)
+        self.buttons: dict[str, Button] = {}
         x, y = MARGIN, (BAR_HEIGHT - size) / 2
         for group in LEFT:
             for action, picture in group:
                 if action not in self.left_out:
-                    self.buttons.add(action, EDIT_ICONS[picture], x, y)
+                    place = ui.rect(x, y, size, size)
+                    self.buttons[action] = _add_button(ui, press, self.back, action, picture, place)
                     x += pitch
             x += gaps / len(LEFT)
         at_right = [entry for entry in RIGHT if entry[0] not in self.left_out]
@@ -143,17 +94,20 @@ class Bar:
         if width >= ROOM_FOR_NAME:
             self.title = BarTitle(ui, ui.rect(x + 8, 0, right - x - 16, BAR_HEIGHT), self.back)
         for action, picture in at_right:
-            self.buttons.add(action, EDIT_ICONS[picture], right, y)
+            place = ui.rect(right, y, size, size)
+            self.buttons[action] = _add_button(ui, press, self.back, action, picture, place)
             right += pitch
-        self.buttons.add_text("help", "?", right, y)
+        tip = tip_of("help", "edit")
+        place = ui.rect(right, y, size, size)
+        self.buttons["help"] = ui.button(place, "?", partial(press, "help"), self.back, tip=tip, style="quiet")
 
     def show(self, screen: Editing) -> None:
         """Show what is possible now."""
         history = screen.history
 
         def show(action: str, enabled: bool = True, on: bool = False) -> None:
-            if action not in self.left_out:
-                self.buttons.show(action, enabled, on)
+            if action in self.buttons:
+                self.buttons[action].is_enabled, self.buttons[action].is_selected = enabled, on
 
         show("undo", history.can_undo)
         show("redo", history.can_redo)
@@ -193,21 +147,21 @@ class Palette:
     def __init__(self, ui: Ui, press: Callable[[str], None], top: float, height: float) -> None:
         width = palette_width(ui.units[0], height)
         self.back = ui.panel(ui.rect(0, top, width, height))
+        self.tools: dict[str, Button] = {}
         if _has_names(ui.units[0], height):
             self._add_named(ui, press, height)
         else:
             self._add_icons(ui, press, width, height)
-        self.tools = {name: self._buttons.by_action[tool.action] for name, tool in TOOLS.items()}
 
     def _add_named(self, ui: Ui, press: Callable[[str], None], height: float) -> None:
         pitch = min(NAMED_PITCH, (height - 8.0 - len(TOOL_GROUPS) * HEADING) / len(TOOLS))
-        self._buttons = _Buttons(ui, press, self.back, pitch - 1.0)
         y = 4.0
         for group, tools in TOOL_GROUPS.items():
-            ui.label(ui.rect(10.0, y + 3.0, NAMED_WIDTH - 12.0, HEADING - 4.0), group, self.back, "@muted")
+            ui.label(ui.rect(10.0, y + 3.0, NAMED_WIDTH - 12.0, HEADING - 4.0), group, self.back, "muted")
             y += HEADING
             for tool in tools:
-                self._buttons.add(tool.action, tool.icon, 6.0, y, tool.title.capitalize(), NAMED_WIDTH - 12.0)
+                place, name = ui.rect(6.0, y, NAMED_WIDTH - 12.0, pitch - 1.0), tool.title.capitalize()
+                self.tools[tool.name] = _add_button(ui, press, self.back, tool.action, tool.name, place, name)
                 y += pitch
 
     def _add_icons(self, ui: Ui, press: Callable[[str], None], width: float, height: float) -> None:
@@ -216,13 +170,13 @@ class Palette:
         pitch = min(BUTTON + GAP, (height - 8) / rows)
         across = (width - 8.0) / columns
         size = min(BUTTON, pitch - 2, across - 2)
-        self._buttons = _Buttons(ui, press, self.back, size)
         for index, tool in enumerate(TOOLS.values()):
             column, row = divmod(index, rows)
             x = 4.0 + column * across + (across - size) / 2
-            self._buttons.add(tool.action, tool.icon, x, 6 + row * pitch)
+            place = ui.rect(x, 6 + row * pitch, size, size)
+            self.tools[tool.name] = _add_button(ui, press, self.back, tool.action, tool.name, place)
 
     def show(self, tool: str) -> None:
         """Mark the tool in use."""
-        for name, each in TOOLS.items():
-            self._buttons.show(each.action, on=name == tool)
+        for name, button in self.tools.items():
+            button.is_selected = name == tool

@@ -7,7 +7,8 @@ from sandbox.app.base.shortcuts import shortcuts
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import MUTED
-from sandbox.app.widgets.rows import Row, open_menu_at
+from sandbox.app.widgets.picker import open_menu_at
+from sandbox.app.widgets.rows import Row
 from sandbox.editor.edits.grouping import groups_of, with_groups
 from sandbox.editor.items import Item
 from sandbox.editor.objects import name_of

@@ -10,7 +10,7 @@ from sandbox.app.draw.colours import ACCENT, MUTED, TEXT, WARNING
 from sandbox.app.edit.canvas.pointer import DrawTool
 from sandbox.app.edit.documents import DocumentActions
 from sandbox.app.edit.edit_screen import EditScreen
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.editor.tour import STEPS, Situation, Target, Tour
@@ -84,10 +84,8 @@ class Guide:
         self._panel, self._made_for, self.buttons = None, (), {}
 
     def _take_away(self) -> None:
-        for button in self.buttons.values():
-            self._app.ui.remove(button)
         if self._panel is not None:
-            self._panel.kill()
+            self._panel.remove()
         self._card = None
         self.build()
 
@@ -117,7 +115,7 @@ class Guide:
 
     def _make(self, ui: Ui, place: pygame.Rect) -> None:
         tour = self.tour
-        self._panel = panel = ui.panel(place, style="@dialog")
+        self._panel = panel = ui.panel(place, style="dialog")
         width, height = place.width / ui.scale, place.height / ui.scale
         inside = width - 2 * PADDING
         if tour is None:
@@ -126,7 +124,7 @@ class Guide:
         else:
             title, text = tour.step.title, tour.step.text
             count = "" if tour.is_over else f"{tour.index + 1} of {len(STEPS)}"
-        ui.label(ui.rect(PADDING, 10, inside - 60, 22), title, panel, "@title")
+        ui.label(ui.rect(PADDING, 10, inside - 60, 22), title, panel, "title")
         wide = ui.font(COUNT_SIZE).size(count)[0] / ui.scale + 2
         TextBlock(ui, ui.rect(width - PADDING - wide, 15, wide, 18), count, panel, COUNT_SIZE, MUTED)
         TextBlock(ui, ui.rect(PADDING, 38, inside, height - 82), text, panel, 12.5, TEXT)
@@ -139,13 +137,13 @@ class Guide:
     def _offered(self) -> list[tuple[str, str, Any, str]]:
         """Buttons from the right: name, label, what it does, style."""
         if self.tour is None:
-            return [("start", "Start", self.begin, "@primary"), ("skip", "Skip", self.skip, "@quiet")]
+            return [("start", "Start", self.begin, "primary"), ("skip", "Skip", self.skip, "quiet")]
         if self.tour.is_over:
-            return [("skip", "Done", self.skip, "@primary")]
-        buttons = [("next", "Next", self._next, "@primary")] if self.tour.stays else []
+            return [("skip", "Done", self.skip, "primary")]
+        buttons = [("next", "Next", self._next, "primary")] if self.tour.stays else []
         if self.tour.index:
             buttons.append(("back", "Back", self._back, ""))
-        return [*buttons, ("skip", "Skip", self.skip, "@quiet")]
+        return [*buttons, ("skip", "Skip", self.skip, "quiet")]
 
     # Where things are.
 
@@ -233,6 +231,6 @@ def _rect_of(target: Target, editor: EditScreen) -> pygame.Rect | None:
         return pygame.Rect(round(x) - size // 2, round(y) - size // 2, size, size)
     field = editor.options.fields.get(target)
     if field is not None:
-        return field.entry.rect.copy()
-    button = editor.palette.tools.get(target.removeprefix("tool_")) or editor.bar.buttons.by_action.get(target)
+        return field.rect.copy()
+    button = editor.palette.tools.get(target.removeprefix("tool_")) or editor.bar.buttons.get(target)
     return button.rect.copy() if button is not None else None

@@ -6,8 +6,9 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, Colour
-from sandbox.app.widgets.painted import Lit, Pressable, wrapped
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Pressable
 
 # Sizes in layout units.
 PICTURE_RATIO = 9 / 16
@@ -20,11 +21,13 @@ NAME_HEIGHT, LINE_HEIGHT = 23.0, 16.0
 SHORT_LINES, MOST_LINES = 2, 14
 
 
-class Card(Lit, Pressable):
+class Card(Pressable):
     """One thing to open; line: what to do with it, text: all that is said of it, tags: what else it is found by.
 
     is_small: a row with the picture at its left and the name beside it. badge: a word over the picture.
     """
+
+    is_lit = True
 
     ui: Ui
 
@@ -38,8 +41,6 @@ class Card(Lit, Pressable):
         self.tags: tuple[str, ...] = ()
         self.picture: pygame.Surface | None = None
         self.broken = False
-        self._is_open = False
-        ui.add(self)
 
     @property
     def picture_size(self) -> tuple[int, int]:
@@ -67,17 +68,10 @@ class Card(Lit, Pressable):
     @property
     def is_pointed_at(self) -> bool:
         """Whether the mouse is over it, or the keyboard works on it."""
-        return bool(self.hovered) or self.ui.focus is self
-
-    def update(self, time_delta: float) -> None:
-        """Open and close as the keyboard comes and goes."""
-        super().update(time_delta)
-        if self._is_open != self.is_pointed_at:
-            self.repaint()
+        return self.hovered or self.focused
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The card as it is now."""
-        self._is_open = self.is_pointed_at
         return self._painted(size, self._lines(size[0], self.is_small))
 
     def paint_open(self) -> pygame.Surface:
@@ -95,7 +89,7 @@ class Card(Lit, Pressable):
             self._paint_row(card)
         else:
             self._paint_whole(card, lines)
-        rim, width = (ACCENT, 2.0) if self._is_open else (LINE, 1.2)
+        rim, width = (ACCENT, 2.0) if self.is_pointed_at else (LINE, 1.2)
         pygame.draw.rect(card, rim, card.get_rect(), max(1, ui.px(width)), border_radius=corner)
         # The picture has the corners of the card.
         mask = pygame.Surface(size, pygame.SRCALPHA)

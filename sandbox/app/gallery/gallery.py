@@ -28,8 +28,8 @@ from sandbox.app.gallery.preview import Preview
 from sandbox.app.gallery.replay_card import date_of, fill_replay
 from sandbox.app.gallery.scene_card import fill_scene
 from sandbox.app.gallery.sections import FIRST, in_sections, is_found, search_rank
-from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.recent import played_levels, recent_levels
 from sandbox.editor.storage.scene_shelf import scenes_in
@@ -92,7 +92,7 @@ class Gallery:
         self.title = TITLES[section]
         self.query = ""
         self.sheet = ui.open_sheet(
-            self._escape, "@cover", again=lambda _: app.open_gallery(section, self.header.search.entry.get_text())
+            self._escape, "cover", again=lambda _: app.open_gallery(section, self.header.search.typed)
         )
         self._width = ui.units[0] - 2 * MARGIN
         self._build_groups_of = {"levels": self._add_shipped, "mine": self._add_own, "recordings": self._add_recordings}
@@ -120,11 +120,11 @@ class Gallery:
 
     def close(self) -> None:
         """Take the page away."""
-        self._ui.close_sheet(self.sheet)
+        self.sheet.remove()
 
     def _escape(self) -> None:
         if self.query:
-            self.header.search.entry.set_text("")
+            self.header.search.typed = ""
         elif self._app.screen is not None:
             self._close()
 
@@ -275,7 +275,7 @@ class Gallery:
         for group in self.groups:
             shown = [card for card in group.cards if self._fits(group, card)]
             for card in group.cards:
-                (card.show if card in shown else card.hide)()
+                card.visible = card in shown
             self._head(group, y, bool(shown))
             group.top = ui.px(y)
             if not shown:
@@ -284,7 +284,7 @@ class Gallery:
             for index, card in enumerate(shown):
                 x = 6 + index % group.columns * (group.width + GAP)
                 below = y + index // group.columns * (group.height + GAP)
-                card.set_relative_position(ui.rect(x, below, 0, 0).topleft)
+                card.move_to(ui.rect(x, below, 0, 0).topleft)
             y += -(-len(shown) // group.columns) * (group.height + GAP) + SECTION_GAP
         self._nothing.show_text("" if y else self._words_for_nothing())
         self.area.set_height(ui.px(max(y, 80.0) + MARGIN / 2))
@@ -310,8 +310,8 @@ class Gallery:
                 place = ui.rect(6 + wide, y, max(self._width - wide, 1), 20)
                 group.labels.append(TextBlock(ui, place, group.line, self.area.content, 12.0))
         for index, label in enumerate(group.labels):
-            (label.show if is_shown else label.hide)()
-            label.set_relative_position((label.relative_rect.left, ui.px(y + 8 + 3 * index)))
+            label.visible = is_shown
+            label.move_to((label.place.left, ui.px(y + 8 + 3 * index)))
 
     def _show_section(self, title: str) -> None:
         """Scroll to a section."""
@@ -328,7 +328,7 @@ class Gallery:
     def update(self, frame_time: float) -> None:
         """Go on filling cards for a while; show what has the focus."""
         self._unfilled.go_on(FILL_BUDGET)
-        self._search(self.header.search.entry.get_text())
+        self._search(self.header.search.typed)
         self._mark_section()
         self._play(frame_time)
 
@@ -392,7 +392,7 @@ class Gallery:
         """Go from card to card with the arrow keys; a letter begins a search."""
         if not self.is_on_top:
             return False
-        search = self.header.search.entry
+        search = self.header.search
         if event.key in STEPS and not (self._ui.typing and event.key != pygame.K_DOWN):
             self._go(*STEPS[event.key])
             return True
@@ -400,8 +400,7 @@ class Gallery:
         if not self._ui.typing and is_plain and event.unicode.isprintable() and event.unicode.strip():
             # The letter itself comes as text after its key.
             self._ui.focus_on(search)
-            search.select_range = [0, 0]
-            search.edit_position = len(search.get_text())
+            search.select(len(search.typed), len(search.typed))
             return True
         return False
 
@@ -414,7 +413,7 @@ class Gallery:
             target = _beside(shown, focus, dx, dy)
         if target is not None:
             self._ui.focus_on(target)
-            self.area.follow_focus()
+            self._ui.show_focus()
 
     def scroll(self, notches: float) -> None:
         """Move the cards by notches of the wheel."""

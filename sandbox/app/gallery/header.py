@@ -4,13 +4,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
-from pygame_gui.elements import UIButton
-
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.application import Application
-from sandbox.app.draw.colours import TEXT
-from sandbox.app.widgets.fields import Field
-from sandbox.app.widgets.icons import ICONS, painted_icon
+from sandbox.app.widgets.button import Button
+from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -32,10 +29,9 @@ class Header:
         self._ui, self._sheet = ui, sheet
         width = ui.units[0]
         self._is_wide = width >= ROOM_FOR_ONE_ROW
-        self._sections: dict[str, UIButton] = {}
-        self._marked = ""
+        self._sections: dict[str, Button] = {}
         title = "Edit a level" if app.mode == "edit" else "Spring Sandbox"
-        ui.label(ui.rect(MARGIN, 20, 230, 36), title, sheet, "@display")
+        ui.label(ui.rect(MARGIN, 20, 230, 36), title, sheet, "display")
         right = width - MARGIN
         right = self._buttons(app, right)
         second = 72.0
@@ -60,7 +56,6 @@ class Header:
     def _buttons(self, app: Application, right: float) -> float:
         """New, Open file and Settings, up to the right; where they begin."""
         ui, sheet = self._ui, self._sheet
-        icon = painted_icon(ICONS["settings"], ui.px(18), TEXT)
         documents = app.documents
         new = documents.new_place if app.mode == "edit" else documents.play_new
         buttons = [(58.0, "New", new), (94.0, "Open file", app.files.ask_to_open)]
@@ -71,7 +66,7 @@ class Header:
             ui.button(ui.rect(x, 24, width, BUTTON), text, action, sheet, tip=tip)
             x += width + GAP
         place = ui.rect(x, 24, BUTTON, BUTTON)
-        ui.button(place, "", lambda: app.act("settings"), sheet, icon=icon, tip=tip_of("settings", app.mode))
+        ui.button(place, "", lambda: app.act("settings"), sheet, icon="settings", tip=tip_of("settings", app.mode))
         return left
 
     def show_sections(self, titles: Sequence[str], go: Callable[[str], None]) -> None:
@@ -82,13 +77,10 @@ class Header:
         for title in titles:
             wide = ui.font(12).size(title)[0] / ui.scale + 22
             place = ui.rect(x, 70, wide, 26)
-            self._sections[title] = ui.button(place, title, partial(go, title), self._sheet, style="@chip")
+            self._sections[title] = ui.button(place, title, partial(go, title), self._sheet, style="chip")
             x += wide + 4
 
     def mark(self, title: str) -> None:
         """Mark the section that is seen."""
-        if title == self._marked:
-            return
         for name, button in self._sections.items():
-            (button.select if name == title else button.unselect)()
-        self._marked = title
+            button.is_selected = name == title

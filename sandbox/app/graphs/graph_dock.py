@@ -19,8 +19,8 @@ from sandbox.app.graphs.chart import Chart, GraphLine
 from sandbox.app.graphs.measures import MEASURES, Moment
 from sandbox.app.graphs.tracks import Track
 from sandbox.app.run.playback import Playback
+from sandbox.app.widgets.button import Choice
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.fields import Choice
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.format.writing import write_file
@@ -83,7 +83,7 @@ class GraphDock:
         )
         for text, wide, do, tip in buttons:
             right -= wide
-            ui.button(ui.rect(right, GAP, wide, ROW), text, do, back, tip=tip, style="@segment")
+            ui.button(ui.rect(right, GAP, wide, ROW), text, do, back, tip=tip, style="segment")
             right -= GAP
         options = [(name, measure.title, f"{measure.title} [{measure.unit}]") for name, measure in MEASURES.items()]
         if TAB * len(options) <= right - EDGE:
@@ -112,7 +112,7 @@ class GraphDock:
         if self._tabs is not None:
             self._tabs.show(name)
         elif self._one is not None:
-            self._one.set_text(MEASURES[name].title)
+            self._one.show_text(MEASURES[name].title)
 
     def _ask(self) -> None:
         """Ask which graph is shown."""
@@ -198,7 +198,7 @@ class GraphDock:
         """Draw the graphs, with the values at the mouse."""
         if not self.is_shown:
             return
-        at = self._ui.manager.get_mouse_position()
+        at = self._ui.pointer
         cursor = at[0] if self._place.collidepoint(at) and not self._ui.has_sheet else None
         pygame.draw.rect(surface, SURFACE, self._back)
         self._paint(surface, self._place, self._ui.scale, cursor)

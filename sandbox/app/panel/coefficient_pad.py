@@ -12,9 +12,10 @@ from sandbox.app.base.sag_map import WORD_SHARE, SagMap
 from sandbox.app.draw.colours import ACCENT, DANGER, DECADE, FIELD, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.panel.sweeps.layer_paint import limits_of, paint_cells, paint_line, paint_scale
 from sandbox.app.panel.sweeps.sweep_layer import SweepLayer
-from sandbox.app.widgets.painted import Draggable, wrapped
 from sandbox.app.widgets.slider import FINE_KEY_STEP, KEY_STEP
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Draggable, Pixel
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones
 from sandbox.physics.analysis.spring_motion import swings_back
@@ -68,8 +69,6 @@ class CoefficientPad(Draggable):
         self._sweep: SweepLayer | None = None
         self._note = ""
         self._pointed: tuple[float, float] | None = None
-        ui.add(self)
-        self.repaint()
 
     def show_layer(self, layer: SweepLayer | None, note: str) -> None:
         """Show what a sweep has measured (None: what theory says), and a note about it."""
@@ -122,7 +121,7 @@ class CoefficientPad(Draggable):
         """Whether there is anything to set."""
         return self.state.enabled
 
-    def end_drag(self) -> None:
+    def on_release(self, at: Pixel) -> None:
         """What is set counts."""
         self._done()
 
@@ -138,12 +137,13 @@ class CoefficientPad(Draggable):
         self._step(*moves[event.key])
         return True
 
-    def turn(self, notches: float) -> bool:
-        """Move Cs by a fine step a notch; with Shift, Cd."""
+    def on_wheel(self, notches: float) -> bool:
+        """After a click on it, move Cs by a fine step a notch; with Shift, Cd."""
+        if not (self.in_hand and self.state.enabled):
+            return False
         by = FINE_KEY_STEP * notches
-        if self.state.enabled:
-            self._step(*((0.0, by) if pygame.key.get_mods() & pygame.KMOD_SHIFT else (by, 0.0)))
-        return self.state.enabled
+        self._step(*((0.0, by) if pygame.key.get_mods() & pygame.KMOD_SHIFT else (by, 0.0)))
+        return True
 
     def _step(self, across: float, up: float) -> None:
         def moved(value: float, by: float) -> float:
@@ -154,23 +154,27 @@ class CoefficientPad(Draggable):
         self._changed(moved(self.state.stiffness, across), moved(self.state.damping, up))
         self._done()
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Follow the mouse, and tell the number under it."""
-        if event.type == pygame.MOUSEMOTION and self._sweep is not None:
-            pointed = self._pair_at(event.pos) if self.hover_point(*event.pos) else None
-            if pointed != self._pointed:
-                self._pointed = pointed
-                self.repaint()
-        return super().process_event(event)
+    def on_move(self, at: Pixel) -> None:
+        """Tell the number under the mouse."""
+        self._show_pointed(self._pair_at(at))
 
-    def follow(self, pos: tuple[int, int]) -> None:
+    def on_hover(self) -> None:
+        """Tell none while the mouse is elsewhere."""
+        if not self.hovered:
+            self._show_pointed(None)
+
+    def _show_pointed(self, pointed: tuple[float, float] | None) -> None:
+        if self._sweep is not None and pointed != self._pointed:
+            self._pointed = pointed
+            self.repaint()
+
+    def on_drag(self, at: Pixel) -> None:
         """Set what lies under the mouse."""
-        self._changed(*self._pair_at(pos))
+        self._changed(*self._pair_at(at))
 
-    def _pair_at(self, pos: tuple[int, int]) -> tuple[float, float]:
+    def _pair_at(self, at: Pixel) -> tuple[float, float]:
         """The Cs and the Cd at a place in the window."""
-        x, y = self.ui.manager.calculate_scaled_mouse_position(pos)
-        inside = self._inside
+        (x, y), inside = at, self._inside
         across = (x - self.rect.left - inside.left) / max(1, inside.width - 1)
         up = (inside.bottom - 1 - (y - self.rect.top)) / max(1, inside.height - 1)
         return self.state.scale.value_at(across), self.state.scale.value_at(up)

@@ -10,7 +10,7 @@ from sandbox.app.panel.readings import number
 from sandbox.app.panel.response_curve import ResponseCurve
 from sandbox.app.panel.solver_rows import SolverRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.fields import DASH, MIXED, typed_number
+from sandbox.app.widgets.field import DASH, MIXED, typed_number
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import coefficients_from_frequency, frequency_from_coefficients
 

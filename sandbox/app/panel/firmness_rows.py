@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import asdict, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,10 @@ from sandbox.app.base.sag_sentences import subject_words
 from sandbox.app.base.sentences import capitalised
 from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.fields import DASH, MIXED, Choice, Field, typed_number
-from sandbox.app.widgets.painted import TextBlock
-from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.button import Choice
+from sandbox.app.widgets.field import DASH, MIXED, Field, typed_number
+from sandbox.app.widgets.picker import WordPicker
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
 from sandbox.physics.analysis.body_motion import BodyMotion, present_coefficients, read_body, word_for
@@ -57,7 +58,7 @@ class FirmnessRows:
     Bodies that are large are left to the level's field and the command.
     """
 
-    menu: Any
+    menu: WordPicker
     words: Choice
     text: TextBlock
     sag: Field
@@ -88,11 +89,11 @@ class FirmnessRows:
         if self.body not in self._subjects:
             self.body = ALL_BODIES
 
-    def offer_bodies(self, ui: Ui) -> None:
+    def offer_bodies(self) -> None:
         """Let the menu offer what there is at the moment: bodies join a run, and go again."""
         self._find_bodies()
         if self.shown:
-            ui.offer(self.menu, [ALL_BODIES, *self.bodies], self.body)
+            self.menu.offer([ALL_BODIES, *self.bodies], self.body)
 
     def speak_of(self, material: int | None) -> None:
         """Begin with the one body of several that is of a material, if there is one: the level's text speaks of it."""

@@ -22,10 +22,11 @@ from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
 from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.fields import DASH, MIXED, typed_number
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.field import DASH, MIXED, typed_number
+from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
@@ -148,18 +149,18 @@ class Panel:
 
     def _build_firmness(self) -> None:
         ui, rows, firmness = self._ui, self.rows, self.firmness
-        ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "@heading")
+        ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "heading")
         names = [ALL_BODIES, *firmness.bodies]
         place = rows.row(ROW, 6, MARGIN + 90, INSIDE - 90)
-        firmness.menu = ui.menu(place, names, firmness.body, self.choose_body, rows.back)
+        firmness.menu = WordPicker(ui, place, names, firmness.body, self.choose_body, rows.back)
         words = [(word, word.capitalize(), _word_tip(sag)) for word, sag in WORDS.items()]
         firmness.words = ui.choice(rows.row(ROW + 4, 6), words, firmness.choose_word, rows.back)
         width = ENTRY_WIDTH - 20
         firmness.text = TextBlock(ui, rows.place(MARGIN, 0, INSIDE - width - 12, 52), "", rows.back, 13.0, TEXT)
         x = MARGIN + INSIDE - width
-        ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "@muted")
+        ui.label(rows.place(x, -2, width, 15), "Sag [%]", rows.back, "muted")
         firmness.sag = ui.field(rows.place(x, 14, width, ROW - 2), "", firmness.type_sag, rows.back, 24)
-        firmness.sag.entry.set_tooltip(SAG_TIP)
+        firmness.sag.tip = SAG_TIP
         rows.row(52, 6)
 
     def build_springs(self) -> None:
@@ -175,7 +176,7 @@ class Panel:
         width = INSIDE / 2 - 4 if self.by_pad else INSIDE
         if self.by_pad:
             place = rows.place(MARGIN + INSIDE - width, 0, width, 30)
-        self.menu = ui.menu(rows.row(30, 6, width=width), names, chosen, self._choose_material, rows.back)
+        self.menu = WordPicker(ui, rows.row(30, 6, width=width), names, chosen, self._choose_material, rows.back)
         if self.by_pad:
             self.maps = PadMaps(ui, place, self.playback, self._sweeps, rows.back)
             self._build_pad()
@@ -212,7 +213,7 @@ class Panel:
     def _slider(self, tip: str, changed: Callable[[float], None]) -> Slider:
         rows = self.rows
         made = Slider(self._ui, rows.row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, rows.back)
-        made.set_tooltip(tip)
+        made.tip = tip
         return made
 
     def _first_material(self) -> int | None:
@@ -375,16 +376,16 @@ class Panel:
         if self.material is not None and self.material >= len(names):
             self.material = None
         chosen = ALL_MATERIALS if self.material is None else names[self.material]
-        self._ui.offer(self.menu, [ALL_MATERIALS, *names], chosen)
-        self.firmness.offer_bodies(self._ui)
+        self.menu.offer([ALL_MATERIALS, *names], chosen)
+        self.firmness.offer_bodies()
 
     def choose_material(self, material: int | None) -> None:
         """Show and change the springs of a material (index); None = all."""
         self.material = material
         if self.firmness.body != ALL_BODIES and material != self.firmness.material_of(self.firmness.body):
             self.firmness.choose_body(ALL_BODIES)
-            self._ui.replace_menu(self.firmness.menu, ALL_BODIES)
-        self._ui.replace_menu(self.menu, ALL_MATERIALS if material is None else self._material_names()[material])
+            self.firmness.menu.show_chosen(ALL_BODIES)
+        self.menu.show_chosen(ALL_MATERIALS if material is None else self._material_names()[material])
 
     def _take_home(self) -> None:
         """Show what the body that is spoken of is in another loop or engine."""
@@ -400,7 +401,7 @@ class Panel:
         if not self.firmness.shown or name not in (ALL_BODIES, *self.firmness.bodies):
             return
         self.firmness.choose_body(name)
-        self._ui.replace_menu(self.firmness.menu, name)
+        self.firmness.menu.show_chosen(name)
         material = self.firmness.material_of(name)
         if material is not None:
             self.choose_material(material)
@@ -419,12 +420,13 @@ class Panel:
 
     def pointed_springs(self) -> np.ndarray | None:
         """The springs (m,) of the material or body that the mouse points at in a menu; None: it points at none."""
-        world, name = self.playback.session.world, self._ui.pointed_option(self.menu)
-        if name is not None:
+        world, row = self.playback.session.world, self.menu.pointed
+        if row is not None:
             of_material = world.material >= 0
-            return of_material if name == ALL_MATERIALS else world.material == self._material_names().index(name)
-        name = self._ui.pointed_option(self.firmness.menu) if self.firmness.shown else None
-        return None if name is None else self.firmness.springs_of(name)
+            is_all = row.text == ALL_MATERIALS
+            return of_material if is_all else world.material == self._material_names().index(row.text)
+        row = self.firmness.menu.pointed if self.firmness.shown else None
+        return None if row is None else self.firmness.springs_of(row.text)
 
     def _choose_material(self, name: str) -> None:
         self.choose_material(None if name == ALL_MATERIALS else self._material_names().index(name))

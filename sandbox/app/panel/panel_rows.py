@@ -5,7 +5,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.fold import TEXT_SIZE, FoldHeading
 from sandbox.app.widgets.ui import Ui
 
@@ -48,23 +48,23 @@ class PanelRows:
         width, made = (INSIDE - GAP * (len(fields) - 1)) / len(fields), []
         for index, (text, tip, commit) in enumerate(fields):
             x = MARGIN + index * (width + GAP)
-            self.ui.label(self.place(x, 0, width, 18), text, self.back, "@muted")
+            self.ui.label(self.place(x, 0, width, 18), text, self.back, "muted")
             made.append(self._field(self.place(x, 19, width, ROW), tip, commit))
         self.row(19 + ROW, 6)
         return made
 
     def _field(self, place: pygame.Rect, tip: str, commit: Callable[[str], bool]) -> Field:
         made = self.ui.field(place, "", commit, self.back, 24)
-        made.entry.set_tooltip(tip)
+        made.tip = tip
         return made
 
     def section(self, title: str, is_open: bool, toggle: Callable[[], None], build: Callable[[], None]) -> None:
         """A heading, and what `build` makes under it, which is seen where the section is open."""
         width = self.ui.font(TEXT_SIZE, True).size(title.upper())[0] / self.ui.scale + HEADING_ROOM
         FoldHeading(self.ui, self.row(18, 8, width=width), title, not is_open, toggle, self.back)
-        before, y = len(self.back.elements), self.y
+        before, y = len(self.back.children), self.y
         build()
         if not is_open:
-            for element in self.back.elements[before:]:
-                element.hide()
+            for element in self.back.children[before:]:
+                element.visible = False
             self.y = y

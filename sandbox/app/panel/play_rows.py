@@ -9,7 +9,7 @@ from sandbox.app.panel.panel_rows import GAP, INSIDE, MARGIN, ROW, PanelRows
 from sandbox.app.panel.readings import number
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dial import Dial, Vector
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.session.commands import Command, SetAir, SetGravity
 from sandbox.tools.push_wind import LEAST_DRAG
 
@@ -51,10 +51,10 @@ class PlayRows:
         changed: Callable[[float, float], None], tip: str,
     ) -> tuple[Dial, TextBlock]:  # fmt: skip
         beside, ui = x + DIAL + 8, rows.ui
-        ui.label(rows.place(beside, 12, WORDS, 18), name, rows.back, "@muted")
+        ui.label(rows.place(beside, 12, WORDS, 18), name, rows.back, "muted")
         words = TextBlock(ui, rows.place(beside, 31, WORDS, 32), "", rows.back, 12.0, TEXT)
         dial = Dial(ui, rows.place(x, 0, DIAL, DIAL), full, marks, changed, self._end, rows.back)
-        dial.set_tooltip(tip)
+        dial.tip = tip
         return dial, words
 
     def refresh(self) -> None:
@@ -63,11 +63,8 @@ class PlayRows:
         settings = world.settings
         has_springs = bool((world.spring_active & (world.material >= 0)).any())
         for button in (self.melt, self.take_home):
-            if button.is_enabled != has_springs:
-                (button.enable if has_springs else button.disable)()
-        words = "Make whole" if settings.solver == "single_pass" else "Melt"
-        if words != self.melt.text:
-            self.melt.set_text(words)
+            button.is_enabled = has_springs
+        self.melt.show_text("Make whole" if settings.solver == "single_pass" else "Melt")
         for dial, block, value, unit in (
             (self.gravity, self._gravity_words, settings.gravity, "m/s\u00b2"),
             (self.wind, self._wind_words, settings.wind, "m/s"),

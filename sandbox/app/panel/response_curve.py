@@ -7,8 +7,8 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, DECADE, FIELD, MUTED, TEXT
 from sandbox.app.panel.readings import motion_words
-from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Widget
 from sandbox.physics.analysis.spring_motion import SpringMotion, errors_of, motion_of
 
 # Longest time that is looked at, and those that the curve may show [ticks].
@@ -20,7 +20,7 @@ MOST_DOTS = 60
 TEXT_SIZE, TOP, BOTTOM, SIDE = 10.5, 17.0, 15.0, 4.0
 
 
-class ResponseCurve(Painted):
+class ResponseCurve(Widget):
     """The curve of one spring; it is worked out again where Cs, Cd or the tick rate change."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any = None) -> None:
@@ -29,7 +29,6 @@ class ResponseCurve(Painted):
         self.words = ""
         self.motion: SpringMotion | None = None
         self.errors = errors_of(0.0, 0.0, 1)
-        self.repaint()
 
     def show_spring(self, pair: tuple[float, float], tick_rate: int) -> None:
         """Show the spring of Cs and Cd."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from sandbox.app.panel.panel_rows import ROW, PanelRows
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.fields import typed_number
+from sandbox.app.widgets.field import typed_number
 from sandbox.level.format.limits import SUBSTEPS
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
@@ -28,9 +28,9 @@ class SolverRows:
         """Make the widgets."""
         ui, back = rows.ui, rows.back
         options = [(name, SOLVER_LABELS.get(name, name), SOLVER_TIPS.get(name, name)) for name in SOLVERS]
-        ui.label(rows.row(18, 2), "Solver", back, "@muted")
+        ui.label(rows.row(18, 2), "Solver", back, "muted")
         self.solver = ui.choice(rows.row(ROW, 8), options, self._choose_solver, back)
-        ui.label(rows.row(18, 2), "Substeps", back, "@muted")
+        ui.label(rows.row(18, 2), "Substeps", back, "muted")
         several = "things stay as stiff and hold better"
         counts = [(str(count), str(count), f"A tick in {count}: {several}" if count > 1 else "A tick in one")
                   for count in SUBSTEPS]  # fmt: skip

@@ -8,8 +8,9 @@ import pygame
 from sandbox.app.base.desktop import copy_text
 from sandbox.app.draw.colours import MUTED, TEXT
 from sandbox.app.widgets.code_block import CodeBlock, code_height
-from sandbox.app.widgets.painted import TextBlock, text_height
+from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
+from sandbox.app.widgets.texts import TextBlock, text_height
 from sandbox.app.widgets.ui import Ui
 from sandbox.export.chosen_body import NoSuchBody, body_names
 from sandbox.export.paste import pasted
@@ -60,22 +61,19 @@ class _TakeHomePage:
         self._code, self._about = ("", "") if target is None else _texts(take, TARGETS[target])
         high = ASKING_HEIGHT if target is None else TOP + self._content_height() / ui.scale + ROW + 36
         self._height = min(high, HEIGHT, ui.units[1] - 16)
-        self._sheet = ui.open_sheet(self._close, is_page=True, again=self._again)
+        self._sheet = ui.open_sheet(is_page=True, again=self._again)
         left, top = (ui.units[0] - self._width) / 2, (ui.units[1] - self._height) / 2
-        self._box = ui.panel(ui.rect(left, top, self._width, self._height), self._sheet, "@dialog")
-        ui.label(ui.rect(MARGIN, 18, 220, 28), "Take it home" if target is None else target, self._box, "@title")
+        self._box = ui.panel(ui.rect(left, top, self._width, self._height), self._sheet, "dialog")
+        ui.label(ui.rect(MARGIN, 18, 220, 28), "Take it home" if target is None else target, self._box, "title")
         menu = ui.rect(self._width - MARGIN - MENU_WIDTH, 18, MENU_WIDTH, ROW)
-        ui.menu(menu, names, take.body, lambda name: self._go(target, name), self._box)
+        WordPicker(ui, menu, names, take.body, lambda name: self._go(target, name), self._box)
         (self._ask if target is None else self._answer)()
-
-    def _close(self) -> None:
-        self._ui.close_sheet(self._sheet)
 
     def _again(self, ui: Ui) -> None:
         show_take_home(ui, self._world, self._say, self._take.body, self._target)
 
     def _go(self, target: str | None, body: str | None = None) -> None:
-        self._close()
+        self._sheet.remove()
         show_take_home(self._ui, self._world, self._say, body or self._take.body, target)
 
     def _button(self, place: pygame.Rect, text: str, do: Callable[[], None], style: str = "") -> Any:
@@ -92,7 +90,7 @@ class _TakeHomePage:
         wide = (self._width - 2 * MARGIN - GAP) / 2
         place = ui.rect(MARGIN, self._height - 16 - ROW, wide, ROW)
         self._button(place, ALL, lambda: self._go(ALL))
-        self._button(ui.rect(MARGIN + wide + GAP, self._height - 16 - ROW, wide, ROW), "Close", self._close)
+        self._button(ui.rect(MARGIN + wide + GAP, self._height - 16 - ROW, wide, ROW), "Close", self._sheet.remove)
 
     def _choices(self, names: list[str], y: float) -> float:
         """A button for each name, in rows; where these end."""
@@ -130,9 +128,9 @@ class _TakeHomePage:
         ui = self._ui
         wide = (self._width - 2 * MARGIN - 2 * GAP) / 3
         actions = (
-            ("Copy", self._copy, "@primary"),
+            ("Copy", self._copy, "primary"),
             ("Another engine", self._go_back, ""),
-            ("Close", self._close, ""),
+            ("Close", self._sheet.remove, ""),
         )
         for number, (text, do, style) in enumerate(actions):
             place = ui.rect(MARGIN + number * (wide + GAP), self._height - 16 - ROW, wide, ROW)

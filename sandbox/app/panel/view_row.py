@@ -7,9 +7,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.base.shortcuts import tip_of
-from sandbox.app.draw.colours import ACCENT, TEXT
 from sandbox.app.draw.views.overlays import NAMES
-from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui
 
 ICON = 17.0
@@ -20,21 +18,17 @@ class ViewRow:
     """The buttons; toggle: what a press does with the name of an overlay."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, toggle: Callable[[str], None], container: Any) -> None:
-        self._ui, self._shown = ui, frozenset[str]()
         self.buttons = {}
         step = (rect.width + ui.px(GAP)) / len(NAMES)
         for index, name in enumerate(NAMES):
             left, right = round(index * step), round((index + 1) * step - ui.px(GAP))
             place = pygame.Rect(rect.left + left, rect.top, right - left, rect.height)
-            icon = painted_icon(ICONS[name], ui.px(ICON), TEXT)
             self.buttons[name] = ui.button(
-                place, "", partial(toggle, name), container, style="@segment", icon=icon, tip=tip_of(name, "play")
-            )
+                place, "", partial(toggle, name), container, style="segment", icon=name, icon_size=ICON,
+                tip=tip_of(name, "play"),
+            )  # fmt: skip
 
     def show(self, shown: Set[str]) -> None:
         """Mark those that are shown."""
-        for name in self._shown ^ shown:
-            is_on = name in shown
-            self.buttons[name].show_icon(painted_icon(ICONS[name], self._ui.px(ICON), ACCENT if is_on else TEXT))
-            (self.buttons[name].select if is_on else self.buttons[name].unselect)()
-        self._shown = frozenset(shown)
+        for name, button in self.buttons.items():
+            button.is_selected = name in shown

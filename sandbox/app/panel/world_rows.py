@@ -9,8 +9,8 @@ from sandbox.app.panel.readings import with_unit
 from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.view_row import ViewRow
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.fields import DASH, typed_number
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.widgets.field import DASH, typed_number
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.level.format.limits import FRICTION_LIMIT, GRAVITY_LIMIT
 from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.session.commands import SetGravity
@@ -39,7 +39,7 @@ class WorldRows:
             ("Gravity x [m/s\u00b2]", GRAVITY_TIP, lambda text: self._type_gravity(text, 0)),
             ("Gravity y [m/s\u00b2]", GRAVITY_TIP, lambda text: self._type_gravity(text, 1)),
         )
-        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Touch", back, "@muted")
+        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Touch", back, "muted")
         options = [("off", "Off", "Things pass through each other; the run starts over"),
                    ("on", "On", "Things touch each other; the run starts over")]  # fmt: skip
         place = rows.row(ROW - 2, 6, MARGIN + LABEL, INSIDE - LABEL)
@@ -52,10 +52,10 @@ class WorldRows:
             ),
             ("Bounce", "How much speed a bounce keeps, 0 to 1; the run starts over", self._type_bounce),
         )
-        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Hand", back, "@muted")
+        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Hand", back, "muted")
         options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]
         self.hand = ui.choice(rows.row(ROW - 2, 8, MARGIN + LABEL, INSIDE - LABEL), options, self._choose["hand"], back)
-        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Show", back, "@muted")
+        ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Show", back, "muted")
         self.views = ViewRow(ui, rows.row(ROW - 2, 8, MARGIN + LABEL, INSIDE - LABEL), self._choose["view"], back)
         columns = (rows.place(MARGIN, 0, INSIDE / 2, 34), rows.place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
         self.energies = [TextBlock(ui, place, "", back) for place in columns]

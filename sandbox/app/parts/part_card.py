@@ -10,8 +10,9 @@ from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, shown_theme
 from sandbox.app.draw.picture_cache import draw_in_slices, find_picture, forget_old_pictures, keep_picture, kept_picture
 from sandbox.app.draw.picture_cache import picture_key as key_of_level
-from sandbox.app.widgets.painted import ENTER_KEYS, Lit, Pressable, wrapped
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import ENTER_KEYS, Widget
 from sandbox.editor.storage.part_files import PartFile
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.files import read_bytes
@@ -51,11 +52,13 @@ class Hands(Protocol):
         ...
 
 
-class PartCard(Lit, Pressable):
+class PartCard(Widget):
     """One part; it shows its name once `is_read` is set, and a frame while it `is_taken`; columns: of such cards.
 
     refusal: why it cannot be had here; then it is pale.
     """
+
+    is_focusable = is_lit = True
 
     ui: Ui
 
@@ -63,10 +66,8 @@ class PartCard(Lit, Pressable):
         super().__init__(ui, rect, container)
         self.part, self._hands, self._columns = part, hands, columns
         self.picture: pygame.Surface | None = None
-        self.is_read = self.is_taken = self._is_held = False
+        self.is_read = self.is_taken = False
         self.refusal = ""
-        ui.add(self)
-        self.repaint()
 
     @property
     def picture_size(self) -> tuple[int, int]:
@@ -107,7 +108,7 @@ class PartCard(Lit, Pressable):
             text = font.render(name, True, DANGER if is_broken else MUTED if self.refusal else TEXT)
             middle = place.bottom + (size[1] - place.bottom) // 2
             card.blit(text, text.get_rect(midleft=(ui.px(8), middle)))
-        is_lit = self.is_taken or self.hovered or self.ui.focus is self
+        is_lit = self.is_taken or self.hovered or self.focused
         rim, width = (ACCENT, 2.0 if self.is_taken else 1.2) if is_lit else (LINE, 1.2)
         pygame.draw.rect(card, rim, card.get_rect(), max(1, ui.px(width)), border_radius=corner)
         # Pictures have corners of their own.
@@ -122,11 +123,6 @@ class PartCard(Lit, Pressable):
             card.blit(font.render(line, True, DANGER), (place.left + self.ui.px(7), y))
             y += font.get_linesize()
 
-    def press(self) -> None:
-        """Take it up by the mouse."""
-        self._is_held = True
-        self._hands.take(self.part, by_key=False)
-
     def press_key(self, event: pygame.event.Event) -> bool:
         """Take it up by a key, or go to another card."""
         if event.key in (*ENTER_KEYS, pygame.K_SPACE):
@@ -138,20 +134,18 @@ class PartCard(Lit, Pressable):
             return True
         return False
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Follow a drag that began on it."""
-        if self._is_held and event.type == pygame.MOUSEMOTION:
-            self._hands.carry(self._pixel(event))
-            return True
-        if self._is_held and event.type == pygame.MOUSEBUTTONUP and event.button == 1:
-            self._is_held = False
-            self._hands.drop(self._pixel(event))
-            return True
-        return super().process_event(event)
+    def on_press(self, at: Pixel, clicks: int) -> bool:
+        """Take it up by the mouse."""
+        self._hands.take(self.part, by_key=False)
+        return True
 
-    def _pixel(self, event: pygame.event.Event) -> Pixel:
-        x, y = self.ui.manager.calculate_scaled_mouse_position(event.pos)
-        return x, y
+    def on_drag(self, at: Pixel) -> None:
+        """Carry it."""
+        self._hands.carry(at)
+
+    def on_release(self, at: Pixel) -> None:
+        """Let it go."""
+        self._hands.drop(at)
 
 
 def card_places(ui: Ui, count: int, columns: int, room: float, y: float, gap: float) -> tuple[list[pygame.Rect], float]:

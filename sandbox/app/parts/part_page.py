@@ -7,8 +7,8 @@ from sandbox.app.base.slice_queue import SliceQueue
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import MUTED, TEXT, WARNING, Colour
 from sandbox.app.parts.part_card import PartCard, card_places, fill_card
-from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import joining_commands
@@ -49,10 +49,10 @@ class PartPage:
         self._width = width - 2 * MARGIN - 12
         least = LEAST_CARD if height >= LOW else LEAST_OF_LOW
         self._columns = max(2, int((self._width + GAP) // (least + GAP)))
-        self.sheet = ui.open_sheet(self.close, is_page=True, again=lambda _: again(self.area.offset))
+        self.sheet = ui.open_sheet(is_page=True, again=lambda _: again(self.area.offset))
         place = ui.rect((ui.units[0] - width) / 2, (ui.units[1] - height) / 2, width, height)
-        box = ui.panel(place, self.sheet, "@dialog")
-        ui.label(ui.rect(MARGIN, 16, self._width, 28), "Parts", box, "@title")
+        box = ui.panel(place, self.sheet, "dialog")
+        ui.label(ui.rect(MARGIN, 16, self._width, 28), "Parts", box, "title")
         self.area = ScrollArea(ui, ui.rect(MARGIN, TOP, self._width + 12, height - TOP - BOTTOM), box)
         self.cards: list[PartCard] = []
         self._unfilled = SliceQueue()
@@ -67,16 +67,12 @@ class PartPage:
         self.area.scroll_to(offset)
         self._note = TextBlock(ui, ui.rect(MARGIN, height - BOTTOM + 12, self._width - 110, BOTTOM - 18), "", box, 12.0)
         place = ui.rect(width - MARGIN - 100, height - MARGIN - 26, 100, BUTTON)
-        ui.button(place, "Close", self.close, box, style="@primary")
+        ui.button(place, "Close", self.sheet.remove, box, style="primary")
         possible = (card for card in self.cards if not refusal(card.part, world))
         last = (card for card in self.cards if last_taken is not None and card.part.level is last_taken)
         ui.focus_on(next(last, None) or next(possible, self.cards[0]))
         if not offset:
-            self.area.follow_focus()
-
-    def close(self) -> None:
-        """Take the page away."""
-        self._ui.close_sheet(self.sheet)
+            self._ui.show_focus()
 
     def _add_section(self, title: str, parts: list[PartFile], y: float) -> float:
         """Cards under a heading from a place [layout units] on; where they end."""
@@ -103,11 +99,11 @@ class PartPage:
     @property
     def moves(self) -> bool:
         """Whether cards are still filled in."""
-        return self.sheet.alive() and len(self._unfilled) > 0
+        return self.sheet.is_there and len(self._unfilled) > 0
 
     def update(self) -> None:
         """Go on filling cards, and say what is pointed at."""
-        if not self.sheet.alive():
+        if not self.sheet.is_there:
             return
         self._unfilled.go_on(FILL_BUDGET)
         hovered = (card for card in self.cards if card.hovered)
@@ -123,7 +119,7 @@ class PartPage:
     def take(self, part: PartFile, by_key: bool) -> None:
         """Have a part in hand, and close the page; not where it cannot join."""
         if part.level is not None and not refusal(part, self._world):
-            self.close()
+            self.sheet.remove()
             self._take(part.level, by_key)
 
     def carry(self, pixel: Pixel) -> None:
@@ -137,7 +133,7 @@ class PartPage:
         index = self.cards.index(card) + by
         if 0 <= index < len(self.cards):
             self._ui.focus_on(self.cards[index])
-            self.area.follow_focus()
+            self._ui.show_focus()
 
 
 def refusal(part: PartFile, world: World) -> str:

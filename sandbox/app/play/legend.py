@@ -13,7 +13,7 @@ from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.views.overlays import ARROW, BAR, DOT, POINT, Overlays, stability_tones
 from sandbox.app.play.hand_labels import newtons
 from sandbox.app.widgets.fonts import plain_font
-from sandbox.app.widgets.painted import line_height, wrapped
+from sandbox.app.widgets.texts import line_height, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.solvers import SOLVERS
 

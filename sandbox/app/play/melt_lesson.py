@@ -30,11 +30,11 @@ class MeltLesson(PlayScreen):
         self._is_melted = is_melted(self.playback)
         tip = f"{MELTED} {WHOLE}"
         place = ui.rect(left, BAR_HEIGHT + TOP, *SIZE)
-        self.melt = ui.button(place, LABELS[self._is_melted], self.toggle_melt, style="@primary", tip=tip)
+        self.melt = ui.button(place, LABELS[self._is_melted], self.toggle_melt, style="primary", tip=tip)
 
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Let time pass, and say on the button what it does now."""
         super().update(frame_time, pointer, profile)
         if is_melted(self.playback) != self._is_melted:
             self._is_melted = not self._is_melted
-            self.melt.set_text(LABELS[self._is_melted])
+            self.melt.show_text(LABELS[self._is_melted])

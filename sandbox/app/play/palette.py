@@ -4,71 +4,25 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-import pygame
-
 from sandbox.app.base.shortcuts import tip_of
-from sandbox.app.draw.colours import ACCENT, TEXT, Colour
 from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui
-from sandbox.editor.tools.icons import Icon, IconPen
 from sandbox.tools.parts import PARTS
 from sandbox.tools.play_tools import PLAY_TOOLS
 
 # Sizes in layout units.
 LEFT, TOP, BUTTON, GAP, EDGE = 10.0, 10.0, 34.0, 3.0, 5.0
 WIDTH = BUTTON + 2 * EDGE
-ICON, PICTURE = 18.0, 30.0
+PICTURE = 30.0
 # Where the window has less height for a button, there are two columns.
 LEAST_STEP = BUTTON + GAP
-
-
-def _push(pen: IconPen) -> None:
-    pen.disc(12, 12, 3.2)
-    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-        pen.line((12 + 6 * dx, 12 + 6 * dy), (12 + 10 * dx, 12 + 10 * dy))
-
-
-def _wind(pen: IconPen) -> None:
-    pen.line((3, 8), (14, 8))
-    pen.arc(14, 5.5, 2.5, 270, 520)
-    pen.line((3, 13), (18, 13))
-    pen.line((3, 18), (12, 18))
-    pen.arc(18, 15.5, 2.5, 200, 450)
-
-
-def _delete(pen: IconPen) -> None:
-    pen.line((4, 6.5), (20, 6.5))
-    pen.line((9.5, 6), (9.5, 3.5), (14.5, 3.5), (14.5, 6))
-    pen.line((6, 7), (7, 20.5), (17, 20.5), (18, 7))
-    pen.line((10.2, 10.5), (10.5, 17))
-    pen.line((13.8, 10.5), (13.5, 17))
-
-
-def _freeze(pen: IconPen) -> None:
-    for ends in (((12, 3), (12, 21)), ((4.2, 7.5), (19.8, 16.5)), ((4.2, 16.5), (19.8, 7.5))):
-        pen.line(*ends)
-    for x, y in ((12, 6), (12, 18)):
-        pen.line((9.5, y - 2.5 if y < 12 else y + 2.5), (x, y), (14.5, y - 2.5 if y < 12 else y + 2.5))
-
-
-def _catalogue(pen: IconPen) -> None:
-    pen.line((3.5, 3.5), (10, 3.5), (10, 10), (3.5, 10), (3.5, 3.5))
-    pen.disc(17.2, 6.8, 3.6, 1.6)
-    pen.line((6.8, 14), (10.4, 20.5), (3.2, 20.5), (6.8, 14))
-    pen.line((17.2, 13.6), (17.2, 20.8))
-    pen.line((13.6, 17.2), (20.8, 17.2))
 
 
 NAMES = tuple(name for name, tool in PLAY_TOOLS.items() if tool.group == "Parts")
 # The button of the catalogue goes by the name of the tool that has a part of it in hand.
 MORE = "more"
-DRAWN: dict[str, Icon] = {
-    "push": _push, "wind": _wind, "delete": _delete, "freeze": _freeze, CATALOGUE: _catalogue, MORE: ICONS[MORE],
-    **{name: tool.icon for name, tool in PLAY_TOOLS.items() if tool.icon is not None},
-}  # fmt: skip
 
 
 def _action_of(name: str) -> str:
@@ -83,8 +37,6 @@ class PartsPalette:
 
     def __init__(self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float) -> None:
         self._ui, self._press = ui, press
-        self._tool: str | None = None
-        self._pictures = {part: picture_of(part, ui.px(PICTURE)) for part in PARTS}
         names = [*NAMES, CATALOGUE]
         rows, most = (max(1, int((room - 2 * TOP - 2 * EDGE + GAP) // LEAST_STEP)) for room in (height, width))
         shown = names if len(names) <= rows * most else [*names[: max(rows * most - 1, 0)], MORE]
@@ -95,14 +47,15 @@ class PartsPalette:
         width, tall = columns * (BUTTON + GAP) - GAP + 2 * EDGE, rows * LEAST_STEP - GAP + 2 * EDGE
         # Its right edge [layout units].
         self.right = LEFT + width
-        self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall), style="@card")
+        self.back = ui.panel(ui.rect(LEFT, top + TOP, width, tall), style="card")
         self.buttons: dict[str, Any] = {}
         for number, name in enumerate(shown):
             column, row = divmod(number, rows)
             place = ui.rect(EDGE + column * (BUTTON + GAP), EDGE + row * LEAST_STEP, BUTTON, BUTTON)
             tip = "More buttons" if name == MORE else tip_of(_action_of(name), "play")
             do = self._show_menu if name == MORE else functools.partial(press, _action_of(name))
-            self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="@quiet")
+            icon = picture_of(name, ui.px(PICTURE)) if name in PARTS else name
+            self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="quiet", icon=icon)
 
     def _show_menu(self) -> None:
         """Offer what has no room on the strip."""
@@ -111,16 +64,6 @@ class PartsPalette:
         choose(self._ui, "More", "", choices)
 
     def show(self, tool: str) -> None:
-        """Show the tool in use, changing what differs."""
-        before, self._tool = self._tool, tool
-        if tool == before:
-            return
+        """Show the tool in use."""
         for name, button in self.buttons.items():
-            is_chosen = name == tool or (name == MORE and tool in self.left_out)
-            button.show_icon(self._icon(name, ACCENT if is_chosen else TEXT))
-            (button.select if is_chosen else button.unselect)()
-
-    def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        if name in DRAWN:
-            return painted_icon(DRAWN[name], self._ui.px(ICON), colour)
-        return self._pictures[name]
+            button.is_selected = name == tool or (name == MORE and tool in self.left_out)

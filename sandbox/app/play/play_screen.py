@@ -133,12 +133,12 @@ class PlayScreen:
     def moves(self) -> bool:
         """Whether the run moves, which it does not while a page is open, or pictures of parts are to come."""
         is_filling = self.part_page is not None and self.part_page.moves
-        return is_filling or (self.playback.moves and not self._ui.has_sheet and not self.rests)
+        return is_filling or (self.playback.moves and not self._ui.is_covered and not self.rests)
 
     @property
     def runs(self) -> bool:
         """Whether time passes in the run."""
-        return not (self.playback.clock.paused or self._ui.has_sheet)
+        return not (self.playback.clock.paused or self._ui.is_covered)
 
     @property
     def rests(self) -> bool:
@@ -197,8 +197,8 @@ class PlayScreen:
         self.troubles.build(ui, left, BAR_HEIGHT + below)
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
         place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
-        self.again = ui.button(place, "Again", self._reset, style="@primary", tip=tip_of("reset", "play"))
-        self.again.hide()
+        self.again = ui.button(place, "Again", self._reset, style="primary", tip=tip_of("reset", "play"))
+        self.again.visible = False
         # Beside a panel in a narrow window they have no room: they lie below it.
         wide, below_panel = self.area[2] / ui.scale, 0.0
         if wide < ROOM_BESIDE_PANEL:
@@ -461,7 +461,7 @@ class PlayScreen:
     def update(self, frame_time: float, pointer: Pixel | None, profile: Profile) -> None:
         """Let time pass, where no page is open."""
         before = self.playback.session.tick
-        self.stage.update(frame_time if not self._ui.has_sheet else 0.0, pointer, profile)
+        self.stage.update(frame_time if not self._ui.is_covered else 0.0, pointer, profile)
         self._app.scenes.follow(self.playback, self.source, frame_time)
         self._measure(self.playback.session.tick - before, profile)
         self._tell()
@@ -511,9 +511,7 @@ class PlayScreen:
         self.playback.messages.clear()
 
     def _show_again(self) -> None:
-        is_over = self.troubles.out_of_view.is_over
-        if is_over != bool(self.again.visible):
-            (self.again.show if is_over else self.again.hide)()
+        self.again.visible = self.troubles.out_of_view.is_over
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""

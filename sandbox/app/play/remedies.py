@@ -1,6 +1,7 @@
 """Remedies: buttons below the bar for what went wrong in a run, each as long as there is a reason for it."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import pygame
 
@@ -16,27 +17,19 @@ class Remedies:
 
     def __init__(self, ui: Ui, press: Callable[[str], None], names: tuple[str, ...], left: float, top: float) -> None:
         self._ui, self._left, self._top = ui, left, top
-        self._shown: dict[str, str] = {}
         self.buttons = {
-            name: ui.button(self._place(0), "", _pressing(press, name), tip=tip_of(name, "play")) for name in names
+            name: ui.button(self._place(0), "", partial(press, name), tip=tip_of(name, "play")) for name in names
         }
         for button in self.buttons.values():
-            button.hide()
+            button.visible = False
 
     def _place(self, row: int) -> pygame.Rect:
         return self._ui.rect(self._left, self._top + row * (HEIGHT + GAP), WIDTH, HEIGHT)
 
     def show(self, words: Mapping[str, str]) -> None:
         """Show those that there are words for, one below the other, and no others."""
-        if words == self._shown:
-            return
-        self._shown = dict(words)
         for row, (name, text) in enumerate(words.items()):
-            self.buttons[name].set_text(text)
-            self.buttons[name].set_relative_position(self._place(row).topleft)
+            self.buttons[name].show_text(text)
+            self.buttons[name].move_to(self._place(row).topleft)
         for name, button in self.buttons.items():
-            (button.show if name in words else button.hide)()
-
-
-def _pressing(press: Callable[[str], None], name: str) -> Callable[[], None]:
-    return lambda: press(name)
+            button.visible = name in words

@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.contracts.screen import Figures, NoticesPlace, Pixel
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.panel.readings import number
-from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.motor_readings import MotorReading
 

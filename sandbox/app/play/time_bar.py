@@ -7,13 +7,11 @@ from typing import Any
 from sandbox.app.base.loop import BACKWARD_SPEEDS, FAST_SPEEDS
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.application import Application
-from sandbox.app.draw.colours import ACCENT, TEXT
 from sandbox.app.play.time_track import TimeTrack
 from sandbox.app.run.playback import Playback
 from sandbox.app.run.travel import Mark
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.icons import ICONS, painted_icon
-from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.session.log import Branch
@@ -75,7 +73,7 @@ class TimeBar:
         self._clock = None
         if right - CLOCK_WIDTH - x >= LEAST_TRACK:
             right -= CLOCK_WIDTH + GAP
-            self._clock = ui.label(ui.rect(right, 0, CLOCK_WIDTH, HEIGHT), "", back, "@number")
+            self._clock = ui.label(ui.rect(right, 0, CLOCK_WIDTH, HEIGHT), "", back)
         place = ui.rect(x, 4, max(right - x - GAP, 1.0), HEIGHT - 8)
         self.track = TimeTrack(ui, place, self._playback().travel, self._playback().seek, self._hold, back)
         self.show()
@@ -83,9 +81,8 @@ class TimeBar:
     def _add(self, action: str, picture: str, x: float, back: Any) -> None:
         ui = self._ui
         place = ui.rect(x, (HEIGHT - BUTTON) / 2, BUTTON, BUTTON)
-        icon = painted_icon(ICONS[picture], ui.px(ICON), TEXT)
         do, tip = partial(self._app.act, action), tip_of(action, "play")
-        self.buttons[action] = ui.button(place, "", do, back, icon=icon, tip=tip, style="@quiet")
+        self.buttons[action] = ui.button(place, "", do, back, icon=picture, icon_size=ICON, tip=tip, style="quiet")
 
     def show(self) -> None:
         """Show where the run is."""
@@ -111,13 +108,9 @@ class TimeBar:
             text = f"{session.tick / rate:.1f} of {playback.length / rate:.1f} s"
         if self._clock is not None:
             font, widest = self._ui.font(CLOCK_TEXT), self._ui.px(CLOCK_WIDTH)
-            self._clock.set_text(wrapped(text, font, widest, 1)[0])
-        for action, on in (("backwards", playback.clock.speed < 0.0), ("loop", travel.looping)):
-            button = self.buttons[action]
-            if on != button.is_selected:
-                (button.select if on else button.unselect)()
-                picture = dict(LEFT + RIGHT)[action]
-                button.show_icon(painted_icon(ICONS[picture], self._ui.px(ICON), ACCENT if on else TEXT))
+            self._clock.show_text(wrapped(text, font, widest, 1)[0])
+        self.buttons["backwards"].is_selected = playback.clock.speed < 0.0
+        self.buttons["loop"].is_selected = travel.looping
 
     # Actions.
 

@@ -7,8 +7,8 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, SURFACE, TEXT, WARNING, mixed
 from sandbox.app.run.travel import Mark, Travel
-from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Pixel, Widget
 
 # Layout units.
 MARGIN, RAIL, KNOB = 10.0, 4.0, 6.5
@@ -18,12 +18,14 @@ NEAR = 5.0
 LEAP = 60
 
 
-class TimeTrack(Painted):
+class TimeTrack(Widget):
     """A rail from tick 0 to the last; go(tick) is called as the mouse drags on it, hold(held) as it takes and lets go.
 
     With Shift held a drag chooses the range. Shapes tell marks apart: lines are commands, triangles breaks, flags
     bookmarks, forks branches.
     """
+
+    is_focusable = True
 
     def __init__(
         self,
@@ -43,7 +45,6 @@ class TimeTrack(Painted):
         self._held = False
         self._span_from: int | None = None
         self._shown: tuple[object, ...] = ()
-        ui.add(self)
 
     def show_run(self, tick: int, length: int, reached: int, marks: list[Mark]) -> None:
         """Show where the run is, how long it is and how far it has been."""
@@ -67,36 +68,42 @@ class TimeTrack(Painted):
         found = [entry for entry in found if entry[0] <= near]
         return min(found, key=lambda entry: entry[0])[1] if found else None
 
-    def process_event(self, event: pygame.event.Event) -> bool:
+    def on_press(self, at: Pixel, clicks: int) -> bool:
         """Go where the mouse is while its button is held; with Shift choose a range."""
-        if self.is_press(event):
-            at = self._tick_at(event.pos)
-            if pygame.key.get_mods() & pygame.KMOD_SHIFT:
-                self._span_from = at
-            else:
-                self._held = True
-                self._hold(True)
-                mark = self.mark_near(at)
-                self._go(at if mark is None else mark.tick)
-            return True
-        if event.type == pygame.MOUSEMOTION:
-            return self._follow(event)
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and (self._held or self._span_from is not None):
-            if self._held:
-                self._hold(False)
-            self._held, self._span_from = False, None
-            return True
-        return False
+        tick = self._tick_at(at)
+        if pygame.key.get_mods() & pygame.KMOD_SHIFT:
+            self._span_from = tick
+        else:
+            self._held = True
+            self._hold(True)
+            mark = self.mark_near(tick)
+            self._go(tick if mark is None else mark.tick)
+        return True
 
-    def _follow(self, event: pygame.event.Event) -> bool:
-        at = self._tick_at(event.pos)
-        over = bool(self.hover_point(*self.ui.manager.calculate_scaled_mouse_position(event.pos)))
-        self.pointed = at if over or self._held else None
-        if self._span_from is not None:
-            self.travel.set_span(self._span_from, at)
-        elif self._held:
-            self._go(at)
-        return self._held or self._span_from is not None
+    def on_drag(self, at: Pixel) -> None:
+        """Go there, or end the range there."""
+        tick = self._tick_at(at)
+        if self._held:
+            self.pointed = tick
+            self._go(tick)
+        elif self._span_from is not None:
+            self.travel.set_span(self._span_from, tick)
+
+    def on_release(self, at: Pixel) -> None:
+        """Stay there."""
+        if self._held:
+            self._hold(False)
+        self._held, self._span_from = False, None
+        self.on_hover()
+
+    def on_move(self, at: Pixel) -> None:
+        """Tell what is there."""
+        self.pointed = self._tick_at(at)
+
+    def on_hover(self) -> None:
+        """Tell nothing while the mouse is elsewhere."""
+        if not (self.hovered or self._held):
+            self.pointed = None
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Left and right go by a tick, with Shift by a second; Home and End to the ends."""
@@ -116,10 +123,9 @@ class TimeTrack(Painted):
         margin = self.ui.px(MARGIN)
         return margin + min(max(tick / self.length, 0.0), 1.0) * (self.rect.width - 2 * margin)
 
-    def _tick_at(self, pos: tuple[int, int]) -> int:
-        x = self.ui.manager.calculate_scaled_mouse_position(pos)[0]
+    def _tick_at(self, at: Pixel) -> int:
         margin = self.ui.px(MARGIN)
-        share = (x - self.rect.left - margin) / max(1, self.rect.width - 2 * margin)
+        share = (at[0] - self.rect.left - margin) / max(1, self.rect.width - 2 * margin)
         return round(min(max(share, 0.0), 1.0) * self.length)
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:

@@ -5,14 +5,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-import pygame
-
 from sandbox.app.base.shortcuts import tip_of
-from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, TEXT, Colour
+from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, Colour
 from sandbox.app.play.speeds import words_of
 from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.dialogs import choose
-from sandbox.app.widgets.icons import ICONS, painted_icon
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -159,47 +156,43 @@ class Toolbar:
         if state == before:
             return
         for name in self.tools:
-            self._mark(f"tool_{name}", ACCENT if name == state.tool else TEXT, name == state.tool)
-        self._mark("pause", ACCENT if state.paused else TEXT, False, "play" if state.paused else "pause")
-        self._mark("record", DANGER, state.recording, "stop" if state.recording else "record")
-        self._mark("panel", TEXT, state.panel)
-        self._mark("palette", TEXT, state.palette)
-        self._mark("sound", TEXT if state.sound else DISABLED, False, "sound" if state.sound else "muted")
-        self._mark("timeline", TEXT, state.timeline)
-        self._mark("graphs", TEXT, state.graphs)
+            self._mark(f"tool_{name}", name == state.tool)
+        self._picture("pause", "play" if state.paused else "pause", ACCENT if state.paused else None)
+        self._picture("record", "stop" if state.recording else "record", DANGER)
+        self._picture("sound", "sound" if state.sound else "muted", None if state.sound else DISABLED)
+        for name in ("panel", "palette", "timeline", "graphs"):
+            self._mark(name, getattr(state, name))
+        self._mark("record", state.recording)
+        self._mark("slow", state.speed != 1.0)
         for name, on in (("undo", state.can_undo), ("redo", state.can_redo)):
-            self._mark(name, TEXT if on else DISABLED, False)
             if name in self.buttons:
-                (self.buttons[name].enable if on else self.buttons[name].disable)()
-        slow = self.buttons.get("slow")
-        if slow is not None:
-            slow.set_text(words_of(state.speed))
-            (slow.unselect if state.speed == 1.0 else slow.select)()
+                self.buttons[name].is_enabled = on
+        if "slow" in self.buttons:
+            self.buttons["slow"].show_text(words_of(state.speed))
         if self.title is not None:
             self.title.show_text(state.name)
 
-    def _mark(self, action: str, colour: Colour, on: bool, picture: str | None = None) -> None:
-        """Show an action's button in a colour, on or off, where it is on the bar."""
-        button = self.buttons.get(action)
-        if button is not None:
-            button.show_icon(self._icon(picture or self._pictures[action], colour))
-            (button.select if on else button.unselect)()
+    def _mark(self, action: str, on: bool) -> None:
+        """Show an action's button as on or off, where it is on the bar."""
+        if action in self.buttons:
+            self.buttons[action].is_selected = on
 
-    def _icon(self, name: str, colour: Colour) -> pygame.Surface:
-        return painted_icon(ICONS[name], self._ui.px(ICON), colour)
+    def _picture(self, action: str, icon: str, tint: Colour | None) -> None:
+        """Show another icon on an action's button, where it is on the bar."""
+        if action in self.buttons:
+            self.buttons[action].show_icon(icon, tint)
 
     def _add(self, action: str, do: Callable[[], None] | None = None, tip: str = "") -> None:
         """A button of an action at the next place; do: in place of what the table of shortcuts has."""
         width, words = _width(action, self._is_wide), (WIDE_WORDS if self._is_wide else WORDS).get(action, "")
         place = self._ui.rect(self._x, (BAR_HEIGHT - BUTTON) / 2, width, BUTTON)
         self._x += width + GAP
-        picture = self._pictures[action]
         self.buttons[action] = self._ui.button(
             place,
             words,
             do or partial(self._press, action),
             self.back,
-            icon=None if words else self._icon(picture, TEXT),
+            icon="" if words else self._pictures[action],
             tip=tip or tip_of(action, "play"),
-            style="" if action == "share" and words else "@quiet",
+            style="" if action == "share" and words else "quiet",
         )

@@ -7,17 +7,20 @@ import pygame
 
 from sandbox.app.base.shortcuts import Shortcut, combination_of
 from sandbox.app.draw.colours import ACCENT, LINE, MUTED, SURFACE, TEXT, mixed
-from sandbox.app.widgets.painted import Lit, Pressable, wrapped
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Pressable
 
 TEXT_SIZE = 12.5
 
 
-class KeyRow(Lit, Pressable):
+class KeyRow(Pressable):
     """An action and the caps of its keys; after a press it takes the next keys, Delete takes them away.
 
     take(keys) is called with the new ones.
     """
+
+    is_lit = True
 
     ui: Ui
 
@@ -27,8 +30,6 @@ class KeyRow(Lit, Pressable):
         super().__init__(ui, rect, container)
         self.entry = entry
         self._take = take
-        ui.add(self)
-        self.repaint()
 
     def press(self) -> None:
         """Wait for keys."""
@@ -39,11 +40,9 @@ class KeyRow(Lit, Pressable):
         self.takes_all_keys = listening
         self.repaint()
 
-    def update(self, time_delta: float) -> None:
-        """Wait no longer once the keyboard is elsewhere."""
-        super().update(time_delta)
-        if self.takes_all_keys and self.ui.focus is not self:
-            self._listen(False)
+    def on_blur(self) -> None:
+        """Wait no longer."""
+        self._listen(False)
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Take the keys that are pressed; Escape leaves them as they are."""

@@ -6,8 +6,8 @@ from sandbox.app.base.shortcuts import Mode, Shortcut, shortcuts, spoken, with_k
 from sandbox.app.draw.colours import TEXT
 from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
 from sandbox.app.settings.key_row import KeyRow
-from sandbox.app.widgets.painted import TextBlock, text_height
 from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.texts import TextBlock, text_height
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -40,10 +40,10 @@ class SettingsSheet:
         width, height = ui.units
         box_width, box_height = min(WIDTH, width - 16), min(HEIGHT, height - 16)
         self._width = box_width - 2 * MARGIN - 12
-        self._sheet = ui.open_sheet(self.close, is_page=True, again=self._again)
+        self._sheet = ui.open_sheet(is_page=True, again=self._again)
         place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
-        box = ui.panel(place, self._sheet, "@dialog")
-        ui.label(ui.rect(MARGIN, 16, 220, 28), "Settings", box, "@title")
+        box = ui.panel(place, self._sheet, "dialog")
+        ui.label(ui.rect(MARGIN, 16, 220, 28), "Settings", box, "title")
         tabs = ui.choice(ui.rect(MARGIN, 56, min(420, self._width), 32), PAGES, self._turn, box)
         tabs.show(page)
         area = ui.rect(MARGIN, TOP, self._width + 12, box_height - TOP - BOTTOM)
@@ -53,7 +53,7 @@ class SettingsSheet:
         bottom = box_height - MARGIN - 26
         ui.button(ui.rect(box_width - MARGIN - 226, bottom, 116, BUTTON), "Defaults", self._reset, box)
         done = ui.button(
-            ui.rect(box_width - MARGIN - 100, bottom, 100, BUTTON), "Close", self.close, box, style="@primary"
+            ui.rect(box_width - MARGIN - 100, bottom, 100, BUTTON), "Close", self._sheet.remove, box, style="primary"
         )
         if page == "general":
             self._add_settings()
@@ -64,16 +64,12 @@ class SettingsSheet:
         ui.focus_on(done)
         ui.focus_at(focus)
 
-    def close(self) -> None:
-        """Take the page away."""
-        self._ui.close_sheet(self._sheet)
-
     def _again(self, ui: Ui) -> None:
         SettingsSheet(ui, self._chosen, self._page, self._note.text, self.area.offset, self._ui.focus_place)
 
     def _turn(self, page: str) -> None:
         if page != self._page:
-            self.close()
+            self._sheet.remove()
             SettingsSheet(self._ui, self._chosen, page)
 
     def _reset(self) -> None:
@@ -90,9 +86,9 @@ class SettingsSheet:
 
     def _show_anew(self) -> None:
         # What was chosen may have laid all widgets out again, and this page with them, by `_again`.
-        if self._sheet.alive():
+        if self._sheet.is_there:
             focus = self._ui.focus_place
-            self.close()
+            self._sheet.remove()
             SettingsSheet(self._ui, self._chosen, self._page, self._note.text, self.area.offset, focus)
 
     # Rows.
@@ -148,13 +144,13 @@ class SettingsSheet:
             target = min(max(round((shown + by) / setting.by) * setting.by, setting.low), setting.high)
             ui.button(ui.rect(x, y, BUTTON, BUTTON), text, partial(self._choose, setting.name, target), content)
             if by < 0:
-                ui.label(ui.rect(x + BUTTON, y, 66, BUTTON), f"{100 * shown:.0f} %", content, "@middle")
+                ui.label(ui.rect(x + BUTTON, y, 66, BUTTON), f"{100 * shown:.0f} %", content, "middle")
             x += BUTTON + 66
         if setting.default is None:
             place = ui.rect(x - 56, y, min(118.0, width - x + left + 56), BUTTON)
-            button = ui.button(place, "Automatic", partial(self._choose, setting.name, None), content, style="@segment")
+            button = ui.button(place, "Automatic", partial(self._choose, setting.name, None), content, style="segment")
             if value is None:
-                button.select()
+                button.is_selected = True
         self._y += ROW
 
     # Keys.

@@ -10,9 +10,10 @@ from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT
 from sandbox.app.film.film import Film
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.share.sharing import LIVELY, SHORTEST_FILM, SIZES, Sharing
-from sandbox.app.widgets.painted import Painted, TextBlock
 from sandbox.app.widgets.range_slider import RangeSlider
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Widget
 
 # Sizes in layout units.
 WIDTH, HEIGHT = 740.0, 424.0
@@ -54,7 +55,7 @@ class SharePage:
 
     def _close(self) -> None:
         if self.page is not None:
-            self._app.ui.close_sheet(self.page.sheet)
+            self.page.sheet.remove()
             self.page = None
 
     def _build(self, ui: Ui) -> None:
@@ -64,7 +65,7 @@ class SharePage:
         """Show what has changed."""
         if self.page is None:
             return
-        if not self.page.sheet.alive():
+        if not self.page.sheet.is_there:
             # The screen under it was left, and the page with it.
             self.page = None
             self._sharing.leave()
@@ -86,9 +87,9 @@ class ShareForm:
         self._width, self._height = width, height
         self.sheet: Any = ui.open_sheet(leave, is_page=True, again=again)
         left, top = ((room - side) / 2 for room, side in zip(ui.units, (width, height), strict=True))
-        self._box = ui.panel(ui.rect(left, top, width, height), self.sheet, "@dialog")
+        self._box = ui.panel(ui.rect(left, top, width, height), self.sheet, "dialog")
         film = sharing.film
-        ui.label(ui.rect(MARGIN, 16, width - 2 * MARGIN, 28), _title(film), self._box, "@title")
+        ui.label(ui.rect(MARGIN, 16, width - 2 * MARGIN, 28), _title(film), self._box, "title")
         self._build_preview()
         {"choose": self._build_choices, "work": self._build_work, "done": self._build_outcome}[self.step]()
 
@@ -117,7 +118,7 @@ class ShareForm:
         self.slider: RangeSlider | None = None
 
     def _row(self, text: str, top: float) -> pygame.Rect:
-        self._ui.label(self._ui.rect(self._right, top, self._side, LABEL), text, self._box, "@muted")
+        self._ui.label(self._ui.rect(self._right, top, self._side, LABEL), text, self._box, "muted")
         return self._ui.rect(self._right, top + LABEL, self._side, ROW)
 
     def _build_choices(self) -> None:
@@ -126,7 +127,7 @@ class ShareForm:
         assert film is not None
         place = ui.rect(MARGIN, self._below + 6 + CAPTION, self._preview_width, SLIDER)
         self.caption = ui.label(
-            ui.rect(MARGIN, self._below + 6, self._preview_width, CAPTION), "", self._box, "@muted"
+            ui.rect(MARGIN, self._below + 6, self._preview_width, CAPTION), "", self._box, "muted"
         )  # fmt: skip
         self.kinds = ui.choice(
             self._row("Format", TOP - 4), KINDS, lambda kind: sharing.choose(kind=kind), self._box
@@ -136,9 +137,8 @@ class ShareForm:
             self._row("Show the level's name", TOP - 4 + 2 * step), NAMED,
             lambda value: sharing.choose(named=value == "yes"), self._box,
         )  # fmt: skip
-        if not sharing.level_name:
-            for button in self.named.buttons.values():
-                button.disable()
+        for button in self.named.buttons.values():
+            button.is_enabled = bool(sharing.level_name)
         row = self._row("File name", TOP - 4 + 3 * step)
         row.width -= ui.px(44)
         self.field = ui.field(row, sharing.wanted.name, self._type_name, self._box, 120)
@@ -150,12 +150,12 @@ class ShareForm:
                 wide = 92.0
                 spot = ui.rect(MARGIN + self._preview_width - wide, self._below + 2, wide, 24)
                 tip = f"The {LIVELY:g} seconds in which the most moved"
-                ui.button(spot, f"Liveliest {LIVELY:g} s", sharing.choose_liveliest, self._box, style="@quiet", tip=tip)
+                ui.button(spot, f"Liveliest {LIVELY:g} s", sharing.choose_liveliest, self._box, style="quiet", tip=tip)
         else:
             for kind in ("gif", "mp4", "html"):
-                self.kinds.buttons[kind].disable()
+                self.kinds.buttons[kind].is_enabled = False
         self._build_note(TOP + 4 * step)
-        self._add_button("Save", self._save, 0, "@primary")
+        self._add_button("Save", self._save, 0, "primary")
         self._add_button("Close", self._leave, 1)
 
     @property
@@ -192,9 +192,9 @@ class ShareForm:
         for index, (text, action) in enumerate(actions):
             place = ui.rect(self._right + index * (half + 10), top + BUTTON + 10, half, BUTTON)
             ui.button(place, text, action, self._box)
-        self.note.set_dimensions((ui.px(self._side), ui.px(top - TOP - 8)))
+        self.note.resize((ui.px(self._side), ui.px(top - TOP - 8)))
         self.note.repaint()
-        self._add_button("Close", self._leave, 0, "@primary")
+        self._add_button("Close", self._leave, 0, "primary")
         self._add_button("Another", sharing.another, 1, tip="Of the same seconds")
 
     def _add_button(self, text: str, action: Any, place: int, style: str = "", tip: str = "") -> None:
@@ -233,10 +233,10 @@ class ShareForm:
         self.kinds.show(wanted.kind)
         self.sizes.show(f"{wanted.size[0]}x{wanted.size[1]}")
         for button in self.sizes.buttons.values():
-            (button.disable if wanted.kind == "html" else button.enable)()
+            button.is_enabled = wanted.kind != "html"
         self.named.show("yes" if wanted.named and self._sharing.level_name else "no")
         self.field.show(wanted.name)
-        self.suffix.set_text(f".{wanted.kind}")
+        self.suffix.show_text(f".{wanted.kind}")
         film = sharing.film
         if self.slider is not None and film is not None:
             is_still = wanted.kind == "png"
@@ -244,7 +244,7 @@ class ShareForm:
             ago = film.seconds - wanted.end
             when = "the last moment" if ago < 0.05 else f"{ago:.1f} s before the last moment"
             text = f"The picture: {when}" if is_still else f"{wanted.end - wanted.start:.1f} s, to {when}"
-            self.caption.set_text(text)
+            self.caption.show_text(text)
 
 
 def _title(film: Film | FilmPair | None) -> str:
@@ -254,7 +254,7 @@ def _title(film: Film | FilmPair | None) -> str:
     return f"Share some of {'the last ' if film.is_latest else ''}{film.seconds:.0f} seconds"
 
 
-class FilmPreview(Painted):
+class FilmPreview(Widget):
     """What will be kept, moving; nothing but a frame at first."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
@@ -281,13 +281,12 @@ class FilmPreview(Painted):
         return surface
 
 
-class ProgressBar(Painted):
+class ProgressBar(Widget):
     """How much is done, 0..1."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, container: Any) -> None:
         super().__init__(ui, rect, container)
         self.share = 0.0
-        self.repaint()
 
     def show_share(self, share: float) -> None:
         """Show how much."""

@@ -1,26 +1,25 @@
 """BarTitle: the name of a level in a bar, on one line, or on two of smaller letters where it is long."""
 
-import html
 from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import TEXT
 from sandbox.app.widgets.layout import WindowLayout
-from sandbox.app.widgets.painted import Painted, line_height, wrapped
+from sandbox.app.widgets.texts import line_height, wrapped
+from sandbox.app.widgets.widget import Widget
 
 # Size of letters on one line, and on two [layout units].
 LARGE, SMALL = 15.0, 12.0
 
 
-class BarTitle(Painted):
+class BarTitle(Widget):
     """A name; lines: what is seen of it; what is not is in its tooltip."""
 
     def __init__(self, ui: WindowLayout, rect: pygame.Rect, container: Any = None) -> None:
         super().__init__(ui, rect, container)
         self.text, self.lines = "", [""]
         self._size = LARGE
-        self.repaint()
 
     def show_text(self, text: str) -> None:
         """Show a name."""
@@ -33,7 +32,7 @@ class BarTitle(Painted):
         self.lines = wrapped(text, font, widest, 1 if self._size == LARGE else 2)
         fits = max(font.size(line)[0] for line in self.lines) <= widest
         is_whole = fits and " ".join(self.lines) == " ".join(text.split())
-        self.set_tooltip(None if is_whole else html.escape(text, quote=False))
+        self.tip = "" if is_whole else text
         self.repaint()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:

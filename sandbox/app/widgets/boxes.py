@@ -6,8 +6,9 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, FIELD, LINE, MUTED, TEXT, mixed
-from sandbox.app.widgets.painted import Lit, Pressable, wrapped
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Pixel, Pressable, Widget
 
 TEXT_SIZE = 12.5
 # Keys that a level can name, with their names.
@@ -29,8 +30,6 @@ class CheckBox(Pressable):
         self.label, self.state = label, False
         self.mixed = False
         self._toggle = toggle
-        ui.add(self)
-        self.repaint()
 
     def show_state(self, state: bool, is_mixed: bool) -> None:
         """Show it ticked or not, or that the items differ."""
@@ -74,8 +73,6 @@ class KeyBox(Pressable):
         self.key: str | None = None
         self.listening = False
         self._choose = choose
-        ui.add(self)
-        self.repaint()
 
     def show_key(self, key: str | None) -> None:
         """Show a key, or a word in its place."""
@@ -87,11 +84,9 @@ class KeyBox(Pressable):
         self.listening = listening
         self.repaint()
 
-    def update(self, time_delta: float) -> None:
-        """Listen no longer once the keyboard is elsewhere."""
-        super().update(time_delta)
-        if self.listening and self.ui.focus is not self:
-            self._listen(False)
+    def on_blur(self) -> None:
+        """Listen no longer."""
+        self._listen(False)
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """A key's cap, or what to do."""
@@ -131,11 +126,13 @@ class KeyBox(Pressable):
         return True
 
 
-class Scrub(Lit):
+class Scrub(Widget):
     """The label of a number, which a drag to the right or left counts up or down.
 
     turn(steps) is called as it goes, done() at its end.
     """
+
+    is_lit = True
 
     def __init__(
         self,
@@ -148,13 +145,12 @@ class Scrub(Lit):
     ) -> None:
         super().__init__(ui, rect, container)
         self._text, self._turn, self._done = text, turn, done
-        self._from: float | None = None
-        self.repaint()
+        self._from = 0
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The text; brighter under the mouse, with a dotted line that says it can be dragged."""
         ui, surface = self.ui, pygame.Surface(size, pygame.SRCALPHA)
-        is_lit = self.hovered or self._from is not None
+        is_lit = self.hovered or self.ui.held is self
         text = wrapped(self._text, ui.font(TEXT_SIZE), size[0], 1)[0]
         picture = ui.font(TEXT_SIZE).render(text, True, TEXT if is_lit else MUTED)
         at = picture.get_rect(midleft=(0, size[1] // 2))
@@ -164,21 +160,20 @@ class Scrub(Lit):
                 surface.fill(ACCENT, (x, at.bottom, ui.px(2), max(1, ui.px(1))))
         return surface
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Follow a drag that began on it."""
-        if self.is_press(event):
-            self._from = self.ui.manager.calculate_scaled_mouse_position(event.pos)[0]
-            return True
-        if event.type == pygame.MOUSEMOTION and self._from is not None:
-            x = self.ui.manager.calculate_scaled_mouse_position(event.pos)[0]
-            steps = int((x - self._from) / self.ui.px(SCRUB_STEP))
-            if steps:
-                self._from += steps * self.ui.px(SCRUB_STEP)
-                self._turn(steps)
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._from is not None:
-            self._from = None
-            self.repaint()
-            self._done()
-            return True
-        return False
+    def on_press(self, at: Pixel, clicks: int) -> bool:
+        """Begin a drag."""
+        self._from = at[0]
+        return True
+
+    def on_drag(self, at: Pixel) -> None:
+        """Count by steps."""
+        step = self.ui.px(SCRUB_STEP)
+        steps = int((at[0] - self._from) / step)
+        if steps:
+            self._from += steps * step
+            self._turn(steps)
+
+    def on_release(self, at: Pixel) -> None:
+        """End it."""
+        self.repaint()
+        self._done()

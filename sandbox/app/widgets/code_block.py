@@ -6,20 +6,20 @@ import pygame
 
 from sandbox.app.draw.colours import FIELD, LINE, TEXT
 from sandbox.app.widgets.fonts import code_font
-from sandbox.app.widgets.painted import Painted, line_height
+from sandbox.app.widgets.texts import line_height
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Widget
 
 # Sizes in layout units, and how far what does not fit into a line is moved in on the next [letters].
 TEXT_SIZE, INSET, MOVED_IN, TAB = 12.0, 12.0, 4, 4
 
 
-class CodeBlock(Painted):
+class CodeBlock(Widget):
     """The lines of a text on a sheet; a line that is too long goes on below, moved in."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, text: str, container: Any = None) -> None:
         super().__init__(ui, rect, container)
         self.text = text
-        self.repaint()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The sheet and the lines."""

@@ -7,8 +7,8 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DECADE, FIELD, LINE, MUTED, SURFACE, TEXT, mixed
-from sandbox.app.widgets.painted import Draggable
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Draggable, Pixel
 
 # Painted this many times larger and scaled down: smooth edges.
 OVERSAMPLING = 3
@@ -37,8 +37,6 @@ class Dial(Draggable):
         self.value: Vector = (0.0, 0.0)
         self._full, self._marks = full, marks
         self._changed, self._done = changed, done
-        ui.add(self)
-        self.repaint()
 
     def show_value(self, value: Vector) -> None:
         """Show another value."""
@@ -61,9 +59,8 @@ class Dial(Draggable):
         longest = max(math.hypot(*value), self._full)
         return value[0] / longest, value[1] / longest
 
-    def follow(self, pos: tuple[int, int]) -> None:
+    def on_drag(self, at: Pixel) -> None:
         """Set what lies under the mouse, or what is marked near it."""
-        at = self.ui.manager.calculate_scaled_mouse_position(pos)
         x, y = ((at[0] - self.rect.centerx) / self._radius, (self.rect.centery - at[1]) / self._radius)
         x, y = (0.0 if abs(along) < NEAR else along for along in (x, y))
         share = min(math.hypot(x, y), 1.0)
@@ -76,7 +73,7 @@ class Dial(Draggable):
         x, y = (round(along, digits) + 0.0 for along in value)
         self._changed(x, y)
 
-    def end_drag(self) -> None:
+    def on_release(self, at: Pixel) -> None:
         """What is set counts."""
         self._done()
 

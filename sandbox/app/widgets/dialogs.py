@@ -7,9 +7,10 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import TEXT, WARNING
-from sandbox.app.widgets.painted import TextBlock, text_height
-from sandbox.app.widgets.rows import MENU_ROWS, Row, RowList
+from sandbox.app.widgets.picker import MENU_ROWS
+from sandbox.app.widgets.rows import Row, RowList
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
+from sandbox.app.widgets.texts import TextBlock, text_height
 from sandbox.app.widgets.ui import Again, Ui
 
 # Sizes in layout units.
@@ -30,15 +31,15 @@ Choice = tuple[str, Callable[[], object]]
 
 
 def _box(
-    ui: Ui, title: str, height: float, close: Callable[[], None], again: Again, is_question: bool = False,
+    ui: Ui, title: str, height: float, again: Again, is_question: bool = False,
     widest: float = WIDTH, *, is_page: bool = False,
 ) -> tuple[Any, Any, float]:  # fmt: skip
     """A modal box with a title in the middle: the sheet, the box and its width in layout units."""
     width, tall = ui.units
     box_width = min(widest, width - 40)
-    sheet = ui.open_sheet(close, again=again, is_question=is_question, is_page=is_page)
-    box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "@dialog")
-    ui.label(ui.rect(MARGIN, MARGIN - 6, box_width - 2 * MARGIN, 28), title, box, "@title")
+    sheet = ui.open_sheet(again=again, is_question=is_question, is_page=is_page)
+    box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "dialog")
+    ui.label(ui.rect(MARGIN, MARGIN - 6, box_width - 2 * MARGIN, 28), title, box, "title")
     return sheet, box, box_width
 
 
@@ -50,24 +51,21 @@ def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None
     # What does not fit is scrolled to.
     height = min(MARGIN * 2 + 94 + tall / ui.scale, ui.units[1] - 20)
 
-    def close() -> None:
-        ui.close_sheet(sheet)
-
     def do_other() -> None:
-        close()
+        sheet.remove()
         if other is not None:
             other[1]()
 
     def again(other_ui: Ui) -> None:
         show_lines(other_ui, title, lines, other)
 
-    sheet, box, width = _box(ui, title, height, close, again)
+    sheet, box, width = _box(ui, title, height, again)
     place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN + BAR_WIDTH, height - MARGIN * 2 - 84)
     area = ScrollArea(ui, place, box)
     TextBlock(ui, pygame.Rect(0, 0, inside, tall), text, area.content, 13.0, TEXT)
     area.set_height(tall)
     bottom = height - MARGIN - 34
-    button = ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), "Close", close, box, style="@primary")
+    button = ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), "Close", sheet.remove, box, style="primary")
     if other is not None:
         ui.button(ui.rect(width - MARGIN - 310, bottom, 190, 34), other[0], do_other, box)
     ui.focus_on(button)
@@ -97,21 +95,18 @@ def ask(
     said = _hint_height(ui, hint)
     height = 226.0 + said
 
-    def close() -> None:
-        ui.close_sheet(sheet)
-
     def do_other() -> None:
-        close()
+        sheet.remove()
         if other is not None:
             other[1]()
 
     def accept() -> None:
-        take(field.entry.get_text())
+        take(field.typed)
 
     def take(typed: str) -> bool:
         fault = answer(typed.strip())
         if fault is None:
-            close()
+            sheet.remove()
             if then is not None:
                 then(typed.strip())
             return True
@@ -119,9 +114,9 @@ def ask(
         return False
 
     def again(other_ui: Ui) -> None:
-        ask(other_ui, title, hint, field.entry.get_text(), verb, answer, other, then)
+        ask(other_ui, title, hint, field.typed, verb, answer, other, then)
 
-    sheet, box, width = _box(ui, title, height, close, again)
+    sheet, box, width = _box(ui, title, height, again)
     inside = width - 2 * MARGIN
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 28, inside, said), hint, box, HINT_TEXT)
     top = MARGIN + 32 + said
@@ -129,9 +124,9 @@ def ask(
     field.enter = take
     note = TextBlock(ui, ui.rect(MARGIN, top + 42, inside, 50), "", box, 12.0, WARNING)
     bottom = height - MARGIN - 34
-    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
+    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="primary")
     ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), other[0] if other else "Cancel", do_other, box)
-    ui.focus_on(field.entry)
+    ui.focus_on(field)
 
 
 def choose(
@@ -149,18 +144,15 @@ def choose(
     tall = min(rows * CHOICE_ROW, ui.units[1] - 20 - around)
     height = around + tall
 
-    def close() -> None:
-        ui.close_sheet(sheet)
-
     def do(action: Callable[[], object]) -> None:
-        close()
+        sheet.remove()
         action()
 
     def again(other_ui: Ui) -> None:
         choose(other_ui, title, text, choices, columns, is_question=is_question)
 
     scrolls = tall < rows * CHOICE_ROW
-    sheet, box, width = _box(ui, title, height, close, again, is_question, widest, is_page=scrolls)
+    sheet, box, width = _box(ui, title, height, again, is_question, widest, is_page=scrolls)
     inside = width - 2 * MARGIN
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 32, inside, lines * LINE_HEIGHT + 4), text, box, 13.0, TEXT)
     place = ui.rect(MARGIN - RING, MARGIN + 40 + lines * LINE_HEIGHT - RING, inside + 2 * RING + BAR_WIDTH, tall)
@@ -168,11 +160,11 @@ def choose(
     wide = (inside - COLUMN_GAP * (columns - 1)) / columns
     for index, (label, action) in enumerate(choices):
         x, y = RING + index % columns * (wide + COLUMN_GAP), RING + index // columns * CHOICE_ROW
-        style = "@primary" if index == 0 and columns == 1 else ""
+        style = "primary" if index == 0 and columns == 1 else ""
         place = ui.rect(x, y, wide, CHOICE_ROW - 8)
         buttons.append(ui.button(place, label, partial(do, action), area.content, style=style))
     area.set_height(ui.px(rows * CHOICE_ROW))
-    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", sheet.remove, box, style="quiet")
     ui.focus_on(buttons[0])
 
 
@@ -188,20 +180,17 @@ def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], ob
     tall = min(min(len(rows), MENU_ROWS) * ROW_HEIGHT, ui.units[1] - 20 - 2 * MARGIN - 84)
     height = MARGIN * 2 + 84 + tall
 
-    def close() -> None:
-        ui.close_sheet(sheet)
-
     def do(index: int) -> None:
-        close()
+        sheet.remove()
         take(index)
 
     def again(other_ui: Ui) -> None:
         choose_row(other_ui, title, rows, take)
 
-    sheet, box, width = _box(ui, title, height, close, again)
+    sheet, box, width = _box(ui, title, height, again)
     listed = RowList(ui, ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, tall), do, box, at_once=False)
     listed.show_rows(rows, None)
-    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", close, box, style="@quiet")
+    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", sheet.remove, box, style="quiet")
     ui.focus_on(listed)
 
 
@@ -217,21 +206,18 @@ def fill_in(
     said = _hint_height(ui, hint)
     height = MARGIN * 2 + 42 + said + len(fields) * 42 + 78
 
-    def close() -> None:
-        ui.close_sheet(sheet)
-
     def accept(_: object = None) -> None:
-        fault = answer([entry.entry.get_text().strip() for entry in entries])
+        fault = answer([entry.typed.strip() for entry in entries])
         if fault is None:
-            close()
+            sheet.remove()
         else:
             note.show_text(fault)
 
     def again(other_ui: Ui) -> None:
-        typed = [(label, entry.entry.get_text()) for (label, _), entry in zip(fields, entries, strict=True)]
+        typed = [(label, entry.typed) for (label, _), entry in zip(fields, entries, strict=True)]
         fill_in(other_ui, title, hint, typed, verb, answer)
 
-    sheet, box, width = _box(ui, title, height, close, again)
+    sheet, box, width = _box(ui, title, height, again)
     inside = width - 2 * MARGIN
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 28, inside, said), hint, box, HINT_TEXT)
     entries = []
@@ -243,6 +229,6 @@ def fill_in(
         entries.append(entry)
     note = TextBlock(ui, ui.rect(MARGIN, height - MARGIN - 74, inside, 34), "", box, 12.0, WARNING)
     bottom = height - MARGIN - 34
-    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="@primary")
-    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), "Cancel", close, box)
-    ui.focus_on(entries[0].entry)
+    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="primary")
+    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), "Cancel", sheet.remove, box)
+    ui.focus_on(entries[0])

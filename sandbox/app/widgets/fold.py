@@ -6,23 +6,23 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import MUTED, TEXT
-from sandbox.app.widgets.painted import Lit, Pressable
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Pressable
 
 # Sizes in layout units.
 TEXT_SIZE, MARK = 11.0, 3.5
 
 
-class FoldHeading(Pressable, Lit):
+class FoldHeading(Pressable):
     """A heading; toggle() is called by a click or key."""
+
+    is_lit = True
 
     def __init__(
         self, ui: Ui, rect: pygame.Rect, text: str, is_folded: bool, toggle: Callable[[], None], container: Any = None
     ) -> None:
         super().__init__(ui, rect, container)
         self.text, self.is_folded, self._toggle = text, is_folded, toggle
-        ui.add(self)
-        self.repaint()
 
     def press(self) -> None:
         """Fold, or unfold."""

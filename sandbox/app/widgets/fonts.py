@@ -12,8 +12,7 @@ from sandbox.app.widgets.other_fonts import Face, face_with
 from sandbox.app.widgets.text_runs import runs
 from sandbox.level.format.shipped import shipped_folder
 
-# The font in assets/fonts with its licence, by the name that the theme of the widgets calls it.
-FONT = "atkinson"
+# The font in assets/fonts with its licence.
 _FILES = {False: "AtkinsonHyperlegible-Regular.ttf", True: "AtkinsonHyperlegible-Bold.ttf"}
 # Its sister for code, whose letters are all of one width.
 _MONO = "AtkinsonHyperlegibleMono-Regular.ttf"

@@ -1,20 +1,33 @@
-"""WindowLayout: the window that widgets stand in, its scale and its fonts."""
+"""WindowLayout: the window that widgets stand in as they know it: its scale and fonts, its pointer and its keyboard."""
+
+from typing import Any
 
 import pygame
 
 from sandbox.app.widgets.fonts import plain_font
-from sandbox.app.widgets.theme import Manager
 
 
 class WindowLayout:
-    """A window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
+    """A window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels.
+
+    pixel_ratio: pixels per unit of a mouse position. pointer: where the mouse is [pixels], and under: the widget that
+    it is over. focus: the widget that has the keyboard. held: the one on which the left button was pressed, until it is
+    let go. origin: what was clicked or left last, from which Tab goes on. is_laid: whether it is known where all are.
+    """
+
+    # The widgets are of classes that know this one.
+    root: Any
 
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
         self.size = size
         self.scale = scale
-        self.manager = Manager(size, scale)
-        self.manager.mouse_pos_scale_factor = list(pixel_ratio)
-        self.root = self.manager.get_root_container()
+        self.pixel_ratio = pixel_ratio
+        self.pointer = (-1, -1)
+        self.under: Any = None
+        self.focus: Any = None
+        self.held: Any = None
+        self.origin: Any = None
+        self.is_laid = False
 
     def px(self, units: float) -> int:
         """Layout units in pixels."""
@@ -30,5 +43,19 @@ class WindowLayout:
         return self.size[0] / self.scale, self.size[1] / self.scale
 
     def font(self, size: float, bold: bool = False) -> pygame.font.Font:
-        """The widgets' font in a size of layout units, for what is painted."""
+        """The widgets' font in a size of layout units."""
         return plain_font(self.px(size), bold)
+
+    def focus_on(self, widget: Any, by_hand: bool = False) -> None:
+        """Give a widget the keyboard; by_hand: it was clicked, which needs no ring around it."""
+        raise NotImplementedError
+
+    def blur(self) -> None:
+        """Give the keyboard back to the world."""
+        raise NotImplementedError
+
+    def forget(self, widget: Any) -> None:
+        """A widget is gone."""
+        for name in ("under", "focus", "held", "origin"):
+            if getattr(self, name) is widget:
+                setattr(self, name, None)

@@ -1,14 +1,13 @@
-"""Fonts for letters that ours lacks: the one that the library of the widgets brings along, then those of the system."""
+"""Fonts for letters that ours lacks: the one that lies beside it, then those of the system."""
 
 import functools
-import io
 import unicodedata
 from collections.abc import Iterator
-from importlib.util import find_spec
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import pygame
+
+from sandbox.level.format.shipped import shipped_folder
 
 _BROUGHT = {False: "NotoSans-Regular.ttf", True: "NotoSans-Bold.ttf"}
 # Families of the systems that have most letters of their scripts, plain ones first; then whatever there is.
@@ -84,20 +83,12 @@ def _face(file: str, size: int, bold: bool, turned: bool, script: str) -> Face:
 
 
 def _open(file: str, size: int, bold: bool) -> pygame.font.Font:
-    return pygame.font.Font(file, size) if file else pygame.font.Font(*_brought(bold), size)
-
-
-def _brought(bold: bool) -> tuple[Any]:
-    # Found without importing the library, which takes long.
-    library = find_spec("pygame_gui")
-    if library is None or library.origin is None:
-        return (None,)
-    return (io.BytesIO((Path(library.origin).parent / "data" / _BROUGHT[bold]).read_bytes()),)
+    return pygame.font.Font(file or str(shipped_folder("assets") / "fonts" / _BROUGHT[bold]), size)
 
 
 @functools.lru_cache(4_096)
 def _file_with(letter: str, bold: bool) -> str:
-    # "": the font that is brought along. Of what no font has, its neighbours are not looked for.
+    # "": the font that lies beside ours. Of what no font has, its neighbours are not looked for.
     if _has(_open("", 16, bold), letter):
         return ""
     block = ord(letter) >> 7

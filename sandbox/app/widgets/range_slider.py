@@ -6,8 +6,8 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, DISABLED, LINE, TEXT, Colour
-from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Pixel, Widget
 
 # Shortest part that can be kept [s], and a step of the keyboard, with Ctrl a fine one.
 SHORTEST = 0.5
@@ -17,11 +17,13 @@ OVERSAMPLING = 3
 MARGIN = 10.0
 
 
-class RangeSlider(Painted):
+class RangeSlider(Widget):
     """Knobs at start and end [s] on a line from 0 to `length`; changed(start, end) is called as they move.
 
     moment: there is one knob, at the end.
     """
+
+    is_focusable = True
 
     def __init__(
         self, ui: Ui, rect: pygame.Rect, length: float, changed: Callable[[float, float], None], container: Any = None
@@ -29,13 +31,11 @@ class RangeSlider(Painted):
         super().__init__(ui, rect, container)
         self.length, self._changed = max(length, 1e-3), changed
         self.start, self.end, self.moment = 0.0, self.length, False
-        self._held: str | None = None
-        ui.add(self)
+        self._held = "end"
 
     def show_range(self, start: float, end: float, moment: bool) -> None:
         """Show what is chosen."""
-        if (start, end, moment) != (self.start, self.end, self.moment) or self.image is None:
-            self.start, self.end, self.moment = start, end, moment
+        self.start, self.end, self.moment = start, end, moment
         self.repaint()
 
     def pixel_of(self, seconds: float) -> int:
@@ -43,21 +43,17 @@ class RangeSlider(Painted):
         margin = self.ui.px(MARGIN)
         return round(self.rect.left + margin + seconds / self.length * (self.rect.width - 2 * margin))
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Follow the mouse with the knob that is nearer."""
-        if self.is_press(event):
-            at = self._seconds_at(event.pos)
-            is_start = not self.moment and abs(at - self.start) < abs(at - self.end)
-            self._held = "start" if is_start else "end"
-            self._move(self._held, at)
-            return True
-        if event.type == pygame.MOUSEMOTION and self._held is not None:
-            self._move(self._held, self._seconds_at(event.pos))
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._held is not None:
-            self._held = None
-            return True
-        return False
+    def on_press(self, at: Pixel, clicks: int) -> bool:
+        """Take the knob that is nearer."""
+        seconds = self._seconds_at(at)
+        is_start = not self.moment and abs(seconds - self.start) < abs(seconds - self.end)
+        self._held = "start" if is_start else "end"
+        self._move(self._held, seconds)
+        return True
+
+    def on_drag(self, at: Pixel) -> None:
+        """Move it."""
+        self._move(self._held, self._seconds_at(at))
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Left and right move the start, with Shift the end; with Ctrl by less."""
@@ -69,10 +65,9 @@ class RangeSlider(Painted):
         self._move(knob, (self.end if knob == "end" else self.start) + by)
         return True
 
-    def _seconds_at(self, pos: tuple[int, int]) -> float:
-        x = self.ui.manager.calculate_scaled_mouse_position(pos)[0]
+    def _seconds_at(self, at: Pixel) -> float:
         margin = self.ui.px(MARGIN)
-        return (x - self.rect.left - margin) / max(1, self.rect.width - 2 * margin) * self.length
+        return (at[0] - self.rect.left - margin) / max(1, self.rect.width - 2 * margin) * self.length
 
     def _move(self, knob: str, to: float) -> None:
         # A knob that is moved against the other stops before it.

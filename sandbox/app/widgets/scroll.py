@@ -1,14 +1,12 @@
 """ScrollArea: widgets on a page that is higher than its place, moved by wheel, scroll bar, keys and Tab."""
 
 from collections.abc import Callable
-from typing import Any
 
 import pygame
-from pygame_gui.core import UIContainer, UIElement
 
 from sandbox.app.draw.colours import ACCENT, LINE
-from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Pixel, Widget
 
 # Sizes in layout units: width of a scroll bar, its shortest thumb, way of a notch of the wheel and of an arrow key.
 BAR_WIDTH = 10.0
@@ -19,16 +17,18 @@ KEY_STEP = 40.0
 REVEAL_GAP = 12.0
 
 
-class ScrollBar(Painted):
+class ScrollBar(Widget):
     """A bar at the right of something high; scrolled(offset) [pixels] is called when the person moves it."""
 
-    def __init__(self, ui: Ui, rect: pygame.Rect, scrolled: Callable[[float], None], container: Any = None) -> None:
-        super().__init__(ui, rect, container)
+    is_focusable = True
+
+    def __init__(
+        self, ui: Ui, rect: pygame.Rect, scrolled: Callable[[float], None], parent: Widget | None = None
+    ) -> None:
+        super().__init__(ui, rect, parent)
         self.offset, self.height, self.page = 0.0, 1, 1
         self._scrolled = scrolled
         self._grip: float | None = None
-        ui.add(self)
-        self.repaint()
 
     def show_place(self, offset: float, height: int, page: int) -> None:
         """Show which part of the whole height is seen; all of it: no bar."""
@@ -49,38 +49,39 @@ class ScrollBar(Painted):
         size = min(max(tall * self.page / max(self.height, 1), self.ui.px(SHORTEST_THUMB)), tall)
         return (tall - size) * self.offset / max(self.height - self.page, 1), size
 
-    def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The thumb alone."""
+    def paint(self, size: tuple[int, int]) -> pygame.Surface | None:
+        """The thumb alone, where there is more than is seen."""
+        if not self.needed:
+            return None
         surface = pygame.Surface(size, pygame.SRCALPHA)
-        if self.needed:
-            top, height = self._thumb()
-            wide = self.ui.px(5)
-            place = pygame.Rect(size[0] - wide - self.ui.px(1), round(top), wide, round(height))
-            pygame.draw.rect(surface, ACCENT if self._grip is not None else LINE, place, border_radius=wide // 2)
+        (top, height), wide = self._thumb(), self.ui.px(5)
+        place = pygame.Rect(size[0] - wide - self.ui.px(1), round(top), wide, round(height))
+        pygame.draw.rect(surface, ACCENT if self._grip is not None else LINE, place, border_radius=wide // 2)
         return surface
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Follow the mouse; a press beside the thumb moves by a page."""
-        if self.needed and self.is_press(event):
-            y = self.ui.manager.calculate_scaled_mouse_position(event.pos)[1]
-            top, height = self._thumb()
-            at = y - self.rect.top
-            if top <= at <= top + height:
-                self._grip = at - top
-                self.repaint()
-            else:
-                self._scrolled(self.offset + (self.page if at > top else -self.page))
-            return True
-        if event.type == pygame.MOUSEMOTION and self._grip is not None:
-            y = self.ui.manager.calculate_scaled_mouse_position(event.pos)[1]
-            room = self.rect.height - self._thumb()[1]
-            self._scrolled((y - self.rect.top - self._grip) / max(room, 1.0) * (self.height - self.page))
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._grip is not None:
-            self._grip = None
+    def on_press(self, at: Pixel, clicks: int) -> bool:
+        """Take the thumb; a press beside it moves by a page."""
+        if not self.needed:
+            return False
+        top, height = self._thumb()
+        y = at[1] - self.rect.top
+        if top <= y <= top + height:
+            self._grip = y - top
             self.repaint()
-            return True
-        return False
+        else:
+            self._scrolled(self.offset + (self.page if y > top else -self.page))
+        return True
+
+    def on_drag(self, at: Pixel) -> None:
+        """Move by the thumb."""
+        if self._grip is not None:
+            room = max(self.rect.height - self._thumb()[1], 1.0)
+            self._scrolled((at[1] - self.rect.top - self._grip) / room * (self.height - self.page))
+
+    def on_release(self, at: Pixel) -> None:
+        """Let the thumb go."""
+        self._grip = None
+        self.repaint()
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Arrows by a step, Page keys by a page, Home and End to the ends."""
@@ -103,55 +104,50 @@ def scrolled_by(key: int, offset: float, step: float, page: float, height: float
     }.get(key)
 
 
-class _View(UIContainer):
+class _View(Widget):
     """The visible part; the wheel over it scrolls, and it follows the keyboard."""
 
     def __init__(
-        self, ui: Ui, rect: pygame.Rect, wheel: Callable[[float], None], follow: Callable[[], None], container: Any
-    ) -> None:
-        super().__init__(rect, ui.manager, container=container)
-        self._wheel, self._follow = wheel, follow
-        self._ui = ui
+        self, ui: Ui, rect: pygame.Rect, turn: Callable[[float], None], follow: Callable[[Widget], None],
+        parent: Widget | None,
+    ) -> None:  # fmt: skip
+        super().__init__(ui, rect, parent)
+        self._turn, self._follow = turn, follow
 
-    def update(self, time_delta: float) -> None:
-        """Follow the keyboard."""
-        super().update(time_delta)
-        self._follow()
+    def reveal(self, widget: Widget) -> None:
+        """Scroll to what is in it."""
+        self._follow(widget)
 
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Scroll by the wheel."""
-        if event.type == pygame.MOUSEWHEEL and self.hover_point(*self._ui.manager.get_mouse_position()):
-            self._wheel(event.precise_y or event.y)
-            return True
-        return bool(super().process_event(event))
+    def on_wheel(self, notches: float) -> bool:
+        """Scroll."""
+        self._turn(notches)
+        return True
 
 
 class ScrollArea:
-    """A place [pixels] in which `content`, a container of widgets, moves up and down."""
+    """A place [pixels] in which `content`, which holds widgets, moves up and down."""
 
-    def __init__(self, ui: Ui, place: pygame.Rect, container: Any = None) -> None:
+    def __init__(self, ui: Ui, place: pygame.Rect, parent: Widget | None = None) -> None:
         self._ui = ui
         wide = ui.px(BAR_WIDTH)
-        self._revealed: UIElement | None = None
-        self.view = _View(ui, pygame.Rect(place.topleft, (place.width - wide, place.height)), self.turn,
-                          self.follow_focus, container)  # fmt: skip
-        self.content = UIContainer(pygame.Rect((0, 0), self.view.rect.size), ui.manager, container=self.view)
         bar_place = pygame.Rect(place.right - wide, place.top, wide, place.height)
-        self.bar = ScrollBar(ui, bar_place, self.scroll_to, container)
+        self.bar = ScrollBar(ui, bar_place, self.scroll_to, parent)
+        view = pygame.Rect(place.topleft, (place.width - wide, place.height))
+        self.view = _View(ui, view, self.turn, self.show_widget, parent)
+        self.content = Widget(ui, pygame.Rect((0, 0), self.view.rect.size), self.view)
         self.offset = 0.0
         self._height = place.height
 
     def set_height(self, height: int) -> None:
         """Say how high the content is [pixels]."""
         self._height = height
-        self.content.set_dimensions((self.view.rect.width, max(height, self.view.rect.height)))
+        self.content.resize((self.view.rect.width, max(height, self.view.rect.height)))
         self.scroll_to(self.offset)
 
     def scroll_to(self, offset: float) -> None:
         """Show the content from an offset [pixels] below its top, as far as there is one."""
         self.offset = min(max(offset, 0.0), max(0.0, float(self._height - self.view.rect.height)))
-        if self.content.relative_rect.top != -round(self.offset):
-            self.content.set_relative_position((0, -round(self.offset)))
+        self.content.move_to((0, -round(self.offset)))
         self.bar.show_place(self.offset, self._height, self.view.rect.height)
 
     @property
@@ -163,21 +159,16 @@ class ScrollArea:
         """Move by notches of the wheel."""
         self.scroll_to(self.offset - notches * self._ui.px(WHEEL_STEP))
 
-    def follow_focus(self) -> None:
-        """Bring what has the keyboard into sight, once after each change of it."""
-        focus = self._ui.focus
-        if focus is self._revealed:
-            return
-        self._revealed = focus
-        if focus is None or focus.ui_container is not self.content:
-            return
-        gap, place = self._ui.px(REVEAL_GAP), focus.relative_rect
-        if place.top - gap < self.offset:
-            self.scroll_to(place.top - gap)
-        elif place.bottom + gap > self.offset + self.view.rect.height:
-            self.scroll_to(place.bottom + gap - self.view.rect.height)
+    def show_widget(self, widget: Widget) -> None:
+        """Bring a widget that is in it into sight."""
+        gap = self._ui.px(REVEAL_GAP)
+        top, bottom = (edge - self.content.rect.top for edge in (widget.rect.top, widget.rect.bottom))
+        if top - gap < self.offset:
+            self.scroll_to(top - gap)
+        elif bottom + gap > self.offset + self.view.rect.height:
+            self.scroll_to(bottom + gap - self.view.rect.height)
 
-    def kill(self) -> None:
-        """Take it away, with what was made in it by the widgets' own means."""
-        self._ui.remove(self.bar)
-        self.view.kill()
+    def remove(self) -> None:
+        """Take it away, with all that is in it."""
+        self.bar.remove()
+        self.view.remove()

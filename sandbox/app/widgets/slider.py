@@ -8,8 +8,8 @@ import pygame
 
 from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.draw.colours import ACCENT, DECADE, LINE, MUTED, SURFACE, TEXT, WARNING, Colour, mixed
-from sandbox.app.widgets.painted import Draggable
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Draggable, Pixel
 
 # Part of the scale that an arrow key or a notch of the wheel moves, and with Shift held.
 KEY_STEP, FINE_KEY_STEP = 0.02, 0.004
@@ -43,8 +43,6 @@ class Slider(Draggable):
         super().__init__(ui, rect, container)
         self.state = SliderState()
         self._changed, self._done = changed, done
-        ui.add(self)
-        self.repaint()
 
     def show_state(self, state: SliderState) -> None:
         """Show another state."""
@@ -61,15 +59,16 @@ class Slider(Draggable):
         """Whether there is anything to set."""
         return self.state.enabled
 
-    def end_drag(self) -> None:
+    def on_release(self, at: Pixel) -> None:
         """What is set counts."""
         self._done()
 
-    def turn(self, notches: float) -> bool:
-        """Move by a fine step a notch."""
-        if self.state.enabled:
-            self._step(FINE_KEY_STEP * notches)
-        return self.state.enabled
+    def on_wheel(self, notches: float) -> bool:
+        """After a click on it, move by a fine step a notch."""
+        if not (self.in_hand and self.state.enabled):
+            return False
+        self._step(FINE_KEY_STEP * notches)
+        return True
 
     def press_key(self, event: pygame.event.Event) -> bool:
         """Left and right move by a step, with Shift by a fine one; Home and End go to the ends."""
@@ -88,11 +87,10 @@ class Slider(Draggable):
         self._changed(scale.value_at(min(max(scale.place_of(self.state.value) + by, 0.0), 1.0)))
         self._done()
 
-    def follow(self, pos: tuple[int, int]) -> None:
+    def on_drag(self, at: Pixel) -> None:
         """Set what lies under the mouse."""
-        x = self.ui.manager.calculate_scaled_mouse_position(pos)[0]
         margin = self.ui.px(MARGIN)
-        place = (x - self.rect.left - margin) / max(1, self.rect.width - 2 * margin)
+        place = (at[0] - self.rect.left - margin) / max(1, self.rect.width - 2 * margin)
         self._changed(self.state.scale.value_at(place))
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:

@@ -1,38 +1,25 @@
-"""Ui: the widgets of the app. Of its files, those of widgets alone know pygame_gui; others get callbacks."""
+"""Ui: all widgets of a window: who gets an event, who has the keyboard, which pages lie over which."""
 
-import html
-import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from dataclasses import field as default
 from functools import partial
-from typing import Any
 
 import pygame
-import pygame_gui
-from pygame_gui.core import ObjectID, UIContainer, UIElement
-from pygame_gui.elements import UIButton, UIDropDownMenu, UILabel, UIPanel, UITextEntryLine
 
 from sandbox.app.draw.colours import ACCENT
-from sandbox.app.widgets.button import Button
-from sandbox.app.widgets.fields import Choice, Field
-from sandbox.app.widgets.hinted_entry import HintedEntry
+from sandbox.app.widgets.button import Button, Choice, Icon
+from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.layout import WindowLayout
-from sandbox.app.widgets.painted import ENTER_KEYS, Painted
+from sandbox.app.widgets.plate import Plate
+from sandbox.app.widgets.texts import Label
+from sandbox.app.widgets.tip import Tip
+from sandbox.app.widgets.widget import Pixel, Widget
 
-# It warns of every label that is a pixel lower than its font: only people who lay out can do something about that.
-warnings.filterwarnings("ignore", message="Label Rect is too small", module="pygame_gui")
-
-# Layers between the page and a modal sheet, and between one sheet and the next.
-SHEET_HEIGHT = 40
 # Delay and interval of a key that is held down [ms].
 KEY_REPEAT = (400, 40)
-ANSWERS = (
-    pygame_gui.UI_BUTTON_PRESSED,
-    pygame_gui.UI_DROP_DOWN_MENU_CHANGED,
-    pygame_gui.UI_TEXT_ENTRY_FINISHED,
-)
-
+# The next press of a double click comes no later [ms], and no further away [layout units].
+CLICK_TIME, CLICK_NEAR = 400, 4.0
+ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
 # Opens a modal page again on other widgets, with what was typed so far.
 Again = Callable[["Ui"], object]
@@ -40,77 +27,74 @@ Again = Callable[["Ui"], object]
 
 @dataclass
 class Sheet:
-    """A modal page and the widgets on it; close: what Escape does; is_page: it is read, so no notices lie over it.
+    """A modal page; close: what Escape does; is_page: it is read, so no notices lie over it.
 
     again: opens it again in another layout; None = it ends with this one. is_question: it outlives the screen under it.
+    is_menu: a press beside what it holds closes it.
     """
 
-    panel: UIPanel
-    close: Callable[[], None]
+    panel: Plate
+    close: Callable[[], object]
     is_page: bool
     again: Again | None
     is_question: bool
-    widgets: list[UIElement] = default(default_factory=list)
-
-
-ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
+    is_menu: bool
 
 
 class Ui(WindowLayout):
-    """Widgets on a window of size [pixels]; positions and sizes given to it are layout units of `scale` pixels."""
+    """Widgets on a window of size [pixels]; the topmost page alone reacts, and the topmost widget first."""
 
     def __init__(self, size: tuple[int, int], scale: float, pixel_ratio: tuple[float, float] = (1.0, 1.0)) -> None:
         super().__init__(size, scale, pixel_ratio)
-        self._actions: dict[UIElement, Callable[[], None]] = {}
-        self._choosers: dict[UIDropDownMenu, Callable[[str], None]] = {}
-        self._fields: dict[UIElement, Field] = {}
+        self.root: Widget | None = None
+        self.root = Widget(self, pygame.Rect((0, 0), size))
         self._sheets: list[Sheet] = []
-        self._page: list[UIElement] = []
+        # What is seen, from below to the top; which of it is of the topmost page.
+        self._seen: list[Widget] = []
+        self._top = 0
+        self._focus_is_by_hand = False
+        self._to_reveal: Widget | None = None
+        self._clicks: tuple[int, Pixel, int] = (-CLICK_TIME, (0, 0), 0)
+        self.tip = Tip(self)
         pygame.key.set_repeat(*KEY_REPEAT)
-        self._focus: UIElement | None = None
-        # The line that Enter left: Tab goes on from there.
-        self._left: UIElement | None = None
 
-    def panel(self, rect: pygame.Rect, container: Any = None, style: str = "") -> UIPanel:
+    # Making widgets.
+
+    def panel(self, rect: pygame.Rect, container: Widget | None = None, style: str = "") -> Plate:
         """A background that holds other widgets."""
-        return UIPanel(rect, 1, self.manager, container=container, margins=_NO_MARGINS, object_id=_style(style))
+        return Plate(self, rect, container, style)
 
-    def area(self, rect: pygame.Rect, container: Any = None) -> UIContainer:
+    def area(self, rect: pygame.Rect, container: Widget | None = None) -> Widget:
         """A part of the window that clips what it holds."""
-        return UIContainer(rect, self.manager, container=container)
+        return Widget(self, rect, container)
 
-    def label(self, rect: pygame.Rect, text: str, container: Any = None, style: str = "") -> UILabel:
+    def label(self, rect: pygame.Rect, text: str, container: Widget | None = None, style: str = "") -> Label:
         """One line of text."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return UILabel(rect, text, self.manager, container=container, object_id=_style(style))
+        return Label(self, rect, text, container, style)
 
     def button(
         self,
         rect: pygame.Rect,
         text: str,
-        action: Callable[[], None],
-        container: Any = None,
+        action: Callable[[], object],
+        container: Widget | None = None,
         *,
         style: str = "",
-        icon: pygame.Surface | None = None,
+        icon: Icon = "",
+        icon_size: float = 18.0,
         tip: str = "",
     ) -> Button:
         """A button with text or an icon."""
-        button = Button(
-            rect, text, self.manager, container=container, object_id=_style(style), icon=icon,
-            tool_tip_text=_escaped(tip) or None,
-        )  # fmt: skip
-        self._actions[button] = action
-        self._add_focusable(button)
+        button = Button(self, rect, text, action, container, style=style, icon=icon, icon_size=icon_size)
+        button.tip = tip
         return button
 
     def choice(
         self,
         rect: pygame.Rect,
         options: Sequence[tuple[str, str, str]],
-        choose: Callable[[str], None],
-        container: Any = None,
+        choose: Callable[[str], object],
+        container: Widget | None = None,
     ) -> Choice:
         """A row of buttons, one per (value, text, tip), that share the rectangle."""
         buttons, count, gap = {}, len(options), self.px(3)
@@ -118,84 +102,15 @@ class Ui(WindowLayout):
         for index, (value, text, tip) in enumerate(options):
             left, right = round(index * (width + gap)), round(index * (width + gap) + width)
             place = pygame.Rect(rect.left + left, rect.top, right - left, rect.height)
-            buttons[value] = self.button(place, text, partial(choose, value), container, style="@segment", tip=tip)
+            buttons[value] = self.button(place, text, partial(choose, value), container, style="segment", tip=tip)
         return Choice(buttons)
 
     def field(
-        self, rect: pygame.Rect, text: str, commit: Callable[[str], bool], container: Any = None, limit: int = 200,
-        *, hint: str = "",
+        self, rect: pygame.Rect, text: str, commit: Callable[[str], bool], container: Widget | None = None,
+        limit: int = 200, *, hint: str = "",
     ) -> Field:  # fmt: skip
         """A line to type into; hint: what it says while it is empty."""
-        entry = HintedEntry(rect, self.manager, container=container, initial_text=text, placeholder_text=hint or None)
-        entry.set_text_length_limit(limit)
-        self._fields[entry] = Field(entry, commit, text)
-        self._add_focusable(entry)
-        return self._fields[entry]
-
-    def menu(
-        self,
-        rect: pygame.Rect,
-        options: Sequence[str],
-        chosen: str,
-        choose: Callable[[str], None],
-        container: Any = None,
-    ) -> UIDropDownMenu:
-        """A menu that opens to a list."""
-        menu = UIDropDownMenu(list(options), chosen, rect, self.manager, container=container)
-        self._choosers[menu] = choose
-        self._add_focusable(menu)
-        return menu
-
-    def replace_menu(self, menu: UIDropDownMenu, chosen: str) -> None:
-        """Show another chosen option on a menu, which then keeps its place among the widgets; nothing if it is that."""
-        if menu.selected_option[0] == chosen:
-            return
-        menu.selected_option = (chosen, chosen)
-        # The menu's state, closed or open, has a copy of the option and a button that shows it.
-        state: Any = menu.current_state
-        state.selected_option = menu.selected_option
-        state.selected_option_button.set_text(chosen)
-
-    def offer(self, menu: UIDropDownMenu, options: Sequence[str], chosen: str) -> None:
-        """Let a menu have these options, one of them chosen, in place of those it had."""
-        had = [option if isinstance(option, str) else option[0] for option in menu.options_list]
-        if had != list(options):
-            menu.remove_options(had)
-            menu.add_options(list(options))
-        self.replace_menu(menu, chosen)
-
-    def pointed_option(self, menu: UIDropDownMenu) -> str | None:
-        """The option under the mouse, in the list of an open menu, or what a closed one shows; None: none is."""
-        state: Any = menu.current_state
-        options = getattr(state, "options_selection_list", None)
-        if options is None:
-            return str(menu.selected_option[0]) if menu.hover_point(*self.manager.get_mouse_position()) else None
-        for option in options.item_list:
-            button = option["button_element"]
-            if button is not None and button.hovered:
-                return str(option["text"])
-        return None
-
-    def add(self, widget: Painted) -> None:
-        """Let a painted widget be reached by Tab."""
-        self._add_focusable(widget)
-
-    def _add_focusable(self, widget: UIElement) -> None:
-        (self._sheets[-1].widgets if self._sheets else self._page).append(widget)
-
-    def remove(self, widget: UIElement) -> None:
-        """Take a widget away; one that has the keyboard gives it back."""
-        self._forget(widget)
-        self._page = [other for other in self._page if other is not widget]
-        if self._focus is widget:
-            self._set_focus(None)
-        widget.kill()
-
-    def _forget(self, widget: UIElement) -> None:
-        self._actions.pop(widget, None)
-        self._fields.pop(widget, None)
-        if isinstance(widget, UIDropDownMenu):
-            self._choosers.pop(widget, None)
+        return Field(self, rect, text, commit, container, limit, hint)
 
     # Sheets: modal pages on top of all else.
 
@@ -210,7 +125,12 @@ class Ui(WindowLayout):
         return bool(self._sheets)
 
     @property
-    def top_sheet(self) -> UIPanel | None:
+    def is_covered(self) -> bool:
+        """Whether a modal page is open that is no menu."""
+        return any(not sheet.is_menu for sheet in self._sheets)
+
+    @property
+    def top_sheet(self) -> Plate | None:
         """The topmost modal page."""
         return self._sheets[-1].panel if self._sheets else None
 
@@ -221,268 +141,306 @@ class Ui(WindowLayout):
 
     def open_sheet(
         self,
-        close: Callable[[], None],
-        style: str = "@shade",
+        close: Callable[[], object] | None = None,
+        style: str = "shade",
         *,
         is_page: bool = False,
         again: Again | None = None,
         is_question: bool = False,
-    ) -> UIPanel:
-        """Cover the window by a modal page; close is called when Escape asks for it; the others are those of Sheet."""
-        sheet = UIPanel(
-            pygame.Rect((0, 0), self.size),
-            SHEET_HEIGHT * (len(self._sheets) + 1),
-            self.manager,
-            margins=_NO_MARGINS,
-            object_id=_style(style),
-        )
-        self._sheets.append(Sheet(sheet, close, is_page, again, is_question))
-        self._set_focus(None)
-        return sheet
+        is_menu: bool = False,
+    ) -> Plate:
+        """Cover the window by a modal page, which goes as any widget does; the others are those of Sheet.
 
-    def close_sheet(self, sheet: UIPanel) -> None:
-        """Take a modal page away."""
-        for entry in [entry for entry in self._sheets if entry.panel is sheet]:
-            for widget in entry.widgets:
-                self._forget(widget)
-        self._sheets = [entry for entry in self._sheets if entry.panel is not sheet]
-        self._set_focus(None)
-        sheet.kill()
+        close: what Escape does; None: it takes the page away.
+        """
+        self.blur()
+        panel = Plate(self, pygame.Rect((0, 0), self.size), None, style)
+        self._sheets.append(Sheet(panel, close or panel.remove, is_page, again, is_question, is_menu))
+        return panel
+
+    def forget(self, widget: Widget) -> None:
+        """A widget is gone, which may be a modal page."""
+        super().forget(widget)
+        self._sheets = [sheet for sheet in self._sheets if sheet.panel is not widget]
 
     def take_over(self, before: "Ui", questions_alone: bool = False) -> None:
         """Open the modal pages of an earlier layout, and end that; questions_alone: pages of its screen are left."""
         for sheet in before._sheets:
             if sheet.again is not None and (sheet.is_question or not questions_alone):
                 sheet.again(self)
-                if isinstance(self._focus, UITextEntryLine):
+                if isinstance(self.focus, Field):
                     # The next letter is added to what was typed; it does not replace it.
-                    self._focus.select_range = [0, 0]
-                    self._focus.edit_position = len(self._focus.get_text())
-        before._end()
+                    self.focus.select(len(self.focus.typed), len(self.focus.typed))
+        before.end()
 
-    def _end(self) -> None:
+    def end(self) -> None:
         """Take all widgets away; who still has this layout, or one of its widgets, does not keep them all."""
-        self.manager.clear_and_reset()
-        # The library would find out what is still to be seen when it draws next.
-        self.manager.ui_group.update_visibility()
-        for widgets in (self._actions, self._choosers, self._fields, self._sheets, self._page):
-            widgets.clear()
-        self._focus = self._left = None
+        assert self.root is not None
+        self.root.remove()
+        self._sheets.clear()
+        self._seen.clear()
+        self._to_reveal = None
+        self.tip.hide()
 
-    # Events and focus.
+    # Where widgets are.
+
+    def walk(self, widget: Widget | None = None) -> Iterator[Widget]:
+        """A widget and all in it, or all of the window, in the order in which they were made."""
+        top = widget or self.root
+        assert top is not None
+        yield top
+        for child in top.children:
+            yield from self.walk(child)
+
+    @property
+    def _page(self) -> list[Widget]:
+        """All of the topmost page."""
+        if self._sheets:
+            return list(self.walk(self._sheets[-1].panel))
+        return list(self.walk())
+
+    def _lay_out(self) -> None:
+        """Find out what is seen of each widget."""
+        assert self.root is not None
+        sheets = {sheet.panel for sheet in self._sheets}
+        self._seen, self.is_laid = [], True
+        for child in self.root.children:
+            if child not in sheets:
+                self._lay_out_in(child, self.root.rect)
+        self._top = 0
+        for sheet in self._sheets:
+            self._top = len(self._seen)
+            self._lay_out_in(sheet.panel, self.root.rect)
+
+    def _lay_out_in(self, widget: Widget, room: pygame.Rect) -> None:
+        widget.seen = widget.rect.clip(room)
+        if widget.is_shown and widget.seen.width and widget.seen.height:
+            self._seen.append(widget)
+            for child in widget.children:
+                self._lay_out_in(child, widget.seen)
+
+    def _under(self, at: Pixel) -> list[Widget]:
+        """The widgets of the topmost page at a pixel, from the top down."""
+        if not self.is_laid:
+            self._lay_out()
+        return [widget for widget in reversed(self._seen[self._top :]) if widget.seen.collidepoint(at)]
+
+    def _point(self, at: Pixel) -> None:
+        """Take note of where the mouse is, and of what is under it."""
+        self.pointer = at
+        under = next((widget for widget in self._under(at) if widget.image is not None), None)
+        before, self.under = self.under, under
+        if before is not under:
+            self.tip.hide()
+            for widget in (before, under):
+                if widget is not None:
+                    widget.on_hover()
+        if under is not None and self.held is None:
+            under.on_move(at)
+
+    def _scaled(self, position: tuple[int, int]) -> Pixel:
+        x, y = position
+        return round(x * self.pixel_ratio[0]), round(y * self.pixel_ratio[1])
+
+    # Events.
 
     @property
     def typing(self) -> bool:
         """Whether keys go into a line of text."""
-        return any(field.entry.is_focused for field in self._fields.values())
-
-    @property
-    def focus(self) -> UIElement | None:
-        """The widget that the keyboard works on."""
-        return self._focus
-
-    def buttons(self) -> list[UIButton]:
-        """The buttons that Tab reaches now."""
-        return [widget for widget in self._ring() if isinstance(widget, UIButton)]
+        return isinstance(self.focus, Field)
 
     def process(self, event: pygame.event.Event) -> bool:
         """Let the widgets have an event; True where they use it."""
         if event.type == pygame.MOUSEMOTION:
-            # The wheel turns what it points at now, not what it pointed at when the last frame was drawn.
-            self.manager.mouse_position = self.manager.calculate_scaled_mouse_position(event.pos)
-        if event.type == pygame_gui.UI_BUTTON_PRESSED and event.ui_element in self._actions:
-            self._actions[event.ui_element]()
-            return True
-        if event.type == pygame_gui.UI_DROP_DOWN_MENU_CHANGED and event.ui_element in self._choosers:
-            self._choosers[event.ui_element](event.text)
-            return True
-        if event.type == pygame_gui.UI_TEXT_ENTRY_FINISHED and event.ui_element in self._fields:
-            field = self._fields[event.ui_element]
-            if field.enter is None:
-                field.finish()
-                self._set_focus(None)
-                self._left = event.ui_element
-            else:
-                field.enter(event.text)
-            return True
-        if event.type == pygame.KEYDOWN and self._press_key(event):
-            return True
-        if event.type == pygame.MOUSEWHEEL and self._turn(event.precise_y or event.y):
-            return True
+            return self._move(self._scaled(event.pos))
         if event.type == pygame.MOUSEBUTTONDOWN and event.button in (1, 2, 3):
-            # Tab goes on from what was clicked.
-            self._focus, self._left = None, self._under_mouse()
-        used = bool(self.manager.process_events(event))
-        self._finish_left_fields()
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1:
-            self._select_number()
-        # What a widget answers comes before what the person did next, which may be in the queue already.
-        for answer in pygame.event.get(ANSWERS, pump=False):
-            self.process(answer)
-        return used
+            return self._press(self._scaled(event.pos), event.button)
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.held is not None:
+            held, self.held = self.held, None
+            held.on_release(self._scaled(event.pos))
+            return True
+        if event.type == pygame.MOUSEWHEEL:
+            notches = event.precise_y or event.y
+            return any(widget.on_wheel(notches) for widget in self._under(self.pointer) if widget.is_enabled)
+        if event.type == pygame.KEYDOWN:
+            self.tip.hide(until_moved=True)
+            return self._press_key(event)
+        if event.type in (pygame.TEXTINPUT, pygame.TEXTEDITING) and isinstance(self.focus, Field):
+            (self.focus.insert if event.type == pygame.TEXTINPUT else self.focus.compose)(event.text)
+            return True
+        return False
 
-    def _under_mouse(self) -> UIElement | None:
-        at = self.manager.get_mouse_position()
-        return next((widget for widget in reversed(self._ring()) if widget.hover_point(*at)), None)
+    def _move(self, at: Pixel) -> bool:
+        held = self.held
+        self._point(at)
+        if held is not None:
+            held.on_drag(at)
+        return held is not None
 
-    def _turn(self, notches: float) -> bool:
-        """Step the value of the line under the mouse, or of the painted widget that was clicked, where it has steps."""
-        under, here = self._under_mouse(), self._focus or self._left
-        if isinstance(under, Painted):
-            return under is here and under.turn(notches)
-        field = self._fields.get(under) if under is not None else None
-        return field is not None and field.step(1 if notches > 0.0 else -1)
+    def _press(self, at: Pixel, button: int) -> bool:
+        self.tip.hide(until_moved=True)
+        self._point(at)
+        under = self._under(at)
+        if self._sheets and self._sheets[-1].is_menu and under[:1] == [self.top_sheet]:
+            self._sheets[-1].close()
+            return True
+        # Tab goes on from what was clicked.
+        self.origin = next((widget for widget in under if widget.is_focusable and widget.is_enabled), None)
+        if not (isinstance(self.focus, Field) and self.focus is self.origin):
+            self.blur()
+            # What was typed may have laid the page out again.
+            under = self._under(at)
+        if button != 1:
+            return any(isinstance(widget, Plate) for widget in under)
+        clicks = self._count_clicks(at)
+        for widget in under:
+            if widget.is_enabled and widget.is_there:
+                # Who is pressed may look so, and may end the drag by what it does.
+                self.held = widget
+                if widget.on_press(at, clicks):
+                    return True
+                self.held = None
+        return False
 
-    def _select_number(self) -> None:
-        """Select the number in a line that a click has begun to edit, so that what is typed replaces it."""
-        field = self._fields.get(self._left) if self._left is not None else None
-        if field is None or not field.entry.is_focused or not field.is_begun:
-            return
-        field.is_begun = False
-        first, last = field.entry.select_range
-        if first == last and field.is_number:
-            field.entry.select_range = [0, len(field.entry.get_text())]
-
-    def _finish_left_fields(self) -> None:
-        for field in list(self._fields.values()):
-            if field.focused and not field.entry.is_focused:
-                field.finish()
-                # A line of text that is left turns the repetition of keys off.
-                pygame.key.set_repeat(*KEY_REPEAT)
-            elif field.entry.is_focused and not field.focused:
-                field.is_begun = True
-            field.focused = field.entry.is_focused
+    def _count_clicks(self, at: Pixel) -> int:
+        (before, (x, y), count), now, near = self._clicks, pygame.time.get_ticks(), self.px(CLICK_NEAR)
+        is_next = now - before <= CLICK_TIME and abs(at[0] - x) <= near and abs(at[1] - y) <= near
+        self._clicks = now, at, count % 3 + 1 if is_next else 1
+        return self._clicks[2]
 
     def _press_key(self, event: pygame.event.Event) -> bool:
-        typed_into = next((field for field in self._fields.values() if field.entry.is_focused), None)
-        if isinstance(self._focus, Painted) and self._focus.takes_all_keys:
-            return self._focus.press_key(event)
+        focus = self.focus
+        if focus is not None and focus.takes_all_keys:
+            return bool(focus.press_key(event))
         if event.key == pygame.K_TAB and not event.mod & (pygame.KMOD_CTRL | pygame.KMOD_ALT):
             self._move_focus(-1 if event.mod & pygame.KMOD_SHIFT else 1)
             return True
         if event.key == pygame.K_ESCAPE:
-            return self._escape(typed_into)
-        if typed_into is not None:
-            by = {pygame.K_UP: 1, pygame.K_DOWN: -1}.get(event.key)
-            return by is not None and typed_into.step(by)
-        if self._focus is None:
+            return self._escape()
+        if focus is None:
             return False
-        if isinstance(self._focus, Painted):
-            return self._focus.press_key(event)
-        if isinstance(self._focus, UIButton) and event.key in (*ENTER_KEYS, pygame.K_SPACE):
-            self._actions[self._focus]()
+        if focus.press_key(event):
             return True
-        if isinstance(self._focus, UIButton) and self._sheets and event.key in ARROWS:
-            self._step_to_button(*ARROWS[event.key])
-            return True
-        if isinstance(self._focus, UIDropDownMenu) and event.key in (pygame.K_UP, pygame.K_DOWN):
-            self._turn_menu(self._focus, -1 if event.key == pygame.K_UP else 1)
+        if isinstance(focus, Button) and self._sheets and event.key in ARROWS:
+            self._step_to_button(focus, *ARROWS[event.key])
             return True
         return False
 
-    def _step_to_button(self, dx: int, dy: int) -> None:
+    def _step_to_button(self, start: Button, dx: int, dy: int) -> None:
         """Give the keyboard to the nearest button of a page that way, if there is one."""
-        assert self._focus is not None
-        here = self._focus.rect
-        ways = []
+        here, ways = start.rect, []
         for button in self.buttons():
             x, y = button.rect.centerx - here.centerx, button.rect.centery - here.centery
             along, across = x * dx + y * dy, abs(x * dy) + abs(y * dx)
             if along > 0:
                 ways.append((along + 2 * across, button))
         if ways:
-            self._set_focus(min(ways, key=lambda way: way[0])[1])
+            self.focus_on(min(ways, key=lambda way: way[0])[1])
 
-    def _escape(self, typed_into: Field | None) -> bool:
-        open_menus = [menu for menu in self._choosers if menu.current_state is menu.menu_states["expanded"]]
-        for menu in open_menus:
-            menu._close_dropdown_if_open()
-        if open_menus:
-            return True
-        if typed_into is not None:
-            typed_into.revert()
-        if typed_into is not None or self._focus is not None:
-            self._set_focus(None)
-            if not self._sheets:
-                return True
+    def _escape(self) -> bool:
+        had_focus = self.focus is not None
+        if isinstance(self.focus, Field):
+            self.focus.revert()
+        self.blur()
         if self._sheets:
             self._sheets[-1].close()
             return True
-        return False
+        return had_focus
 
-    def _turn_menu(self, menu: UIDropDownMenu, by: int) -> None:
-        options = [option[0] if isinstance(option, tuple) else option for option in menu.options_list]
-        chosen = menu.selected_option[0] if isinstance(menu.selected_option, tuple) else menu.selected_option
-        self._choosers[menu](options[(options.index(chosen) + by) % len(options)])
+    # The keyboard.
+
+    def buttons(self) -> list[Button]:
+        """The buttons that Tab reaches now."""
+        return [widget for widget in self.ring() if isinstance(widget, Button)]
+
+    def ring(self) -> list[Widget]:
+        """What Tab goes through: the widgets of the topmost page."""
+        return [each for each in self._page if each.is_focusable and each.visible and each.is_enabled]
 
     def _move_focus(self, by: int) -> None:
-        ring = self._ring()
+        ring = self.ring()
         if not ring:
             return
-        here = self._focus or self._left
+        here = self.focus or self.origin
         start = ring.index(here) if here in ring else (-1 if by > 0 else 0)
-        self._set_focus(ring[(start + by) % len(ring)])
-
-    @property
-    def _topmost(self) -> list[UIElement]:
-        return self._sheets[-1].widgets if self._sheets else self._page
-
-    def _ring(self) -> list[UIElement]:
-        """What Tab goes through: the widgets of the topmost page."""
-        ring = self._topmost
-        return [widget for widget in ring if widget.alive() and widget.visible and getattr(widget, "is_enabled", True)]
+        self.focus_on(ring[(start + by) % len(ring)])
 
     @property
     def focus_place(self) -> int | None:
         """Which widget of the topmost page has the keyboard, those counted that Tab leaves out now."""
-        return self._topmost.index(self._focus) if self._focus in self._topmost else None
+        places = [each for each in self._page if each.is_focusable]
+        return places.index(self.focus) if self.focus in places else None
 
     def focus_at(self, place: int | None) -> None:
         """Give the keyboard to a widget of the topmost page by its place, where there is one that can have it."""
-        if place is not None and place < len(self._topmost) and self._topmost[place] in self._ring():
-            self._set_focus(self._topmost[place])
+        places = [each for each in self._page if each.is_focusable]
+        if place is not None and place < len(places) and places[place] in self.ring():
+            self.focus_on(places[place])
 
-    def focus_on(self, widget: UIElement) -> None:
-        """Give a widget the keyboard."""
-        self._set_focus(widget)
-
-    def _set_focus(self, widget: UIElement | None) -> None:
-        self._focus = widget
-        entry = widget if isinstance(widget, UITextEntryLine) else None
-        self.manager.set_focus_set(entry.get_focus_set() if entry is not None else None)
-        if entry is not None:
-            entry.select_range = [0, len(entry.get_text())]
-        self._finish_left_fields()
+    def focus_on(self, widget: Widget, by_hand: bool = False) -> None:
+        """Give a widget the keyboard; by_hand: it was clicked, which needs no ring around it."""
+        if self.focus is not widget:
+            self.blur()
+        if not widget.is_there:
+            return
+        self.focus, self._focus_is_by_hand = widget, by_hand
+        self._to_reveal = None if by_hand else widget
+        widget.on_focus()
 
     def blur(self) -> None:
         """Give the keyboard back to the world."""
-        self._set_focus(None)
+        before, self.focus = self.focus, None
+        self._to_reveal = None
+        if before is not None:
+            before.on_blur()
+
+    def show_focus(self) -> None:
+        """Bring what has the keyboard into sight, once after each change of it."""
+        widget, self._to_reveal = self._to_reveal, None
+        holder = None if widget is None else widget.parent
+        while widget is not None and holder is not None:
+            holder.reveal(widget)
+            holder = holder.parent
+
+    # Frames.
 
     def update(self, frame_time: float) -> None:
         """Let the widgets move on by frame_time [s]."""
-        self.manager.update(frame_time)
+        self.show_focus()
+        at = self._scaled(pygame.mouse.get_pos())
+        if at != self.pointer or not self.is_laid:
+            self._point(at)
+        self.tip.pass_time(frame_time)
+        if isinstance(self.focus, Field):
+            self.focus.pass_time(frame_time)
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Draw all widgets, and the ring around the one that has the keyboard."""
-        self.manager.draw_ui(surface)
-        if self._focus is not None and self._focus.alive():
-            around = self._focus.rect.inflate(self.px(5), self.px(5))
-            # What is scrolled out of its area has no ring either.
-            clip = surface.get_rect()
-            holder: Any = self._focus.ui_container
-            while holder is not None and holder is not self.root:
-                clip, holder = clip.clip(holder.rect.inflate(self.px(5), self.px(5))), holder.ui_container
-            surface.set_clip(clip)
-            pygame.draw.rect(surface, ACCENT, around, max(1, self.px(2)), self.px(8))
-            surface.set_clip(None)
+        """Draw all widgets, the ring around the one that has the keyboard, and the tip."""
+        if not self.is_laid:
+            self._lay_out()
+        shown = ((widget, widget.image) for widget in self._seen)
+        surface.blits(
+            [
+                (
+                    picture,
+                    widget.seen,
+                    widget.seen.move(-widget.rect.left, -widget.rect.top),
+                    pygame.BLEND_PREMULTIPLIED,
+                )
+                for widget, picture in shown
+                if picture is not None
+            ],
+            False,
+        )
+        if self.focus is not None and not self._focus_is_by_hand:
+            self._draw_ring(surface, self.focus)
+        self.tip.draw(surface)
 
-
-_NO_MARGINS = {"left": 0, "right": 0, "top": 0, "bottom": 0}
-
-
-def _style(style: str) -> ObjectID | None:
-    return ObjectID(class_id=style) if style else None
-
-
-def _escaped(text: str) -> str:
-    return html.escape(text, quote=False).replace("\n", "<br>")
+    def _draw_ring(self, surface: pygame.Surface, focus: Widget) -> None:
+        # What is scrolled out of its area has no ring either.
+        clip, holder, room = surface.get_rect(), focus.parent, self.px(5)
+        while holder is not None and holder is not self.root:
+            clip, holder = clip.clip(holder.rect.inflate(room, room)), holder.parent
+        surface.set_clip(clip)
+        pygame.draw.rect(surface, ACCENT, focus.rect.inflate(room, room), max(1, self.px(2)), self.px(8))
+        surface.set_clip(None)

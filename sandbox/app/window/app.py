@@ -381,7 +381,7 @@ class App:
         return RESTING_RATE if self.play is not None and self.play.runs else CALM_RATE
 
     def _sound(self) -> None:
-        play, covered = self.play, self.ui.has_sheet or self.gallery is not None or self.display.hidden
+        play, covered = self.play, self.ui.is_covered or self.gallery is not None or self.display.hidden
         clock = None if play is None else play.playback.clock
         is_heard = clock is not None and not covered and not clock.paused and clock.speed > 0.0
         with self.profile.part("sound"):

@@ -9,9 +9,9 @@ import pygame
 from sandbox.app.base.shortcuts import Mode, Shortcut, shortcuts
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT
 from sandbox.app.widgets.layout import WindowLayout
-from sandbox.app.widgets.painted import Painted
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Widget
 
 # Sizes in layout units.
 COLUMN_WIDTH = 500.0
@@ -42,19 +42,16 @@ def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
     box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
     box_height = min(TOP + max(map(_height, columns)) + MARGIN, height - 16)
 
-    def close() -> None:
-        ui.close_sheet(sheet)
-
     def begin_tour() -> None:
-        close()
+        sheet.remove()
         tour()
 
-    sheet = ui.open_sheet(close, is_page=True, again=lambda other: show_help(other, mode, tour))
+    sheet = ui.open_sheet(is_page=True, again=lambda other: show_help(other, mode, tour))
     place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
-    box = ui.panel(place, sheet, "@dialog")
-    ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "@title")
-    ui.button(ui.rect(box_width - MARGIN - 218, 16, 120, 32), "Take the tour", begin_tour, box, style="@quiet")
-    button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", close, box)
+    box = ui.panel(place, sheet, "dialog")
+    ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "title")
+    ui.button(ui.rect(box_width - MARGIN - 218, 16, 120, 32), "Take the tour", begin_tour, box, style="quiet")
+    button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", sheet.remove, box)
     needed = max(map(_height, columns))
     area = ScrollArea(ui, ui.rect(MARGIN, TOP, box_width - 2 * MARGIN + 12, box_height - TOP - 12), box)
     area.set_height(ui.px(needed))
@@ -100,7 +97,7 @@ def _keys(entry: Shortcut) -> str:
     return " or ".join(entry.keys[:2])
 
 
-class ShortcutTable(Painted):
+class ShortcutTable(Widget):
     """All shortcuts in columns."""
 
     def __init__(self, ui: Ui, rect: pygame.Rect, columns: list[Column], container: Any) -> None:

@@ -1,6 +1,6 @@
 """Opening: the window with words at once; the rest of the program is imported meanwhile, on a thread.
 
-Nothing that is imported here needs numpy, pydantic or pygame_gui.
+Nothing that is imported here needs numpy or pydantic.
 """
 
 import math

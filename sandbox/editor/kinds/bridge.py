@@ -15,7 +15,6 @@ from sandbox.editor.tools.drawing_options import (
     size_option,
 )
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.bridge import BridgeDef
 
@@ -55,20 +54,10 @@ class BridgeDrawing(LineDrawing[TrussOptions]):
         return {**self.ends(points), "height": height}
 
 
-def _draw_bridge(pen: IconPen) -> None:
-    pen.line((3, 8), (21, 8))
-    pen.line((3, 16), (21, 16))
-    for x in (3, 12, 21):
-        pen.line((x, 8), (x, 16))
-    for x in (3, 12):
-        pen.line((x, 8), (x + 9, 16), width=1.3)
-        pen.line((x, 16), (x + 9, 8), width=1.3)
-
-
 class BridgeEditing(BodyEditing[BridgeDef]):
     """A bridge's bottom row stays straight below, however it is turned."""
 
-    tools: ClassVar = (EditorTool("bridge", "B", "Bridge", _draw_bridge, BridgeDrawing),)
+    tools: ClassVar = (EditorTool("bridge", "B", "Bridge", BridgeDrawing),)
     formless = frozenset({"particle_mass", "pin"})
 
     def can_stretch(self) -> bool:

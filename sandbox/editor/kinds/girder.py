@@ -8,7 +8,6 @@ from sandbox.editor.kinds.editing import BodyEditing
 from sandbox.editor.kinds.motion import Motion
 from sandbox.editor.tools.drawing_bodies import length, rounded
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.girder import GirderDef
 
@@ -30,16 +29,10 @@ class GirderDrawing(BridgeDrawing):
         return {**self.ends(points), "height": height}
 
 
-def _draw_girder(pen: IconPen) -> None:
-    pen.line((2.5, 7), (21.5, 7))
-    pen.line((7, 17), (17, 17))
-    pen.line((2.5, 7), (7, 17), (12, 7), (17, 17), (21.5, 7))
-
-
 class GirderEditing(BodyEditing[GirderDef]):
     """A girder's second row lies on the right of the first; in a mirror its ends change places."""
 
-    tools: ClassVar = (EditorTool("girder", "G", "Girder", _draw_girder, GirderDrawing),)
+    tools: ClassVar = (EditorTool("girder", "G", "Girder", GirderDrawing),)
     formless = frozenset({"particle_mass", "pin"})
 
     @property

@@ -14,7 +14,6 @@ from sandbox.editor.tools.drawing_bodies import BodyDrawing, length, rounded
 from sandbox.editor.tools.drawing_options import BodyOptions, count_option, mass_option, material_option, sag_option
 from sandbox.editor.tools.drawing_outline import OutlineDrawing
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
@@ -144,34 +143,13 @@ class PolygonDrawing(OutlineDrawing[JellyOptions], JellyDrawing):
         return {"shape": PolygonShape(polygon=polygon), "position": (x, y), **sized}
 
 
-def _draw_box(pen: IconPen) -> None:
-    for at in (4, 12, 20):
-        pen.line((at, 4), (at, 20), width=1.7)
-        pen.line((4, at), (20, at), width=1.7)
-
-
-def _draw_circle(pen: IconPen) -> None:
-    pen.disc(12, 12, 9, 2)
-    pen.line((12, 3.5), (12, 20.5), width=1.4)
-    pen.line((3.5, 12), (20.5, 12), width=1.4)
-
-
-def _draw_polygon(pen: IconPen) -> None:
-    corners = ((4, 9), (12, 3.5), (20, 8), (17.5, 19), (7, 20), (4, 9))
-    pen.line(*corners)
-    for x, y in corners:
-        pen.disc(x, y, 2.2)
-
-
 class JellyEditing(BodyEditing[JellyDef]):
     """A jelly whose sides lie along the axes can be stretched, unless it is round."""
 
     tools: ClassVar = (
-        EditorTool("box", "J", "Jelly: a box", _draw_box, BoxDrawing, word="jelly box"),
-        EditorTool("circle", "O", "Jelly: a disc", _draw_circle, CircleDrawing, word="jelly disc"),
-        EditorTool(
-            "polygon", "Y", "Jelly: freehand or corner by corner", _draw_polygon, PolygonDrawing, word="jelly shape"
-        ),
+        EditorTool("box", "J", "Jelly: a box", BoxDrawing, word="jelly box"),
+        EditorTool("circle", "O", "Jelly: a disc", CircleDrawing, word="jelly disc"),
+        EditorTool("polygon", "Y", "Jelly: freehand or corner by corner", PolygonDrawing, word="jelly shape"),
     )
     formless = frozenset({"particle_mass", "area"})
 

@@ -17,7 +17,6 @@ from sandbox.editor.tools.drawing_options import (
     sag_option,
 )
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.limits import INFLATION_LIMIT
 from sandbox.level.kinds.body_def import BendingDef
@@ -72,19 +71,10 @@ class RingDrawing(RoundDrawing[RingOptions]):
         return f"radius {length(points):.3g} m, {self._parts(points)} segments"
 
 
-def _draw_ring(pen: IconPen) -> None:
-    pen.disc(12, 12, 9.5, 2.2)
-    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-        pen.line((12 + 1.5 * dx, 12 + 1.5 * dy), (12 + 5.2 * dx, 12 + 5.2 * dy), width=1.5)
-        tip = (12 + 5.6 * dx, 12 + 5.6 * dy)
-        for side in (-1, 1):
-            pen.line(tip, (tip[0] - 1.7 * dx + 1.5 * side * dy, tip[1] - 1.7 * dy + 1.5 * side * dx), width=1.5)
-
-
 class RingEditing(BodyEditing[RingDef]):
     """A ring stays round."""
 
-    tools: ClassVar = (EditorTool("ring", "Shift+O", "Ring with air inside: a balloon", _draw_ring, RingDrawing),)
+    tools: ClassVar = (EditorTool("ring", "Shift+O", "Ring with air inside: a balloon", RingDrawing),)
     formless = frozenset({"particle_mass", "inflation", "bending"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:

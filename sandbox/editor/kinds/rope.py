@@ -16,7 +16,6 @@ from sandbox.editor.tools.drawing_options import (
     option,
 )
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.rope import RopeDef
 
@@ -65,17 +64,10 @@ class RopeDrawing(LineDrawing[RopeOptions]):
         return {**self.ends(points), "end_mass": self.options.end_mass, "rest_length": rest}
 
 
-def _draw_rope(pen: IconPen) -> None:
-    points = [(4 + 4 * k, 6 + 11 * (1 - ((k - 2) / 2) ** 2)) for k in range(5)]
-    pen.line(*points)
-    for x, y in points:
-        pen.disc(x, y, 2.3)
-
-
 class RopeEditing(BodyEditing[RopeDef]):
     """A rope goes where its ends go."""
 
-    tools: ClassVar = (EditorTool("rope", "R", "Rope", _draw_rope, RopeDrawing),)
+    tools: ClassVar = (EditorTool("rope", "R", "Rope", RopeDrawing),)
     formless = frozenset({"particle_mass", "end_mass", "rest_length", "pin", "bending"})
 
     def can_stretch(self) -> bool:

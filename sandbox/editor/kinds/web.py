@@ -1,6 +1,5 @@
 """Webs in the editor."""
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -9,7 +8,6 @@ from sandbox.editor.kinds.motion import Motion
 from sandbox.editor.tools.drawing_bodies import RoundDrawing, fitting_count, length
 from sandbox.editor.tools.drawing_options import BodyOptions, count_option, flag_option, mass_option, material_option
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.kinds.web import WebDef
 
@@ -49,20 +47,10 @@ class WebDrawing(RoundDrawing[WebOptions]):
         return f"radius {length(points):.3g} m, {self.options.spokes} spokes, {self._rings(points)} rings"
 
 
-def _draw_web(pen: IconPen) -> None:
-    for radius in (4.5, 9.5):
-        pen.line(
-            *[(12 + radius * math.cos(math.tau * k / 6), 12 + radius * math.sin(math.tau * k / 6)) for k in range(7)],
-            width=1.6,
-        )
-    for k in range(6):
-        pen.line((12, 12), (12 + 9.5 * math.cos(math.tau * k / 6), 12 + 9.5 * math.sin(math.tau * k / 6)), width=1.3)
-
-
 class WebEditing(BodyEditing[WebDef]):
     """A web stays round."""
 
-    tools: ClassVar = (EditorTool("web", "W", "Web", _draw_web, WebDrawing),)
+    tools: ClassVar = (EditorTool("web", "W", "Web", WebDrawing),)
     formless = frozenset({"particle_mass", "pin"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:

@@ -17,7 +17,6 @@ from sandbox.editor.tools.drawing_options import (
     size_option,
 )
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.wheel import WheelDef
@@ -88,17 +87,10 @@ class WheelDrawing(RimDrawing[WheelOptions]):
         return {**super().fields(points), "hub_mass": self.options.hub_mass, "pin": ("hub",) if held else ()}
 
 
-def _draw_wheel(pen: IconPen) -> None:
-    pen.disc(12, 12, 9.5, 2.6)
-    pen.disc(12, 12, 2.6)
-    for k in range(6):
-        pen.line((12, 12), (12 + 8 * math.cos(math.tau * k / 6), 12 + 8 * math.sin(math.tau * k / 6)), width=1.4)
-
-
 class WheelEditing(BodyEditing[WheelDef]):
     """A wheel stays round; in a mirror its motor turns the other way."""
 
-    tools: ClassVar = (EditorTool("wheel", "Q", "Wheel with a hub", _draw_wheel, WheelDrawing),)
+    tools: ClassVar = (EditorTool("wheel", "Q", "Wheel with a hub", WheelDrawing),)
     formless = frozenset({"particle_mass", "hub_mass", "pin", "motor", "touches_mount"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:

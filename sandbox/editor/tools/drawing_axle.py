@@ -14,7 +14,6 @@ from sandbox.editor.tools.drawing_bodies import known_material, length
 from sandbox.editor.tools.drawing_options import OptionInfo, flag_option, option
 from sandbox.editor.tools.drawing_tool import staged
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import Level
 from sandbox.level.format.actuator_defs import MotorDef
@@ -138,11 +137,4 @@ def _place(scene: Scene, slot: int) -> Point:
     return x, y
 
 
-def _draw_axle(pen: IconPen) -> None:
-    pen.line((3, 6), (21, 6), width=2.4)
-    pen.line((12, 6), (12, 15), width=2.0)
-    pen.disc(12, 15, 7, 2.2)
-    pen.disc(12, 15, 2.4)
-
-
-AXLE = EditorTool("axle", "Shift+Q", "Axle: a wheel on a body, with a motor", _draw_axle, AxleDrawing)
+AXLE = EditorTool("axle", "Shift+Q", "Axle: a wheel on a body, with a motor", AxleDrawing)

@@ -10,7 +10,6 @@ from sandbox.editor.tools.drawing_bodies import direction, rounded
 from sandbox.editor.tools.drawing_options import Options, mass_option
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.quantities import Point, replaced
@@ -93,11 +92,4 @@ class ChassisDrawing(Drawing[ChassisOptions]):
         return direction(points)
 
 
-def _draw_chassis(pen: IconPen) -> None:
-    pen.line((2, 7), (22, 7), (22, 12), (2, 12), (2, 7), width=1.8)
-    for x in (6, 18):
-        pen.line((x, 12), (x - 1.5, 13.5), (x + 1.5, 15), (x - 1.5, 16.5), (x, 18), width=1.4)
-        pen.disc(x, 19.5, 2.4)
-
-
-CHASSIS = EditorTool("chassis", "Shift+G", "Chassis: a frame with two axles on springs", _draw_chassis, ChassisDrawing)
+CHASSIS = EditorTool("chassis", "Shift+G", "Chassis: a frame with two axles on springs", ChassisDrawing)

@@ -15,7 +15,6 @@ from sandbox.editor.tools.drawing_bodies import known_material
 from sandbox.editor.tools.drawing_options import Options, count_option, material_option
 from sandbox.editor.tools.drawing_tool import Drawing, staged
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import SpringDef
 from sandbox.level.format.quantities import replaced
@@ -185,11 +184,4 @@ def _snap(scene: Scene, slot: int) -> Snap:
     return replace(Snap((x, y)), kind="particle", name=scene.names(slot))
 
 
-def _draw_hangers(pen: IconPen) -> None:
-    pen.arc(12, -3, 14.5, 228, 312)
-    pen.line((2.5, 19.5), (21.5, 19.5), width=2.2)
-    for x, top in ((5, 9.5), (9.5, 11), (14.5, 11), (19, 9.5)):
-        pen.line((x, top), (x, 19), width=1.5)
-
-
-HANGERS = EditorTool("hangers", "Shift+S", "Hangers: many springs between two ropes", _draw_hangers, HangersDrawing)
+HANGERS = EditorTool("hangers", "Shift+S", "Hangers: many springs between two ropes", HangersDrawing)

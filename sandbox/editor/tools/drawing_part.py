@@ -7,7 +7,6 @@ from sandbox.editor.edits.parts import place_part
 from sandbox.editor.tools.drawing_options import Options, flag_option
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import Level
 
@@ -59,10 +58,4 @@ class PartDrawing(Drawing[PartOptions]):
         return place_part(document, self.options.part, points[0].point, self.options.mirrored)
 
 
-def _draw_part(pen: IconPen) -> None:
-    pen.line((4, 10.5), (12, 10.5), (12, 19.5), (4, 19.5), (4, 10.5))
-    pen.disc(18, 16, 4, 2)
-    pen.shape((12, 2), (16.5, 8.5), (7.5, 8.5))
-
-
-PART = EditorTool("part", "Shift+P", "Part: car, crane, walker and others", _draw_part, PartDrawing)
+PART = EditorTool("part", "Shift+P", "Part: car, crane, walker and others", PartDrawing)

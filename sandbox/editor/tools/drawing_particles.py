@@ -10,7 +10,6 @@ from sandbox.editor.tools.drawing_bodies import direction, known_material
 from sandbox.editor.tools.drawing_options import OptionInfo, Options, flag_option, mass_option, material_option, option
 from sandbox.editor.tools.drawing_tool import Drawing, staged
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen, draw_pin, draw_spring
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.limits import BODY_RADIUS
@@ -138,10 +137,6 @@ class PinDrawing(Drawing[PinOptions]):
             raise EditError(str(error.args[0])) from None
 
 
-def _draw_particle(pen: IconPen) -> None:
-    pen.disc(12, 12, 5)
-
-
-PARTICLE = EditorTool("particle", "A", "Particle", _draw_particle, ParticleDrawing)
-SPRING = EditorTool("spring", "S", "Spring", draw_spring, SpringDrawing)
-PIN = EditorTool("pin", "P", "Pin or unpin a particle", draw_pin, PinDrawing)
+PARTICLE = EditorTool("particle", "A", "Particle", ParticleDrawing)
+SPRING = EditorTool("spring", "S", "Spring", SpringDrawing)
+PIN = EditorTool("pin", "P", "Pin or unpin a particle", PinDrawing)

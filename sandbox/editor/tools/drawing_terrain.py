@@ -10,7 +10,6 @@ from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
 from sandbox.editor.tools.drawing_outline import HAND_TOLERANCE, OutlineDrawing
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import TerrainDef, WallsDef
 from sandbox.level.format.limits import FRICTION_LIMIT
@@ -109,25 +108,6 @@ def _corner(point: Snap) -> Point:
     return rounded(x), rounded(y)
 
 
-def _draw_ground(pen: IconPen) -> None:
-    pen.shape((3, 20), (3, 13), (8, 8.5), (12, 12), (17, 6), (21, 11), (21, 20))
-
-
-def _draw_line(pen: IconPen) -> None:
-    points = ((3, 8), (8, 13), (15, 11), (21, 6))
-    pen.line(*points)
-    for x, y in ((5, 12.5), (9.5, 15), (14, 14), (18.5, 11)):
-        pen.line((x, y), (x - 2.4, y + 4), width=1.4)
-
-
-def _draw_walls(pen: IconPen) -> None:
-    pen.line((6.5, 6.5), (17.5, 6.5), (17.5, 17.5), (6.5, 17.5), (6.5, 6.5))
-    for at in (8, 12, 16):
-        for a, b in (((at, 4.5), (at - 2, 2.5)), ((at, 19.5), (at + 2, 21.5))):
-            pen.line(a, b, width=1.4)
-            pen.line(a[::-1], b[::-1], width=1.4)
-
-
-GROUND = EditorTool("ground", "D", "Solid ground", _draw_ground, GroundDrawing, "Terrain")
-LINE = EditorTool("line", "C", "A line with two sides", _draw_line, TerrainLineDrawing, "Terrain")
-WALLS = EditorTool("walls", "Shift+D", "Walls around the level", _draw_walls, WallsDrawing, "Terrain")
+GROUND = EditorTool("ground", "D", "Solid ground", GroundDrawing, "Terrain")
+LINE = EditorTool("line", "C", "A line with two sides", TerrainLineDrawing, "Terrain")
+WALLS = EditorTool("walls", "Shift+D", "Walls around the level", WallsDrawing, "Terrain")

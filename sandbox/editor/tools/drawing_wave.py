@@ -7,7 +7,6 @@ from sandbox.editor.edits.phase_wave import muscles, wave_along
 from sandbox.editor.tools.drawing_options import OptionInfo, Options, option
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
-from sandbox.editor.tools.icons import IconPen
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import Point
 
@@ -67,11 +66,4 @@ class WaveDrawing(Drawing[WaveOptions]):
         return "" if self._ghost_fault else f"{muscles}, waves: {self.options.waves:g}"
 
 
-def _draw_wave(pen: IconPen) -> None:
-    pen.arc(7.5, 12, 4.5, 0, 180)
-    pen.arc(16.5, 12, 4.5, 180, 360)
-    pen.line((3, 12), (3, 15))
-    pen.shape((21, 5.5), (24, 11.5), (18, 11.5))
-
-
-WAVE = EditorTool("wave", "Shift+W", "Phase wave through muscles, along a drag", _draw_wave, WaveDrawing, word="wave")
+WAVE = EditorTool("wave", "Shift+W", "Phase wave through muscles, along a drag", WaveDrawing, word="wave")

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from sandbox.editor.tools.drawing_tool import Drawing
-from sandbox.editor.tools.icons import Icon
 
 # Where the page of all shortcuts has a tool.
 Group = Literal["Draw", "Terrain"]
@@ -12,15 +11,15 @@ Group = Literal["Draw", "Terrain"]
 
 @dataclass(frozen=True)
 class EditorTool:
-    """A tool: its name, the key that takes it up ("Shift+O"), its line on the help page and in its tip, and its icon.
+    """A tool: its name, the key that takes it up ("Shift+O"), its line on the help page and in its tip.
 
-    drawing: what it draws with; None = it selects. word: what it is called in the window, where that is not its name.
+    Its icon is the file of its name in assets/icons. drawing: what it draws with; None = it selects. word: what it is
+    called in the window, where that is not its name.
     """
 
     name: str
     key: str
     label: str
-    icon: Icon
     drawing: type[Drawing[Any]] | None = None
     group: Group = "Draw"
     word: str = ""

@@ -1,6 +1,5 @@
 """CataloguePage: ready parts and a person's own, with pictures, to be put on the sheet by a click or a drag."""
 
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +12,11 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.pointer import DrawTool
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.parts.part_card import PartCard, card_places, fill_card
 from sandbox.app.widgets.dialogs import ask, choose
-from sandbox.app.widgets.painted import TextBlock
 from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.editor.scene import make_scene
 from sandbox.editor.storage.level_file import StorageError
 from sandbox.editor.storage.part_files import PartFile, catalogue, delete_part, rename_part
@@ -37,7 +37,7 @@ LOOK_EVERY = 30
 NOTHING_OWN = "Select something, and keep it as a part."
 
 
-class CataloguePage:
+class CataloguePage(SidePage):
     """The cards of all parts; the one that is in hand is the part tool's."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -69,14 +69,14 @@ class CataloguePage:
         x = left + width - 2 * small - gap
         wide = pygame.Rect(left, top, x - gap - left, height)
         tip = tip_of("keep_part", "edit")
-        self.keep = ui.button(wide, "Keep as a part …", self._keep, container, style="@segment", tip=tip)
+        self.keep = ui.button(wide, "Keep as a part …", self._keep, container, style="segment", tip=tip)
         self.rename = ui.button(
-            pygame.Rect(x, top, small, height), "Rename", self._ask_name, container, style="@segment",
+            pygame.Rect(x, top, small, height), "Rename", self._ask_name, container, style="segment",
             tip="Rename one of your parts",
         )  # fmt: skip
         self.delete = ui.button(
             pygame.Rect(x + small + gap, top, small, height), "Delete", self._ask_delete, container,
-            style="@segment", tip="Delete one of your parts; levels that use it keep their copy",
+            style="segment", tip="Delete one of your parts; levels that use it keep their copy",
         )  # fmt: skip
 
     # What there is.
@@ -98,13 +98,9 @@ class CataloguePage:
             card.mark(card.part == self._chosen and (drawing is not None or card.part.is_own))
         self._describe()
         is_own = self._chosen is not None and self._chosen.is_own
-        for button, possible in (
-            (self.keep, bool(self._screen.document.selection)),
-            (self.rename, is_own and self._chosen is not None and self._chosen.level is not None),
-            (self.delete, is_own),
-        ):
-            if possible != button.is_enabled:
-                (button.enable if possible else button.disable)()
+        self.keep.is_enabled = bool(self._screen.document.selection)
+        self.rename.is_enabled = is_own and self._chosen is not None and self._chosen.level is not None
+        self.delete.is_enabled = is_own
 
     def _drawing(self) -> PartDrawing | None:
         """The drawing that has a part in hand, where it is the tool in use."""
@@ -116,7 +112,7 @@ class CataloguePage:
         if files == self._files:
             return
         for widget in (*self.cards, *self._labels):
-            self._ui.remove(widget)
+            widget.remove()
         self.cards, self._labels, self._unfilled, self._files = [], [], SliceQueue(), files
         if self._chosen not in files:
             # The file in hand may have another name or another content.
@@ -134,7 +130,7 @@ class CataloguePage:
             y += 34.0
         if self._is_low:
             for button in (self.keep, self.rename, self.delete):
-                button.set_relative_position((button.relative_rect.left, self._ui.px(y)))
+                button.move_to((button.place.left, self._ui.px(y)))
             y += BUTTON_HEIGHT + GAP
         self.area.set_height(self._ui.px(y))
 
@@ -155,7 +151,7 @@ class CataloguePage:
         for place, part in zip(places, parts, strict=True):
             card = PartCard(ui, place, part, self, self.area.content, self._columns)
             if self._is_low and part.level is not None:
-                card.set_tooltip(escape(f"{part.name}. {part.level.description}".strip(), quote=False))
+                card.tip = f"{part.name}. {part.level.description}".strip()
             self.cards.append(card)
             self._unfilled.add(fill_card(card))
         return end
@@ -215,7 +211,7 @@ class CataloguePage:
         index = self.cards.index(card) + by
         if 0 <= index < len(self.cards):
             self._ui.focus_on(self.cards[index])
-            self.area.follow_focus()
+            self._ui.show_focus()
 
     def focus(self, path: Path | None = None) -> None:
         """Give the keyboard to the part of a file, None = that in hand, or the first."""
@@ -226,7 +222,7 @@ class CataloguePage:
         wanted = next((card for card in self.cards if card.part == self._chosen), None) or next(iter(self.cards), None)
         if wanted is not None:
             self._ui.focus_on(wanted)
-            self.area.follow_focus()
+            self._ui.show_focus()
 
     # Own parts.
 
@@ -269,9 +265,3 @@ class CataloguePage:
         """Show the files as they are now, that of a path as chosen."""
         self._looked = 0
         self._chosen = next((part for part in catalogue() if part.path == path), None)
-
-    def close(self) -> None:
-        """Take the page away."""
-        for widget in (*self.cards, *self._labels, self.keep, self.rename, self.delete, self._text):
-            self._ui.remove(widget)
-        self.area.kill()

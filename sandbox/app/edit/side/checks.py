@@ -9,6 +9,7 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED
 from sandbox.app.edit.side.form import Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import Document
 from sandbox.editor.panel.check_form import add_check, check_properties, delete_check
@@ -61,7 +62,7 @@ class Trial:
             self.fault = f"the level cannot be run: {error}"
 
 
-class ChecksPage:
+class ChecksPage(SidePage):
     """The checks as a list, the chosen one as a form."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -103,8 +104,8 @@ class ChecksPage:
         rows = [_row(check, results.get(check), is_running, has_keys) for check in checks]
         self.list.show_rows(rows, self.chosen if checks else None, reveal=True)
         for button in self.buttons[1:]:
-            (button.enable if checks else button.disable)()
-        self.buttons[2].set_text("Running" if is_running else "Run now")
+            button.is_enabled = bool(checks)
+        self.buttons[2].show_text("Running" if is_running else "Run now")
         self.form.show(check_properties(document, self.chosen))
         self._screen.show_box(checks[self.chosen].box if checks else None)
 
@@ -128,8 +129,6 @@ class ChecksPage:
         if self.trial is not None:
             self.trial.is_stopped = True
         self._screen.show_box(None)
-        self.form.close()
-        self._head.close()
 
 
 def _row(check: CheckDef, result: CheckResult | None, is_running: bool, has_keys: bool) -> Row:

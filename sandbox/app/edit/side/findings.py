@@ -7,6 +7,7 @@ import pygame
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, WARNING, Colour
 from sandbox.app.edit.side.form import GAP, ROW
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.items import items_of
 from sandbox.editor.lint.finding import SEVERITIES, Finding, Remedy
@@ -19,7 +20,7 @@ IGNORE_WIDTH = 72.0
 NO_REMEDY = "Choose a finding to see it"
 
 
-class FindingsPage:
+class FindingsPage(SidePage):
     """Findings, the gravest first."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -31,10 +32,10 @@ class FindingsPage:
         gap, top, tall = ui.px(GAP), place.bottom - ui.px(ROW + 4), ui.px(ROW)
         narrow = ui.px(IGNORE_WIDTH)
         row = pygame.Rect(place.left, top, upper.width - narrow - gap, tall)
-        self.mend = ui.button(row, "", self._mend, container, style="@segment", tip="Fix the finding chosen above")
+        self.mend = ui.button(row, "", self._mend, container, style="segment", tip="Fix the finding chosen above")
         row = pygame.Rect(row.right + gap, top, narrow, tall)
         tip = "Do not show the chosen finding again while this level is open"
-        self.ignore = ui.button(row, "Ignore", self._ignore, container, style="@segment", tip=tip)
+        self.ignore = ui.button(row, "Ignore", self._ignore, container, style="segment", tip=tip)
         self._chosen: Finding | None = None
         self._offer(None)
         self.findings: list[Finding] = []
@@ -71,8 +72,8 @@ class FindingsPage:
     def _offer(self, remedy: Remedy | None) -> None:
         """Let the button do what mends the chosen finding."""
         self._remedy = remedy
-        self.mend.set_text(NO_REMEDY if remedy is None else remedy.label)
-        (self.mend.disable if remedy is None else self.mend.enable)()
+        self.mend.show_text(NO_REMEDY if remedy is None else remedy.label)
+        self.mend.is_enabled = remedy is not None
 
     def _ignore(self) -> None:
         if self._chosen is not None:
@@ -82,9 +83,3 @@ class FindingsPage:
     def _mend(self) -> None:
         if self._remedy is not None:
             self._screen.edit(self._remedy.label, self._remedy.edit)
-
-    def close(self) -> None:
-        """Take the page away."""
-        self._ui.remove(self.list)
-        self._ui.remove(self.mend)
-        self._ui.remove(self.ignore)

@@ -3,11 +3,11 @@
 import re
 from collections.abc import Sequence
 from functools import partial
-from html import escape
 from typing import Any
 
 import pygame
 
+from sandbox.app.base.desktop import copied_text, copy_text
 from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import action_of, tip_of
 from sandbox.app.contracts.editing import Editing
@@ -16,11 +16,13 @@ from sandbox.app.draw.themes import rgb_of
 from sandbox.app.play.drive_keys import code_of
 from sandbox.app.widgets.boxes import CheckBox, KeyBox, Scrub
 from sandbox.app.widgets.dialogs import ask, choose
-from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.fold import FoldHeading
-from sandbox.app.widgets.painted import TextBlock, wrapped
-from sandbox.app.widgets.rows import Picker, Row
+from sandbox.app.widgets.picker import Picker
+from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.texts import TextBlock, wrapped
+from sandbox.app.widgets.widget import Widget
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.extra_values import HOW_TO_ADD
@@ -93,7 +95,7 @@ class Form:
         self.keys: dict[str, KeyBox] = {}
         self.scrubs: dict[str, Scrub] = {}
         self._notes: dict[str, TextBlock] = {}
-        self._widgets: list[Any] = []
+        self._holder = Widget(self._ui, pygame.Rect(0, 0, 0, 0), area.content)
         self._named: dict[str, Any] = {}
         self._structure: object = None
         self._sections: Sequence[Section] = ()
@@ -138,11 +140,10 @@ class Form:
 
     def close(self) -> None:
         """Take what is being typed, and take the widgets away."""
-        if any(field.entry.is_focused for fields in self.fields.values() for field in fields):
+        if self._ui.focus in [field for fields in self.fields.values() for field in fields]:
             self._ui.blur()
-        for widget in self._widgets:
-            self._ui.remove(widget)
-        self._widgets, self._named = [], {}
+        self._holder.clear()
+        self._named = {}
 
     # Making rows.
 
@@ -183,7 +184,7 @@ class Form:
         self._y = self._above
         if not sections and self._empty:
             place = ui.rect(0, self._y + 4, self._inside, 120)
-            self._keep(TextBlock(ui, place, self._empty, self.area.content, 12.5))
+            TextBlock(ui, place, self._empty, self._holder, 12.5)
         for number, section in enumerate(sections):
             self._y += SECTION_GAP if number else 0.0
             self._add_heading(section, is_first=number == 0)
@@ -191,6 +192,7 @@ class Form:
                 continue
             for each in section.properties:
                 self._add(each)
+        self._holder.resize((self.area.content.place.width, ui.px(self.end)))
         self.area.set_height(ui.px(self.end + self._below))
         if focused in self._named:
             ui.focus_on(self._named[focused])
@@ -200,19 +202,17 @@ class Form:
         ui = self._ui
         if not is_first:
             fold, place = partial(self._fold, section), self._rect(0, self._inside, HEADING - 4)
-            heading = FoldHeading(ui, place, section.title, self.is_folded(section), fold, self.area.content)
+            heading = FoldHeading(ui, place, section.title, self.is_folded(section), fold, self._holder)
             self._keep(heading, f"fold {section.title}")
             self._y += HEADING
             return
         # What several selected things are may take two lines.
         for line in wrapped(section.title, ui.font(15, True), ui.px(self._inside), 2):
-            self._keep(ui.label(self._rect(0, self._inside, HEADING - 4), line, self.area.content, "@title"))
+            ui.label(self._rect(0, self._inside, HEADING - 4), line, self._holder, "title")
             self._y += HEADING
 
-    def _keep(self, widget: Any, name: str = "") -> Any:
-        self._widgets.append(widget)
-        if name:
-            self._named[name] = widget
+    def _keep(self, widget: Any, name: str) -> Any:
+        self._named[name] = widget
         return widget
 
     def _rect(self, x: float, width: float, height: float = ROW) -> pygame.Rect:
@@ -220,18 +220,18 @@ class Form:
 
     def _add(self, each: Property) -> None:
         about, ui = each.about, self._ui
-        content = self.area.content
+        content = self._holder
         self._add_label(each)
         width = self._inside - LABEL_WIDTH
         if each.remove is not None:
             width -= ROW + GAP
-            place, tip = self._rect(self._inside - ROW, ROW), f"Take {escape(about.title, quote=False)} away"
-            button = ui.button(place, "\u00d7", partial(self._remove, each.field), content, style="@segment", tip=tip)
+            place, tip = self._rect(self._inside - ROW, ROW), f"Take {about.title} away"
+            button = ui.button(place, "\u00d7", partial(self._remove, each.field), content, style="segment", tip=tip)
             self.removers[each.field] = self._keep(button, f"{each.field} remove")
         if not each.editable:
             height = max(ROW - 8, self._lines(each) * NOTE_LINE + 2)
             place = ui.rect(LABEL_WIDTH, self._y + 7, width, height)
-            self._notes[each.field] = self._keep(TextBlock(ui, place, "", content, 11.5))
+            self._notes[each.field] = TextBlock(ui, place, "", content, 11.5)
             self._y += max(ROW, height + 8)
             return
         if about.kind == "point":
@@ -245,12 +245,12 @@ class Form:
             self._add_choice(each, width)
         elif about.kind == "part":
             press = partial(self._press_object, each.field)
-            button = ui.button(self._rect(LABEL_WIDTH, width), "", press, content, style="@segment", tip=about.tooltip)
+            button = ui.button(self._rect(LABEL_WIDTH, width), "", press, content, style="segment", tip=about.tooltip)
             self.buttons[each.field] = self._keep(button, each.field)
         elif about.kind == "extras":
             press = partial(self._ask_for_entry, each.field)
             tip = about.tooltip
-            button = ui.button(self._rect(LABEL_WIDTH, width), "Add\u2026", press, content, style="@segment", tip=tip)
+            button = ui.button(self._rect(LABEL_WIDTH, width), "Add\u2026", press, content, style="segment", tip=tip)
             self.buttons[each.field] = self._keep(button, each.field)
         elif about.kind == "key":
             self._add_key(each, width)
@@ -266,34 +266,34 @@ class Form:
                 press = partial(self._screen.pick, about.pick, partial(self._set, each.field))
                 place = self._rect(self._inside - PICK_WIDTH, PICK_WIDTH)
                 tip = "Drag it on the sheet" if about.pick == "box" else f"Click the {about.pick} on the sheet"
-                self._keep(ui.button(place, "Pick", press, content, style="@segment", tip=tip), f"{each.field} pick")
+                self._keep(ui.button(place, "Pick", press, content, style="segment", tip=tip), f"{each.field} pick")
         self._y += ROW + GAP
 
     def _add_label(self, each: Property) -> None:
         about, place = each.about, self._rect(0, LABEL_WIDTH - 4)
         text = about.title + (f" [{SQUARED.get(about.unit, about.unit)}]" if about.unit else "")
-        tip = escape(about.tooltip, quote=False)
+        tip = about.tooltip
         if each.editable and about.kind in ("number", "integer"):
-            scrub = Scrub(self._ui, place, text, partial(self._scrub, each.field), self._end_scrub, self.area.content)
-            scrub.set_tooltip(f"{tip} Drag to change it.")
-            self.scrubs[each.field] = self._keep(scrub)
+            scrub = Scrub(self._ui, place, text, partial(self._scrub, each.field), self._end_scrub, self._holder)
+            scrub.tip = f"{tip} Drag to change it."
+            self.scrubs[each.field] = scrub
             return
-        self._keep(self._ui.label(place, text, self.area.content, "@muted")).set_tooltip(tip)
+        self._ui.label(place, text, self._holder, "muted").tip = tip
 
     def _add_key(self, each: Property, width: float) -> None:
-        box = KeyBox(self._ui, self._rect(LABEL_WIDTH, width), partial(self._press_key, each.field), self.area.content)
-        box.set_tooltip(escape(f"{each.about.tooltip} Click here, then press it; Delete takes it away.", quote=False))
+        box = KeyBox(self._ui, self._rect(LABEL_WIDTH, width), partial(self._press_key, each.field), self._holder)
+        box.tip = f"{each.about.tooltip} Click here, then press it; Delete takes it away."
         self.keys[each.field] = self._keep(box, each.field)
 
     def _entry(self, each: Property, x: float, width: float, axis: int) -> Field:
         commit = partial(self._type, each.field, axis)
-        field = self._ui.field(self._rect(x, width), "", commit, self.area.content, TEXT_LENGTH)
+        field = self._ui.field(self._rect(x, width), "", commit, self._holder, TEXT_LENGTH)
         if each.about.empty:
-            field.entry.placeholder_text = f"({each.about.empty})"
-            field.entry.set_text("")
+            field.hint = f"({each.about.empty})"
+            field.typed = ""
         axis_name = f"{each.axes[axis]}. " if each.about.kind == "point" else ""
-        field.entry.set_tooltip(escape(axis_name + each.about.tooltip, quote=False))
-        self._keep(field.entry, f"{each.field} {axis}")
+        field.tip = axis_name + each.about.tooltip
+        self._keep(field, f"{each.field} {axis}")
         return field
 
     def _add_boxes(self, each: Property, width: float) -> None:
@@ -302,11 +302,11 @@ class Form:
         self.boxes[each.field] = {}
         for number, label in enumerate(labels):
             place = self._rect(LABEL_WIDTH + number * wide, wide - GAP)
-            box = CheckBox(self._ui, place, label, partial(self._tick, each.field, label), self.area.content)
+            box = CheckBox(self._ui, place, label, partial(self._tick, each.field, label), self._holder)
             self.boxes[each.field][label] = self._keep(box, f"{each.field} {label}")
 
     def _add_choice(self, each: Property, width: float) -> None:
-        about, content = each.about, self.area.content
+        about, content = each.about, self._holder
         few = len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and not about.optional
         if few and sum(map(len, about.choices)) <= SIDE_BY_SIDE:
             options = [(value, value, about.tooltip) for value in about.choices]
@@ -316,7 +316,7 @@ class Form:
                 self._keep(button, f"{each.field} {value}")
             return
         picker = Picker(self._ui, self._rect(LABEL_WIDTH, width), partial(self._pick, each.field), content)
-        picker.set_tooltip(escape(about.tooltip, quote=False))
+        picker.tip = about.tooltip
         self.pickers[each.field] = self._keep(picker, each.field)
 
     # Showing values.
@@ -332,8 +332,8 @@ class Form:
         for label, box in self.boxes.get(name, {}).items():
             state = each.value[label] if each.about.kind == "flags" else each.value
             box.show_state(state is True, state is MIXED)
-        if each.about.kind == "part" and self.buttons[name].text != OBJECT_TEXTS[each.value]:
-            self.buttons[name].set_text(OBJECT_TEXTS[each.value])
+        if each.about.kind == "part":
+            self.buttons[name].show_text(OBJECT_TEXTS[each.value])
         if name in self.keys:
             self.keys[name].show_key(MIXED.value if is_mixed else each.value)
         if name in self.choices:
@@ -481,17 +481,11 @@ class Form:
         """A list too long to type: it can be taken out and put in as text."""
 
         def put() -> None:
-            try:
-                pygame.scrap.put_text(self.properties[name].texts[0])
-            except pygame.error:
+            if not copy_text(self.properties[name].texts[0]):
                 self._screen.say("The system's clipboard cannot be used.")
 
         def take() -> None:
-            try:
-                text = pygame.scrap.get_text() if pygame.scrap.has_text() else ""
-            except pygame.error:
-                text = ""
-            self._type(name, 0, text)
+            self._type(name, 0, copied_text())
 
         title = self.properties[name].about.title
         choices = [("Copy as text", put), ("Paste in its place", take)]

@@ -6,11 +6,12 @@ import pygame
 
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import DISABLED, TEXT
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.document import Document
 
 
-class HistoryPage:
+class HistoryPage(SidePage):
     """The steps of the history, the present one marked, those that were undone in grey below it."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -34,7 +35,3 @@ class HistoryPage:
     def _go(self, index: int) -> None:
         if index != self._screen.history.index:
             self._screen.step_to(index)
-
-    def close(self) -> None:
-        """Take the page away."""
-        self._ui.remove(self.list)

@@ -7,19 +7,10 @@ import pygame
 
 from sandbox.app.draw.colours import FIELD, LINE, MUTED, TEXT, mixed
 from sandbox.app.edit.side.form import GAP, ROW
-from sandbox.app.widgets.painted import wrapped
-from sandbox.app.widgets.rows import (
-    DETAIL_SIZE,
-    INSET,
-    LINE_HEIGHT,
-    PADDING,
-    SWATCH,
-    TEXT_SIZE,
-    Picker,
-    Row,
-    RowList,
-)
+from sandbox.app.widgets.picker import Picker
+from sandbox.app.widgets.rows import DETAIL_SIZE, INSET, LINE_HEIGHT, PADDING, SWATCH, TEXT_SIZE, Row, RowList
 from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 
 # A page that is lower than this has no room for a list beside what is chosen in it [layout units].
@@ -106,21 +97,15 @@ class ListHead:
         else:
             top = pygame.Rect(place.topleft, (place.width - ui.px(6), round(place.height * share)))
             self.list = RowList(ui, top, choose, container, empty=empty, most_lines=most_lines)
-        above, gap = self.list.relative_rect, ui.px(GAP)
+        above, gap = self.list.place, ui.px(GAP)
         width = (above.width - (columns - 1) * gap) // columns
         self.buttons = {}
         for number, button in enumerate(buttons):
             row, column = divmod(number, columns)
             left, y = above.left + column * (width + gap), above.bottom + ui.px(BELOW_LIST) + row * ui.px(ROW + GAP)
             at, text = pygame.Rect(left, y, width, ui.px(ROW)), button.short if is_low else button.text
-            self.buttons[button.text] = ui.button(at, text, button.do, container, style="@segment", tip=button.tip)
+            self.buttons[button.text] = ui.button(at, text, button.do, container, style="segment", tip=button.tip)
         end = at.bottom + ui.px(BELOW_BUTTONS)
         self.top = end / ui.scale if is_low else 0.0
         if not is_low:
             self.area = ScrollArea(ui, pygame.Rect(place.left, end, place.width, place.bottom - end), container)
-
-    def close(self) -> None:
-        """Take it away, with the area."""
-        for widget in (self.list, *self.buttons.values()):
-            self._ui.remove(widget)
-        self.area.kill()

@@ -13,11 +13,13 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.panel.readings import number
 from sandbox.app.widgets.boxes import Scrub
-from sandbox.app.widgets.fields import Field
+from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.slider import Slider, SliderState
+from sandbox.app.widgets.widget import Widget
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.materials import add_material, assign, delete_material, rename_material, set_material
 from sandbox.editor.panel.field_info import FieldInfo, fields_of
@@ -42,7 +44,7 @@ LAWS = (
 )
 
 
-class MaterialsPage:
+class MaterialsPage(SidePage):
     """Materials as swatches; below, what the chosen one is made of."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -54,7 +56,6 @@ class MaterialsPage:
         self._shown: tuple[object, ...] = ()
         self._slid: tuple[str, float] | None = None
         self._uses: tuple[object, object, Counter[str], Counter[str]] | None = None
-        self._widgets: list[Any] = []
         self._y = 0.0
         buttons = (
             HeadButton("Assign to selection", "Assign", self._assign, "Give this material to the selection"),
@@ -65,19 +66,19 @@ class MaterialsPage:
         self._head = ListHead(self._ui, place, LIST_PART, 2, buttons, self._choose, container)
         self.list, self.buttons, self.area = self._head.list, self._head.buttons, self._head.area
         self._inside = place.width / self._ui.scale - 12.0
+        self._holder = Widget(self._ui, pygame.Rect(0, 0, 0, 0), self._head.area.content)
         self.look: Form | None = None
 
     # Making the editor of a material.
 
     def _remake(self, material: Material) -> None:
         self._drop()
-        ui, content, self._y = self._ui, self.area.content, self._head.top
+        ui, content, self._y = self._ui, self._holder, self._head.top
         if self.chosen != DEFAULT_MATERIAL:
             self._add_field("name", "Name", self._rename, "What levels and files call it.", width=self._inside - 108.0)
         self._label("Law")
         place = ui.rect(108, self._y, self._inside - 108, ROW)
         self.law = ui.choice(place, LAWS, self._choose_law, content)
-        self._widgets += self.law.buttons.values()
         self._y += ROW + GAP + 4
         for name, about in fields_of(type(material)).items():
             if name in SHORT:
@@ -87,18 +88,17 @@ class MaterialsPage:
                 "frequency", "Frequency [Hz]", self._type_frequency, "How fast a spring of this material swings."
             )
             self._add_field("ratio", "Damping ratio", self._type_ratio, "At 1 it comes to rest without swinging.")
-        heading = ui.label(ui.rect(0, self._y + 6, self._inside, ROW - 4), "BREAKS AND YIELDS", content, "@heading")
-        self._widgets.append(heading)
+        ui.label(ui.rect(0, self._y + 6, self._inside, ROW - 4), "BREAKS AND YIELDS", content, "heading")
         self._y += ROW + 4
         for name in LIMITS:
             self._add_limit(name, fields_of(type(material))[name])
+        self._holder.resize((self.area.content.place.width, self._ui.px(self._y)))
         self.look = Form(self._screen, self.area, above=self._y + 6)
 
     def _label(self, text: str, tip: str = "") -> None:
-        label = self._ui.label(self._ui.rect(0, self._y, self._inside, ROW), text, self.area.content, "@muted")
+        label = self._ui.label(self._ui.rect(0, self._y, self._inside, ROW), text, self._holder, "muted")
         if tip:
-            label.set_tooltip(tip)
-        self._widgets.append(label)
+            label.tip = tip
 
     def _add_field(
         self, name: str, label: str, commit: Callable[[str], bool], tip: str, width: float = FIELD_WIDTH
@@ -107,9 +107,8 @@ class MaterialsPage:
         if label:
             self._label(label, tip)
         place = ui.rect(self._inside - width, self._y, width, ROW)
-        self.fields[name] = ui.field(place, "", commit, self.area.content, 600)
-        self.fields[name].entry.set_tooltip(tip)
-        self._widgets.append(self.fields[name].entry)
+        self.fields[name] = ui.field(place, "", commit, self._holder, 600)
+        self.fields[name].tip = tip
         self._y += ROW + GAP
 
     def _add_coefficient(self, name: str, about: FieldInfo) -> None:
@@ -119,27 +118,24 @@ class MaterialsPage:
             return
         place = self._ui.rect(-4, self._y - 4, self._inside + 8, ROW)
         slide = partial(self._slide, name)
-        self.sliders[name] = Slider(self._ui, place, slide, self._end_slide, self.area.content)
-        self._widgets.append(self.sliders[name])
+        self.sliders[name] = Slider(self._ui, place, slide, self._end_slide, self._holder)
         self._y += ROW - 2
 
     def _add_limit(self, name: str, about: FieldInfo) -> None:
         turn, done = partial(self._scrub_limit, name), self._screen.history.end_merge
         place = self._ui.rect(0, self._y, self._inside - FIELD_WIDTH - GAP, ROW)
-        scrub = Scrub(self._ui, place, about.title, turn, done, self.area.content)
-        scrub.set_tooltip(f"{about.tooltip} Drag to change it.")
-        self._widgets.append(scrub)
+        scrub = Scrub(self._ui, place, about.title, turn, done, self._holder)
+        scrub.tip = f"{about.tooltip} Drag to change it."
         self._add_field(name, "", partial(self._type_limit, name), about.tooltip)
         if about.empty:
-            self.fields[name].entry.placeholder_text = f"({about.empty})"
-            self.fields[name].entry.set_text("")
+            self.fields[name].hint = f"({about.empty})"
+            self.fields[name].typed = ""
 
     def _drop(self) -> None:
-        if any(field.entry.is_focused for field in self.fields.values()):
+        if self._ui.focus in self.fields.values():
             self._ui.blur()
-        for widget in self._widgets:
-            self._ui.remove(widget)
-        self._widgets, self.fields, self.sliders = [], {}, {}
+        self._holder.clear()
+        self.fields, self.sliders = {}, {}
         if self.look is not None:
             self.look.close()
             self.look = None
@@ -171,7 +167,7 @@ class MaterialsPage:
         is_default = self.chosen == DEFAULT_MATERIAL
         if not is_default:
             self.fields["name"].show(line_text(self.chosen))
-        (self.buttons["Delete"].disable if is_default else self.buttons["Delete"].enable)()
+        self.buttons["Delete"].is_enabled = not is_default
         self.law.show("hooke" if isinstance(material, HookeMaterial) else "nissen")
         for name in self.fields.keys() & type(material).model_fields.keys():
             value = getattr(material, name)
@@ -318,7 +314,7 @@ class MaterialsPage:
         if self._screen.edit("Add a material", lambda document: add_material(document, name, material)):
             self.chosen = name
             self.refresh()
-            self._ui.focus_on(self.fields["name"].entry)
+            self._ui.focus_on(self.fields["name"])
 
     def _delete(self) -> None:
         name = self.chosen
@@ -330,11 +326,6 @@ class MaterialsPage:
 
     def _select(self) -> None:
         self._screen.select(items_of_material(self._screen.document.level, self.chosen))
-
-    def close(self) -> None:
-        """Take the page away."""
-        self._drop()
-        self._head.close()
 
 
 def _materials(level: Level) -> dict[str, Material]:

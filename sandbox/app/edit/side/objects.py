@@ -10,6 +10,7 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import DISABLED, TEXT, material_colours
 from sandbox.app.edit.side.form import GAP, ROW
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import ask
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.document import EditError
@@ -27,7 +28,7 @@ LISTED = 2_000
 HIDE, SHOW, LOCK, OPEN = "Hide", "Show", "Lock", "Unlock"
 
 
-class ObjectsPage:
+class ObjectsPage(SidePage):
     """A line to search in, the list, and buttons for what is selected."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -51,7 +52,7 @@ class ObjectsPage:
         self.buttons = {}
         for number, (text, do, tip) in enumerate(actions):
             at = pygame.Rect(place.left + number * (wide + gap), bottom + gap, wide, row)
-            self.buttons[text] = ui.button(at, text, do, container, style="@segment", tip=tip)
+            self.buttons[text] = ui.button(at, text, do, container, style="segment", tip=tip)
         self.lines: list[ObjectLine] = []
         self._shown: tuple[object, object] = (None, None)
         self._wanted = ""
@@ -60,7 +61,7 @@ class ObjectsPage:
     def refresh(self) -> None:
         """Show what there is now."""
         screen = self._screen
-        document, visibility, wanted = screen.document, screen.visibility, self.search.entry.get_text()
+        document, visibility, wanted = screen.document, screen.visibility, self.search.typed
         if any(old is not new for old, new in zip(self._shown, (document, visibility), strict=True)) or (
             wanted != self._wanted
         ):
@@ -82,12 +83,12 @@ class ObjectsPage:
         self.list.empty = NOT_FOUND if wanted.strip() else EMPTY
         self.list.show_rows(rows, first, reveal=True, also=chosen)
         for button in self.buttons.values():
-            (button.enable if selected else button.disable)()
+            button.is_enabled = bool(selected)
         hidden, locked = selected & screen.visibility.hidden, selected & screen.visibility.locked
-        self.buttons[HIDE].set_text(SHOW if hidden else HIDE)
-        self.buttons[LOCK].set_text(OPEN if locked else LOCK)
+        self.buttons[HIDE].show_text(SHOW if hidden else HIDE)
+        self.buttons[LOCK].show_text(OPEN if locked else LOCK)
         if len({line.items for line in self._chosen_lines}) != 1:
-            self.buttons["Rename"].disable()
+            self.buttons["Rename"].is_enabled = False
 
     def _row(self, line: ObjectLine, colours: dict[str, Any]) -> Row:
         visibility = self._screen.visibility
@@ -176,5 +177,3 @@ class ObjectsPage:
     def close(self) -> None:
         """Take the page away."""
         self._screen.light_up(frozenset())
-        for widget in (self.search.entry, self.list, *self.buttons.values()):
-            self._ui.remove(widget)

@@ -12,8 +12,9 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
-from sandbox.app.widgets.fields import Field
-from sandbox.app.widgets.rows import Picker, Row
+from sandbox.app.widgets.field import Field
+from sandbox.app.widgets.picker import Picker
+from sandbox.app.widgets.rows import Row
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.moving import move, rotate, scale
 from sandbox.editor.panel.typed import read_number
@@ -48,7 +49,6 @@ class OptionsRow:
         self._made_for: tuple[object, ...] = ()
         self._x = 0.0
         self._page = 0
-        self._made: list[Any] = []
         self.more: Any = None
         self.fields: dict[str, Field] = {}
         self.flags: dict[str, Any] = {}
@@ -76,18 +76,17 @@ class OptionsRow:
         return tool.corner_place if isinstance(tool, SelectTool) else None
 
     def _remake(self) -> None:
-        for widget in self._made:
-            self._ui.remove(widget)
-        self._made, self.fields, self.flags, self.menus, self.more, self._x = [], {}, {}, {}, None, GAP
+        self.back.clear()
+        self.fields, self.flags, self.menus, self.more, self._x = {}, {}, {}, None, GAP
         tool, chosen = self._screen.pointer_tool, bool(self._screen.document.selection)
         items: list[Item] = []
         if isinstance(tool, DrawTool):
-            self._add_label(TOOLS[self._screen.tool].title.capitalize(), "@heading")
+            self._add_label(TOOLS[self._screen.tool].title.capitalize(), "heading")
             items = [self._option(tool, name, about) for name, about in described(tool.drawing.options).items()]
         elif chosen:
             items = self._numbers()
         else:
-            self._add_label("Nothing is selected. Draw with a tool at the left, or click something.", "@muted")
+            self._add_label("Nothing is selected. Draw with a tool at the left, or click something.", "muted")
         pages = self._pages([width for width, _ in items])
         self._page %= len(pages)
         for index in pages[self._page]:
@@ -112,8 +111,7 @@ class OptionsRow:
         left = self.back.rect.width / self._ui.scale - MORE_WIDTH - GAP
         place = self._ui.rect(left, (OPTIONS_HEIGHT - HEIGHT) / 2, MORE_WIDTH, HEIGHT)
         tip = f"Shows more fields: part {self._page + 1} of {count} is shown"
-        self.more = self._ui.button(place, "More", self._turn_page, self.back, style="@segment", tip=tip)
-        self._made.append(self.more)
+        self.more = self._ui.button(place, "More", self._turn_page, self.back, style="segment", tip=tip)
 
     def _turn_page(self) -> None:
         has_keyboard = self._ui.focus is self.more
@@ -125,7 +123,7 @@ class OptionsRow:
     def focus(self) -> None:
         """Give the keyboard to the first field."""
         if self.fields:
-            self._ui.focus_on(next(iter(self.fields.values())).entry)
+            self._ui.focus_on(next(iter(self.fields.values())))
 
     # Adding widgets from the left.
 
@@ -137,8 +135,8 @@ class OptionsRow:
     def _text_width(self, text: str) -> float:
         return self._ui.font(12).size(text)[0] / self._ui.scale
 
-    def _add_label(self, text: str, style: str = "@muted") -> None:
-        self._made.append(self._ui.label(self._rect(self._text_width(text) + 4), text, self.back, style))
+    def _add_label(self, text: str, style: str = "muted") -> None:
+        self._ui.label(self._rect(self._text_width(text) + 4), text, self.back, style)
         self._x += LABEL_GAP
 
     def _labelled(self, label: str, width: float, add: Callable[[], None], gap: float = GAP) -> Item:
@@ -151,9 +149,8 @@ class OptionsRow:
 
     def _add_field(self, name: str, commit: Callable[[str], bool], width: float, tip: str, empty: str = "") -> None:
         field = self._ui.field(self._rect(width), "", commit, self.back, 24, hint=empty)
-        field.entry.set_tooltip(tip)
+        field.tip = tip
         self.fields[name] = field
-        self._made.append(field.entry)
 
     def _numbers(self) -> list[Item]:
         """Place and size of the selection, or the place of a corner of it."""
@@ -188,9 +185,8 @@ class OptionsRow:
 
     def _add_flag(self, tool: DrawTool, name: str, about: OptionInfo, width: float) -> None:
         toggle = partial(self._toggle, tool, name)
-        button = self._ui.button(self._rect(width), about.label, toggle, self.back, style="@segment", tip=about.text)
+        button = self._ui.button(self._rect(width), about.label, toggle, self.back, style="segment", tip=about.text)
         self.flags[name] = button
-        self._made.append(button)
         self._x += LABEL_GAP
 
     def _add_value(self, tool: DrawTool, name: str, about: OptionInfo) -> None:
@@ -208,9 +204,8 @@ class OptionsRow:
 
     def _add_picker(self, tool: DrawTool, name: str, about: OptionInfo) -> None:
         picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, tool, name), self.back)
-        picker.set_tooltip(about.text)
+        picker.tip = about.text
         self.menus[name] = picker
-        self._made.append(picker)
 
     # Showing.
 
@@ -220,9 +215,7 @@ class OptionsRow:
             value = getattr(options, name)
             field.show("" if value is None else f"{value:g}")
         for name, button in self.flags.items():
-            if getattr(options, name) != button.is_selected:
-                (button.select if getattr(options, name) else button.unselect)()
-
+            button.is_selected = getattr(options, name)
         for name, picker in self.menus.items():
             colours = material_colours(self._screen.scene.materials)
             rows = tuple(Row(material, swatch=colour) for material, colour in colours.items())
@@ -280,7 +273,7 @@ class OptionsRow:
     def _show_option(self, name: str, value: float | None) -> None:
         text = "" if value is None else f"{value:g}"
         self.fields[name].text = text
-        self.fields[name].entry.set_text(text)
+        self.fields[name].typed = text
 
     def _number(self, label: str, text: str) -> float | None:
         try:
@@ -308,7 +301,7 @@ class OptionsRow:
         if name == "turn":
             done = screen.edit("Turn", lambda document: rotate(document, math.radians(value), (x, y)))
             self.fields["turn"].text = ""
-            self.fields["turn"].entry.set_text("")
+            self.fields["turn"].typed = ""
             return done
         if name in ("x", "y"):
             dx, dy = (value - x, 0.0) if name == "x" else (0.0, value - y)

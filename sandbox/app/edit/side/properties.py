@@ -7,6 +7,7 @@ import pygame
 
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document
 from sandbox.editor.panel.level_properties import level_properties
@@ -18,7 +19,7 @@ FIND = "Find a field"
 NOT_FOUND = "No field matches these words."
 
 
-class PropertiesPage:
+class PropertiesPage(SidePage):
     """The properties of what is selected, under a line to find some of them."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -34,22 +35,16 @@ class PropertiesPage:
 
     def refresh(self) -> None:
         """Show the selection as it is now."""
-        document, wanted = self._screen.document, self.search.entry.get_text().strip()
+        document, wanted = self._screen.document, self.search.typed.strip()
         if document is not self._shown or wanted != self._wanted:
             if document.selection != (self._shown or document).selection and wanted == self._wanted:
                 # Something else is selected: it is shown whole.
                 wanted = ""
-                self.search.entry.set_text("")
+                self.search.typed = ""
             self._shown, self._wanted = document, wanted
             sections = _sections(document)
             self.form.show(found_sections(sections, wanted) if wanted else sections)
         self.form.refresh()
-
-    def close(self) -> None:
-        """Take the page away."""
-        self.form.close()
-        self._screen.ui.remove(self.search.entry)
-        self._area.kill()
 
 
 def _sections(document: Document) -> tuple[Section, ...]:

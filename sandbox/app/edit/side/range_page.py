@@ -10,8 +10,9 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.trails import MOST, attempt_colour
 from sandbox.app.edit.side.form import GAP, ROW
-from sandbox.app.widgets.painted import TextBlock
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.rows import Row, RowList
+from sandbox.app.widgets.texts import TextBlock
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.panel.typed import number_text, read_integer, read_number
 from sandbox.editor.range_trial import Attempt, Number, RangeTrial, between, numbers
@@ -25,12 +26,11 @@ SPAN = 0.5
 FIRST_COUNT = "7"
 
 
-class RangePage:
+class RangePage(SidePage):
     """The numbers to choose from, and once one is chosen the range, and what came of each value."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui, self._place, self._container = screen, screen.ui, place, container
-        self._widgets: list[Any] = []
         self._numbers: list[Number] = []
         self._number: Number | None = None
         self._chosen: int | None = None
@@ -45,13 +45,12 @@ class RangePage:
     # Choosing the number.
 
     def _offer(self) -> None:
-        self._clear()
+        self._container.clear()
         ui, width = self._ui, self._place.width - self._ui.px(6)
         head = pygame.Rect(self._place.topleft, (width, ui.px(HEAD)))
-        self._widgets.append(TextBlock(ui, head, CHOOSE, self._container, 12.0))
+        TextBlock(ui, head, CHOOSE, self._container, 12.0)
         place = pygame.Rect(head.left, head.bottom, width, self._place.height - head.height - ui.px(6))
         self.list = RowList(ui, place, self._take_number, self._container, empty=NO_NUMBERS, at_once=False)
-        self._widgets.append(self.list)
         self._shown = None
 
     def _take_number(self, index: int) -> None:
@@ -63,21 +62,19 @@ class RangePage:
     # Trying it.
 
     def _begin(self, number: Number, low: str, high: str, count: str) -> None:
-        self._clear()
+        self._container.clear()
         self._number = number
         ui, place, gap, row = self._ui, self._place, self._ui.px(GAP), self._ui.px(ROW)
         width, top = place.width - ui.px(6), place.top
-        title = ui.label(pygame.Rect(place.left, top, width, row), number.title, self._container, "@title")
+        ui.label(pygame.Rect(place.left, top, width, row), number.title, self._container, "title")
         top += row + gap
-        self._widgets.append(title)
         self.fields = {}
         for name, text in (("From", low), ("To", high), ("How many", count)):
-            label = ui.label(pygame.Rect(place.left, top, ui.px(LABEL), row), name, self._container, "@muted")
+            ui.label(pygame.Rect(place.left, top, ui.px(LABEL), row), name, self._container, "muted")
             at = pygame.Rect(place.left + ui.px(LABEL), top, width - ui.px(LABEL), row)
             field = ui.field(at, text, lambda _: True, self._container, 40)
             field.enter = lambda _: self._try()
             self.fields[name] = field
-            self._widgets += [label, field.entry]
             top += row + gap
         half = (width - gap) // 2
         tip = "Run the level once with each value"
@@ -88,13 +85,12 @@ class RangePage:
         list_place = pygame.Rect(place.left, top, width, bottom - gap - top)
         empty = "For each value the sheet shows where the selection goes."
         self.list = RowList(ui, list_place, self._choose, self._container, empty=empty, most_lines=2)
-        self._widgets.append(self.list)
         self._add_button("Take this value", pygame.Rect(place.left, bottom, half, row), self._take, "")
         self._add_button("Close", pygame.Rect(place.left + half + gap, bottom, half, row), self._leave, "")
         self._shown = None
 
     def _add_button(self, text: str, place: pygame.Rect, do: Any, tip: str) -> None:
-        self._widgets.append(self._ui.button(place, text, do, self._container, style="@segment", tip=tip))
+        self._ui.button(place, text, do, self._container, style="segment", tip=tip)
 
     def _try(self) -> None:
         number, screen = self._number, self._screen
@@ -102,8 +98,8 @@ class RangePage:
         # It is tried in the level as it is now.
         now = next((each for each in numbers(screen.document) if each.title == number.title), number)
         try:
-            low, high = (read_number(name, self.fields[name].entry.get_text()) for name in ("From", "To"))
-            count = read_integer("How many", self.fields["How many"].entry.get_text())
+            low, high = (read_number(name, self.fields[name].typed) for name in ("From", "To"))
+            count = read_integer("How many", self.fields["How many"].typed)
             values = between(low, high, count, whole=now.about.about.kind == "integer")
         except EditError as error:
             screen.say(sentence(error))
@@ -161,15 +157,6 @@ class RangePage:
         if attempt.fault:
             return Row(text, attempt.fault, colour, DANGER, "not possible")
         return Row(text, _way_text(attempt, trial.document), colour, TEXT, _checks_text(attempt))
-
-    def _clear(self) -> None:
-        for widget in self._widgets:
-            self._ui.remove(widget)
-        self._widgets = []
-
-    def close(self) -> None:
-        """Take the page away; where it comes again at once it shows the same."""
-        self._clear()
 
 
 def _set(number: Number, value: float, document: Document) -> Document:

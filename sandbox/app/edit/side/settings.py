@@ -8,6 +8,7 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import ROOM_FOR_LIST
+from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import ask
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document, EditError
@@ -22,7 +23,7 @@ VIEW_DECIMALS = 3
 BUTTONS = 2 * ROW + 3 * GAP
 
 
-class SettingsPage:
+class SettingsPage(SidePage):
     """Settings of the level as a whole."""
 
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
@@ -44,16 +45,14 @@ class SettingsPage:
         row = pygame.Rect(0, gap, wide, tall)
         tip = "Change the tick rate and adapt Cs and Cd, so that springs move as they do now"
         self.pace = self._ui.button(
-            row, "Tick rate, at the same pace…", self._ask_rate, self._foot, style="@segment", tip=tip
+            row, "Tick rate, at the same pace…", self._ask_rate, self._foot, style="segment", tip=tip
         )
         row = pygame.Rect(0, row.bottom + gap, (wide - gap) // 2, tall)
         tip = "The level opens with what you see now"
-        self.from_camera = self._ui.button(
-            row, "View from here", self._take_view, self._foot, style="@segment", tip=tip
-        )
+        self.from_camera = self._ui.button(row, "View from here", self._take_view, self._foot, style="segment", tip=tip)
         row = row.move(row.width + gap, 0)
         tip = "The level opens with everything in view"
-        self.no_view = self._ui.button(row, "View: everything", self._drop_view, self._foot, style="@segment", tip=tip)
+        self.no_view = self._ui.button(row, "View: everything", self._drop_view, self._foot, style="segment", tip=tip)
 
     def refresh(self) -> None:
         """Show the level as it is now."""
@@ -62,7 +61,7 @@ class SettingsPage:
             self._shown = document.level
             self.form.show(level_properties(document))
             if self._moves_foot:
-                self._foot.set_relative_position((0, self._ui.px(self.form.end)))
+                self._foot.move_to((0, self._ui.px(self.form.end)))
         self.form.refresh()
 
     def _take_view(self) -> None:
@@ -98,12 +97,3 @@ class SettingsPage:
             return sentence(error)
         self._screen.apply("Tick rate at the same pace", document)
         return None
-
-    def close(self) -> None:
-        """Take the page away."""
-        self.form.close()
-        self._ui.remove(self.from_camera)
-        self._ui.remove(self.no_view)
-        self._ui.remove(self.pace)
-        self._foot.kill()
-        self._area.kill()

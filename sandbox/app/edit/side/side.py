@@ -2,10 +2,9 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import pygame
-from pygame_gui.elements import UIButton
 
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.edit.side.catalogue import CataloguePage
@@ -17,6 +16,8 @@ from sandbox.app.edit.side.objects import ObjectsPage
 from sandbox.app.edit.side.properties import PropertiesPage
 from sandbox.app.edit.side.range_page import RangePage
 from sandbox.app.edit.side.settings import SettingsPage
+from sandbox.app.edit.side.side_page import SidePage
+from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -26,18 +27,6 @@ GAP = 4.0
 LOW = 400.0
 TAB, TOP, BELOW = 26.0, 10.0, 8.0
 LOW_TAB, LOW_TOP, LOW_BELOW = 22.0, 4.0, 4.0
-
-
-class SidePage(Protocol):
-    """A page of the panel."""
-
-    def refresh(self) -> None:
-        """Show the document as it is now; costs nothing where it has not changed."""
-        ...
-
-    def close(self) -> None:
-        """Take the page away."""
-        ...
 
 
 PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], SidePage]]] = {
@@ -86,7 +75,7 @@ class Side:
             if self.tab in UNLISTED:
                 # What it shows on the sheet goes with it.
                 self._screen.watch.range_trial = None
-            self.page.close()
+            self._drop_page()
             self.tab = tab
             self.page = self._made()
 
@@ -102,18 +91,26 @@ class Side:
         if isinstance(self.page, CataloguePage):
             self.page.focus(path)
         elif isinstance(self.page, ObjectsPage):
-            self._ui.focus_on(self.page.search.entry)
+            self._ui.focus_on(self.page.search)
 
-    def _tab_button(self, tab: str) -> UIButton:
+    def _tab_button(self, tab: str) -> Button:
         return next(row.buttons[tab] for row in self._rows if tab in row.buttons)
 
     def _made(self) -> SidePage:
         for row in self._rows:
             row.show(self.tab if self.tab in row.buttons else "")
         make = UNLISTED[self.tab] if self.tab in UNLISTED else PAGES[self.tab][2]
-        page = make(self._screen, self._place, self.back)
+        self._holder = self._ui.area(self._place, self.back)
+        page = make(self._screen, pygame.Rect((0, 0), self._place.size), self._holder)
         page.refresh()
         return page
+
+    def _drop_page(self) -> None:
+        if self._ui.typing:
+            # What is being typed counts.
+            self._ui.blur()
+        self.page.close()
+        self._holder.remove()
 
     def refresh(self) -> None:
         """Show the document as it is now."""
@@ -128,14 +125,9 @@ class Side:
     def _count_findings(self) -> None:
         count = len(self._screen.watch.findings)
         button = self._tab_button("findings")
-        text = f"Findings {count}" if count else "Findings"
-        if button.text != text:
-            button.set_text(text)
+        button.show_text(f"Findings {count}" if count else "Findings")
 
     def close(self) -> None:
         """Take what is being typed, and take the panel away."""
-        self.page.close()
-        for row in self._rows:
-            for button in row.buttons.values():
-                self._ui.remove(button)
-        self.back.kill()
+        self._drop_page()
+        self.back.remove()

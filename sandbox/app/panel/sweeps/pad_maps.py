@@ -7,7 +7,8 @@ import pygame
 from sandbox.app.panel.coefficient_pad import CoefficientPad
 from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps, measures_of
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.painted import wrapped
+from sandbox.app.widgets.picker import WordPicker
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 
 THEORY = "Theory"
@@ -27,7 +28,7 @@ class PadMaps:
             (shown,) = wrapped(name, ui.font(MENU_TEXT), room, 1)
             number = len(self._figures)
             self._figures[shown if shown not in self._figures else f"{number} {shown}"] = figure
-        self.menu = ui.menu(place, list(self._figures), self._chosen, self._choose, container)
+        self.menu = WordPicker(ui, place, list(self._figures), self._chosen, self._choose, container)
 
     @property
     def _chosen(self) -> str:
@@ -50,6 +51,6 @@ class PadMaps:
         name = None if material is None else list(world.material_names)[material]
         self.sweeps.follow(playback.level, world.settings, name)
         self.sweeps.update()
-        self._ui.replace_menu(self.menu, self._chosen)
+        self.menu.show_chosen(self._chosen)
         showing = self.sweeps.measure is not None
         pad.show_layer(self.sweeps.layer if showing else None, self.note if showing else "")

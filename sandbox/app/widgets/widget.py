@@ -1,0 +1,225 @@
+"""Widget: a rectangle in the window that paints itself and reacts; and the two kinds that mouse and keys work on."""
+
+from typing import ClassVar
+
+import pygame
+
+from sandbox.app.widgets.layout import WindowLayout
+
+ENTER_KEYS = (pygame.K_RETURN, pygame.K_KP_ENTER)
+
+Pixel = tuple[int, int]
+
+
+class Widget:
+    """A widget in another one (None: in the page); rect: its place in the window, which is kept [pixels].
+
+    place: its rectangle in what holds it. seen: what of it nothing cuts off, as the window was laid out last. tip: what
+    is said of it while the mouse rests on it. A widget that paints nothing holds others, and cuts off what is outside.
+    """
+
+    # Whether Tab reaches it; whether it looks different under the mouse and with the keyboard.
+    is_focusable = False
+    is_lit = False
+    # Whether Tab and Escape too go to `press_key` while it has the keyboard.
+    takes_all_keys = False
+
+    def __init__(self, ui: WindowLayout, rect: pygame.Rect, parent: "Widget | None" = None) -> None:
+        self.ui = ui
+        self.parent: Widget | None = parent or ui.root
+        self.children: list[Widget] = []
+        self.place = pygame.Rect(rect)
+        self.rect: pygame.Rect = self.place.move(self.parent.rect.topleft if self.parent is not None else (0, 0))
+        self.seen = pygame.Rect(0, 0, 0, 0)
+        self.tip = ""
+        self.is_there = True
+        self._is_visible = self._is_enabled = True
+        self._picture: pygame.Surface | None = None
+        self._is_stale = True
+        if self.parent is not None:
+            self.parent.children.append(self)
+        ui.is_laid = False
+
+    # What it looks like.
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface | None:
+        """The picture of the widget as it is now, with straight alpha; None: it has none."""
+        return None
+
+    def repaint(self) -> None:
+        """Have it painted anew, once it is seen."""
+        self._is_stale = True
+
+    @property
+    def image(self) -> pygame.Surface | None:
+        """Its picture, with its colours multiplied by their alpha; where there is no room for it, nothing."""
+        if self._is_stale:
+            self._is_stale = False
+            picture = self.paint((max(self.rect.width, 0), max(self.rect.height, 0)))
+            self._picture = picture if picture is None else picture.premul_alpha()
+        return self._picture
+
+    @property
+    def hovered(self) -> bool:
+        """Whether the mouse is over it, and over no other widget that lies on it."""
+        return self.ui.under is self
+
+    @property
+    def focused(self) -> bool:
+        """Whether it has the keyboard."""
+        return self.ui.focus is self
+
+    @property
+    def in_hand(self) -> bool:
+        """Whether it has the keyboard, or was clicked last."""
+        return self is (self.ui.focus or self.ui.origin)
+
+    @property
+    def visible(self) -> bool:
+        """Whether it is shown, and all that holds it."""
+        return self._is_visible and (self.parent is None or self.parent.visible)
+
+    @visible.setter
+    def visible(self, is_visible: bool) -> None:
+        if is_visible != self._is_visible:
+            self._is_visible = is_visible
+            self.ui.is_laid = False
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether it is shown where that which holds it is."""
+        return self._is_visible
+
+    @property
+    def is_enabled(self) -> bool:
+        """Whether it can be used."""
+        return self._is_enabled
+
+    @is_enabled.setter
+    def is_enabled(self, is_enabled: bool) -> None:
+        if is_enabled != self._is_enabled:
+            self._is_enabled = is_enabled
+            self.repaint()
+
+    # Where it is.
+
+    def move_to(self, corner: Pixel) -> None:
+        """Put it at another place in what holds it."""
+        if corner != self.place.topleft:
+            by = corner[0] - self.place.left, corner[1] - self.place.top
+            self.place.topleft = corner
+            self._shift(by)
+            self.ui.is_laid = False
+
+    def _shift(self, by: Pixel) -> None:
+        self.rect = self.rect.move(by)
+        for child in self.children:
+            child._shift(by)
+
+    def resize(self, size: tuple[int, int]) -> None:
+        """Give it another size."""
+        if size != self.place.size:
+            self.place.size = size
+            self.rect = pygame.Rect(self.rect.topleft, size)
+            self.repaint()
+            self.ui.is_laid = False
+
+    def reveal(self, widget: "Widget") -> None:
+        """Bring one of the widgets in it into sight."""
+
+    def remove(self) -> None:
+        """Take it away, with all that is in it."""
+        if self.is_there and self.parent is not None:
+            self.parent.children.remove(self)
+        self._end()
+
+    def _end(self) -> None:
+        # Whoever has it still, keeps nothing of it.
+        self.is_there = False
+        self._picture, self._is_stale = None, False
+        self.ui.forget(self)
+        self.clear()
+
+    def clear(self) -> None:
+        """Take away all that is in it."""
+        for child in self.children:
+            child._end()
+        self.children.clear()
+        self.ui.is_laid = False
+
+    # What mouse and keys do.
+
+    def on_press(self, at: Pixel, clicks: int) -> bool:
+        """React to the left button, pressed on it; True: it is used, and what follows until it is let go comes here."""
+        return False
+
+    def on_drag(self, at: Pixel) -> None:
+        """The mouse has moved while the button is held."""
+
+    def on_release(self, at: Pixel) -> None:
+        """The button is let go."""
+
+    def on_move(self, at: Pixel) -> None:
+        """The mouse moves over it."""
+
+    def on_hover(self) -> None:
+        """The mouse has come or gone."""
+        if self.is_lit:
+            self.repaint()
+
+    def on_wheel(self, notches: float) -> bool:
+        """React to the wheel, turned over it; True: it is used."""
+        return False
+
+    def on_focus(self) -> None:
+        """The keyboard has come."""
+        if self.is_lit:
+            self.repaint()
+
+    def on_blur(self) -> None:
+        """The keyboard has gone."""
+        if self.is_lit:
+            self.repaint()
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """React to a key while it has the keyboard; True: it is used."""
+        return False
+
+
+class Pressable(Widget):
+    """A widget that a click presses, and while it has the keyboard a key."""
+
+    is_focusable = True
+    press_keys: ClassVar[tuple[int, ...]] = (*ENTER_KEYS, pygame.K_SPACE)
+
+    def press(self) -> None:
+        """What a press does."""
+        raise NotImplementedError
+
+    def on_press(self, at: Pixel, clicks: int) -> bool:
+        """Press on a click."""
+        self.press()
+        return True
+
+    def press_key(self, event: pygame.event.Event) -> bool:
+        """Press by a key."""
+        if event.key not in self.press_keys:
+            return False
+        self.press()
+        return True
+
+
+class Draggable(Widget):
+    """A widget on which the mouse drags something."""
+
+    is_focusable = True
+
+    def can_drag(self) -> bool:
+        """Whether the mouse may take it."""
+        return True
+
+    def on_press(self, at: Pixel, clicks: int) -> bool:
+        """Take it."""
+        if self.can_drag():
+            self.on_drag(at)
+        return self.can_drag()
