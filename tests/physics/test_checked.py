@@ -32,7 +32,7 @@ from sandbox.physics.jit.translate.program import Translation, symbol_of
 kernel, here = reading.read._kernel, Path(reading.__file__).parent
 translation, platform = Translation([kernel]), this_machine()
 texts = {"reading.cpp": translation.text()}
-(here / platform.file).write_bytes(compiled(texts, [symbol_of(kernel)], platform, here / "kept", ["CHECKED"]))
+(here / platform.file).write_bytes(compiled(texts, [symbol_of(kernel)], platform, here / "kept", ["KERNELS_CHECKED"]))
 read = Library(here / platform.file, {kernel.name: entry_of(translation, kernel)}).function(kernel.name)
 print(read(np.array([1.0, 2.0]), 1), flush=True)
 read(np.array([1.0, 2.0]), int(sys.argv[1]))

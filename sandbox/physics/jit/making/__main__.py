@@ -1,6 +1,6 @@
 """Compile the kernels for this machine: a library and its manifest, into a folder.
 
-python -m sandbox.physics.jit.making FOLDER [CHECKED]
+python -m sandbox.physics.jit.making FOLDER [KERNELS_CHECKED]
 """
 
 import json

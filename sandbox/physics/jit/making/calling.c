@@ -87,7 +87,7 @@ SHARED int runs_wide(void) {
 
 SHARED void connect(const Interpreter *interpreter) { python = *interpreter; }
 
-#if defined(CHECKED)
+#if defined(KERNELS_CHECKED)
 static char *digits(char *end, Word number) {
     unsigned long long rest = number < 0 ? 0ull - number : number;
     do *--end = '0' + rest % 10; while (rest /= 10);

@@ -41,7 +41,7 @@ def compiled(
     """The library of a platform: entries of kernels, with what calls them from Python; always the same bytes.
 
     texts: C++ by the names of its files. symbols: of the entries. kept: a folder for what zig makes once. defines:
-    names that C++ is to know, such as CHECKED.
+    names that C++ is to know, such as KERNELS_CHECKED.
 
     Raises:
         NotCompiled: with what zig says.

@@ -157,7 +157,11 @@ class Translation:
     # The whole text
 
     def text(self) -> str:
-        """All of it, what is called before what calls it."""
+        """All of it: kernels, and their entries."""
+        return "\n\n".join([self.kernels_text(), *map(self._entry_text, self.entries)]) + "\n"
+
+    def kernels_text(self) -> str:
+        """Kernels alone, what is called before what calls it."""
         parts = [_RUNTIME.read_text(encoding="utf-8"), *map(_struct_text, self._types.structs.values())]
         for module in sorted({constant.module for constant in self._constants.values()}):
             own = [constant for constant in self._constants.values() if constant.module == module]
@@ -165,8 +169,7 @@ class Translation:
             parts.append(self._in_space(module, "\n".join(lines)))
         for module, kernels in itertools.groupby(self._order, lambda kernel: kernel.function.__module__):
             parts.append(self._in_space(module, "\n\n".join(self._functions[kernel].text for kernel in kernels)))
-        parts += [self._entry_text(entry) for entry in self.entries]
-        return "\n\n".join(parts) + "\n"
+        return "\n\n".join(parts)
 
     def _in_space(self, module: str, text: str) -> str:
         return f"namespace {self._spaces.get(module, _space(module))} {{\n\n{text}\n\n}}"
@@ -180,7 +183,7 @@ class Translation:
             word += words_of(kind)
         call = f"{self._spaces[function.__module__]}::{spelled(function.__name__)}({', '.join(given)})"
         result = f"{call};\n    block[0] = 0;" if signature.gives == NOTHING else f"give(block, {call});"
-        return f"ENTRY({symbol_of(entry)}) {{\n    {result}\n    return 0;\n}}"
+        return f"KERNELS_ENTRY({symbol_of(entry)}) {{\n    {result}\n    return 0;\n}}"
 
 
 def symbol_of(entry: Kernel) -> str:

@@ -23,13 +23,13 @@ template <class T> struct Address {
 template <class T> using Address = T *;
 #endif
 
-#if defined(CHECKED)
+#if defined(KERNELS_CHECKED)
 extern "C" void end_out_of_range(const char *file, int line, int64_t index, int64_t length);
-#define AT , const char *file = __builtin_FILE(), int line = __builtin_LINE()
-#define CHECK(index, axis) if (index < 0 || index >= shape[axis]) end_out_of_range(file, line, index, shape[axis])
+#define KERNELS_PLACE , const char *file = __builtin_FILE(), int line = __builtin_LINE()
+#define KERNELS_CHECK(index, axis) if (index < 0 || index >= shape[axis]) end_out_of_range(file, line, index, shape[axis])
 #else
-#define AT
-#define CHECK(index, axis)
+#define KERNELS_PLACE
+#define KERNELS_CHECK(index, axis)
 #endif
 
 template <class T, int dimensions> struct Array {
@@ -37,19 +37,19 @@ template <class T, int dimensions> struct Array {
     Address<T> data;
     int64_t shape[dimensions], strides[dimensions];
 
-    T &operator()(int64_t i AT) const {
-        CHECK(i, 0);
+    T &operator()(int64_t i KERNELS_PLACE) const requires(dimensions == 1) {
+        KERNELS_CHECK(i, 0);
         return ((T *)data)[i];
     }
-    T &operator()(int64_t i, int64_t j AT) const {
-        CHECK(i, 0);
-        CHECK(j, 1);
+    T &operator()(int64_t i, int64_t j KERNELS_PLACE) const requires(dimensions == 2) {
+        KERNELS_CHECK(i, 0);
+        KERNELS_CHECK(j, 1);
         return ((T *)data)[i * shape[1] + j];
     }
-    T &operator()(int64_t i, int64_t j, int64_t k AT) const {
-        CHECK(i, 0);
-        CHECK(j, 1);
-        CHECK(k, 2);
+    T &operator()(int64_t i, int64_t j, int64_t k KERNELS_PLACE) const requires(dimensions == 3) {
+        KERNELS_CHECK(i, 0);
+        KERNELS_CHECK(j, 1);
+        KERNELS_CHECK(k, 2);
         return ((T *)data)[(i * shape[1] + j) * shape[2] + k];
     }
 };
@@ -61,7 +61,7 @@ template <class T> void put(const T &place, const T &value) { const_cast<T &>(pl
 
 // An array in the memory of another, from an item on, of so many rows.
 template <class A, class... Sizes> static A lying(const Array<int64_t, 1> &memory, int64_t first, Sizes... sizes) {
-    typedef __remove_reference_t(decltype(A{}(0))) Item;
+    typedef __remove_reference_t(decltype(*(A{}.data + 0))) Item;
     A made{};
     made.data = (Item *)((int64_t *)memory.data + first);
     const int64_t shape[] = {sizes...};
@@ -128,11 +128,11 @@ static int64_t mod(int64_t a, int64_t b) {
 
 // Entries: a block of words holds the arguments, one after another, and then the result in its first word.
 #if defined(_WIN32)
-#define SHARED __declspec(dllexport)
+#define KERNELS_SHARED __declspec(dllexport)
 #else
-#define SHARED __attribute__((visibility("default")))
+#define KERNELS_SHARED __attribute__((visibility("default")))
 #endif
-#define ENTRY(name) extern "C" SHARED int name(int64_t *block)
+#define KERNELS_ENTRY(name) extern "C" KERNELS_SHARED int name(int64_t *block)
 template <class T> static const T &argument(const int64_t *word) { return *(const T *)word; }
 static void give(int64_t *block, double result) { __builtin_memcpy(block, &result, sizeof result); }
 static void give(int64_t *block, int64_t result) { block[0] = result; }
