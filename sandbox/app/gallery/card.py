@@ -29,8 +29,6 @@ class Card(Pressable):
 
     is_lit = True
 
-    ui: Ui
-
     def __init__(
         self, ui: Ui, rect: pygame.Rect, name: str, text: str, action: Callable[[], object], container: Any,
         *, is_small: bool = False,

@@ -60,8 +60,6 @@ class PartCard(Widget):
 
     is_focusable = is_lit = True
 
-    ui: Ui
-
     def __init__(self, ui: Ui, rect: pygame.Rect, part: PartFile, hands: Hands, container: Any, columns: int) -> None:
         super().__init__(ui, rect, container)
         self.part, self._hands, self._columns = part, hands, columns

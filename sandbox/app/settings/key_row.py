@@ -22,8 +22,6 @@ class KeyRow(Pressable):
 
     is_lit = True
 
-    ui: Ui
-
     def __init__(
         self, ui: Ui, rect: pygame.Rect, entry: Shortcut, take: Callable[[tuple[str, ...]], object], container: Any
     ) -> None:

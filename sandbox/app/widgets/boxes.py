@@ -6,6 +6,8 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, FIELD, LINE, MUTED, TEXT, mixed
+from sandbox.app.widgets.plate import box
+from sandbox.app.widgets.styles import BoxLook
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Pixel, Pressable, Widget
@@ -23,8 +25,6 @@ SCRUB_STEP = 5.0
 class CheckBox(Pressable):
     """A box to tick; its state may be MIXED."""
 
-    ui: Ui
-
     def __init__(self, ui: Ui, rect: pygame.Rect, label: str, toggle: Callable[[bool], object], container: Any) -> None:
         super().__init__(ui, rect, container)
         self.label, self.state = label, False
@@ -40,12 +40,11 @@ class CheckBox(Pressable):
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """Box, tick or dash, and label."""
         ui = self.ui
-        surface = pygame.Surface(size, pygame.SRCALPHA)
-        side = ui.px(16)
-        box = pygame.Rect(0, (size[1] - side) // 2, side, side)
-        pygame.draw.rect(surface, ACCENT if self.state else FIELD, box, border_radius=ui.px(4))
-        pygame.draw.rect(surface, ACCENT if self.state else LINE, box, 1, border_radius=ui.px(4))
-        x, y, part = box.centerx, box.centery, side / 4
+        surface, side = pygame.Surface(size, pygame.SRCALPHA), ui.px(16)
+        look = BoxLook(ACCENT, ACCENT, TEXT) if self.state else BoxLook(FIELD, LINE, TEXT)
+        place = pygame.Rect(0, (size[1] - side) // 2, side, side)
+        surface.blit(box(place.size, look, ui.px(4), 1), place)
+        x, y, part = place.centerx, place.centery, side / 4
         if self.mixed:
             pygame.draw.line(surface, MUTED, (x - part, y), (x + part, y), ui.px(2))
         elif self.state:
@@ -65,8 +64,6 @@ class KeyBox(Pressable):
 
     choose(key) is called with it, or with None.
     """
-
-    ui: Ui
 
     def __init__(self, ui: Ui, rect: pygame.Rect, choose: Callable[[str | None], object], container: Any) -> None:
         super().__init__(ui, rect, container)
@@ -90,10 +87,8 @@ class KeyBox(Pressable):
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """A key's cap, or what to do."""
-        ui, surface = self.ui, pygame.Surface(size, pygame.SRCALPHA)
-        place = surface.get_rect()
-        pygame.draw.rect(surface, FIELD, place, border_radius=ui.px(6))
-        pygame.draw.rect(surface, ACCENT if self.listening else LINE, place, 1, border_radius=ui.px(6))
+        ui, look = self.ui, BoxLook(FIELD, ACCENT if self.listening else LINE, TEXT)
+        surface = box(size, look, ui.px(6), 1).copy()
         has_key = self.key in KEYS.values() and not self.listening
         words = "letter, digit or arrow" if self.listening else self.key or NO_KEY
         words = words.upper() if len(words) == 1 else words

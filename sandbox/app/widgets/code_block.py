@@ -6,6 +6,8 @@ import pygame
 
 from sandbox.app.draw.colours import FIELD, LINE, TEXT
 from sandbox.app.widgets.fonts import code_font
+from sandbox.app.widgets.plate import box
+from sandbox.app.widgets.styles import BoxLook
 from sandbox.app.widgets.texts import line_height
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
@@ -24,9 +26,7 @@ class CodeBlock(Widget):
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The sheet and the lines."""
         ui, inset = self.ui, self.ui.px(INSET)
-        surface = pygame.Surface(size, pygame.SRCALPHA)
-        pygame.draw.rect(surface, FIELD, surface.get_rect(), border_radius=ui.px(6))
-        pygame.draw.rect(surface, LINE, surface.get_rect(), 1, border_radius=ui.px(6))
+        surface = box(size, BoxLook(FIELD, LINE, TEXT), ui.px(6), 1).copy()
         font = code_font(ui.px(TEXT_SIZE))
         for number, line in enumerate(_lines(ui, self.text, size[0])):
             surface.blit(font.render(line, True, TEXT), (inset, inset + number * line_height(font)))

@@ -6,7 +6,9 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import FIELD, LINE, MENU, MUTED, TEXT, mixed
+from sandbox.app.widgets.plate import box
 from sandbox.app.widgets.rows import LINE_HEIGHT, PADDING, SWATCH, TEXT_SIZE, Row, RowList
+from sandbox.app.widgets.styles import BoxLook
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Pressable
@@ -40,11 +42,7 @@ class Picker(Pressable):
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The value and a chevron."""
         ui = self.ui
-        surface = pygame.Surface(size, pygame.SRCALPHA)
-        place = surface.get_rect()
-        back = mixed(FIELD, TEXT, 0.06) if self.hovered else FIELD
-        pygame.draw.rect(surface, back, place, border_radius=ui.px(6))
-        pygame.draw.rect(surface, LINE, place, 1, border_radius=ui.px(6))
+        surface = self.paint_box(size)
         left = ui.px(8)
         if self.shown.swatch is not None:
             swatch = ui.px(SWATCH)
@@ -56,6 +54,11 @@ class Picker(Pressable):
         surface.blit(picture, (left, (size[1] - picture.get_height()) // 2))
         self.paint_chevron(surface)
         return surface
+
+    def paint_box(self, size: tuple[int, int]) -> pygame.Surface:
+        """What the value and the chevron lie on."""
+        back = mixed(FIELD, TEXT, 0.06) if self.hovered and self.rows else FIELD
+        return box(size, BoxLook(back, LINE, TEXT), self.ui.px(6), 1).copy()
 
     def paint_chevron(self, surface: pygame.Surface) -> None:
         """Show at the right that there is a menu."""

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import pygame
 
-from sandbox.app.draw.colours import FIELD, LINE, MUTED, TEXT, mixed
+from sandbox.app.draw.colours import MUTED
 from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.widgets.picker import Picker
 from sandbox.app.widgets.rows import DETAIL_SIZE, INSET, LINE_HEIGHT, PADDING, SWATCH, TEXT_SIZE, Row, RowList
@@ -51,10 +51,7 @@ class ChosenRow(Picker):
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
         """The row and a chevron."""
         ui, row = self.ui, self.shown
-        surface = pygame.Surface(size, pygame.SRCALPHA)
-        back = mixed(FIELD, TEXT, 0.06) if self.hovered and self.rows else FIELD
-        pygame.draw.rect(surface, back, surface.get_rect(), border_radius=ui.px(6))
-        pygame.draw.rect(surface, LINE, surface.get_rect(), 1, border_radius=ui.px(6))
+        surface = self.paint_box(size)
         left, y, line = ui.px(INSET), ui.px(PADDING), ui.px(LINE_HEIGHT)
         if not self.rows:
             for text in wrapped(self._empty, ui.font(DETAIL_SIZE), size[0] - 2 * left, EMPTY_LINES):
