@@ -201,7 +201,7 @@ def same(one: Any, other: Any) -> bool:
         shape = getattr(other, "shape", ())
         return tuple(one[5 : 5 + len(shape)]) == tuple(shape)
     if isinstance(one, float):
-        return math.isnan(one) and math.isnan(other) or (np.float64(one).tobytes() == np.float64(other).tobytes())
+        return (math.isnan(one) and math.isnan(other)) or (np.float64(one).tobytes() == np.float64(other).tobytes())
     return bool(one == other)
 
 

@@ -64,7 +64,7 @@ def _compile(folder: Path, checked: bool) -> None:
     folder.parent.mkdir(parents=True, exist_ok=True)
     aside = Path(tempfile.mkdtemp(prefix=".making-", dir=folder.parent))
     try:
-        command = [sys.executable, "-P", "-m", f"{__package__}.making", str(aside), *(["KERNELS_CHECKED"] if checked else [])]
+        command = [sys.executable, "-P", "-m", f"{__package__}.making", str(aside)] + ["KERNELS_CHECKED"] * checked
         home = str(Path(__file__).resolve().parents[3])
         path = os.pathsep.join(filter(None, (home, os.environ.get("PYTHONPATH"))))
         variables = {
