@@ -9,7 +9,7 @@
 # in pages, where Chromium is.
 # make seeds: random levels and commands, run several ways, bit for bit; half an hour. SEEDS=50: fewer than 1,000;
 # ARGUMENTS="--jobs 2": in two processes.
-# make bounds: run all recordings and abuse with kernels that look at each index; usual kernels do not.
+# make bounds: run recordings, random levels and kernels alone with a look at each index; usual kernels do not look.
 # make libraries: machine code of the kernels for all platforms, after a kernel was changed; minutes. CHECK=1 compares
 # it with what is there, HERE=1 only this platform's.
 # make abuse: stir, throw and drive bodies, and print figures; hours.
@@ -75,7 +75,10 @@ lint-pages: $(VENV)/installed-node
 
 bounds: export SANDBOX_KERNELS := checked
 bounds: $(VENV)/installed-dev
-	$(PYTEST) tests/determinism/goldens tests/level/test_shipped_levels.py tests/physics
+	$(BIN)/python -m tests.determinism.matrix --setting checked
+	$(BIN)/python -m tests.determinism.twins --rounds 20
+	$(BIN)/python -m tests.determinism.seeds --seeds 50 --ways checked
+	$(PYTEST) tests/physics tests/level/test_shipped_levels.py
 
 goldens: $(VENV)/installed-dev
 	$(PYTEST) tests/determinism/goldens

@@ -17,7 +17,7 @@ from sandbox.terminal import seconds
 
 ROOT = Path(__file__).resolve().parents[1]
 # Functions that make a parser and read what it gave, both in one place.
-READERS = {"cli/options.py", "cli/command.py", "cli/__init__.py", "app/kernels/libraries.py"}
+READERS = {"cli/options.py", "cli/command.py", "cli/__init__.py", "physics/jit/making/libraries.py"}
 WRONG = """
 from dataclasses import dataclass
 from sandbox.cli.command import Subcommand, WindowOptions

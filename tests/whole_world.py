@@ -14,7 +14,7 @@ from tests.quick import ROOT, files_since, git, left_branch
 
 # Where kernels, formats and what proves them lie, and what they are compiled with.
 WATCHED = (
-    "sandbox/physics/", "sandbox/app/draw/raster/", "sandbox/app/kernels/", "sandbox/level/", "sandbox/session/",
+    "sandbox/physics/", "sandbox/app/draw/raster/", "sandbox/level/", "sandbox/session/",
     "sandbox/page/", "tests/determinism/", "pyproject.toml",
 )  # fmt: skip
 # What a file of tests says in which there are such tests.

@@ -60,7 +60,8 @@ class Strict:
 
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
-            return Strict(self.array[max(index.start or 0, 0) : len(self.array) if index.stop is None else index.stop])
+            self._looked_at((index.start, index.stop))
+            return Strict(self.array[index])
         return self.view[self._looked_at(index)]
 
     def __setitem__(self, index: Any, value: Any) -> None:

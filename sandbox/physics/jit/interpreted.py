@@ -102,6 +102,8 @@ def _array_in(dtype: Any) -> Any:
     item = np.dtype(dtype).itemsize
 
     def array_in(memory: Any, first: int, *shape: int) -> Any:
+        if min(shape) < 0:
+            raise ValueError(f"an array has no {min(shape)} rows")
         count = math.prod(shape)
         words = -(-count * item // 8)
         # What finds no room is not touched, and need not lie there.
