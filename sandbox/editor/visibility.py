@@ -32,7 +32,7 @@ class Visibility:
         return Visibility(_renamed(self.hidden, old, new), _renamed(self.locked, old, new))
 
     def among(self, items: Selection) -> "Visibility":
-        """What of it speaks of some items."""
+        """The part of it that is about some items."""
         return Visibility(self.hidden & items, self.locked & items)
 
 

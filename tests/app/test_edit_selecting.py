@@ -122,7 +122,7 @@ def test_a_drag_shows_the_selection_where_it_will_be_and_escape_gives_it_up(driv
     driver.press(driver.at(2, 0))
     driver.move(driver.at(2, 0.5))
     driver.move(driver.at(2, 1))
-    assert driver.editor.pointer_tool.matrix[1, 2] == pytest.approx(1.0)
+    assert driver.editor.pointer_tool.transform[1, 2] == pytest.approx(1.0)
     driver.key(pygame.K_ESCAPE)
     driver.release(driver.at(2, 1))
     assert driver.editor.document.level is before

@@ -221,7 +221,7 @@ def test_the_caret_is_seen_however_long_the_text_is_and_it_blinks():
 
 def test_up_and_down_and_the_wheel_step_a_number_and_take_what_was_typed_first():
     person, steps = Person("5"), []
-    person.field.turn = steps.append
+    person.field.step_value = steps.append
     person.ui.focus_on(person.field)
     person.type("7")
     person.key(pygame.K_UP)

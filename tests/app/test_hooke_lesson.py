@@ -70,18 +70,18 @@ def test_stiffer_again_and_again_ends_in_words_and_a_button_and_harms_nothing(le
     for _ in range(8):
         lesson.click_widget(screen.panel.stiffer)
     lesson.frames(60)
-    assert screen.exploded_at is not None and screen.again.visible
+    assert screen.exploded_at is not None and screen.restart_button.visible
     assert "exploded after" in screen.panel.text.text != before
     assert np.abs(screen.other.session.world.position).max() < 3.0
     lesson.app.display.window.size = (640, 480)
     lesson.frames(30)
     assert "exploded" in lesson.app.play.states()
-    lesson.click_widget(screen.again)
+    lesson.click_widget(screen.restart_button)
     lesson.frames(1)
     assert screen.playback.session.tick < 9
     screen.try_out(SpringTrial())
     lesson.frames(30)
-    assert screen.exploded_at is None and not screen.again.visible
+    assert screen.exploded_at is None and not screen.restart_button.visible
 
 
 def test_a_button_that_can_do_no_more_is_not_offered(lesson):

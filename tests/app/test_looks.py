@@ -15,7 +15,7 @@ from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.themes import THEMES
 from sandbox.app.draw.things.balls import Balls
-from sandbox.app.draw.things.borders import chains_of, hull_of, sides_of, traced
+from sandbox.app.draw.things.borders import chains_of, hull_of, sides_of, trace_loops
 from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.level_slots import level_slots_of
 from sandbox.level.format.look import LINES, PALETTE, SKINS
@@ -105,10 +105,10 @@ def test_looks_of_shipped_levels_are_names_that_exist(path):
 
 def test_a_border_goes_once_around_and_round_a_hole():
     # A square of two triangles, and a ring of eight around a hole.
-    assert [sorted(loop.tolist()) for loop in traced(np.array([[0, 1, 2], [0, 2, 3]]))] == [[0, 1, 2, 3]]
+    assert [sorted(loop.tolist()) for loop in trace_loops(np.array([[0, 1, 2], [0, 2, 3]]))] == [[0, 1, 2, 3]]
     outer, inner = list(range(4)), list(range(4, 8))
     ring = [t for k in range(4) for t in ([outer[k], outer[k - 3], inner[k]], [outer[k - 3], inner[k - 3], inner[k]])]
-    assert sorted(sorted(loop.tolist()) for loop in traced(np.array(ring))) == [outer, inner]
+    assert sorted(sorted(loop.tolist()) for loop in trace_loops(np.array(ring))) == [outer, inner]
 
 
 def test_the_sides_of_triangles_are_found_among_springs_in_either_direction():

@@ -132,7 +132,7 @@ def test_arrow_keys_of_a_level_win_are_shown_and_with_shift_move_the_cursor(open
 def test_again_is_offered_once_things_have_left_the_view_and_begins_anew(open_app):
     free = {"type": "rope", "id": "rope", "start": [0, 0], "end": [4, 0], "segments": 4, "material": "steel"}
     driver = open_app(small_level(bodies=[free], settings={"solver": "single_pass", "gravity": [0.0, -300.0]}))
-    again = driver.app.play.again
+    again = driver.app.play.restart_button
     assert not again.visible
     driver.frames(90)
     assert again.visible and LEFT_VIEW in driver.notices

@@ -26,12 +26,12 @@ def height(driver):
 
 def test_off_falls_through_and_on_is_caught(driver):
     rows = driver.panel.world
-    assert rows.touch.chosen == "off" and rows.friction.text == "\u2013"
+    assert rows.contacts.chosen == "off" and rows.friction.text == "\u2013"
     driver.frames(120)
     assert height(driver) < -5.0
-    driver.click_in_panel(rows.touch.buttons["on"])
+    driver.click_in_panel(rows.contacts.buttons["on"])
     driver.frames(2)
-    assert driver.world.tick < 10 and driver.panel.world.touch.chosen == "on"
+    assert driver.world.tick < 10 and driver.panel.world.contacts.chosen == "on"
     driver.frames(100)
     assert height(driver) == pytest.approx(0.8, abs=0.01)
 
@@ -39,7 +39,7 @@ def test_off_falls_through_and_on_is_caught(driver):
 def test_bounce_and_friction_are_typed(driver):
     driver.fill(driver.panel.world.bounce, "0.9")
     driver.frames(2)
-    assert driver.panel.world.touch.chosen == "on" and driver.panel.world.bounce.text == "0.9"
+    assert driver.panel.world.contacts.chosen == "on" and driver.panel.world.bounce.text == "0.9"
     highest = 0.0
     for tick in range(110):
         driver.playback.session.advance()

@@ -48,7 +48,7 @@ class CoefficientScale:
         return np.minimum(1.0, power * (1.0 + self.rest) / (1.0 + power))
 
     def value_at(self, place: float) -> float:
-        """The value at a place on the axis, in three significant digits, or this many of what it is below 1 by."""
+        """The value at a place on the axis, in three significant digits, of 1 - value where that is small."""
         if place >= END:
             return 1.0
         low, high = self._ends

@@ -69,7 +69,7 @@ class Display:
             self.scale = ratio
 
     def _begin(self, scale: float | None) -> tuple[int, int]:
-        """What comes before the window is made; size of the desktop [pixels]."""
+        """Start pygame's display and fonts before the window is made; give the size of the desktop [pixels]."""
         pygame.display.init()
         pygame.font.init()
         width, height = pygame.display.get_desktop_sizes()[0]
@@ -81,7 +81,7 @@ class Display:
         return width, height
 
     def _finish(self) -> None:
-        """What comes after the window is made."""
+        """Give the new window its icon, and take note of its surface, size and place."""
         self.window.set_icon(pygame.image.load(shipped_folder("assets") / "icon.png"))
         self.surface = self.window.get_surface()
         self._shown_size = self.size

@@ -40,7 +40,7 @@ class SagMap:
 
     @classmethod
     def of(cls, body: BodyMotion, scale: CoefficientScale) -> "SagMap":
-        """That of a body that tells its sag."""
+        """The map of a body whose sag is known."""
         values = scale.values(SIZE)
         stiffness, damping = (axis.reshape(-1) for axis in np.meshgrid(values, values, indexing="ij"))
         sag = np.clip(body.sag_of_tick(stiffness, damping), 1e-9, 1e3)
@@ -73,7 +73,7 @@ class SagMap:
         return found
 
     def as_data(self) -> dict[str, Any]:
-        """What a page makes the same map of; logs in steps, column by column."""
+        """Numbers that a page makes the same map of; logarithms in steps, column by column."""
         words, edges = word_edges()
         return {
             "lowest": self.scale.lowest,

@@ -69,13 +69,13 @@ class Shortcut:
 
 
 def _tools(group: str) -> tuple[Shortcut, ...]:
-    """What takes up the tools of a group of the editor's."""
+    """The shortcuts that take up the editor's tools of a group."""
     tools = (tool for tool in TOOLS.values() if tool.group == group)
     return tuple(Shortcut(tool.action, (tool.key,), tool.label, group, "edit") for tool in tools)
 
 
 def _play_tools(group: str) -> tuple[Shortcut, ...]:
-    """What takes up the tools in play of a group."""
+    """The shortcuts that take up the tools in play of a group."""
     tools = (tool for tool in PLAY_TOOLS.values() if tool.group == group)
     return tuple(Shortcut(tool.action, tool.keys, tool.label, group, "play") for tool in tools)
 

@@ -14,10 +14,10 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Pixel, Pointer
 from sandbox.app.draw.colours import LINE, TEXT
 from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.panel import Panel
 from sandbox.app.panel.side_panel import SidePanel
 from sandbox.app.panel.solver_rows import SOLVER_LABELS
-from sandbox.app.panel.touching import Touching
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT
@@ -58,7 +58,7 @@ class CompareScreen(PlayScreen):
         self._join_stages()
         # The beginning is the same in both: they show the same part of it.
         self.stage.place(self.viewport, app.ui.scale)
-        app.follow(other, self.can_cancel)
+        app.show_replay_progress(other, self.can_cancel)
 
     @property
     def other(self) -> TwinPlayback:
@@ -71,7 +71,7 @@ class CompareScreen(PlayScreen):
     def _join_stages(self) -> None:
         """Let both stages have the same tools and views."""
         assert self.beside is not None
-        self.beside.share(self.stage)
+        self.beside.share_tools(self.stage)
 
     def _actions(self) -> dict[str, Callable[[], object]]:
         of_one, files = super()._actions(), self._app.files
@@ -131,11 +131,11 @@ class CompareScreen(PlayScreen):
             BAR_HEIGHT,
             height,
             self.shape,
-            self.touch,
+            self.set_contacts,
         )
 
-    def touch(self, touching: Touching) -> None:
-        """Two runs of one level stay of one level."""
+    def set_contacts(self, contacts: ContactSettings) -> None:
+        """Change nothing, and say why: A and B are runs of one level."""
         self._app.say("A and B are of one level. Leave the comparison (F9) to change how things touch.")
 
     def _ask_rate(self, typed: str) -> None:
@@ -159,15 +159,15 @@ class CompareScreen(PlayScreen):
         self.beside.replace_playback(other)
         self._join_stages()
         self.difference = Difference()
-        self._app.follow(other, self.can_cancel)
+        self._app.show_replay_progress(other, self.can_cancel)
 
     def _reset(self) -> None:
         super()._reset()
         if self.panel is not None and self.side == SIDES[1]:
-            self.panel.follow(self.other)
+            self.panel.attach(self.other)
 
     def film(self, seconds: float) -> FilmPair:
-        """Both, each with what it is set to."""
+        """Film of both runs, with their settings as captions."""
         assert self.beside is not None
         words = [f"{side}   {text}" for side, text in zip(SIDES, self._settings_words(), strict=True)]
         films = [self._film_of(stage, seconds) for stage in (self.stage, self.beside)]
@@ -191,7 +191,7 @@ class CompareScreen(PlayScreen):
     _picked_beside = False
 
     def open_menu(self, pixel: Pixel) -> None:
-        """Nothing: a run has no menu."""
+        """Open nothing: a run has no menu."""
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Make what is dropped larger, or zoom both."""
@@ -248,14 +248,14 @@ class CompareScreen(PlayScreen):
 
     @property
     def _pill_place(self) -> tuple[int, int]:
-        """Where the middle of the line about both is: on what divides them."""
+        """The middle [pixels] of the line of text about both runs: it lies on the border between the halves."""
         left, top, width, height = self.area
         across = left + width // 2
         return across, top + (self._ui.px(PILL_TOP) if self._is_wide else height // 2)
 
     @property
     def _legend_room(self) -> pygame.Rect:
-        """It leaves what stands over the halves free, which is as wide as they are."""
+        """The place for the legend [pixels], below the captions, which are as wide as the halves."""
         room, above = super()._legend_room, self._ui.px(BELOW_PILL if self._is_wide else BELOW_CAPTION)
         return pygame.Rect(room.left, room.top + above, room.width, max(room.height - above, 0))
 
@@ -265,7 +265,7 @@ class CompareScreen(PlayScreen):
         return [("A ", self.playback), ("B ", self.other)]
 
     def _measure(self, ticks: int, profile: Profile) -> None:
-        """It is measured once both are at the same tick."""
+        """Note how many ticks A made; `update` measures once B is at the same tick."""
         self._ticks_made = ticks
 
     _ticks_made = 0
@@ -284,7 +284,7 @@ class CompareScreen(PlayScreen):
         return [f"{springs}   {solver}{parts}", self.difference.figures(playback.current)]
 
     def _settings_words(self) -> list[str]:
-        """What each is set to, in one line that holds for all that was seen."""
+        """The settings of both runs, a line each, which holds for all that was seen."""
         return [lines[0] for lines in self.captions()]
 
     def title(self) -> str:

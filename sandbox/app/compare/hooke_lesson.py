@@ -50,9 +50,9 @@ class HookeLesson(CompareScreen):
         self._wants_panel = True if self._wants_panel is None else self._wants_panel
         super().build(ui)
         left, top, width, height = self.viewport
-        place = self.again.rect.copy()
+        place = self.restart_button.rect.copy()
         place.midtop = (left + width // 2, top + height // 2 + ui.px(BELOW_WORDS))
-        self.again.move_to(place.topleft)
+        self.restart_button.move_to(place.topleft)
 
     def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
         panel = LessonPanel(ui, self.playback, self.trial, self.try_out, self._reset, BAR_HEIGHT, height)
@@ -84,13 +84,13 @@ class HookeLesson(CompareScreen):
                 self.panel.show_trial(self.trial, self.exploded_at)
 
     def _tell(self) -> None:
-        """What the physics says of numbers that have no bounds any more is said better by the lesson."""
+        """Show the run's messages until a spring explodes; after that the lesson says better what happened."""
         if self.exploded_at is not None:
             self.playback.messages.clear()
         super()._tell()
 
     def _show_again(self) -> None:
-        self.again.visible = self.exploded_at is not None
+        self.restart_button.visible = self.exploded_at is not None
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw both, and the word for what happened."""
@@ -110,5 +110,5 @@ class HookeLesson(CompareScreen):
         return ["   ".join(lines) for lines in self.captions()]
 
     def states(self) -> list[str]:
-        """The states of the run, and whether a spring has exploded."""
+        """State words for the window's title: those of the run, and whether a spring has exploded."""
         return [*super().states(), *([] if self.exploded_at is None else ["exploded"])]

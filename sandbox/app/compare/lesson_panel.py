@@ -22,25 +22,25 @@ MASSES, RATES, SPRINGS = (0.1, 1.0, 10.0), (30, 60, 240), (1, 6)
 
 
 class LessonPanel:
-    """The panel; change: what is done with another trial, again: what begins the same again."""
+    """The panel; change: what is done with another trial, restart: what begins the same trial again."""
 
     pad: CoefficientPad | None = None
     material: int | None = None
 
     def __init__(
         self, ui: Ui, playback: Playback, trial: SpringTrial, change: Callable[[SpringTrial], None],
-        again: Callable[[], None], top: float, height: float,
+        restart: Callable[[], None], top: float, height: float,
     ) -> None:  # fmt: skip
         self._ui, self.playback, self._trial, self._change = ui, playback, trial, change
         self._exploded_at: int | None = None
         background = ui.panel(ui.rect(ui.units[0] - PANEL_WIDTH, top, PANEL_WIDTH, height))
         self.area = ScrollArea(ui, ui.rect(0, 0, PANEL_WIDTH, height), background)
         self._back, self._y = self.area.content, 14.0
-        self._build(again)
+        self._build(restart)
         self.area.set_height(ui.px(self._y + 8))
         self.refresh()
 
-    def _build(self, again: Callable[[], None]) -> None:
+    def _build(self, restart: Callable[[], None]) -> None:
         ui, back = self._ui, self._back
         TextBlock(ui, self._next(24, 2), "Stiffer, until it explodes", back, 15.0, TEXT, is_bold=True)
         self.text = TextBlock(ui, self._next(WORDS_HEIGHT, 6), "", back, 12.5, TEXT)
@@ -55,7 +55,7 @@ class LessonPanel:
         self.masses = self._choice("Weight", [(f"{mass:g}", f"{mass:g} kg") for mass in MASSES], self._set_mass)
         self.rates = self._choice("Ticks a second", [(str(rate), str(rate)) for rate in RATES], self._set_rate)
         self.springs = self._choice("Springs", [("1", "One"), ("6", "Six in a row")], self._set_springs)
-        self.again = ui.button(self._next(ROW, 4), "Again", again, back, tip="Both from the beginning  [R]")
+        self.restart_button = ui.button(self._next(ROW, 4), "Again", restart, back, tip="Both from the beginning  [R]")
 
     def _next(self, height: float, gap: float) -> pygame.Rect:
         place = self._ui.rect(MARGIN, self._y, INSIDE, height)
@@ -102,11 +102,11 @@ class LessonPanel:
         self.softer.is_enabled = trial.doublings > 0
 
     def show_choices(self, strength: str, views: Set[str]) -> None:
-        """The lesson shows neither the strength of the hand nor overlays."""
+        """Show nothing: the lesson has neither the strength of the hand nor overlays."""
 
     def choose_material(self, material: int | None) -> None:
-        """There is one material alone."""
+        """Change nothing: the lesson has one material alone."""
 
-    def follow(self, playback: Playback) -> None:
-        """Go on with another run."""
+    def attach(self, playback: Playback) -> None:
+        """Show and change another run of the lesson."""
         self.playback = playback

@@ -22,7 +22,7 @@ class TwinPlayback(Playback):
     twin: "TwinPlayback | None" = None
 
     def pair(self, other: "TwinPlayback") -> None:
-        """Be twins from now on; the other one goes by the clock of this one, see `follow`."""
+        """Pass commands on to the other run from now on; the other one goes by the clock of this one, see `follow`."""
         self.twin, other.twin = other, self
         other.clock = self.clock
         self._pairs: dict[int, int] = {}
@@ -40,7 +40,7 @@ class TwinPlayback(Playback):
         Playback.submit(twin, NOTHING if isinstance(command, OWN) else command, paired)
 
     def follow(self, tick: int) -> None:
-        """Come to the tick that the twin is at, after it has got there."""
+        """Run to a tick that the twin has got to."""
         self.apply_pending()
         session = self.session
         if tick < session.tick or session.kept_before(min(tick, session.last_tick)) > session.tick:
@@ -65,7 +65,7 @@ class TwinPlayback(Playback):
             Playback.return_to(twin, twin.session.branches[place])
 
     def reset(self) -> Self:
-        """The same level from its beginning, with the settings that it has now, at the same speed."""
+        """Begin the same level again, with the settings that it has now, at the same speed."""
         fresh = type(self)(self.level)
         fresh.clock.paused, fresh.clock.speed = self.clock.paused, abs(self.clock.speed)
         fresh.travel.bookmarks, fresh.travel.span = self.travel.bookmarks, self.travel.span

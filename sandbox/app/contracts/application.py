@@ -37,7 +37,7 @@ class Run(Screen, Protocol):
         ...
 
     def film(self, seconds: float) -> Film | FilmPair:
-        """Its last seconds [s], as it is seen now."""
+        """Film of its last seconds [s], as the camera shows it now."""
         ...
 
     def show_sweep(self, path: Path) -> None:
@@ -50,7 +50,7 @@ class Documents(Protocol):
 
     @property
     def editor(self) -> Editing | None:
-        """Its screen."""
+        """The screen of the editor."""
         ...
 
     def new(self, then: Callable[[], object] = ..., level: Level | None = ...) -> None:
@@ -58,11 +58,11 @@ class Documents(Protocol):
         ...
 
     def new_place(self) -> None:
-        """Begin with a place to play in, on the sheet."""
+        """Begin a level with ground and walls to play in, and show it in the editor."""
         ...
 
     def play_new(self) -> None:
-        """Play in a new place, with the parts at hand."""
+        """Begin a level with ground and walls, and play it with the parts at hand."""
         ...
 
     def open(self, path: str | Path) -> None:
@@ -77,8 +77,8 @@ class Documents(Protocol):
         """Edit a level that has no file."""
         ...
 
-    def take_over(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
-        """Edit the level of a run, in the file that it is from, and go on."""
+    def edit_run(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
+        """Edit the level of a run, in the file that it is from; then() is called once it is open."""
         ...
 
     def save(self) -> None:
@@ -90,11 +90,11 @@ class Documents(Protocol):
         ...
 
     def revert(self) -> None:
-        """Read the file again."""
+        """Read the level from its file again."""
         ...
 
     def note(self, level: Level, path: Path | None, label: str) -> None:
-        """Have the autosave follow."""
+        """Let the autosave keep the document as it is now."""
         ...
 
     def look_at_disk(self) -> None:
@@ -106,7 +106,7 @@ class Documents(Protocol):
         ...
 
     def back(self) -> None:
-        """Back to the level from a run of it."""
+        """Go back from a run of the level to the editor."""
         ...
 
 
@@ -126,7 +126,7 @@ class Files(Protocol):
         ...
 
     def ask_to_open(self) -> None:
-        """Ask for a file."""
+        """Ask for the path of a file, and open it."""
         ...
 
     def toggle_recording(self) -> None:
@@ -178,17 +178,17 @@ class Application(Protocol):
 
     @property
     def chosen(self) -> Chosen:
-        """What the person has chosen about the app."""
+        """The person's settings of the app."""
         ...
 
     @property
     def sounds(self) -> Sounds:
-        """What is heard of the run."""
+        """Plays the sounds of the run."""
         ...
 
     @property
     def mode(self) -> Mode:
-        """Which table of shortcuts holds."""
+        """The mode whose shortcuts hold now."""
         ...
 
     @property
@@ -208,12 +208,12 @@ class Application(Protocol):
 
     @property
     def documents(self) -> Documents:
-        """What is edited."""
+        """What is done with the level that the editor has open."""
         ...
 
     @property
     def scenes(self) -> SceneKeeping:
-        """What keeps the runs."""
+        """Keeps runs on disk, so that they outlive the app."""
         ...
 
     @property
@@ -265,8 +265,8 @@ class Application(Protocol):
         """Begin the lesson on Hooke's spring and the article's."""
         ...
 
-    def follow(self, playback: Playback, can_cancel: bool = True) -> None:
-        """Show how far a run is that has to be played again."""
+    def show_replay_progress(self, playback: Playback, can_cancel: bool = True) -> None:
+        """Show a bar while a run is played again from the past, where that takes long; can_cancel: Escape ends it."""
         ...
 
     def offer_tour(self) -> None:

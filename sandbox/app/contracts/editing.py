@@ -25,7 +25,7 @@ from sandbox.editor.visibility import Visibility
 
 
 class PointerTool(Protocol):
-    """A tool under the pointer; matrix: what it does to the selection so far."""
+    """A tool under the pointer."""
 
     @property
     def hint(self) -> str:
@@ -34,28 +34,28 @@ class PointerTool(Protocol):
 
     @property
     def measure(self) -> str:
-        """Sizes of what is under way; empty where nothing is."""
+        """Size, length or angle of what is drawn or dragged, in words; empty where nothing is."""
         ...
 
     @property
-    def matrix(self) -> np.ndarray | None:
-        """What becomes of the selection so far (2, 3); None = nothing."""
+    def transform(self) -> np.ndarray | None:
+        """The map (2, 3) by which a drag moves the selection so far; None = no drag does."""
         ...
 
     def down(self, point: Point, modifiers: int, clicks: int) -> None:
-        """The pointer is pressed at a point [m]."""
+        """React to a press of the pointer at a point [m]."""
         ...
 
     def move(self, point: Point, modifiers: int) -> None:
-        """The pointer moves while pressed."""
+        """React to a move of the pressed pointer."""
         ...
 
     def up(self, point: Point, modifiers: int) -> None:
-        """The pointer is released."""
+        """React to a release of the pointer."""
         ...
 
     def hover(self, point: Point | None, modifiers: int) -> None:
-        """Where the pointer is while nothing is pressed; None = elsewhere."""
+        """Take note of where the pointer is while nothing is pressed; None = elsewhere."""
         ...
 
     def cancel(self) -> bool:
@@ -63,11 +63,11 @@ class PointerTool(Protocol):
         ...
 
     def ghost(self) -> Document | None:
-        """The document as it would be."""
+        """The document as it would be if the pointer were released now, drawn pale; None = nothing is added."""
         ...
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Draw what belongs to the tool."""
+        """Draw the tool's handles and marks over the level."""
         ...
 
 
@@ -91,7 +91,7 @@ class Watching(Protocol):
         ...
 
     def show_ignored(self) -> None:
-        """Look for everything again."""
+        """Show all findings again, also those that were ignored."""
         ...
 
     @property
@@ -179,8 +179,8 @@ class Editing(Protocol):
         ...
 
     @property
-    def scales_apart(self) -> bool:
-        """Whether width and height of the selection can be changed each by itself."""
+    def scales_unevenly(self) -> bool:
+        """Whether width and height of the selection can be changed one without the other."""
         ...
 
     def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
@@ -203,17 +203,17 @@ class Editing(Protocol):
 
     @property
     def tool(self) -> str:
-        """The name of the tool that the pointer has."""
+        """The name of the tool in use."""
         ...
 
     @property
     def pointer_tool(self) -> PointerTool:
-        """What the pointer does."""
+        """The tool in use, as the pointer works it."""
         ...
 
     @property
     def reach(self) -> float:
-        """How far off a particle [m] the pointer still takes it."""
+        """How far [m] from a particle the pointer still takes it."""
         ...
 
     def contains(self, pixel: Pixel) -> bool:
@@ -266,19 +266,19 @@ class Editing(Protocol):
         """Click at the keyboard cursor; without one, end what is drawn."""
         ...
 
-    def grid_snaps(self, modifiers: int) -> bool:
-        """Whether anything draws the pointer now."""
+    def snaps_pointer(self, modifiers: int) -> bool:
+        """Whether the grid or another part snaps the pointer."""
         ...
 
     def snapped(self, point: Point, modifiers: int, anchor: Point | None = None, skip: Selection = frozenset()) -> Snap:
-        """Where the pointer is taken to be."""
+        """The point that the pointer snaps to, or its own."""
         ...
 
     # What is shown.
 
     @property
     def without_button(self) -> tuple[str, ...]:
-        """Actions whose buttons have no room."""
+        """Names of the actions whose buttons have no room."""
         ...
 
     @property
@@ -303,7 +303,7 @@ class Editing(Protocol):
         ...
 
     def focus_numbers(self) -> None:
-        """Type into the row of numbers."""
+        """Give the keyboard to the row of numbers."""
         ...
 
     def toggle_side(self) -> None:
@@ -319,9 +319,9 @@ class Editing(Protocol):
         ...
 
     def turn_page(self, by: int) -> None:
-        """Show another page of the panel at the side."""
+        """Show the page of the panel at the side that many tabs further."""
         ...
 
     def show_attempt(self, index: int | None) -> None:
-        """Draw the way of one of the values that are tried in full colour."""
+        """Draw the path of one of the values that are tried in full colour, the others pale."""
         ...

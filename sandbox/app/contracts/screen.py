@@ -40,7 +40,7 @@ class Screen(Protocol):
 
     @property
     def moves(self) -> bool:
-        """Whether what it shows changes by itself, or it works at that in its frames."""
+        """Whether its picture changes by itself, or is still being worked out."""
         ...
 
     @property
@@ -93,13 +93,13 @@ class Screen(Protocol):
         ...
 
     def title(self) -> str:
-        """What the window is called: the level's name, and * where it is not saved."""
+        """The window's title: the level's name, with * where it is not saved."""
         ...
 
     def states(self) -> list[str]:
-        """Words on the state of it, for programs that follow what happens."""
+        """State words for the window's title, for programs that follow what happens."""
         ...
 
     def leave(self) -> None:
-        """Give up what is under way, as another screen comes."""
+        """Give up drags and drawings, as another screen comes."""
         ...

@@ -36,7 +36,7 @@ def app_icon(side: int) -> pygame.Surface:
 
 
 def _bled(picture: pygame.Surface) -> pygame.Surface:
-    """With the outline's colour where nothing is: scaling mixes in the colour of transparent pixels."""
+    """The picture with the outline's colour under its transparent pixels, which scaling mixes in."""
     below = pygame.Surface(picture.get_size(), pygame.SRCALPHA)
     below.fill((*rgb_of(outline_of(PALETTE["raspberry"])), 0))
     below.blit(picture, (0, 0))

@@ -50,25 +50,25 @@ class Backdrop:
         self, painter: Painter, camera: Camera, terrain: Terrain, level: Level | None, theme: Theme, tiles: Tiles,
         scale: float,
     ) -> None:  # fmt: skip
-        """Draw it; while the camera moves, the ground is flat."""
+        """Draw stage and ground; while the camera moves, the ground is flat."""
         key = (camera.centre, camera.zoom, camera.viewport, scale, theme.name, painter.exact)
         is_same = key == self._key and terrain is self._terrain and self._layer is not None
         is_new = self._layer is None or terrain is not self._terrain or camera.viewport != self._key[2]
         if not is_same or not self._is_fine:
             self._key, self._terrain = key, terrain
             self._is_fine = is_same or is_new
-            self._layer = self._made(painter, camera, terrain, level, theme, tiles, scale)
+            self._layer = self._make_layer(painter, camera, terrain, level, theme, tiles, scale)
         assert self._layer is not None
         self._layer.set_alpha(None)
         painter.surface.blit(self._layer, camera.viewport[:2])
 
     def veil(self, painter: Painter, camera: Camera, share: float) -> None:
-        """Draw it once more over all that was drawn on it, which then shows by the rest of a share (0..1)."""
+        """Lay the backdrop, with an opacity (0..1), over all that was drawn on it."""
         if self._layer is not None:
             self._layer.set_alpha(round(255 * share))
             painter.surface.blit(self._layer, camera.viewport[:2])
 
-    def _made(
+    def _make_layer(
         self, painter: Painter, camera: Camera, terrain: Terrain, level: Level | None, theme: Theme, tiles: Tiles,
         scale: float,
     ) -> pygame.Surface:  # fmt: skip

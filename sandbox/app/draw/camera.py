@@ -94,7 +94,7 @@ class Camera:
         self.centre = ((left + right) / 2, (bottom + top) / 2)
 
     def _room(self) -> Point:
-        """How large a box [m] can be that is shown with a margin."""
+        """The largest box [m] that can be shown with a margin."""
         free = 1.0 - 2.0 * FIT_MARGIN
         return self.viewport[2] * free / self.zoom, self.viewport[3] * free / self.zoom
 
@@ -107,14 +107,14 @@ class Camera:
 
     @property
     def picture(self) -> Box:
-        """What is seen [m]."""
+        """The box [m] that is seen."""
         left, top, width, height = self.viewport
         x0, y1 = self.to_world((left, top))
         x1, y0 = self.to_world((left + width, top + height))
         return x0, y0, x1, y1
 
     def picture_of(self, box: Box) -> Box:
-        """What is seen [m] once a box [m] is shown as large as it goes."""
+        """The box [m] that is seen once a box [m] is shown as large as it goes."""
         fitted = replace(self)
         fitted.fit(box)
         return fitted.picture

@@ -290,7 +290,7 @@ class Renderer:
         layer.discs(at, radius, packed(self.theme.strain[1]))
 
     def _draw_held(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
-        """Pins, sparks, and a line from what is held to the cursor, of another colour where it pulls its most."""
+        """Draw pins, sparks, and a line from what is held to the cursor, of another colour where it pulls its most."""
         layer = MarkList()
         if self.lattice:
             self.effects.mark_breaks(layer, camera, self.theme, self.scale)

@@ -59,7 +59,7 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
 
 
 def _added(count: int, own: NDArray[np.int64], first_hand: int) -> NDArray[np.int64]:
-    """Slots that joined the world while it ran, by themselves: neither the level's own nor those of hands."""
+    """Slots that joined the world while it ran, other than the level's own and those of hands."""
     return np.setdiff1d(np.arange(count), [*own, *range(first_hand, first_hand + GRAB_COUNT)])
 
 

@@ -13,7 +13,7 @@ UNSEEN, UNSEEN_TURN, UNSEEN_STRAIN = 0.08, 0.01, 1e-3
 
 
 class Still:
-    """Follows what pictures are drawn from; after two that are alike the second is kept."""
+    """Keeps a picture once two in a row were drawn from the same values."""
 
     def __init__(self) -> None:
         self._key: tuple[object, ...] = ()
@@ -35,14 +35,14 @@ class Still:
             self._key, self._numbers, self._picture = key, [(values.copy(), most) for values, most in numbers], None
 
     def show(self, surface: pygame.Surface, place: pygame.Rect) -> bool:
-        """Show the picture where there is one; whether it did."""
+        """Show the kept picture, if there is one; whether it did."""
         if not self._is_same or self._picture is None:
             return False
         surface.blit(self._picture, place)
         return True
 
     def keep(self, surface: pygame.Surface, place: pygame.Rect) -> None:
-        """Keep what was drawn there, if it was drawn from the same as before."""
+        """Keep the picture that was drawn, if it and the one before were drawn from the same values."""
         if self._is_same:
             self._picture = pygame.Surface(place.size, 0, surface)
             self._picture.blit(surface, (0, 0), place)

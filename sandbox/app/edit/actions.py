@@ -140,7 +140,7 @@ def _has_selection(screen: Editing) -> bool:
 
 
 def _hide(screen: Editing) -> None:
-    """Hide what is selected, or show all that is hidden."""
+    """Hide what is selected; with nothing selected, show all that is hidden."""
     selection, visibility = screen.document.selection, screen.visibility
     if not (selection or visibility.hidden):
         screen.say("Nothing is selected, and nothing is hidden.")
@@ -149,7 +149,7 @@ def _hide(screen: Editing) -> None:
 
 
 def _lock(screen: Editing) -> None:
-    """Lock what is selected, or unlock all that is locked."""
+    """Lock what is selected; with nothing selected, unlock all that is locked."""
     selection, visibility = screen.document.selection, screen.visibility
     if not (selection or visibility.locked):
         screen.say("Nothing is selected, and nothing is locked.")

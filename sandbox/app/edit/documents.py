@@ -62,7 +62,7 @@ class DocumentActions:
         self.if_saved(begin)
 
     def new_place(self) -> None:
-        """Begin with a place to play in, on the sheet."""
+        """Begin a level with ground and walls to play in, and show it in the editor."""
         self.new(level=new_level())
 
     def play_new(self) -> None:
@@ -79,7 +79,7 @@ class DocumentActions:
         """Edit a level that has no file of its own."""
         self.if_saved(lambda: self._show(level, LevelFile(), label))
 
-    def take_over(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
+    def edit_run(self, level: Level, source: Path | None, then: Callable[[], object]) -> None:
         """Edit the level of a run, in the file that it is from where that still holds it, and go on."""
 
         def show() -> None:
@@ -176,7 +176,7 @@ class DocumentActions:
             self._write(lambda replace: editor.level_file.save(editor.document.level, replace), then)
 
     def _write(self, write: Callable[[bool], str | None], then: Callable[[], object], replace: bool = False) -> None:
-        """Write, and go on; where a file is in the way, the person is asked."""
+        """Write the file, then go on; where a file is in the way, the person is asked."""
         editor = self.editor
         assert editor is not None
         before = editor.level_file.path
@@ -312,7 +312,7 @@ class DocumentActions:
                 self.app.say(fault)
 
     def note(self, level: Level, path: Path | None, label: str) -> None:
-        """Have the autosave follow a change."""
+        """Let the autosave keep the document as it is now."""
         if self._autosave is not None:
             self._autosave.note(level, path, label)
 
@@ -404,7 +404,7 @@ class DocumentActions:
             screen.camera.reveal(box)
 
     def back(self) -> None:
-        """Back from playing to the document as it was."""
+        """Go back from a run to the document as it was."""
         if self.editor is not None:
             play = self.app.play
             if play is not None:
@@ -425,7 +425,7 @@ def _file_of(level: Level, source: Path | None) -> LevelFile:
 
 
 def _called(path: Path) -> str:
-    """The name of a file, also where the system's own cannot be shown."""
+    """The name of a file, readable also where the system's encoding cannot show it."""
     return one_line(path.name)
 
 

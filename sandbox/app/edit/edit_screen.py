@@ -91,7 +91,7 @@ class EditScreen:
         self._visibility = self._visible_now = Visibility()
         self._visible_in: object = None
         self._box: tuple[Scene, Selection, Box | None] | None = None
-        self._apart: tuple[Document, bool] | None = None
+        self._scales_unevenly: tuple[Document, bool] | None = None
         self._seen: Document | None = None
         self._is_side_late = False
         self.watch = Watch(self)
@@ -160,7 +160,7 @@ class EditScreen:
         self.level_changed(label, before)
 
     def level_changed(self, label: str, before: object) -> None:
-        """Have the autosave follow, where the level is another than before."""
+        """Let the autosave keep the level, where it is another than before."""
         if self.document.level is not before:
             self.app.documents.note(self.document.level, self.level_file.path, label)
 
@@ -183,7 +183,7 @@ class EditScreen:
     # What the panels ask.
 
     def show_attempt(self, index: int | None) -> None:
-        """Draw the way of one of the values that are tried in full colour."""
+        """Draw the path of one of the values that are tried in full colour, the others pale."""
         self.view.chosen_attempt = index
 
     def show(self, place: Point) -> None:
@@ -230,7 +230,7 @@ class EditScreen:
 
     @property
     def without_button(self) -> tuple[str, ...]:
-        """Actions whose buttons have no room."""
+        """Names of the actions whose buttons have no room."""
         return self.bar.left_out
 
     def _viewport(self) -> tuple[int, int, int, int]:
@@ -289,12 +289,12 @@ class EditScreen:
         self.side.focus(path)
 
     def turn_page(self, by: int) -> None:
-        """Show another page of the panel at the side."""
+        """Show the page of the panel at the side that many tabs further."""
         if self.side is not None:
-            self.side.turn(by)
+            self.side.turn_page(by)
 
     def focus_numbers(self) -> None:
-        """Type into the row of numbers."""
+        """Give the keyboard to the row of numbers."""
         self.options.focus()
 
     def fit(self) -> None:
@@ -319,18 +319,18 @@ class EditScreen:
         self.camera.fit(union(*given))
 
     @property
-    def scales_apart(self) -> bool:
-        """Whether width and height of the selection can be changed each by itself."""
+    def scales_unevenly(self) -> bool:
+        """Whether width and height of the selection can be changed one without the other."""
         document = self.document
-        if self._apart is None or self._apart[0] is not document:
-            self._apart = (document, can_scale_unevenly(document))
-        return self._apart[1]
+        if self._scales_unevenly is None or self._scales_unevenly[0] is not document:
+            self._scales_unevenly = (document, can_scale_unevenly(document))
+        return self._scales_unevenly[1]
 
     # Tools.
 
     @property
     def pointer_tool(self) -> PointerTool:
-        """What the pointer does."""
+        """The tool in use, as the pointer works it."""
         return self._picking or self.pointer_tools[self.tool]
 
     def pick(self, kind: Pick, then: Callable[[Any], object]) -> None:
@@ -354,7 +354,7 @@ class EditScreen:
 
     @property
     def reach(self) -> float:
-        """How far off a particle [m] the pointer still takes it."""
+        """How far [m] from a particle the pointer still takes it."""
         return PICK_RADIUS * self.scale / self.camera.zoom
 
     @property
@@ -367,13 +367,13 @@ class EditScreen:
         self.grid_step = step
         self.say(f"The grid has a step of {step:g} m." if step else "The grid follows the zoom.")
 
-    def grid_snaps(self, modifiers: int) -> bool:
-        """Whether anything draws the pointer now."""
+    def snaps_pointer(self, modifiers: int) -> bool:
+        """Whether the grid or another part snaps the pointer: not while Alt is held."""
         return self.snapping and not modifiers & pygame.KMOD_ALT
 
     def snapped(self, point: Point, modifiers: int, anchor: Point | None = None, skip: Selection = frozenset()) -> Snap:
-        """Where the pointer is taken to be."""
-        if not self.grid_snaps(modifiers):
+        """The point that the pointer snaps to, or its own."""
+        if not self.snaps_pointer(modifiers):
             return snap(self.scene, point, 0.0)
         return snap(self.scene, point, self.reach, self.grid, anchor, skip | self.visibility.hidden)
 
@@ -402,11 +402,11 @@ class EditScreen:
             self._picking = None
 
     def press_key(self, key: int, modifiers: int) -> bool:
-        """No key of a level works while it is edited."""
+        """Let no key through: keys of a level work only while it is played."""
         return False
 
     def release_key(self, key: int) -> None:
-        """Nothing was held."""
+        """Do nothing: no key of a level is held."""
 
     def open_menu(self, pixel: Pixel) -> None:
         """Offer what can be done at a pixel."""
@@ -448,7 +448,7 @@ class EditScreen:
 
     @property
     def moves(self) -> bool:
-        """Whether one of its parts is at work at what it will show."""
+        """Whether one of its parts is still working out what it will show."""
         has_new = self._is_side_late or (self.side is not None and self.side.moves)
         return has_new or self.view.moves or self.watch.moves
 
@@ -512,7 +512,7 @@ class EditScreen:
         return self.document.level.name + ("" if self.history.is_saved else "*") + " - Level editor"
 
     def states(self) -> list[str]:
-        """The tool, and how many things are selected."""
+        """State words for the window's title: the tool, and how many things are selected."""
         words = ["editing", self.tool]
         if self.document.selection:
             words.append(f"{len(self.document.selection)} selected")
@@ -534,7 +534,7 @@ class EditScreen:
 
     def _give_up(self) -> None:
         """Give up what is drawn or dragged."""
-        if self.pointer_tool.matrix is not None or isinstance(self.pointer_tool, DrawTool):
+        if self.pointer_tool.transform is not None or isinstance(self.pointer_tool, DrawTool):
             self.pointer_tool.cancel()
 
 

@@ -187,7 +187,7 @@ class Guide:
     # Drawing.
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Point at what the step is about."""
+        """Point at the widget or place that the step is about."""
         situation = self._situation()
         if self._card is None or self.tour is None or situation is None or self._app.ui.has_sheet:
             return

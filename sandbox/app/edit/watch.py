@@ -59,7 +59,7 @@ class Watch:
             self._screen.say("Calculating the rest position; the level will begin there.")
 
     def _take_forecast(self) -> None:
-        """Make the forecast the pose, where it is known and wanted."""
+        """Let everything begin where the forecast says it will hang, once that is known and wanted."""
         forecast, screen = self.forecast, self._screen
         if not self._is_wanted or forecast is None or forecast.at_rest is None:
             return
@@ -110,7 +110,7 @@ class Watch:
         return [(trail, is_last) for trail, is_last in shown if trail is not None and self.trails]
 
     def let_go(self) -> None:
-        """Keep nothing that can be worked out again, while another screen is shown."""
+        """Drop all that can be worked out again, while another screen is shown."""
         self.trail = self.last_trail = self.range_trial = self.forecast = self._lint = self._level = None
 
     def remember(self, run: Session) -> None:
@@ -120,7 +120,7 @@ class Watch:
 
     @property
     def moves(self) -> bool:
-        """Whether it is at work, or about to be."""
+        """Whether findings, forecast or trails are still to be worked out."""
         level, forecast = self._screen.document.level, self.forecast
         is_waiting = level is not self._level or self._since < PATIENCE
         is_trying = self.range_trial is not None and not self.range_trial.is_done
@@ -130,7 +130,7 @@ class Watch:
         return is_waiting or self._lint is not None or is_drawing or (forecast is not None and not self._is_told)
 
     def update(self, frame_time: float) -> None:
-        """Go on with both for a moment."""
+        """Let frame_time [s] pass, and work for a moment at findings, forecast, trails and tried values."""
         level = self._screen.document.level
         if level is not self._level:
             self._level, self._since = level, 0.0
@@ -155,7 +155,7 @@ class Watch:
                 self._screen.say(f"{self.forecast.text}.")
 
     def _follow(self) -> None:
-        """Go on with the trails."""
+        """Work for a moment at the trails."""
         for trail in (self.trail, self.last_trail):
             if trail is not None and not trail.is_done and trail.advance(SLICE) and trail.fault:
                 self._screen.say(f"{trail.fault}.")

@@ -60,7 +60,7 @@ class Film:
 
     @property
     def parts(self) -> "tuple[tuple[str, Film], ...]":
-        """As a pair of films has them: what stands over it, and itself."""
+        """Pairs of a caption and a film, as a pair of films has them; here itself alone, without a caption."""
         return (("", self),)
 
     @property

@@ -92,7 +92,7 @@ class Gallery:
         self.title = TITLES[section]
         self.query = ""
         self.sheet = ui.open_sheet(
-            self._escape, "cover", again=lambda _: app.open_gallery(section, self.header.search.typed)
+            self._escape, "cover", reopen=lambda _: app.open_gallery(section, self.header.search.typed)
         )
         self._width = ui.units[0] - 2 * MARGIN
         self._build_groups_of = {"levels": self._add_shipped, "mine": self._add_own, "recordings": self._add_recordings}
@@ -417,7 +417,7 @@ class Gallery:
 
     def scroll(self, notches: float) -> None:
         """Move the cards by notches of the wheel."""
-        self.area.turn(notches)
+        self.area.scroll_by(notches)
 
 
 def _written(path: Path) -> float | None:

@@ -146,7 +146,7 @@ class Chart:
             Canvas(self._surface).lines(ends, colours, WIDTH * self._scale)
 
     def _draw_names(self, lines: Sequence[GraphLine], inside: pygame.Rect, heights: tuple[float, float]) -> None:
-        """The name of each line at the right, at the height of its end, or as near as the others leave it."""
+        """Draw the name of each line at the right, at the height of its end, or as near as the others leave it."""
         tall = self._bold.get_linesize()
         ends = []
         for line in lines:
@@ -178,7 +178,7 @@ class Chart:
         self, lines: Sequence[GraphLine], inside: pygame.Rect, span: tuple[float, float],
         heights: tuple[float, float], cursor: float, unit: str,
     ) -> None:  # fmt: skip
-        """A line at the cursor, a dot on every line there, and the values on a card."""
+        """Draw a line at the cursor, a dot on every line there, and the values on a card."""
         seconds = span[0] + (cursor - inside.left) / (inside.width - 1) * (span[1] - span[0])
         times = np.concatenate([line.seconds for line in lines])
         at = float(times[np.argmin(np.abs(times - seconds))])
@@ -213,7 +213,7 @@ class Chart:
 
 
 def _dashed(ends: Floats, on: float, off: float) -> Floats:
-    """What is drawn of segments (m, 4) in dashes of these lengths [pixels] along them; long segments are cut."""
+    """The dashes, of these lengths [pixels], of segments (m, 4) along them; long segments are cut."""
     lengths = np.hypot(ends[:, 2] - ends[:, 0], ends[:, 3] - ends[:, 1])
     pieces = np.maximum(1, np.ceil(lengths / min(on, off)).astype(np.int64))
     owner = np.repeat(np.arange(len(ends)), pieces)

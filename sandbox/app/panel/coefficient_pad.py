@@ -122,7 +122,7 @@ class CoefficientPad(Draggable):
         return self.state.enabled
 
     def on_release(self, at: Pixel) -> None:
-        """What is set counts."""
+        """Call done(): the drag has ended."""
         self._done()
 
     def press_key(self, event: pygame.event.Event) -> bool:
@@ -155,11 +155,11 @@ class CoefficientPad(Draggable):
         self._done()
 
     def on_move(self, at: Pixel) -> None:
-        """Tell the number under the mouse."""
+        """Show what is known of the Cs and Cd under the mouse."""
         self._show_pointed(self._pair_at(at))
 
     def on_hover(self) -> None:
-        """Tell none while the mouse is elsewhere."""
+        """Show nothing of them while the mouse is elsewhere."""
         if not self.hovered:
             self._show_pointed(None)
 
@@ -169,7 +169,7 @@ class CoefficientPad(Draggable):
             self.repaint()
 
     def on_drag(self, at: Pixel) -> None:
-        """Set what lies under the mouse."""
+        """Set the Cs and Cd under the mouse."""
         self._changed(*self._pair_at(at))
 
     def _pair_at(self, at: Pixel) -> tuple[float, float]:
@@ -182,7 +182,7 @@ class CoefficientPad(Draggable):
     # Painting.
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The map, and the knob with lines to both axes."""
+        """Paint the map, and the knob with lines to both axes."""
         if self._map is None or self._map.get_size() != size:
             self._map = self._painted_map(size)
         surface = self._map.copy()
@@ -218,7 +218,7 @@ class CoefficientPad(Draggable):
         surface.blit(picture, place.clamp(self._inside))
 
     def _knob_colour(self) -> Colour:
-        """Of the zone that the knob stands in."""
+        """The colour of the zone that the knob is in."""
         zones = self.zones
         if zones is None or zones.proven is None or not zones.holds:
             return ACCENT
@@ -243,7 +243,7 @@ class CoefficientPad(Draggable):
         return surface
 
     def _paint_layer(self, surface: pygame.Surface, inside: pygame.Rect, layer: SweepLayer) -> None:
-        """What a sweep has measured, with its scale and with the lines up to which a single pass is proven stable."""
+        """Paint what a sweep has measured, its scale, and the lines up to which a single pass is proven stable."""
         px = self.ui.px
         paint_cells(surface, inside, layer, self.state.scale, self.ui)
         surface.set_clip(inside)
@@ -255,7 +255,7 @@ class CoefficientPad(Draggable):
         paint_scale(surface, layer, place, self.ui)
 
     def _paint_reading(self, surface: pygame.Surface) -> None:
-        """The number under the mouse; else how far the runs are, and the number of the knob."""
+        """Write the number under the mouse; else how far the runs are, and the number of the knob."""
         texts = [self._note]
         if self._sweep is not None and self._pointed is not None:
             cs, cd = self._pointed
@@ -313,7 +313,7 @@ class CoefficientPad(Draggable):
         return stiffness, damping
 
     def _paint_axes(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """Lines at round values, numbers beside them where there is room, and what lies across and up."""
+        """Paint lines at round values, numbers beside them where there is room, and the names of both axes."""
         font, px = self.ui.font(NUMBER_SIZE), self.ui.px
         gap, right, top = px(NUMBER_GAP), -inside.width, surface.get_height()
         grid = pygame.Surface(inside.size, pygame.SRCALPHA)
@@ -338,7 +338,7 @@ class CoefficientPad(Draggable):
         surface.blit(name, name.get_rect(topright=(inside.right, inside.bottom + px(17))))
 
     def _paint_body(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """Lines between the words for how far the body sags, the words, and where its wobble begins to swing."""
+        """Paint how far the body sags, as lines with words between them, and where its wobble begins to swing."""
         body = self.state.body
         pixels = pygame.Surface(inside.size, pygame.SRCALPHA)
         stiffness, damping = self._grid(inside)
@@ -396,7 +396,7 @@ class CoefficientPad(Draggable):
         surface.blit(picture, picture.get_rect(center=at).clamp(inside.inflate(-4, -2)))
 
     def _paint_article(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """Where 1/(n+1) ends."""
+        """Paint the line where 1/(n+1) ends."""
         zones = self.zones
         if zones is None or zones.article is None or not self.state.enabled:
             return
@@ -412,7 +412,7 @@ class CoefficientPad(Draggable):
         surface.set_clip(None)
 
     def _paint_words(self, surface: pygame.Surface, inside: pygame.Rect) -> None:
-        """Words on the map: what is proven there."""
+        """Paint the words on the map: what is proven there."""
         label = self.ui.font(LABEL_SIZE)
         if self.zones is None or not self.state.enabled:
             return

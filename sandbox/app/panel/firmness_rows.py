@@ -96,7 +96,7 @@ class FirmnessRows:
             self.menu.offer([ALL_BODIES, *self.bodies], self.body)
 
     def speak_of(self, material: int | None) -> None:
-        """Begin with the one body of several that is of a material, if there is one: the level's text speaks of it."""
+        """Choose the one body of several that is of a material, as the level's text speaks of it, if there is one."""
         names = [name for name in self._subjects if self.material_of(name) == material]
         if len(names) == 1 < len(self._subjects):
             self.body = names[0]
@@ -128,14 +128,14 @@ class FirmnessRows:
         return chosen
 
     def body_of(self, material: int | None) -> str | None:
-        """The body of which what is said of a material is said: the chosen one, else the largest of the material."""
+        """The body that stands for a material: the chosen one, else the largest of the material."""
         if self.body in self._subjects and material in (None, self.material_of(self.body)):
             return self.body
         names = [name for name in self._subjects if material in (None, self.material_of(name))]
         return max(names, key=lambda name: len(self._subjects[name].body.springs), default=None)
 
     def curve_of(self, material: int | None) -> SagCurve | None:
-        """What runs have told by now of the body that is spoken of; what is not known is asked for."""
+        """How a body sags at every firmness, as far as runs have told by now; what is missing is asked for."""
         name = self.body_of(material)
         meter = None if name is None else self._meter(self._subjects[name])
         if meter is None:
@@ -144,7 +144,7 @@ class FirmnessRows:
         return meter.curve
 
     def motion_of(self, name: str) -> BodyMotion | None:
-        """What a body makes of Cs and Cd, as far as runs have told by now; None: nothing is known."""
+        """How a body sags and wobbles by its Cs and Cd, as far as runs have told by now; None: not known."""
         world, subject = self.playback.session.world, self._subjects[name]
         meter = self._meter(subject)
         curve = None if meter is None else meter.curve
@@ -160,7 +160,7 @@ class FirmnessRows:
         return {} if meter is None or meter.curve is None else word_pairs(meter, body)
 
     def subject_of(self, name: str) -> str:
-        """Of what the words for a body are, as a part of a sentence: "the girder's end"."""
+        """The part of a body that the words are about, as a sentence has it: "the girder's end"."""
         return subject_words(name, self._meters.of(self.playback.session.world, self._subjects[name]).stance.support)
 
     def refresh(self, look: bool) -> None:
@@ -228,11 +228,11 @@ class FirmnessRows:
     # Measuring.
 
     def _meter(self, subject: Subject) -> SagMeter | None:
-        """What measures a body; None while kernels are interpreted, which takes too long."""
+        """The meter of a body; None while kernels are interpreted, which takes too long."""
         return self._meters.of(self.playback.session.world, subject) if jit.COMPILED else None
 
     def _read(self, subject: Subject, present: tuple[Floats, Floats]) -> Reading | None:
-        """What there is to show of a body; None where its springs differ."""
+        """The reading of a body that the rows show; None where its springs differ."""
         world = self.playback.session.world
         pair, meter = pair_of(world, subject.body), self._meter(subject)
         if pair is None:
@@ -258,7 +258,7 @@ class FirmnessRows:
         self._ask(WORDS[word])
 
     def type_sag(self, text: str) -> bool:
-        """The sag of the chosen bodies [%]."""
+        """Set the sag of the chosen bodies to a typed one [%]; whether it could be."""
         sag = typed_number(self._say, text, "Sag", 0.0, 100.0 * SAG_LIMIT, unit="%")
         return sag is not None and self._ask(sag / 100.0)
 
@@ -301,14 +301,14 @@ class FirmnessRows:
             self._say(f"{capitalised(names[0])}{more}: {fault}")
 
     def _answer_first(self, subject: Subject, meter: SagMeter, sag: float, gesture: int) -> None:
-        """Give a large body at once, and once, about what is looked for."""
+        """Give a large body, once, about the firmness that is looked for, before the search has ended."""
         firmness = meter.first_answer(sag)
         if firmness is not None and subject.name not in self._answered:
             self._answered.add(subject.name)
             self._give(subject, firmness, gesture)
 
     def _take(self, subject: Subject, meter: SagMeter, sag: float, firmness: Firmness | None, gesture: int) -> str:
-        """Give a body what was found for a sag; what is to be said of it, if it is not that."""
+        """Give a body the firmness found for a sag; gives what to say where that is not the sag."""
         if firmness is None:
             return f"a sag of {per_cent(sag)} cannot be had or measured here. Set Cs and Cd."
         reached = meter.sag_known(meter.springs_of(firmness))
@@ -328,12 +328,12 @@ class FirmnessRows:
         self.playback.submit(SetCoefficients(stiffness=stiffness, damping=damping, material=material), gesture)
 
     def type_frequency(self, text: str) -> bool:
-        """The frequency of their slowest wobble [Hz]; each keeps its damping ratio."""
+        """Set the frequency of the chosen bodies' slowest wobble to a typed one [Hz]; each keeps its damping ratio."""
         hz = typed_number(self._say, text, "Wobble", *FREQUENCY_RANGE)
         return hz is not None and self._set(lambda subject: Firmness(hz=hz, ratio=self._kept(subject)[1]))
 
     def type_ratio(self, text: str) -> bool:
-        """The damping ratio of that wobble; each keeps its frequency."""
+        """Set the damping ratio of the chosen bodies to a typed one, each at its own frequency; whether it could be."""
         ratio = typed_number(self._say, text, "Ratio", 0.0, RATIO_LIMIT)
         if ratio is None:
             return False
@@ -346,7 +346,7 @@ class FirmnessRows:
         return list(self._subjects.values()) if self.body == ALL_BODIES else [self._subjects[self.body]]
 
     def _kept(self, subject: Subject) -> tuple[float | None, float | None]:
-        """Frequency [Hz] and damping ratio of a body, those that can be asked for again."""
+        """Frequency [Hz] and damping ratio that a body has now, to be set again; None where it has none."""
         world = self.playback.session.world
         reading = None if subject.slot is None else read_body(world, subject.body, subject.lowest_mode)
         if reading is None or not math.isfinite(reading.motion.hz):

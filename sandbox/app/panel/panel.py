@@ -11,6 +11,7 @@ from sandbox.app.base.sag_map import own_of, scale_of
 from sandbox.app.base.sag_sentences import SAG_TIP
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
+from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.engineers_rows import EngineersRows
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
 from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
@@ -19,7 +20,6 @@ from sandbox.app.panel.play_rows import PlayRows
 from sandbox.app.panel.readings import number, stability_words
 from sandbox.app.panel.sweeps.pad_maps import PadMaps
 from sandbox.app.panel.sweeps.pad_sweeps import PadSweeps
-from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.field import DASH, MIXED, typed_number
@@ -77,7 +77,7 @@ class Panel:
 
     def __init__(
         self, ui: Ui, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]],
-        top: float, height: float, shape: PanelShape, touch: Callable[[Touching], None],
+        top: float, height: float, shape: PanelShape, set_contacts: Callable[[ContactSettings], None],
     ) -> None:  # fmt: skip
         self._ui, self.playback, self.say, self.choose = ui, playback, say, choose
         self.pad: CoefficientPad | None = None
@@ -95,7 +95,7 @@ class Panel:
         if playback.level.look is not None and playback.level.look.material is not None:
             self.firmness.speak_of(self.material)
         self.engineers = EngineersRows(playback, say, choose["rate"], self.firmness, self._set_both)
-        self.world = WorldRows(playback, say, choose, touch)
+        self.world = WorldRows(playback, say, choose, set_contacts)
         self.play = PlayRows(playback, lambda: choose["melt"](""), self._take_home)
         self.springs = _SpringsSection(self)
         self._offered = self._present()
@@ -135,13 +135,13 @@ class Panel:
             self.rows.section(SECTIONS[name].title, self._open[name], fold, partial(made.build, self.rows))
 
     def _build_sides(self, side: str) -> None:
-        """Which of two runs all below is of."""
+        """Make the buttons that choose which of two runs the panel shows."""
         rows = self.rows
         options = [(name, name, f"Show and set the springs and the solver of {name}") for name in ("A", "B")]
         self.sides = self._ui.choice(rows.row(SIDES_HEIGHT - 8, 8), options, self.choose["side"], rows.back)
         self.sides.show(side)
 
-    def follow(self, playback: Playback) -> None:
+    def attach(self, playback: Playback) -> None:
         """Show and change another run of the same level."""
         self.playback = self.firmness.playback = self.play.playback = playback
         for section in self.sections.values():
@@ -205,7 +205,7 @@ class Panel:
         )
 
     def _limit_label(self) -> TextBlock:
-        """Room for a coefficient's proven limit, on its row."""
+        """Make the label for a coefficient's proven limit, on its row."""
         rows = self.rows
         place = rows.place(MARGIN + 96, 6, INSIDE - ENTRY_WIDTH - 104, ROW - 8)
         return TextBlock(self._ui, place, "", rows.back, 11.0, WARNING)
@@ -298,7 +298,7 @@ class Panel:
             slider.show_state(SliderState(float(np.median(values)), limit, of_level, is_mixed, True, self._scale))
 
     def _own(self) -> tuple[float, float] | None:
-        """Cs and Cd that the level itself gives the material."""
+        """Cs and Cd that the level gives the material, None where it gives none."""
         if self.material is None:
             return None
         return own_of(self.playback.level, self._material_names()[self.material])
@@ -388,7 +388,7 @@ class Panel:
         self.menu.show_chosen(ALL_MATERIALS if material is None else self._material_names()[material])
 
     def _take_home(self) -> None:
-        """Show what the body that is spoken of is in another loop or engine."""
+        """Show code for another loop or engine with the body that the panel is about."""
         # What works out the numbers of other engines, which a window does without until then.
         from sandbox.app.panel.take_home_page import show_take_home
 
@@ -437,7 +437,7 @@ class Panel:
         self._set(value, is_stiffness, self._gesture)
 
     def _move(self, stiffness: float, damping: float) -> None:
-        """Take up what the pad was dragged to."""
+        """Set Cs and Cd to where the pad was dragged."""
         if self._gesture is None:
             self._gesture = self.playback.session.new_gesture()
         self._submit(SetCoefficients(stiffness, damping, self.material), self._gesture)
@@ -490,7 +490,7 @@ class _SpringsSection:
         self._panel.build_springs()
 
     def refresh(self, is_look: bool) -> None:
-        """Nothing: the panel shows what has changed in them."""
+        """Do nothing: the panel itself shows what has changed in these rows."""
 
 
 # Sections that fold, in the order in which the panel shows them: first those that the level's text asks for.

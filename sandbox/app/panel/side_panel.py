@@ -29,6 +29,6 @@ class SidePanel(Protocol):
         """Show and change the springs of a material (index); None = all."""
         ...
 
-    def follow(self, playback: Playback) -> None:
+    def attach(self, playback: Playback) -> None:
         """Show and change another run of the same level."""
         ...

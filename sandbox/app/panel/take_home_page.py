@@ -61,7 +61,7 @@ class _TakeHomePage:
         self._code, self._about = ("", "") if target is None else _texts(take, TARGETS[target])
         high = ASKING_HEIGHT if target is None else TOP + self._content_height() / ui.scale + ROW + 36
         self._height = min(high, HEIGHT, ui.units[1] - 16)
-        self._sheet = ui.open_sheet(is_page=True, again=self._again)
+        self._sheet = ui.open_sheet(is_page=True, reopen=self._reopen)
         left, top = (ui.units[0] - self._width) / 2, (ui.units[1] - self._height) / 2
         self._box = ui.panel(ui.rect(left, top, self._width, self._height), self._sheet, "dialog")
         ui.label(ui.rect(MARGIN, 18, 220, 28), "Take it home" if target is None else target, self._box, "title")
@@ -69,7 +69,7 @@ class _TakeHomePage:
         WordPicker(ui, menu, names, take.body, lambda name: self._go(target, name), self._box)
         (self._ask if target is None else self._answer)()
 
-    def _again(self, ui: Ui) -> None:
+    def _reopen(self, ui: Ui) -> None:
         show_take_home(ui, self._world, self._say, self._take.body, self._target)
 
     def _go(self, target: str | None, body: str | None = None) -> None:

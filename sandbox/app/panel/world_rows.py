@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping, Set
 from dataclasses import replace
 from typing import Any
 
+from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.panel_rows import INSIDE, MARGIN, ROW, PanelRows
 from sandbox.app.panel.readings import with_unit
-from sandbox.app.panel.touching import Touching
 from sandbox.app.panel.view_row import ViewRow
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.field import DASH, typed_number
@@ -23,14 +23,14 @@ GRAVITY_TIP = "How fast things fall; -9.81 is the Earth's gravity, at 0 they flo
 class WorldRows:
     """What the rows show and do; choose: what is done with a strength of the "hand" and with a "view".
 
-    touch: what begins the run again where things touch otherwise.
+    set_contacts: what begins the run again where things touch otherwise.
     """
 
     def __init__(
         self, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]],
-        touch: Callable[[Touching], None],
+        set_contacts: Callable[[ContactSettings], None],
     ) -> None:  # fmt: skip
-        self.playback, self._say, self._choose, self._begin_touching = playback, say, choose, touch
+        self.playback, self._say, self._choose, self._set_contacts = playback, say, choose, set_contacts
 
     def build(self, rows: PanelRows) -> None:
         """Make the widgets."""
@@ -43,7 +43,7 @@ class WorldRows:
         options = [("off", "Off", "Things pass through each other; the run starts over"),
                    ("on", "On", "Things touch each other; the run starts over")]  # fmt: skip
         place = rows.row(ROW - 2, 6, MARGIN + LABEL, INSIDE - LABEL)
-        self.touch = ui.choice(place, options, self._choose_touch, back)
+        self.contacts = ui.choice(place, options, self._choose_contacts, back)
         self.friction, self.bounce = rows.beside(
             (
                 "Friction",
@@ -66,10 +66,10 @@ class WorldRows:
         gravity = self.playback.session.world.settings.gravity
         self.gravity_x.show(f"{gravity[0]:g}")
         self.gravity_y.show(f"{gravity[1]:g}")
-        touching = Touching.of(self.playback.level)
-        self.touch.show("on" if touching.is_on else "off")
-        self.friction.show(f"{touching.friction:g}" if touching.is_on else DASH)
-        self.bounce.show(f"{touching.restitution:g}" if touching.is_on else DASH)
+        contacts = ContactSettings.of(self.playback.level)
+        self.contacts.show("on" if contacts.is_on else "off")
+        self.friction.show(f"{contacts.friction:g}" if contacts.is_on else DASH)
+        self.bounce.show(f"{contacts.restitution:g}" if contacts.is_on else DASH)
         if is_look:
             self._show_energies()
 
@@ -85,21 +85,21 @@ class WorldRows:
         self.energies[0].show_text(f"moving {kinetic}\nin springs {springs}")
         self.energies[1].show_text(f"in height {height}\nlost {lost}")
 
-    def _choose_touch(self, way: str) -> None:
-        self._touch(is_on=way == "on")
+    def _choose_contacts(self, way: str) -> None:
+        self._change_contacts(is_on=way == "on")
 
     def _type_friction(self, text: str) -> bool:
         value = typed_number(self._say, text, "Friction", 0.0, FRICTION_LIMIT)
-        return value is not None and self._touch(is_on=True, friction=value)
+        return value is not None and self._change_contacts(is_on=True, friction=value)
 
     def _type_bounce(self, text: str) -> bool:
         value = typed_number(self._say, text, "Bounce", 0.0, 1.0)
-        return value is not None and self._touch(is_on=True, restitution=value)
+        return value is not None and self._change_contacts(is_on=True, restitution=value)
 
-    def _touch(self, **changes: Any) -> bool:
-        before = Touching.of(self.playback.level)
+    def _change_contacts(self, **changes: Any) -> bool:
+        before = ContactSettings.of(self.playback.level)
         if replace(before, **changes) != before:
-            self._begin_touching(replace(before, **changes))
+            self._set_contacts(replace(before, **changes))
         return False
 
     def _type_gravity(self, text: str, axis: int) -> bool:

@@ -36,19 +36,19 @@ class Hands(Protocol):
     """What takes a part from its card."""
 
     def take(self, part: PartFile, by_key: bool) -> None:
-        """Take it up; by_key: whether a key did it."""
+        """Take the part up; by_key: whether a key did it."""
         ...
 
     def carry(self, pixel: Pixel) -> None:
-        """Show it at a pixel while the button is held."""
+        """Show the part at a pixel while the button is held."""
         ...
 
     def drop(self, pixel: Pixel) -> None:
-        """Let it go at a pixel."""
+        """Let the part go at a pixel."""
         ...
 
     def go(self, card: "PartCard", by: int) -> None:
-        """Give the keyboard to the card that many further."""
+        """Give the keyboard to the card `by` places further."""
         ...
 
 

@@ -36,12 +36,12 @@ Take = Callable[[Level, bool], object]
 class PartPage:
     """A modal page; what cannot join the world is pale, and says why where it is pointed at.
 
-    take: called with the part that is chosen, and whether by a key. again: opens the page again, scrolled to an offset
+    take: called with the part that is chosen, and whether by a key. reopen: opens the page again, scrolled to an offset
     [pixels]. last_taken: the part that Enter takes; else the first one that can be had.
     """
 
     def __init__(
-        self, ui: Ui, world: World, take: Take, again: Callable[[float], object], offset: float = 0.0,
+        self, ui: Ui, world: World, take: Take, reopen: Callable[[float], object], offset: float = 0.0,
         last_taken: Level | None = None,
     ) -> None:  # fmt: skip
         self._ui, self._world, self._take = ui, world, take
@@ -49,7 +49,7 @@ class PartPage:
         self._width = width - 2 * MARGIN - 12
         least = LEAST_CARD if height >= LOW else LEAST_OF_LOW
         self._columns = max(2, int((self._width + GAP) // (least + GAP)))
-        self.sheet = ui.open_sheet(is_page=True, again=lambda _: again(self.area.offset))
+        self.sheet = ui.open_sheet(is_page=True, reopen=lambda _: reopen(self.area.offset))
         place = ui.rect((ui.units[0] - width) / 2, (ui.units[1] - height) / 2, width, height)
         box = ui.panel(place, self.sheet, "dialog")
         ui.label(ui.rect(MARGIN, 16, self._width, 28), "Parts", box, "title")
@@ -75,7 +75,7 @@ class PartPage:
             self._ui.show_focus()
 
     def _add_section(self, title: str, parts: list[PartFile], y: float) -> float:
-        """Cards under a heading from a place [layout units] on; where they end."""
+        """Make cards under a heading from a place [layout units] on; gives their end."""
         ui, content = self._ui, self.area.content
         TextBlock(ui, ui.rect(3, y, self._width, HEADING), title, content, 14.0, TEXT, is_bold=True)
         y += HEADING
@@ -123,13 +123,13 @@ class PartPage:
             self._take(part.level, by_key)
 
     def carry(self, pixel: Pixel) -> None:
-        """Nothing is dragged off the page."""
+        """Do nothing: no part is dragged off this page."""
 
     def drop(self, pixel: Pixel) -> None:
-        """Nothing is dragged off the page."""
+        """Do nothing: no part is dragged off this page."""
 
     def go(self, card: PartCard, by: int) -> None:
-        """Give the keyboard to the card that many further."""
+        """Give the keyboard to the card `by` places further."""
         index = self.cards.index(card) + by
         if 0 <= index < len(self.cards):
             self._ui.focus_on(self.cards[index])
@@ -148,7 +148,7 @@ def refusal(part: PartFile, world: World) -> str:
 
 
 def _said_of(card: PartCard) -> tuple[str, Colour]:
-    """What is said of a part, and in which colour."""
+    """The line about a part, and its colour."""
     level = card.part.level
     if card.refusal or level is None:
         return card.refusal or card.part.fault, WARNING

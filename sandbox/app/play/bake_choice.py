@@ -47,7 +47,7 @@ def ask_to_keep(app: Application) -> None:
         if of_document:
             edit(label, keepers)
         else:
-            app.documents.take_over(playback.level, source, lambda: edit(label, keepers))
+            app.documents.edit_run(playback.level, source, lambda: edit(label, keepers))
 
     choices: list[tuple[str, Callable[[], object]]] = [
         (name, lambda name=name, keeper=keeper: keep(f"Keep {name[0].lower()}{name[1:]}", (keeper,)))  # type: ignore[misc]

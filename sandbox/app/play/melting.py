@@ -13,7 +13,7 @@ def is_melted(playback: Playback) -> bool:
 
 
 def toggle_melt(playback: Playback) -> str:
-    """Solve the springs the other way from now on; what is to be said of it."""
+    """Solve springs one by one, which melts what is stiff, or all at once again; gives a line that says so."""
     before = is_melted(playback)
     duration = round(RAMP_TIME * playback.session.world.settings.tick_rate)
     playback.submit(SetSolver(solver="direct" if before else "single_pass", duration=duration))

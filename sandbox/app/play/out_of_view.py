@@ -24,11 +24,11 @@ FROM_TOP = 0.2
 class OutOfView:
     """Looks at a world after its ticks.
 
-    lost: how many bodies have left the picture. is_over: whether they are nearly all that moves.
+    lost_count: how many bodies have left the picture. is_over: whether they are nearly all that moves.
     """
 
     def __init__(self) -> None:
-        self.lost, self.is_over = 0, False
+        self.lost_count, self.is_over = 0, False
         self._tick = -EVERY
         # Since which tick a body is out of the picture, by its first particle.
         self._since: dict[int, int] = {}
@@ -46,7 +46,7 @@ class OutOfView:
             body for first, body in bodies.items()
             if world.tick - self._since[first] >= rate * (ABOVE if _falls_back(world, body, pictures[0]) else AWAY)
         ]  # fmt: skip
-        self.lost = len(gone)
+        self.lost_count = len(gone)
         moving = float(world.mass[shown_particles(world) & (world.inverse_mass > 0.0)].sum())
         self.is_over = sum(float(world.mass[body].sum()) for body in gone) > GONE * moving
 

@@ -19,11 +19,11 @@ from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
 from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.graphs.graph_dock import GraphDock
+from sandbox.app.panel.contacts import ContactSettings, restart_with_contacts
 from sandbox.app.panel.panel import MORE, SECTIONS, Panel, PanelShape
 from sandbox.app.panel.panel_rows import PANEL_WIDTH
 from sandbox.app.panel.rate_choice import ask_for_pace
 from sandbox.app.panel.side_panel import ROOM_FOR_PANEL, SidePanel
-from sandbox.app.panel.touching import Touching, begin_touching
 from sandbox.app.parts.part_page import PartPage
 from sandbox.app.play.bake_choice import ask_to_keep
 from sandbox.app.play.drive_keys import DriveKeys
@@ -106,7 +106,7 @@ class PlayScreen:
         self.troubles = Troubles(app, lambda: self.stage, self.say)
         self._legend = Legend()
         self.actions = self._actions()
-        app.follow(playback, self.can_cancel)
+        app.show_replay_progress(playback, self.can_cancel)
         before = app.scenes.begin(playback, source)
         # Of a pair one run alone could be brought back.
         self.earlier = EarlierRuns(before if self.can_cancel else None, self._show_run, self.say)
@@ -167,7 +167,7 @@ class PlayScreen:
 
     @property
     def _below(self) -> float:
-        """What graphs and timeline take of the height [layout units]."""
+        """The height that graphs and timeline take [layout units]."""
         return self.time.height + self.graphs.height(self._ui)
 
     @property
@@ -197,8 +197,8 @@ class PlayScreen:
         self.troubles.build(ui, left, BAR_HEIGHT + below)
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
         place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
-        self.again = ui.button(place, "Again", self._reset, style="primary", tip=tip_of("reset", "play"))
-        self.again.visible = False
+        self.restart_button = ui.button(place, "Again", self._reset, style="primary", tip=tip_of("reset", "play"))
+        self.restart_button.visible = False
         # Beside a panel in a narrow window they have no room: they lie below it.
         wide, below_panel = self.area[2] / ui.scale, 0.0
         if wide < ROOM_BESIDE_PANEL:
@@ -218,11 +218,11 @@ class PlayScreen:
                 self.panel.choose_material(before.material)
 
     def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
-        return Panel(ui, self.playback, self.say, choices, BAR_HEIGHT, height, self.shape, self.touch)
+        return Panel(ui, self.playback, self.say, choices, BAR_HEIGHT, height, self.shape, self.set_contacts)
 
-    def touch(self, touching: Touching) -> None:
-        """Begin the run again with things that touch so."""
-        begin_touching(self._app, self.playback, touching, self.of_document)
+    def set_contacts(self, contacts: ContactSettings) -> None:
+        """Begin the run again with these contacts."""
+        restart_with_contacts(self._app, self.playback, contacts, self.of_document)
 
     def _set_by(self, way: str) -> None:
         """Show the pad or the sliders from now on, in later runs too."""
@@ -241,10 +241,10 @@ class PlayScreen:
             self.panel.choose_material(None if material is None else names.index(material))
 
     def _follow(self) -> None:
-        self.say(self.stage.follow(next(reversed(self.graphs.picked), None)))
+        self.say(self.stage.follow_with_camera(next(reversed(self.graphs.picked), None)))
 
     def toggle_melt(self) -> None:
-        """Solve springs one by one, or all at once again."""
+        """Solve springs one by one, which melts what is stiff, or all at once again."""
         self.say(toggle_melt(self.playback))
 
     def _ask_rate(self, typed: str) -> None:
@@ -274,7 +274,7 @@ class PlayScreen:
             "hand": self._next_strength,
             "melt": self.toggle_melt,
             "follow": self._follow,
-            "touching": lambda: self.touch(Touching.of(self.playback.level).other),
+            "touching": lambda: self.set_contacts(ContactSettings.of(self.playback.level).other),
             **self.troubles.actions,
             "undo": lambda: self.earlier.undo(self.playback),
             "redo": lambda: self.earlier.redo(self.playback),
@@ -303,7 +303,7 @@ class PlayScreen:
         }
 
     def _edit(self) -> None:
-        """Back to the document that is played, or edit the level of the run."""
+        """Go back to the document that is played, or edit the level of the run."""
         documents = self._app.documents
         if self.of_document:
             documents.back()
@@ -319,7 +319,7 @@ class PlayScreen:
         self._app.rebuild()
 
     def _take_up(self, tool: PlayTool) -> None:
-        """Take up a tool; again, with one of the strip: back to the hand."""
+        """Take up a tool; one of the strip that is in use already gives way to the hand."""
         is_on_strip = tool.name in NAMES
         if is_on_strip and self.stage.tool_name == tool.name:
             self.stage.choose_tool(HAND_TOOL)
@@ -355,7 +355,7 @@ class PlayScreen:
             self.camera.zoom_at(self.stage.cursor, steps)
 
     def open_menu(self, pixel: Pixel) -> None:
-        """Nothing: a run has no menu."""
+        """Open nothing: a run has no menu."""
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Make what is dropped larger, or zoom."""
@@ -393,12 +393,12 @@ class PlayScreen:
         self._follow_run()
 
     def _follow_run(self) -> None:
-        """Let all that is about the run be about the one that is shown now."""
+        """Let troubles, replay bar, kept runs and panel be about the run that is shown now."""
         self.troubles.begin()
-        self._app.follow(self.playback, self.can_cancel)
+        self._app.show_replay_progress(self.playback, self.can_cancel)
         self._app.scenes.begin(self.playback, self.source)
         if self.panel is not None:
-            self.panel.follow(self.playback)
+            self.panel.attach(self.playback)
 
     def _toggle_panel(self) -> None:
         self._wants_panel = not self.show_panel
@@ -505,13 +505,13 @@ class PlayScreen:
         self.graphs.update(times["ticks"][-1] / ticks if ticks > 0 else None, frame)
 
     def _tell(self) -> None:
-        """Say what the run has to say."""
+        """Show the messages of the run, each once."""
         for message in self.playback.messages:
             self.say(message)
         self.playback.messages.clear()
 
     def _show_again(self) -> None:
-        self.again.visible = self.troubles.out_of_view.is_over
+        self.restart_button.visible = self.troubles.out_of_view.is_over
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world, what hands pull with, and the keys that the level has."""
@@ -564,7 +564,7 @@ class PlayScreen:
         return self.playback.level.name
 
     def states(self) -> list[str]:
-        """Tick and state of the run."""
+        """State words for the window's title: tick, speed, hands, recording, replay."""
         words = [f"tick {self.playback.session.tick}", self._state()]
         if self.stage.drag.holds:
             words.append(f"holding {len(self.stage.drag.holds)}")

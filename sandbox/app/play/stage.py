@@ -132,8 +132,8 @@ class Stage:
         of_it = (k for k, name in enumerate(names) if name == look.follow or name.startswith(f"{look.follow}."))
         self.following.begin(next(of_it, None))
 
-    def follow(self, picked: int | None) -> str:
-        """Let the camera go along with what is held, pointed at, picked or driven, or stand; what is to be said."""
+    def follow_with_camera(self, picked: int | None) -> str:
+        """Let the camera follow what is held, pointed at, picked or driven, or stand; gives a line that says so."""
         if self.following.particle is not None:
             self.following.begin(None)
             return "The camera stands still."
@@ -172,7 +172,7 @@ class Stage:
 
     @property
     def fitted_box(self) -> Box | None:
-        """What the last fit was of, while the camera is as it left it."""
+        """The box [m] of the last fit, while the camera is as it left it."""
         return self._box if self._is_fitted else None
 
     @property
@@ -195,8 +195,8 @@ class Stage:
         """Whether a pixel shows the world."""
         return pygame.Rect(self.camera.viewport).collidepoint(pixel)
 
-    def share(self, other: "Stage") -> None:
-        """Have the tools and the overlays that another stage has."""
+    def share_tools(self, other: "Stage") -> None:
+        """Use the tools, the hand and the overlays of another stage."""
         self.tools, self.tool_name = other.tools, other.tool_name
         self.drag = other.drag
         self.renderer.overlays.shown = other.renderer.overlays.shown
@@ -225,7 +225,7 @@ class Stage:
         self.renderer.overlays.shown ^= {name}
 
     def let_go(self) -> None:
-        """Give up what the tools do and hold."""
+        """Let go all that tools hold, and give up what they are at."""
         for tool in self.tools.values():
             self.playback.respond(tool.cancel())
         self.tool_name = HAND_TOOL
@@ -279,7 +279,7 @@ class Stage:
     # A frame.
 
     def pulls(self) -> list[Pull]:
-        """What the hands pull with."""
+        """How hard each hand pulls, and where."""
         world = self.playback.session.world
         return pulls_of(world) if world.any_held() else []
 

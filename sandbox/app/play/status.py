@@ -42,7 +42,7 @@ class Notice:
 
 
 class StatusLine:
-    """The line at the bottom, and the notices above it."""
+    """The status line at the bottom of the window, and the notices above it."""
 
     def __init__(self, ui: Ui, notices: deque[Notice]) -> None:
         self.ui = ui
@@ -194,13 +194,13 @@ def draw_work(surface: pygame.Surface, ui: Ui, share: float, text: str, pointer:
 
 
 def counted_parts(particles: int, springs: int) -> list[tuple[str, Colour]]:
-    """How many particles and springs there are."""
+    """Parts of the status line with the counts of particles and springs."""
     counts = {"particle": particles, "spring": springs}
     return [(f"{count:,} {thing}{'' if count == 1 else 's'}", MUTED) for thing, count in counts.items()]
 
 
 def warnings(non_finite: int, behind: bool) -> list[tuple[str, Colour]]:
-    """What is wrong with a run; non_finite: particles that are nowhere."""
+    """Parts of the status line that warn of a run; non_finite: how many particles are nowhere."""
     parts: list[tuple[str, Colour]] = []
     if non_finite:
         verb = "particle is" if non_finite == 1 else "particles are"
@@ -211,7 +211,7 @@ def warnings(non_finite: int, behind: bool) -> list[tuple[str, Colour]]:
 
 
 def rate_parts(figures: Figures) -> list[tuple[str, Colour]]:
-    """How fast ticks and frames come, and how long one takes."""
+    """Parts of the status line with ticks and frames a second, and the work of each [ms]."""
     return [
         (f"{figures.ticks:.0f} ticks/s", MUTED),
         (f"{figures.frames:.0f} frames/s", MUTED),
@@ -220,7 +220,7 @@ def rate_parts(figures: Figures) -> list[tuple[str, Colour]]:
 
 
 def motor_parts(readings: list[MotorReading]) -> list[tuple[str, Colour]]:
-    """What motors give, in figures."""
+    """Parts of the status line with the torque that motors give."""
     if len(readings) > NAMED_MOTORS:
         full = sum(reading.at_limit for reading in readings)
         told = f"{full} at their limit" if full else "none at its limit"

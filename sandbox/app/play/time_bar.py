@@ -126,7 +126,7 @@ class TimeBar:
             self._app.rebuild()
 
     def _hold(self, held: bool) -> None:
-        """Let the run rest while the mouse holds the knob."""
+        """Pause the run while the mouse holds the knob."""
         clock = self._playback().clock
         if held:
             self._was_paused = clock.paused

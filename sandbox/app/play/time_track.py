@@ -81,7 +81,7 @@ class TimeTrack(Widget):
         return True
 
     def on_drag(self, at: Pixel) -> None:
-        """Go there, or end the range there."""
+        """Go to the tick under the mouse, or end the range there."""
         tick = self._tick_at(at)
         if self._held:
             self.pointed = tick
@@ -90,18 +90,18 @@ class TimeTrack(Widget):
             self.travel.set_span(self._span_from, tick)
 
     def on_release(self, at: Pixel) -> None:
-        """Stay there."""
+        """Let the knob go: the run stays at its tick."""
         if self._held:
             self._hold(False)
         self._held, self._span_from = False, None
         self.on_hover()
 
     def on_move(self, at: Pixel) -> None:
-        """Tell what is there."""
+        """Take note of the tick under the mouse, of which the label tells."""
         self.pointed = self._tick_at(at)
 
     def on_hover(self) -> None:
-        """Tell nothing while the mouse is elsewhere."""
+        """Forget that tick once the mouse is elsewhere."""
         if not (self.hovered or self._held):
             self.pointed = None
 

@@ -30,10 +30,10 @@ class Troubles:
         }  # fmt: skip
 
     def begin(self) -> None:
-        """Look at another run."""
+        """Forget all of the run before, and look at another."""
         self.stuck, self.out_of_view = StuckBodies(), OutOfView()
         # What was last said of what broke, and of what went out of bounds.
-        self.told = ["", ""]
+        self._last_said = ["", ""]
 
     def build(self, ui: Ui, left: float, top: float) -> None:
         """Make the buttons, from a place on [layout units]."""
@@ -48,8 +48,8 @@ class Troubles:
         words = {}
         if self.stuck.particles:
             words["free"] = "Free it"
-        if self.out_of_view.lost:
-            words["bring_back"] = f"Bring back {self.out_of_view.lost}"
+        if self.out_of_view.lost_count:
+            words["bring_back"] = f"Bring back {self.out_of_view.lost_count}"
         if self._details:
             words["details"] = "Details"
         self.remedies.show(words)
@@ -76,7 +76,7 @@ class Troubles:
 
     @property
     def _pictures(self) -> list[Box]:
-        """What is seen at first [m], and what is seen now."""
+        """The boxes [m] that are seen at first, and now."""
         camera = self._stage().camera
         return [camera.picture_of(self._stage().first_box), camera.picture]
 
@@ -101,12 +101,12 @@ class Troubles:
         """Say what broke, and what was stopped; a line that has grown takes the place of what it was."""
         playback = self._stage().playback
         told = [playback.breaks.text, playback.stopped.text(playback.session.tick)]
-        for text, before in zip(told, self.told, strict=True):
+        for text, before in zip(told, self._last_said, strict=True):
             if text != before:
                 self._app.take_back(before)
                 if text:
                     self._say(text)
-        self.told = told
+        self._last_said = told
 
     @property
     def _details(self) -> list[str]:

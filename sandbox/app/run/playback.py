@@ -60,7 +60,7 @@ class Listener(Protocol):
         ...
 
     def forget(self) -> None:
-        """Compare with nothing that was before: history is another."""
+        """Compare the next tick with nothing that was before, as the history is another one."""
         ...
 
 
@@ -180,7 +180,7 @@ class Playback:
         session.submit(self._taking_time(command), gesture)
 
     def _taking_time(self, command: Command) -> Command:
-        """The command, which takes its time if it is one of RAMPED without a duration of its own."""
+        """The command; one of RAMPED without a duration gets the usual one."""
         if not isinstance(command, RAMPED) or command.duration:
             return command
         return replace(command, duration=round(RAMP_TIME * self.session.world.settings.tick_rate))

@@ -52,7 +52,7 @@ class Travel:
         return None
 
     def marks(self) -> list[Mark]:
-        """What happened, in order."""
+        """Marks of commands, breaks, bookmarks and branches, in the order of their ticks."""
         session = self._session
         commands = [Mark(entry.tick, "command", entry.command.type.replace("_", " ")) for entry in session.gestures]
         breaks = [Mark(tick, "break", "break") for tick in session.breaks]

@@ -40,7 +40,7 @@ class SettingsSheet:
         width, height = ui.units
         box_width, box_height = min(WIDTH, width - 16), min(HEIGHT, height - 16)
         self._width = box_width - 2 * MARGIN - 12
-        self._sheet = ui.open_sheet(is_page=True, again=self._again)
+        self._sheet = ui.open_sheet(is_page=True, reopen=self._reopen)
         place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
         box = ui.panel(place, self._sheet, "dialog")
         ui.label(ui.rect(MARGIN, 16, 220, 28), "Settings", box, "title")
@@ -64,7 +64,7 @@ class SettingsSheet:
         ui.focus_on(done)
         ui.focus_at(focus)
 
-    def _again(self, ui: Ui) -> None:
+    def _reopen(self, ui: Ui) -> None:
         SettingsSheet(ui, self._chosen, self._page, self._note.text, self.area.offset, self._ui.focus_place)
 
     def _turn(self, page: str) -> None:
@@ -85,7 +85,7 @@ class SettingsSheet:
         self._show_anew()
 
     def _show_anew(self) -> None:
-        # What was chosen may have laid all widgets out again, and this page with them, by `_again`.
+        # What was chosen may have laid all widgets out again, and this page with them, by `_reopen`.
         if self._sheet.is_there:
             focus = self._ui.focus_place
             self._sheet.remove()
@@ -110,7 +110,7 @@ class SettingsSheet:
                 self._add_amount(setting)
 
     def _row(self, label: str, tip: str) -> tuple[float, float]:
-        """The label of a row and what is said of it; left edge and width of the place for its buttons."""
+        """Make the label of a row and the line about it; gives left edge and width of the place for its buttons."""
         ui, content = self._ui, self.area.content
         is_beside = self._width >= ROOM_BESIDE
         wide = self._width * LABEL_SHARE - 12 if is_beside else self._width

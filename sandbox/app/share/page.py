@@ -77,15 +77,15 @@ class SharePage:
 
 
 class ShareForm:
-    """What is on the page at one step of sharing, in one window; again: called where it is laid out again."""
+    """What is on the page at one step of sharing, in one window; reopen: called where it is laid out again."""
 
-    def __init__(self, ui: Ui, sharing: Sharing, leave: Callable[[], None], again: Callable[[Ui], None]) -> None:
+    def __init__(self, ui: Ui, sharing: Sharing, leave: Callable[[], None], reopen: Callable[[Ui], None]) -> None:
         self._ui, self._sharing, self._leave = ui, sharing, leave
         self.step = sharing.step
         self._seen: tuple[object, ...] = ()
         width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
         self._width, self._height = width, height
-        self.sheet: Any = ui.open_sheet(leave, is_page=True, again=again)
+        self.sheet: Any = ui.open_sheet(leave, is_page=True, reopen=reopen)
         left, top = ((room - side) / 2 for room, side in zip(ui.units, (width, height), strict=True))
         self._box = ui.panel(ui.rect(left, top, width, height), self.sheet, "dialog")
         film = sharing.film
@@ -248,7 +248,7 @@ class ShareForm:
 
 
 def _title(film: Film | FilmPair | None) -> str:
-    """How much there is to share, and whether it is the latest."""
+    """The page's title: how many seconds there are to share, and whether they are the latest."""
     if film is None or film.seconds < 2.0:
         return "Share"
     return f"Share some of {'the last ' if film.is_latest else ''}{film.seconds:.0f} seconds"

@@ -55,7 +55,7 @@ class Device:
             self._thread.join()
 
     def look_again(self) -> None:
-        """Look for a device once more at the next `open`: one has come, or gone."""
+        """Search for a device again at the next `open`, as one was plugged in or taken out."""
         if self._thread is None or not self._thread.is_alive():
             self._lose()
             self._has_tried = False

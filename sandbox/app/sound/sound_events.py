@@ -58,7 +58,7 @@ class _Touching(NamedTuple):
 
 @dataclass(eq=False)
 class _Before:
-    """What a tick is compared with."""
+    """The state that the next tick is compared with."""
 
     tick: int
     velocity: Floats
@@ -68,7 +68,7 @@ class _Before:
 
 
 class _Onsets:
-    """Tells what is new, for each body, from what goes on."""
+    """Tells for which bodies a measure has just risen well above its usual value."""
 
     def __init__(self, count: int) -> None:
         self._usual = np.full(count, np.inf)
@@ -94,7 +94,7 @@ class SoundEvents:
         self._owners: tuple[int, bytes] | None = None
 
     def forget(self) -> None:
-        """Compare with nothing: time has jumped."""
+        """Compare the next tick with nothing, as time has jumped."""
         self._before = None
         self.heard.clear()
 

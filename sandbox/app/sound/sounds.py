@@ -27,7 +27,7 @@ class SoundingRun(Protocol):
 
     @property
     def playback(self) -> Playback:
-        """The run."""
+        """The run whose sounds are played."""
         ...
 
     @property
@@ -84,7 +84,7 @@ class Sounds:
             playback.listener = self._ear
 
     def look_again(self) -> None:
-        """Look for a device once more: one has come, or gone."""
+        """Search for a sound device again, as one was plugged in or taken out."""
         self.device.look_again()
 
     def close(self) -> None:

@@ -36,7 +36,7 @@ class BarTitle(Widget):
         self.repaint()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """The lines, in the middle of the height."""
+        """Paint the lines of the name, in the middle of the height."""
         surface = pygame.Surface(size, pygame.SRCALPHA)
         font = self.ui.font(self._size, True)
         high = line_height(font)

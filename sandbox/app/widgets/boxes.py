@@ -55,7 +55,7 @@ class CheckBox(Pressable):
         return surface
 
     def press(self) -> None:
-        """Tick it, or no longer."""
+        """Tick the box, or untick it."""
         self._toggle(not self.state)
 
 
@@ -82,11 +82,11 @@ class KeyBox(Pressable):
         self.repaint()
 
     def on_blur(self) -> None:
-        """Listen no longer."""
+        """Wait for no key any more."""
         self._listen(False)
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:
-        """A key's cap, or what to do."""
+        """Paint the key's cap, or a hint of what to do."""
         ui, look = self.ui, BoxLook(FIELD, ACCENT if self.listening else LINE, TEXT)
         surface = box(size, look, ui.px(6), 1).copy()
         has_key = self.key in KEYS.values() and not self.listening
@@ -102,7 +102,7 @@ class KeyBox(Pressable):
         return surface
 
     def press(self) -> None:
-        """Listen."""
+        """Wait for the next key."""
         self.ui.focus_on(self)
         self._listen(True)
 
@@ -161,7 +161,7 @@ class Scrub(Widget):
         return True
 
     def on_drag(self, at: Pixel) -> None:
-        """Count by steps."""
+        """Change the value by a step for every so many pixels."""
         step = self.ui.px(SCRUB_STEP)
         steps = int((at[0] - self._from) / step)
         if steps:
@@ -169,6 +169,6 @@ class Scrub(Widget):
             self._turn(steps)
 
     def on_release(self, at: Pixel) -> None:
-        """End it."""
+        """End the drag."""
         self.repaint()
         self._done()

@@ -37,7 +37,7 @@ class Button(Written):
 
     @property
     def font(self) -> pygame.font.Font:
-        """What it is written in."""
+        """The font of its text."""
         return self.ui.font(self._style.size)
 
     @property
@@ -59,7 +59,7 @@ class Button(Written):
 
     @property
     def state(self) -> State:
-        """How it looks now."""
+        """The state that says how the button looks now."""
         if not self.is_enabled:
             return "disabled"
         if self.hovered and self.ui.held is self:
@@ -86,18 +86,18 @@ class Button(Written):
         return surface
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
-        """BoxLook pressed."""
+        """Show the button pressed."""
         self.repaint()
         return True
 
     def on_release(self, at: Pixel) -> None:
-        """Act, if the mouse is still on it."""
+        """Call action(), if the mouse is still on the button."""
         self.repaint()
         if self.seen.collidepoint(at):
             self.action()
 
     def press_key(self, event: pygame.event.Event) -> bool:
-        """Act by Enter and Space."""
+        """Call action() by Enter or Space."""
         if event.key not in (*ENTER_KEYS, pygame.K_SPACE):
             return False
         self.action()

@@ -60,7 +60,7 @@ class Dial(Draggable):
         return value[0] / longest, value[1] / longest
 
     def on_drag(self, at: Pixel) -> None:
-        """Set what lies under the mouse, or what is marked near it."""
+        """Set the value under the mouse, or a marked one near it."""
         x, y = ((at[0] - self.rect.centerx) / self._radius, (self.rect.centery - at[1]) / self._radius)
         x, y = (0.0 if abs(along) < NEAR else along for along in (x, y))
         share = min(math.hypot(x, y), 1.0)
@@ -74,7 +74,7 @@ class Dial(Draggable):
         self._changed(x, y)
 
     def on_release(self, at: Pixel) -> None:
-        """What is set counts."""
+        """Call done(): the drag has ended."""
         self._done()
 
     def press_key(self, event: pygame.event.Event) -> bool:

@@ -11,7 +11,7 @@ from sandbox.app.widgets.picker import MENU_ROWS
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.texts import TextBlock, text_height
-from sandbox.app.widgets.ui import Again, Ui
+from sandbox.app.widgets.ui import Reopen, Ui
 
 # Sizes in layout units.
 WIDTH = 560.0
@@ -31,13 +31,13 @@ Choice = tuple[str, Callable[[], object]]
 
 
 def _box(
-    ui: Ui, title: str, height: float, again: Again, is_question: bool = False,
+    ui: Ui, title: str, height: float, reopen: Reopen, is_question: bool = False,
     widest: float = WIDTH, *, is_page: bool = False,
 ) -> tuple[Any, Any, float]:  # fmt: skip
     """A modal box with a title in the middle: the sheet, the box and its width in layout units."""
     width, tall = ui.units
     box_width = min(widest, width - 40)
-    sheet = ui.open_sheet(again=again, is_question=is_question, is_page=is_page)
+    sheet = ui.open_sheet(reopen=reopen, is_question=is_question, is_page=is_page)
     box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "dialog")
     ui.label(ui.rect(MARGIN, MARGIN - 6, box_width - 2 * MARGIN, 28), title, box, "title")
     return sheet, box, box_width
@@ -56,10 +56,10 @@ def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None
         if other is not None:
             other[1]()
 
-    def again(other_ui: Ui) -> None:
+    def reopen(other_ui: Ui) -> None:
         show_lines(other_ui, title, lines, other)
 
-    sheet, box, width = _box(ui, title, height, again)
+    sheet, box, width = _box(ui, title, height, reopen)
     place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN + BAR_WIDTH, height - MARGIN * 2 - 84)
     area = ScrollArea(ui, place, box)
     TextBlock(ui, pygame.Rect(0, 0, inside, tall), text, area.content, 13.0, TEXT)
@@ -113,10 +113,10 @@ def ask(
         note.show_text(fault)
         return False
 
-    def again(other_ui: Ui) -> None:
+    def reopen(other_ui: Ui) -> None:
         ask(other_ui, title, hint, field.typed, verb, answer, other, then)
 
-    sheet, box, width = _box(ui, title, height, again)
+    sheet, box, width = _box(ui, title, height, reopen)
     inside = width - 2 * MARGIN
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 28, inside, said), hint, box, HINT_TEXT)
     top = MARGIN + 32 + said
@@ -148,11 +148,11 @@ def choose(
         sheet.remove()
         action()
 
-    def again(other_ui: Ui) -> None:
+    def reopen(other_ui: Ui) -> None:
         choose(other_ui, title, text, choices, columns, is_question=is_question)
 
     scrolls = tall < rows * CHOICE_ROW
-    sheet, box, width = _box(ui, title, height, again, is_question, widest, is_page=scrolls)
+    sheet, box, width = _box(ui, title, height, reopen, is_question, widest, is_page=scrolls)
     inside = width - 2 * MARGIN
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 32, inside, lines * LINE_HEIGHT + 4), text, box, 13.0, TEXT)
     place = ui.rect(MARGIN - RING, MARGIN + 40 + lines * LINE_HEIGHT - RING, inside + 2 * RING + BAR_WIDTH, tall)
@@ -184,10 +184,10 @@ def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], ob
         sheet.remove()
         take(index)
 
-    def again(other_ui: Ui) -> None:
+    def reopen(other_ui: Ui) -> None:
         choose_row(other_ui, title, rows, take)
 
-    sheet, box, width = _box(ui, title, height, again)
+    sheet, box, width = _box(ui, title, height, reopen)
     listed = RowList(ui, ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, tall), do, box, at_once=False)
     listed.show_rows(rows, None)
     ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", sheet.remove, box, style="quiet")
@@ -213,11 +213,11 @@ def fill_in(
         else:
             note.show_text(fault)
 
-    def again(other_ui: Ui) -> None:
+    def reopen(other_ui: Ui) -> None:
         typed = [(label, entry.typed) for (label, _), entry in zip(fields, entries, strict=True)]
         fill_in(other_ui, title, hint, typed, verb, answer)
 
-    sheet, box, width = _box(ui, title, height, again)
+    sheet, box, width = _box(ui, title, height, reopen)
     inside = width - 2 * MARGIN
     TextBlock(ui, ui.rect(MARGIN, MARGIN + 28, inside, said), hint, box, HINT_TEXT)
     entries = []

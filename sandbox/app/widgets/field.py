@@ -48,7 +48,7 @@ class Field(Widget):
         super().__init__(ui, rect, parent)
         self.commit, self.text, self.limit, self.hint = commit, text, limit, hint
         self.enter: Callable[[str], object] | None = None
-        self.turn: Callable[[int], object] | None = None
+        self.step_value: Callable[[int], object] | None = None
         self._line = _Line(text, 0, 0)
         self._before: list[_Line] = []
         self._after: list[_Line] = []
@@ -106,10 +106,10 @@ class Field(Widget):
 
     def step(self, by: int) -> bool:
         """Take what was typed, and change the value by a step; whether it has steps."""
-        if self.turn is None:
+        if self.step_value is None:
             return False
         self.finish()
-        self.turn(by)
+        self.step_value(by)
         return True
 
     def revert(self) -> None:
@@ -146,7 +146,7 @@ class Field(Widget):
     # The keyboard.
 
     def on_focus(self) -> None:
-        """Begin, with all selected."""
+        """Begin to type, with all of the text selected."""
         self.select(0, len(self.typed))
         ratio = self.ui.pixel_ratio
         corner, size = (tuple(round(at / per) for at, per in zip(pair, ratio, strict=True))
@@ -223,7 +223,7 @@ class Field(Widget):
             self._change(_Line(self.typed[:low] + self.typed[high:], low, low))
 
     def _edit(self, key: int, with_shift: bool) -> bool:
-        """Do what a key means with Ctrl; whether it means anything."""
+        """Do what a key with Ctrl means for the text; whether it means anything."""
         low, high = self.selected
         if key == pygame.K_a:
             self.select(0, len(self.typed))
@@ -252,7 +252,7 @@ class Field(Widget):
     # The mouse.
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
-        """Put the caret there; twice selects a word, three times all."""
+        """Put the caret under the mouse; twice selects a word, three times all."""
         if not self.focused:
             self.ui.focus_on(self, by_hand=True)
             self._is_begun = True
@@ -267,7 +267,7 @@ class Field(Widget):
         return True
 
     def on_drag(self, at: Pixel) -> None:
-        """Select up to there."""
+        """Select from the caret to the place under the mouse."""
         if self._place_at(at[0]) != self._line.caret:
             self.select(self._line.mark, self._place_at(at[0]))
 
@@ -297,7 +297,7 @@ class Field(Widget):
 
     @property
     def font(self) -> pygame.font.Font:
-        """What it is written in."""
+        """The font of its text."""
         return self.ui.font(TEXT_SIZE)
 
     def _x_of(self, at: int) -> int:

@@ -25,7 +25,7 @@ class FoldHeading(Pressable):
         self.text, self.is_folded, self._toggle = text, is_folded, toggle
 
     def press(self) -> None:
-        """Fold, or unfold."""
+        """Fold the section, or unfold it."""
         self._toggle()
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:

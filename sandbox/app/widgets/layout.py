@@ -51,11 +51,11 @@ class WindowLayout:
         raise NotImplementedError
 
     def blur(self) -> None:
-        """Give the keyboard back to the world."""
+        """Take the keyboard from the widget that has it, so that keys go to the world."""
         raise NotImplementedError
 
     def forget(self, widget: Any) -> None:
-        """A widget is gone."""
+        """Forget a widget that is removed."""
         for name in ("under", "focus", "held", "origin"):
             if getattr(self, name) is widget:
                 setattr(self, name, None)

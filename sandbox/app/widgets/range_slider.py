@@ -34,7 +34,7 @@ class RangeSlider(Widget):
         self._held = "end"
 
     def show_range(self, start: float, end: float, moment: bool) -> None:
-        """Show what is chosen."""
+        """Show the range that is kept."""
         self.start, self.end, self.moment = start, end, moment
         self.repaint()
 
@@ -44,7 +44,7 @@ class RangeSlider(Widget):
         return round(self.rect.left + margin + seconds / self.length * (self.rect.width - 2 * margin))
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
-        """Take the knob that is nearer."""
+        """Take the nearer knob."""
         seconds = self._seconds_at(at)
         is_start = not self.moment and abs(seconds - self.start) < abs(seconds - self.end)
         self._held = "start" if is_start else "end"
@@ -52,7 +52,7 @@ class RangeSlider(Widget):
         return True
 
     def on_drag(self, at: Pixel) -> None:
-        """Move it."""
+        """Move the knob that was taken."""
         self._move(self._held, self._seconds_at(at))
 
     def press_key(self, event: pygame.event.Event) -> bool:

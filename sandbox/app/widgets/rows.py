@@ -129,7 +129,7 @@ class RowList(Widget):
     # What mouse and keys do.
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
-        """Choose by a click."""
+        """Choose the row that is clicked."""
         index = self._row_at(at)
         if index is not None:
             self._cursor = index

@@ -73,7 +73,7 @@ class ScrollBar(Widget):
         return True
 
     def on_drag(self, at: Pixel) -> None:
-        """Move by the thumb."""
+        """Scroll by the thumb."""
         if self._grip is not None:
             room = max(self.rect.height - self._thumb()[1], 1.0)
             self._scrolled((at[1] - self.rect.top - self._grip) / room * (self.height - self.page))
@@ -108,19 +108,19 @@ class _View(Widget):
     """The visible part; the wheel over it scrolls, and it follows the keyboard."""
 
     def __init__(
-        self, ui: Ui, rect: pygame.Rect, turn: Callable[[float], None], follow: Callable[[Widget], None],
+        self, ui: Ui, rect: pygame.Rect, scroll_by: Callable[[float], None], show_widget: Callable[[Widget], None],
         parent: Widget | None,
     ) -> None:  # fmt: skip
         super().__init__(ui, rect, parent)
-        self._turn, self._follow = turn, follow
+        self._scroll_by, self._show_widget = scroll_by, show_widget
 
     def reveal(self, widget: Widget) -> None:
-        """Scroll to what is in it."""
-        self._follow(widget)
+        """Scroll so that a widget inside is seen."""
+        self._show_widget(widget)
 
     def on_wheel(self, notches: float) -> bool:
-        """Scroll."""
-        self._turn(notches)
+        """Scroll by notches of the wheel."""
+        self._scroll_by(notches)
         return True
 
 
@@ -133,7 +133,7 @@ class ScrollArea:
         bar_place = pygame.Rect(place.right - wide, place.top, wide, place.height)
         self.bar = ScrollBar(ui, bar_place, self.scroll_to, parent)
         view = pygame.Rect(place.topleft, (place.width - wide, place.height))
-        self.view = _View(ui, view, self.turn, self.show_widget, parent)
+        self.view = _View(ui, view, self.scroll_by, self.show_widget, parent)
         self.content = Widget(ui, pygame.Rect((0, 0), self.view.rect.size), self.view)
         self.offset = 0.0
         self._height = place.height
@@ -155,8 +155,8 @@ class ScrollArea:
         """Whether it has been scrolled as far down as it goes."""
         return self._height > self.view.rect.height and self.offset >= self._height - self.view.rect.height - 1
 
-    def turn(self, notches: float) -> None:
-        """Move by notches of the wheel."""
+    def scroll_by(self, notches: float) -> None:
+        """Scroll by notches of the wheel."""
         self.scroll_to(self.offset - notches * self._ui.px(WHEEL_STEP))
 
     def show_widget(self, widget: Widget) -> None:

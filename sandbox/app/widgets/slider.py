@@ -60,7 +60,7 @@ class Slider(Draggable):
         return self.state.enabled
 
     def on_release(self, at: Pixel) -> None:
-        """What is set counts."""
+        """Call done(): the drag has ended."""
         self._done()
 
     def on_wheel(self, notches: float) -> bool:
@@ -88,7 +88,7 @@ class Slider(Draggable):
         self._done()
 
     def on_drag(self, at: Pixel) -> None:
-        """Set what lies under the mouse."""
+        """Set the value under the mouse."""
         margin = self.ui.px(MARGIN)
         place = (at[0] - self.rect.left - margin) / max(1, self.rect.width - 2 * margin)
         self._changed(self.state.scale.value_at(place))

@@ -66,7 +66,7 @@ class Label(Written):
 
     @property
     def font(self) -> pygame.font.Font:
-        """What it is written in."""
+        """The font of its text."""
         return self.ui.font(self.style.size, self.style.is_bold)
 
     def paint(self, size: tuple[int, int]) -> pygame.Surface:

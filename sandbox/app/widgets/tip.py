@@ -28,16 +28,16 @@ class Tip:
 
     @property
     def text(self) -> str:
-        """What is said; nothing while no tip is shown."""
+        """The text of the tip that is shown; "" while none is."""
         return "" if self.place is None or self._shown is None else self._shown[1]
 
     def hide(self, until_moved: bool = False) -> None:
-        """Wait anew; until_moved: until the mouse has come to another widget."""
+        """Hide the tip, and wait anew; until_moved: until the mouse has come to another widget."""
         self._rested = -float("inf") if until_moved else 0.0
         self._shown = self.place = self._picture = None
 
     def pass_time(self, seconds: float) -> None:
-        """Let the mouse rest for a while."""
+        """Count for how long the mouse rests [s], and show the tip once that is long enough."""
         self._rested += seconds
         under = self._ui.under
         text = under.tip if under is not None and self._ui.held is None else ""
@@ -81,6 +81,6 @@ class Tip:
         return place.clamp(window)
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Draw it, where it is shown."""
+        """Draw the tip, while it is shown."""
         if self.place is not None and self._picture is not None:
             surface.blit(self._picture, self.place)

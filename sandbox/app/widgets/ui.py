@@ -22,21 +22,21 @@ CLICK_TIME, CLICK_NEAR = 400, 4.0
 ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
 # Opens a modal page again on other widgets, with what was typed so far.
-Again = Callable[["Ui"], object]
+Reopen = Callable[["Ui"], object]
 
 
 @dataclass
 class Sheet:
     """A modal page; close: what Escape does; is_page: it is read, so no notices lie over it.
 
-    again: opens it again in another layout; None = it ends with this one. is_question: it outlives the screen under it.
+    reopen: opens it in another layout; None = it ends with this one. is_question: it outlives the screen under it.
     is_menu: a press beside what it holds closes it.
     """
 
     panel: Plate
     close: Callable[[], object]
     is_page: bool
-    again: Again | None
+    reopen: Reopen | None
     is_question: bool
     is_menu: bool
 
@@ -136,7 +136,7 @@ class Ui(WindowLayout):
 
     @property
     def has_question(self) -> bool:
-        """Whether a question is open that outlives the screen."""
+        """Whether a question is open that stays when another screen comes."""
         return any(sheet.is_question for sheet in self._sheets)
 
     def open_sheet(
@@ -145,7 +145,7 @@ class Ui(WindowLayout):
         style: str = "shade",
         *,
         is_page: bool = False,
-        again: Again | None = None,
+        reopen: Reopen | None = None,
         is_question: bool = False,
         is_menu: bool = False,
     ) -> Plate:
@@ -155,23 +155,23 @@ class Ui(WindowLayout):
         """
         self.blur()
         panel = Plate(self, pygame.Rect((0, 0), self.size), None, style)
-        self._sheets.append(Sheet(panel, close or panel.remove, is_page, again, is_question, is_menu))
+        self._sheets.append(Sheet(panel, close or panel.remove, is_page, reopen, is_question, is_menu))
         return panel
 
     def forget(self, widget: Widget) -> None:
-        """A widget is gone, which may be a modal page."""
+        """Forget a widget that is removed, and the modal page that it was."""
         super().forget(widget)
         self._sheets = [sheet for sheet in self._sheets if sheet.panel is not widget]
 
-    def take_over(self, before: "Ui", questions_alone: bool = False) -> None:
+    def adopt_sheets(self, old: "Ui", questions_alone: bool = False) -> None:
         """Open the modal pages of an earlier layout, and end that; questions_alone: pages of its screen are left."""
-        for sheet in before._sheets:
-            if sheet.again is not None and (sheet.is_question or not questions_alone):
-                sheet.again(self)
+        for sheet in old._sheets:
+            if sheet.reopen is not None and (sheet.is_question or not questions_alone):
+                sheet.reopen(self)
                 if isinstance(self.focus, Field):
                     # The next letter is added to what was typed; it does not replace it.
                     self.focus.select(len(self.focus.typed), len(self.focus.typed))
-        before.end()
+        old.end()
 
     def end(self) -> None:
         """Take all widgets away; who still has this layout, or one of its widgets, does not keep them all."""
@@ -388,7 +388,7 @@ class Ui(WindowLayout):
         widget.on_focus()
 
     def blur(self) -> None:
-        """Give the keyboard back to the world."""
+        """Take the keyboard from the widget that has it, so that keys go to the world."""
         before, self.focus = self.focus, None
         self._to_reveal = None
         if before is not None:

@@ -47,7 +47,7 @@ class Widget:
         return None
 
     def repaint(self) -> None:
-        """Have it painted anew, once it is seen."""
+        """Let the widget be painted anew, once it is seen."""
         self._is_stale = True
 
     @property
@@ -154,16 +154,16 @@ class Widget:
         return False
 
     def on_drag(self, at: Pixel) -> None:
-        """The mouse has moved while the button is held."""
+        """React to the mouse, which has moved while the button is held."""
 
     def on_release(self, at: Pixel) -> None:
-        """The button is let go."""
+        """React to the button, which is let go."""
 
     def on_move(self, at: Pixel) -> None:
-        """The mouse moves over it."""
+        """React to the mouse, which moves over the widget."""
 
     def on_hover(self) -> None:
-        """The mouse has come or gone."""
+        """React to the mouse, which has come or gone."""
         if self.is_lit:
             self.repaint()
 
@@ -172,12 +172,12 @@ class Widget:
         return False
 
     def on_focus(self) -> None:
-        """The keyboard has come."""
+        """React to the keyboard, which the widget has now."""
         if self.is_lit:
             self.repaint()
 
     def on_blur(self) -> None:
-        """The keyboard has gone."""
+        """React to the keyboard, which the widget has no longer."""
         if self.is_lit:
             self.repaint()
 
@@ -193,7 +193,7 @@ class Pressable(Widget):
     press_keys: ClassVar[tuple[int, ...]] = (*ENTER_KEYS, pygame.K_SPACE)
 
     def press(self) -> None:
-        """What a press does."""
+        """Do what a press of the widget does."""
         raise NotImplementedError
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
@@ -219,7 +219,7 @@ class Draggable(Widget):
         return True
 
     def on_press(self, at: Pixel, clicks: int) -> bool:
-        """Take it."""
+        """Begin the drag."""
         if self.can_drag():
             self.on_drag(at)
         return self.can_drag()

@@ -113,7 +113,7 @@ class App:
 
     @property
     def mode(self) -> Mode:
-        """Which table of shortcuts holds."""
+        """The mode whose shortcuts hold now."""
         return "play" if self.screen is None else self.screen.mode
 
     def _build_ui(self) -> None:
@@ -129,7 +129,7 @@ class App:
         """Lay everything out again, after the window or the scale changed."""
         before = self.ui
         self._build_ui()
-        self.ui.take_over(before)
+        self.ui.adopt_sheets(before)
         self._collector.expect_old_garbage()
 
     def say(self, text: str, screen: Screen | None = None) -> None:
@@ -162,7 +162,7 @@ class App:
         self.screen = screen
         before = self.ui
         self._build_ui()
-        self.ui.take_over(before, questions_alone=True)
+        self.ui.adopt_sheets(before, questions_alone=True)
         self._collector.expect_old_garbage()
 
     def start(self, playback: Playback, source: Path | None = None) -> None:
@@ -185,12 +185,12 @@ class App:
             self.say(description)
 
     def _show_hint(self) -> None:
-        """Say once more what the level of the run is about."""
+        """Show the description of the run's level once more."""
         if self.play is not None:
             self._describe(self.play.playback.level.description or "This level has no description.")
 
-    def follow(self, playback: Playback, can_cancel: bool = True) -> None:
-        """Show how far a run is that has to be played again, for an undo or a recording, where that takes long."""
+    def show_replay_progress(self, playback: Playback, can_cancel: bool = True) -> None:
+        """Show a bar while a run is played again, for an undo or a recording, where that takes long."""
         playback.session.progress = partial(self._progress.show, can_cancel=can_cancel)
 
     def open_gallery(self, section: str = "levels", query: str = "") -> None:
@@ -307,14 +307,14 @@ class App:
     # What the person has chosen.
 
     def _take_up(self) -> None:
-        """Obey what is chosen."""
+        """Let the app follow all settings as they are."""
         self.scale = self.chosen["scale"] or self.chosen.automatic["scale"]
         show_theme(theme_of(self.chosen["theme"]))
         for keys in use_keys(self.chosen.keys):
             self.chosen.faults.append(f"preferences.json: keys: there is no key {keys!r:.40}.")
 
     def _obey(self, name: str) -> None:
-        """Follow a change of what is chosen."""
+        """Let the app follow a setting that the person has changed."""
         self._take_up()
         if name == "sound" and not self.sounds.device.is_open:
             self.sounds.look_again()

@@ -46,7 +46,7 @@ def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
         sheet.remove()
         tour()
 
-    sheet = ui.open_sheet(is_page=True, again=lambda other: show_help(other, mode, tour))
+    sheet = ui.open_sheet(is_page=True, reopen=lambda other: show_help(other, mode, tour))
     place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
     box = ui.panel(place, sheet, "dialog")
     ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "title")

@@ -70,7 +70,7 @@ def _with_joined(level: Level, world: World, joined: Joined) -> Level:
 
 
 def _is_there(world: World, name: str, slots: Any) -> bool:
-    """Whether anything is left of a body but particles that are those of others."""
+    """Whether a body still has a particle that is no other body's."""
     own = [slot for slot in slots.tolist() if world.particle_names[slot].startswith(f"{name}.")]
     return bool(world.particle_active[own].any())
 
@@ -95,7 +95,7 @@ def _held(world: World, slots: Any) -> tuple[int, ...]:
 
 
 def _cut(world: World, name: str, body: BodyDef) -> tuple[int, ...]:
-    """Numbers of a body's springs that are not there."""
+    """Numbers of a body's springs that are broken or were cut."""
     numbers = set(body.cut)
     for slot, spring in enumerate(world.spring_names):
         if spring.startswith(f"{name}:") and not world.spring_active[slot]:

@@ -149,7 +149,7 @@ def _posed(document: Document, scene: Scene, now: Points, angle: Points) -> Docu
 
 
 def _followed(body: AnyBody, before: Points, now: Points) -> dict[str, Any]:
-    """The position of a body that has one, which goes where the middle of its pose goes."""
+    """The new position of a body that has one: it moves with the middle of its pose."""
     if "position" not in body.__dict__:
         return {}
     middles = [(points.min(axis=0) + points.max(axis=0)) / 2.0 for points in (before, now)]

@@ -73,7 +73,7 @@ def _able_to_join(part: Level) -> Level:
 
 
 def _unsaid(particle: ParticleDef, is_held: bool) -> str:
-    """The first thing that a particle says and no command can; empty where there is none."""
+    """The first field of a particle that no command can set; empty where there is none."""
     said = SAID | UNSEEN
     if is_held:
         said |= OF_FREE_DISCS | frozenset(MeshDef.model_fields)
@@ -116,6 +116,6 @@ def _sum(one: Point, other: Point) -> Point:
 
 
 def _said(part: Description) -> dict[str, Any]:
-    """What a level file says of a definition, without what goes without saying."""
+    """The fields of a definition that a level file has to write, those at their defaults left out."""
     said: dict[str, Any] = part.model_dump(mode="json", exclude_defaults=True)
     return said

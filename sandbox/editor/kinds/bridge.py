@@ -43,7 +43,7 @@ class BridgeDrawing(LineDrawing[TrussOptions]):
     start_hint = "Drag along the top of the bridge, or click both ends"
 
     def fitting(self, points: list[Snap]) -> int:
-        """Cells of about 0.5 m."""
+        """How many cells of about 0.5 m there is room for."""
         return fitting_count(length(points), CELL_LENGTH, *CELLS)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
@@ -61,15 +61,15 @@ class BridgeEditing(BodyEditing[BridgeDef]):
     formless = frozenset({"particle_mass", "pin"})
 
     def can_stretch(self) -> bool:
-        """Its height is a field of its own."""
+        """True: its height is a field of its own."""
         return True
 
     def lies_askew(self, motion: Motion) -> bool:
-        """Turned, its bottom row no longer starts straight below."""
+        """Whether a motion turns it: its bottom row then starts no longer straight below."""
         return motion.angle != 0.0
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """The ends of what becomes the top row, and the height."""
+        """The ends of what becomes the top row, and the height, after a motion."""
         body = self.body
         drop = -body.height if motion.sy < 0.0 else 0.0
         start, end = ((x, y + drop) for x, y in (body.start, body.end))

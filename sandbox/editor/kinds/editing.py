@@ -22,15 +22,18 @@ class BodyEditing(Generic[Body]):
 
     @property
     def noun(self) -> str:
-        """What a person is told that it is, where it cannot be stretched."""
+        """What messages call a body of the kind that cannot be stretched."""
         return self.body.type
 
     def can_stretch(self) -> bool:
-        """Whether it can be made longer without being made higher as much."""
+        """Whether the body can be made longer without being made higher as much."""
         return False
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """The fields that a motion alters, which is even where it cannot be stretched; pose and velocity apart."""
+        """The fields that a motion changes, other than pose and velocity.
+
+        motion: even where the body cannot be stretched.
+        """
         raise NotImplementedError
 
     def lies_askew(self, motion: Motion) -> bool:
@@ -38,7 +41,7 @@ class BodyEditing(Generic[Body]):
         return False
 
     def with_field(self, field: str, value: Any) -> dict[str, Any]:
-        """The fields that change where one of them is given a new value."""
+        """The fields that change where one of them gets a new value."""
         return {field: value}
 
 

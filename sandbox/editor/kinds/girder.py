@@ -37,15 +37,15 @@ class GirderEditing(BodyEditing[GirderDef]):
 
     @property
     def noun(self) -> str:
-        """Upright and level ones can be stretched."""
+        """Slanting girder: upright and level ones can be stretched."""
         return "slanting girder"
 
     def can_stretch(self) -> bool:
-        """Along an axis alone."""
+        """Whether it lies along an axis."""
         return self.body.start[0] == self.body.end[0] or self.body.start[1] == self.body.end[1]
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """Ends, height and pins."""
+        """Ends, height and pins after a motion."""
         body = self.body
         start, end = motion.point(body.start), motion.point(body.end)
         if motion.is_mirror:

@@ -75,7 +75,7 @@ class JellyDrawing(BodyDrawing[JellyOptions]):
         return "Draw jelly"
 
     def fitting(self, points: list[Snap]) -> int:
-        """8 cells across."""
+        """The number of cells across that is usual."""
         return CELLS_ACROSS
 
     def sized(self, width: float, height: float) -> dict[str, Any]:
@@ -113,7 +113,7 @@ class CircleDrawing(JellyDrawing):
     end_hint = "Click or release at the rim; + and - change the number of cells"
 
     def joins(self, index: int) -> bool:
-        """Only the centre is sure to have a particle."""
+        """Whether a point joins a particle: the centre alone is sure to have one."""
         return index == 0
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
@@ -155,17 +155,17 @@ class JellyEditing(BodyEditing[JellyDef]):
 
     @property
     def noun(self) -> str:
-        """Square ones can be stretched."""
+        """What messages call it where it cannot be stretched; square ones can be."""
         return "jelly that is round or turned"
 
     def can_stretch(self) -> bool:
-        """Along its sides."""
+        """Whether its sides lie along the axes, and it is not round."""
         if isinstance(self.body.shape, CircleShape):
             return False
         return abs(math.remainder(self.body.angle, math.pi / 2.0)) <= SQUARE
 
     def with_field(self, field: str, value: Any) -> dict[str, Any]:
-        """Another mesh weighs as much; a grid has no holes."""
+        """The fields that change: another mesh weighs as much, a grid has no holes."""
         if field != "mesh" or value == self.body.mesh:
             return {field: value}
         changes = {"mesh": value} if value == "fitted" else {"mesh": value, "holes": ()}
@@ -174,7 +174,7 @@ class JellyEditing(BodyEditing[JellyDef]):
         return changes | ({"particle_mass": self.body.particle_mass * before / after} if after else {})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """Place, angle, spacing, shape and holes."""
+        """Place, angle, spacing, shape and holes after a motion."""
         body = self.body
         result = mapped_centre(body, motion) | {"spacing": body.spacing * motion.factor}
         if motion.is_mirror:

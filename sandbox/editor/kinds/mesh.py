@@ -13,11 +13,11 @@ class MeshEditing(BodyEditing[MeshDef]):
     formless = frozenset({"masses", "velocities", "bending"})
 
     def can_stretch(self) -> bool:
-        """Any way."""
+        """True: a mesh can be stretched any way."""
         return True
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """Every particle, and its velocity."""
+        """The places of all particles and their velocities, after a motion."""
         body = self.body
         velocities = body.velocities and tuple(mapped_velocity(velocity, motion) for velocity in body.velocities)
         return {"particles": motion.points(body.particles), "velocities": velocities}

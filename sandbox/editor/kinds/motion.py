@@ -34,18 +34,18 @@ class Motion:
         return math.sqrt(abs(self.sx * self.sy))
 
     def vector(self, vector: Point) -> Point:
-        """Where a vector goes."""
+        """A vector after the motion."""
         cosine, sine = turn(self.angle)
         x, y = self.sx * vector[0], self.sy * vector[1]
         return x * cosine - y * sine, x * sine + y * cosine
 
     def point(self, point: Point) -> Point:
-        """Where a point [m] goes."""
+        """A point [m] after the motion."""
         x, y = self.vector((point[0] - self.centre[0], point[1] - self.centre[1]))
         return self.centre[0] + x, self.centre[1] + y
 
     def points(self, points: Iterable[Point]) -> tuple[Point, ...]:
-        """Where points [m] go."""
+        """Points [m] after the motion."""
         return tuple(self.point(point) for point in points)
 
     def turned(self, angle: float) -> float:
@@ -57,7 +57,7 @@ class Motion:
 
 
 def mapped_velocity(velocity: Point, motion: Motion) -> Point:
-    """Where a velocity [m/s] points after a motion; a scale is of lengths alone."""
+    """A velocity [m/s] after a motion, which scales lengths alone."""
     # Turned or mirrored things go where they then look.
     direction = Motion((0.0, 0.0), motion.angle, math.copysign(1.0, motion.sx), math.copysign(1.0, motion.sy))
     return velocity if velocity == (0.0, 0.0) else direction.vector(velocity)

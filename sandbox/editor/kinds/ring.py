@@ -54,7 +54,7 @@ class RingDrawing(RoundDrawing[RingOptions]):
         return index == 1
 
     def fitting(self, points: list[Snap]) -> int:
-        """Parts of about 0.25 m."""
+        """How many parts of about 0.25 m there is room for."""
         return fitting_count(2.0 * math.pi * length(points), PART_LENGTH, *PARTS)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
@@ -78,5 +78,5 @@ class RingEditing(BodyEditing[RingDef]):
     formless = frozenset({"particle_mass", "inflation", "bending"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """Place, angle and radius."""
+        """Place, angle and radius after a motion."""
         return mapped_centre(self.body, motion) | {"radius": self.body.radius * motion.factor}

@@ -53,7 +53,7 @@ class RopeDrawing(LineDrawing[RopeOptions]):
     start_hint = "Drag from the rope's start to its end, or click both"
 
     def fitting(self, points: list[Snap]) -> int:
-        """Links of about 0.25 m."""
+        """How many links of about 0.25 m there is room for."""
         return fitting_count(length(points), LINK_LENGTH, *LINKS)
 
     def fields(self, points: list[Snap]) -> dict[str, Any]:
@@ -71,11 +71,11 @@ class RopeEditing(BodyEditing[RopeDef]):
     formless = frozenset({"particle_mass", "end_mass", "rest_length", "pin", "bending"})
 
     def can_stretch(self) -> bool:
-        """It has no height."""
+        """True: a rope has no height."""
         return True
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """Its ends, and the length of its links."""
+        """The ends, and the length of the links, after a motion."""
         body = self.body
         ends = {"start": motion.point(body.start), "end": motion.point(body.end)}
         if body.rest_length is None:
@@ -83,7 +83,7 @@ class RopeEditing(BodyEditing[RopeDef]):
         return ends | {"rest_length": body.rest_length * stretch(body.start, body.end, motion)}
 
     def with_field(self, field: str, value: Any) -> dict[str, Any]:
-        """Of other numbers of links it keeps its whole length."""
+        """The fields that change: another number of links keeps the whole length."""
         body = self.body
         if field == "segments" and body.rest_length is not None:
             return {field: value, "rest_length": body.rest_length * body.segments / value}

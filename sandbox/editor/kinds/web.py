@@ -54,5 +54,5 @@ class WebEditing(BodyEditing[WebDef]):
     formless = frozenset({"particle_mass", "pin"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """Place, angle and radius."""
+        """Place, angle and radius after a motion."""
         return mapped_centre(self.body, motion) | {"radius": self.body.radius * motion.factor}

@@ -94,7 +94,7 @@ class WheelEditing(BodyEditing[WheelDef]):
     formless = frozenset({"particle_mass", "hub_mass", "pin", "motor", "touches_mount"})
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """Place, angle, radius, thickness and motor."""
+        """Place, angle, radius, thickness and motor after a motion."""
         body = self.body
         sizes = {"radius": body.radius * motion.factor, "thickness": body.thickness * motion.factor}
         motor: dict[str, Any] = {}

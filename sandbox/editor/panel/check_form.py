@@ -108,7 +108,7 @@ def _set(index: int, field: str, document: Document, value: Any) -> Document:
 
 
 def _set_metric(index: int, document: Document, value: Any) -> Document:
-    """Another metric with bounds of its own, and with what it is measured of."""
+    """Give a check another metric, with bounds of its own and something that it can be measured of."""
     check, measured = document.level.checks[index], METRICS[value]
     kept = {name: getattr(check, name) if measured.takes(name) else None for name in SUBJECTS}
     for name in measured.needs:
@@ -123,7 +123,7 @@ def _set_metric(index: int, document: Document, value: Any) -> Document:
 
 
 def _some_particle(document: Document) -> str | None:
-    """A particle to measure: of what is selected, else of the level."""
+    """A particle that a new check measures: one of the selection, else of the level."""
     level, selection = document.level, document.selection
     loose = [*chosen_particles(level, selection), *(() if selection else level.particles)]
     bodies: Sequence[AnyBody] = [*chosen_bodies(level, selection), *(() if selection else level.bodies)]
@@ -133,7 +133,7 @@ def _some_particle(document: Document) -> str | None:
 
 
 def _set_subject(index: int, field: str, document: Document, value: Any) -> Document:
-    """What is measured: a particle or a body, not both."""
+    """Set what a check measures: a particle or a body, not both."""
     if field == "box":
         if value is None or len(value) != 4:
             raise EditError("a box has four numbers: left, bottom, right, top")
@@ -150,7 +150,7 @@ def _contradicted(document: Document, index: int, field: str, value: Any) -> boo
 
 
 def _set_bound(index: int, field: str, document: Document, value: Any) -> Document:
-    """A bound; the other one goes where the two contradict each other."""
+    """Set a bound of a check; the other one is taken out where the two contradict each other."""
     goes = {_BOUNDS[field]: None} if _contradicted(document, index, field, value) else {}
     return _changed(document, index, **{field: value}, **goes)
 
@@ -195,7 +195,7 @@ def _add_hold(document: Document, index: int) -> Document:
 
 
 def _set_held_key(index: int, number: int, document: Document, value: Any) -> Document:
-    """Hold another key, or none."""
+    """Let a check hold another key, or none."""
     holds = list(document.level.checks[index].hold)
     holds[number : number + 1] = [] if value is None else [replaced(holds[number], key=value)]
     return _changed(document, index, hold=tuple(holds))

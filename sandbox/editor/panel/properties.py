@@ -193,7 +193,7 @@ def _set_flags(
 
 
 def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
-    """What a single item is that its fields do not say."""
+    """Facts of a single item that its fields do not say."""
     facts = []
     if isinstance(part, SpringDef):
         facts.append(("number", "Number", f":{item.key}", "The spring's name in commands and recordings."))

@@ -70,7 +70,7 @@ class Autosave:
         self._want(_Edit(level, path, label))
 
     def clear(self) -> None:
-        """Keep nothing: the level has been saved, or given up by the person."""
+        """Remove what was kept, as the level has been saved, or given up by the person."""
         if self._thread is not None:
             self._want(None)
 

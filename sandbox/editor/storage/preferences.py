@@ -24,7 +24,7 @@ def preference(name: str, folder: Path | None = None) -> Any:
 
 
 def preferences(folder: Path | None = None) -> dict[str, Any]:
-    """All that is remembered, by its names."""
+    """All remembered values by their names; none where they cannot be read."""
     try:
         return _read(preferences_file(folder))
     except (OSError, ValueError):

@@ -75,7 +75,7 @@ class HangersDrawing(Drawing[HangersOptions]):
         return self._hung(document, self._pairs(document, points))
 
     def fitting(self, points: list[Snap]) -> int:
-        """One at every particle of the coarser row."""
+        """How many hangers there are with one at every particle of the coarser row."""
         return self._most
 
     def sizes(self, points: list[Snap]) -> str:

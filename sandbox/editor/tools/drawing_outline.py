@@ -35,11 +35,11 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
         return [point.point for point in self._so_far()] if self.points else []
 
     def joins(self, index: int) -> bool:
-        """Corners have no particles of their own."""
+        """Never: corners have no particles of their own."""
         return False
 
     def down(self, snap: Snap) -> None:
-        """A corner, or the click on the first or last one that ends the outline."""
+        """Set a corner, or end the outline by a click on its first or last one."""
         self.pointer, self._pressed, self._fault = snap, True, ""
         self._began = not self.points
         if self._closes(snap):
@@ -65,7 +65,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
             self.points.append(Snap(snap.raw))
 
     def up(self, snap: Snap) -> None:
-        """The end of a stroke ends the outline."""
+        """End the outline, if it was a stroke by hand."""
         self.pointer, self._pressed = snap, False
         if not self.freehand:
             return
@@ -80,7 +80,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
             self.close()
 
     def cancel(self) -> None:
-        """Give up what is under way."""
+        """Give the outline up."""
         super().cancel()
         self.freehand = False
 

@@ -44,7 +44,7 @@ class PartDrawing(Drawing[PartOptions]):
         self.options = replace(self.options, part=part)
 
     def joins(self, index: int) -> bool:
-        """A part lies beside what it is put on."""
+        """Never: a part lies beside what it is put on."""
         return False
 
     def ghost(self, document: Document) -> Document | None:

@@ -85,7 +85,7 @@ class WallsDrawing(Drawing[SurfaceOptions]):
     end_hint = "Click or release at the opposite corner"
 
     def joins(self, index: int) -> bool:
-        """Walls join nothing."""
+        """Never: walls join nothing."""
         return False
 
     def placed(self, document: Document, points: list[Snap]) -> Document:

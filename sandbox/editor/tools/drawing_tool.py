@@ -109,18 +109,18 @@ class Drawing(Generic[AnyOptions]):
     # ---- what the person does
 
     def down(self, snap: Snap) -> None:
-        """The pointer is pressed."""
+        """React to a press of the pointer."""
         self.pointer, self._pressed, self._fault = snap, True, ""
         self._began = not self.points
         if self._began:
             self.points = [snap]
 
     def move(self, snap: Snap) -> None:
-        """The pointer moves, pressed or not."""
+        """React to a move of the pointer, pressed or not."""
         self.pointer = snap
 
     def up(self, snap: Snap) -> None:
-        """The pointer is released."""
+        """React to a release of the pointer."""
         self.pointer = snap
         if not self._pressed:
             return
@@ -153,7 +153,7 @@ class Drawing(Generic[AnyOptions]):
         return True
 
     def cancel(self) -> None:
-        """Give up what is under way, as Escape asks."""
+        """Give the drawing up, as Escape asks."""
         self._taken_back.clear()
         self.points, self._pressed, self._complete = [], False, False
         self._fault = self._ghost_fault = ""
@@ -179,7 +179,7 @@ class Drawing(Generic[AnyOptions]):
         raise NotImplementedError
 
     def sizes(self, points: list[Snap]) -> str:
-        """Sizes and counts in a few words."""
+        """Sizes and counts of what is drawn, in words."""
         return ""
 
     def fitting(self, points: list[Snap]) -> int:

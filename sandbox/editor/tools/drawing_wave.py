@@ -40,7 +40,7 @@ class WaveDrawing(Drawing[WaveOptions]):
         return [point.point for point in self._so_far()] if self.points else []
 
     def joins(self, index: int) -> bool:
-        """It joins nothing."""
+        """Never: a wave joins nothing."""
         return False
 
     def ghost(self, document: Document) -> Document | None:

@@ -85,7 +85,7 @@ def _rounded(x: float, y: float) -> Point:
 
 
 def _particle(scene: Scene, point: Point, within: float, skip: Selection) -> Snap | None:
-    """The nearest end, or else the nearest particle, that draws the pointer."""
+    """The nearest end, or else the nearest particle, that the pointer snaps to."""
     if within <= 0.0:
         return None
     offset = scene.position - np.array(point)

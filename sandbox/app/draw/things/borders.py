@@ -29,8 +29,8 @@ def sides_of(triangles: Slots, pairs: Slots) -> Slots:
     return np.where(known[found] == sides, found, -1)
 
 
-def traced(triangles: Slots) -> list[Slots]:
-    """Loops of particles around triangles (t, 3) of one winding, whatever holes they have."""
+def trace_loops(triangles: Slots) -> list[Slots]:
+    """Closed loops of particles around triangles (t, 3) of one winding, those around holes included."""
     sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     there, back = sides[:, 0] << 32 | sides[:, 1], sides[:, 1] << 32 | sides[:, 0]
     follow: dict[int, list[int]] = {}

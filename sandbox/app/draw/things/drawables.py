@@ -34,7 +34,7 @@ CRATE_LINE = 1.6
 
 
 def _strangers(there: Mask, own: Slots) -> Slots:
-    """Slots that are there and are nobody's own."""
+    """Slots that are there and belong to none of the level's things."""
     left = there.copy()
     left[own[own < len(left)]] = False
     return np.flatnonzero(left)

@@ -66,7 +66,7 @@ class Faces:
         self._spring_start = starts_of([len(row.springs) for row in rows])
 
     def mark(self, marks: MarkList, frame: Frame) -> None:
-        """Draw them."""
+        """Draw the faces."""
         if not self._count:
             return
         centre, turn, size = self.placed(frame)
@@ -104,7 +104,7 @@ class Faces:
         return centre, turn, size
 
     def blinks(self, seconds: float) -> NDArray[np.bool_]:
-        """Which of them have their eyes shut at a time [s]."""
+        """Which faces have their eyes shut at a time [s]."""
         number = np.arange(self._count)
         beat = BLINK_EVERY + 0.77 * (number % 4)
         return (seconds + 1.7 * number) % beat > beat - BLINK

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, spring_look
-from sandbox.app.draw.things.borders import sides_of, traced
+from sandbox.app.draw.things.borders import sides_of, trace_loops
 from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
@@ -116,20 +116,20 @@ class Actor:
     def _piece(self, left: Slots, there: Mask) -> Piece:
         filled = np.zeros(len(self.slots), dtype=np.bool_)
         filled[left] = True
-        loops = [self.slots[loop] for loop in traced(left)]
+        loops = [self.slots[loop] for loop in trace_loops(left)]
         return Piece(left, loops, np.asarray(there & filled[self.pairs].all(axis=1)))
 
     def flesh(self, key: bytes, make: Callable[[], Drawn]) -> Drawn:
-        """What `make` makes of it, as long as the key of its filling is this."""
+        """The drawing that `make` makes of it, kept while the key of its filling stays the same."""
         if self._flesh is None or self._flesh[0] != key:
             self._flesh = key, make()
         made: Drawn = self._flesh[1]
         return made
 
     def spot(self, find: Callable[["Actor", Slots], tuple[Floats, float]]) -> tuple[Floats, float]:
-        """What `find` finds of it inside the longest loop of slots round the whole."""
+        """The place that `find` finds inside the longest loop of slots around all of it."""
         if self._spot is None:
-            self._spot = find(self, self.slots[max(traced(self.triangles()), key=len)])
+            self._spot = find(self, self.slots[max(trace_loops(self.triangles()), key=len)])
         return self._spot
 
     def triangles(self) -> Slots:

@@ -93,7 +93,7 @@ class Members:
         self._add(_Bars(pairs, springs, rest, LOOSE, look.width, look.line, look.colour, none, none))
 
     def add_strangers(self, pairs: Slots, springs: Slots, rest: Floats) -> None:
-        """Springs that joined the world while it ran."""
+        """Add springs that joined the world while it ran."""
         if len(springs):
             none = np.zeros(0, dtype=np.int64)
             self._add(_Bars(pairs, springs, rest[springs], LOOSE, 1.0, "steel", 0, none, none))
@@ -104,7 +104,7 @@ class Members:
         return np.column_stack([frame.ends(plan.pairs), plan.half + LINE])
 
     def mark(self, marks: MarkList, frame: Frame) -> None:
-        """Draw them."""
+        """Draw the bars."""
         plan = self._plan_for(frame)
         if not len(plan.slots):
             return
@@ -182,7 +182,7 @@ class _Sketch:
         self._rows.append((slots, own, *(np.broadcast_to(column, count) for column in columns)))
 
     def add(self, bars: _Bars) -> None:
-        """Add bars alike."""
+        """Add bars of one look."""
         if not len(bars.pairs):
             return
         frame, pairs = self._frame, bars.pairs
@@ -227,7 +227,7 @@ class _Sketch:
             self._mark(slots, size * half, colour, alpha, DISC)
 
     def plan(self) -> _Plan:
-        """All of them."""
+        """The marks of all bars, in the order in which they are drawn."""
         pairs, half, springs = (np.concatenate(column) for column in zip(*self._bars, strict=True))
         slots, own, width, colour, alpha, kind, tile, planks, raised, shows = (
             np.concatenate(column) for column in zip(*self._rows, strict=True)

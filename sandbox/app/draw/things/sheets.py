@@ -90,7 +90,7 @@ class Sheets:
         return corner, sheet.texels, shade, np.full(len(sheet.corners), k)
 
     def mark_hems(self, marks: MarkList, frame: Frame) -> None:
-        """Draw the lines around them."""
+        """Draw the lines around the sheets."""
         for sheet in self._sheets:
             for loop in sheet.loops:
                 ends = np.concatenate([frame.at[loop], np.roll(frame.at[loop], -1, axis=0)], axis=1)

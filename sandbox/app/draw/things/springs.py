@@ -35,7 +35,7 @@ class Working:
         return np.column_stack([frame.ends(pairs), np.full(len(pairs), 3.0 * frame.scale)])
 
     def mark(self, marks: MarkList, frame: Frame) -> None:
-        """Draw them."""
+        """Draw the coils, muscles and pistons."""
         for kind, draw in (("coil", _coils), ("muscle", _muscles), ("piston", _pistons)):
             pairs, springs, width = self._kinds[kind]
             if len(pairs):

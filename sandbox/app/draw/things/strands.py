@@ -72,7 +72,7 @@ class Strands:
         return np.concatenate(rows)
 
     def mark(self, marks: MarkList, frame: Frame) -> None:
-        """Draw them."""
+        """Draw the strands."""
         for kind, width, stretches, metres, springs, step in self.groups():
             half = self.half(kind, width, step, frame)
             pieces = PIECES if step * frame.zoom > CURVED_FROM else 1

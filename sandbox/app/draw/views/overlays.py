@@ -49,7 +49,7 @@ class Scale:
     least: float = 0.0
 
     def follow(self, sizes: Floats) -> float:
-        """Keep up with what is to be shown, and give the value."""
+        """Fit the value to the sizes that are shown now, and give it."""
         known = sizes[np.isfinite(sizes) & (sizes > 0.0)]
         if len(known):
             typical = max(float(np.quantile(known, 0.9)), self.least)
@@ -176,7 +176,7 @@ class _RimPen:
         self.spacing = np.minimum(by_radius, usual if state.spring_active.any() else np.inf) * frame.zoom
 
     def seen(self, slots: Slots) -> Slots:
-        """Those of particles that are somewhere."""
+        """Which particles lie at a finite place."""
         return slots[np.isfinite(self.frame.at[slots]).all(axis=1)]
 
     def apart(self, at: Floats, size: Floats) -> Slots:
@@ -200,7 +200,7 @@ class _RimPen:
         self.marks.discs(at, radius, colour)
 
     def arrows(self, at: Floats, way: Floats, colour: int, closed: bool = False) -> None:
-        """Arrows from (k, 2) [pixels] along ways (k, 2), y up, of which 1 is as long as the legend's."""
+        """Draw arrows from (k, 2) [pixels] along ways (k, 2), y up, of which 1 is as long as the legend's."""
         k = self.frame.scale
         ways = np.nan_to_num(way * np.array([1.0, -1.0]), posinf=1e9, neginf=-1e9) * ARROW * k
         length = np.sqrt(np.sum(ways * ways, axis=1))
@@ -226,7 +226,7 @@ def _pairs(state: Seen, springs: Slots) -> Slots:
 
 
 def part_of(ends: Floats, first: float, last: float) -> Floats:
-    """A part of lines (k, 4), from a share of their length to another."""
+    """The part of lines (k, 4) from one share of their length to another."""
     way = ends[:, 2:] - ends[:, :2]
     return np.concatenate([ends[:, :2] + first * way, ends[:, :2] + last * way], axis=1)
 

@@ -49,7 +49,7 @@ class Corners:
         return min(near, key=lambda number: math.dist(places[number], pixel), default=None)
 
     def draw(self, surface: pygame.Surface, chosen: int | None) -> None:
-        """Draw them; chosen: the corner that Delete takes out."""
+        """Draw the corners, and dots between them; chosen: the corner that Delete takes out."""
         for place in self.middles.values():
             pygame.draw.aacircle(surface, MUTED, place, MIDDLE * self._scale, max(1, round(self._scale)))
         for number, place in enumerate(self.places):
@@ -62,7 +62,7 @@ class Placing:
     anchor: what directions are measured from. A kind of it says what it changes, and how that is called.
     """
 
-    matrix: np.ndarray | None = None
+    transform: np.ndarray | None = None
 
     def __init__(self, screen: Editing, item: Item, start: Point, anchor: Point, label: str) -> None:
         self._screen, self._item, self._anchor, self._label = screen, item, anchor, label
@@ -79,7 +79,7 @@ class Placing:
         return self._placed(document)
 
     def to(self, point: Point, modifiers: int) -> None:
-        """Alt snaps to nothing."""
+        """Move the point to what the pointer snaps to; with Alt, to the pointer."""
         self._moved = True
         self._snap = self._screen.snapped(point, modifiers, self._anchor, frozenset({self._item}))
         try:
@@ -88,16 +88,16 @@ class Placing:
             self._ghost = None
 
     def ghost(self) -> Document | None:
-        """The item as it would be."""
+        """The document with the point where it is now."""
         return self._ghost
 
     def end(self) -> None:
-        """Put it there."""
+        """Put the point where it is now, as a step of the history."""
         if self._moved:
             self._screen.edit(self._label, self._changed)
 
     def draw(self, surface: pygame.Surface) -> None:
-        """What it snaps to."""
+        """Mark what the point snaps to."""
         self._screen.draw_snap(surface, self._snap)
 
 
@@ -111,13 +111,13 @@ class CornerMoving(Placing):
 
     @property
     def measure(self) -> str:
-        """Where it is."""
+        """Where the corner is [m], in words."""
         x, y = self._snap.point
         return f"{x:.4g}, {y:.4g} m"
 
     @property
     def chosen(self) -> tuple[Item, int] | None:
-        """The corner, once there is one."""
+        """The piece and the number of the corner, once there is one."""
         return (self._item, self._number) if self._moved or not self._is_new else None
 
     def _placed(self, document: Document) -> Document:

@@ -43,7 +43,7 @@ class BodyEnds:
         return min(near, key=lambda name: math.dist(self.places[name], pixel), default=None)
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Draw them."""
+        """Draw both handles."""
         for place in self.places.values():
             draw_corner(surface, place, self._scale, CORNER, is_chosen=False)
 
@@ -58,7 +58,7 @@ class EndMoving(Placing):
 
     @property
     def measure(self) -> str:
-        """How long it is, and at which angle."""
+        """Length and angle of the body, in words."""
         dx, dy = self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1]
         return f"{math.hypot(dx, dy):.3g} m, {math.degrees(math.atan2(dy, dx)):.3g}°"
 

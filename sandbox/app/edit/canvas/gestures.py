@@ -25,25 +25,25 @@ LASSO_STEP = 4.0
 
 
 class Gesture(Protocol):
-    """A drag of the select tool; matrix (2, 3): what it does to the selection so far, None = nothing."""
+    """A drag of the select tool; transform (2, 3): what it does to the selection so far, None = nothing."""
 
-    matrix: np.ndarray | None
+    transform: np.ndarray | None
 
     @property
     def measure(self) -> str:
-        """How far it is, in a few words."""
+        """Length, angle or factors of the drag so far, in words."""
         ...
 
     def to(self, point: Point, modifiers: int) -> None:
-        """The pointer is at a point [m] now."""
+        """Follow the pointer to a point [m]."""
         ...
 
     def end(self) -> None:
-        """The pointer is released."""
+        """Make the edit or the selection, as the pointer is released."""
         ...
 
     def ghost(self) -> Document | None:
-        """The document as it would be, where the matrix does not say it."""
+        """The document as it would be if the drag ended now, where the transform does not say it."""
         ...
 
     def draw(self, surface: pygame.Surface) -> None:
@@ -60,10 +60,10 @@ def pick_mode(modifiers: int, click: bool) -> Mode:
 
 
 class _Matrix:
-    """A gesture that changes the selection by its matrix, or not at all."""
+    """A gesture that changes the selection by its transform, or not at all."""
 
     def ghost(self) -> Document | None:
-        """None: what changes is the selection itself."""
+        """None: the transform says what changes."""
         return None
 
 
@@ -72,7 +72,7 @@ class Moving(_Matrix):
 
     def __init__(self, screen: Editing, start: Point) -> None:
         self._screen, self._start = screen, start
-        self.matrix: np.ndarray | None = None
+        self.transform: np.ndarray | None = None
         self._snap = Snap(start)
         others = frozenset(screen.scene.items) - screen.document.selection
         self._taken = snap(screen.scene, start, screen.reach, skip=others)
@@ -81,12 +81,12 @@ class Moving(_Matrix):
 
     @property
     def measure(self) -> str:
-        """The way so far."""
+        """How far the selection was dragged [m], in words."""
         dx, dy = self._by
         return f"{dx:+.4g}, {dy:+.4g} m"
 
     def to(self, point: Point, modifiers: int) -> None:
-        """Shift keeps to round directions, Alt to nothing."""
+        """Drag the selection to a point [m]; Shift keeps to round directions, Alt snaps to nothing."""
         wanted = (self._anchor[0] + point[0] - self._start[0], self._anchor[1] + point[1] - self._start[1])
         along = self._anchor if modifiers & pygame.KMOD_SHIFT else None
         self._snap = self._screen.snapped(wanted, modifiers, along, self._screen.document.selection)
@@ -95,7 +95,7 @@ class Moving(_Matrix):
             self._snap = replace(self._snap, point=(self._anchor[0] + self._by[0], self._anchor[1] + self._by[1]))
         else:
             self._by = (self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1])
-        self.matrix = np.array([[1.0, 0.0, self._by[0]], [0.0, 1.0, self._by[1]]])
+        self.transform = np.array([[1.0, 0.0, self._by[0]], [0.0, 1.0, self._by[1]]])
 
     def _steps(self, wanted: Point) -> Point:
         """The way in whole steps of the grid, for what is not taken by an end: what stands on the grid stays on it."""
@@ -104,7 +104,7 @@ class Moving(_Matrix):
         return round(dx, PLACE_DECIMALS) + 0.0, round(dy, PLACE_DECIMALS) + 0.0
 
     def end(self) -> None:
-        """Move, and join where an end came onto a particle."""
+        """Move the selection, and join an end that came onto a particle to it."""
         if self._by != (0.0, 0.0):
             self._screen.edit("Move", self._moved)
 
@@ -120,7 +120,7 @@ class Moving(_Matrix):
             return moved
 
     def draw(self, surface: pygame.Surface) -> None:
-        """What it snaps to."""
+        """Mark what the selection snaps to."""
         self._screen.draw_snap(surface, self._snap)
 
 
@@ -133,13 +133,13 @@ class Copying(Moving):
 
     @property
     def measure(self) -> str:
-        """The way so far."""
+        """How far the copy was dragged [m], in words."""
         return f"copy {super().measure}"
 
     def to(self, point: Point, modifiers: int) -> None:
-        """As of a move."""
+        """Drag the copy to a point [m], as a move does."""
         super().to(point, modifiers)
-        self.matrix = None
+        self.transform = None
 
     def ghost(self) -> Document | None:
         """The document with the copy."""
@@ -151,7 +151,7 @@ class Copying(Moving):
         return self._copy[1]
 
     def end(self) -> None:
-        """Put the copy there."""
+        """Put the copy where it was dragged to."""
         if self._by != (0.0, 0.0):
             self._screen.edit("Duplicate", lambda document: duplicate(document, *self._by))
 
@@ -161,12 +161,12 @@ class Transforming(_Matrix):
 
     def __init__(self, screen: Editing, handles: Handles, name: str, start: Point, even: bool) -> None:
         self._screen, self._handles, self._name, self._start, self._even = screen, handles, name, start, even
-        self.matrix: np.ndarray | None = None
+        self.transform: np.ndarray | None = None
         self._change: Scaling | Turn | None = None
 
     @property
     def measure(self) -> str:
-        """The angle, or the factors, so far."""
+        """The angle or the factors of the drag so far, in words."""
         change = self._change
         if isinstance(change, Turn):
             return f"{math.degrees(change.angle):+.4g}°"
@@ -175,20 +175,20 @@ class Transforming(_Matrix):
         return ""
 
     def to(self, point: Point, modifiers: int) -> None:
-        """Shift keeps the sides' ratio, Ctrl the middle; Alt turns freely."""
+        """Drag the handle to a point [m]; Shift keeps the sides' ratio, Ctrl the middle; Alt turns freely."""
         alt, shift = modifiers & pygame.KMOD_ALT, modifiers & pygame.KMOD_SHIFT
         if self._name == "turn":
             self._change = self._handles.turn(self._start, point, bool(alt))
         else:
-            place = self._screen.snapped(point, modifiers).point if self._screen.grid_snaps(modifiers) else point
+            place = self._screen.snapped(point, modifiers).point if self._screen.snaps_pointer(modifiers) else point
             about_centre = bool(modifiers & pygame.KMOD_CTRL)
             self._change = self._handles.scaling(
                 self._name, self._start, place, self._even or bool(shift), about_centre
             )
-        self.matrix = self._change.matrix
+        self.transform = self._change.matrix
 
     def end(self) -> None:
-        """Scale or turn."""
+        """Scale or turn the selection by what was dragged."""
         change = self._change
         if isinstance(change, Turn) and change.angle:
             self._screen.edit("Turn", lambda document: rotate(document, change.angle, change.centre))
@@ -196,30 +196,30 @@ class Transforming(_Matrix):
             self._screen.edit("Scale", lambda document: scale(document, change.x, change.y, change.centre))
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Nothing besides."""
+        """Draw nothing besides the selection."""
 
 
 class Boxing(_Matrix):
     """Selects what lies in a box; taken: what picking items takes, with the whole of their groups."""
 
-    matrix: np.ndarray | None = None
+    transform: np.ndarray | None = None
     measure = ""
 
     def __init__(self, screen: Editing, start: Point, taken: Callable[[Selection], Selection]) -> None:
         self._screen, self._start, self._end, self._modifiers, self._taken = screen, start, start, 0, taken
 
     def to(self, point: Point, modifiers: int) -> None:
-        """The other corner."""
+        """Drag the other corner of the box to a point [m]."""
         self._end, self._modifiers = point, modifiers
 
     def end(self) -> None:
-        """Select."""
+        """Select what lies inside the box."""
         screen = self._screen
         found = self._taken(items_in_box(screen.scene, (*self._start, *self._end), screen.visibility.closed))
         screen.select(combined(screen.document.selection, found, pick_mode(self._modifiers, False)))
 
     def draw(self, surface: pygame.Surface) -> None:
-        """The box."""
+        """Draw the box."""
         (x0, y0), (x1, y1) = map(self._screen.camera.to_pixels, (self._start, self._end))
         box = pygame.Rect(round(min(x0, x1)), round(min(y0, y1)), round(abs(x1 - x0)), round(abs(y1 - y0)))
         shade = pygame.Surface(box.size, pygame.SRCALPHA)
@@ -231,27 +231,27 @@ class Boxing(_Matrix):
 class Lassoing(_Matrix):
     """Selects what lies inside a freehand line; taken: as of a box."""
 
-    matrix: np.ndarray | None = None
+    transform: np.ndarray | None = None
     measure = ""
 
     def __init__(self, screen: Editing, start: Point, taken: Callable[[Selection], Selection]) -> None:
         self._screen, self._line, self._modifiers, self._taken = screen, [start], 0, taken
 
     def to(self, point: Point, modifiers: int) -> None:
-        """The line goes on."""
+        """Go on with the line to a point [m]."""
         self._modifiers = modifiers
         step = LASSO_STEP * self._screen.scale / self._screen.camera.zoom
         if math.dist(point, self._line[-1]) >= step:
             self._line.append(point)
 
     def end(self) -> None:
-        """Select."""
+        """Select what lies inside the line."""
         screen = self._screen
         found = self._taken(items_in_lasso(screen.scene, self._line, screen.visibility.closed))
         screen.select(combined(screen.document.selection, found, pick_mode(self._modifiers, False)))
 
     def draw(self, surface: pygame.Surface) -> None:
-        """The line, and its way back."""
+        """Draw the line, closed by a straight one."""
         points = [self._screen.camera.to_pixels(point) for point in self._line]
         if len(points) > 2:
             pygame.draw.aalines(surface, ACCENT, True, points)

@@ -37,7 +37,7 @@ class Scaling:
 
     @property
     def matrix(self) -> np.ndarray:
-        """Its matrix (2, 3)."""
+        """The map (2, 3) of the scaling."""
         (x, y), (cx, cy) = (self.x, self.y), self.centre
         return np.array([[x, 0.0, cx - x * cx], [0.0, y, cy - y * cy]])
 
@@ -51,7 +51,7 @@ class Turn:
 
     @property
     def matrix(self) -> np.ndarray:
-        """Its matrix (2, 3)."""
+        """The map (2, 3) of the turn."""
         c, s, (x, y) = math.cos(self.angle), math.sin(self.angle), self.centre
         return np.array([[c, -s, x - c * x + s * y], [s, c, y - s * x - c * y]])
 

@@ -61,7 +61,7 @@ class DriveMarks:
         return _pixel(camera, scene, a), _pixel(camera, scene, b)
 
     def _draw_muscle(self, surface: pygame.Surface, a: Point, b: Point) -> None:
-        """A wave in a badge."""
+        """Draw a wave in a badge."""
         scale = self._ui.scale
         if math.dist(a, b) < SHORTEST * scale:
             return
@@ -74,7 +74,7 @@ class DriveMarks:
         pygame.draw.lines(surface, TEXT, False, wave, max(1, round(1.6 * scale)))
 
     def _draw_hydraulic(self, surface: pygame.Surface, a: Point, b: Point, hydraulic: HydraulicDef) -> None:
-        """A cylinder on the first part of the spring, with its piston, and an arrow back where it returns."""
+        """Draw a cylinder on the first part of the spring, with its piston, and an arrow back where it returns."""
         scale, length = self._ui.scale, math.dist(a, b)
         if length < SHORTEST * scale:
             return
@@ -102,7 +102,7 @@ class DriveMarks:
         self._draw_keys(surface, at(0.5, 4.2 * half), hydraulic)
 
     def _draw_motor(self, surface: pygame.Surface, hub: Point, rim: float, motor: MotorDef) -> None:
-        """An arrow about the hub, the way that the motor turns it; a bare ring where it holds it still."""
+        """Draw an arrow about the hub, the way that the motor turns it; a bare ring where it holds it still."""
         scale = self._ui.scale
         if rim < SMALLEST * scale:
             return
@@ -126,7 +126,7 @@ class DriveMarks:
             self._draw_keys(surface, (hub[0], hub[1] + radius + 12 * scale), motor)
 
     def _draw_keys(self, surface: pygame.Surface, at: Point, drive: HydraulicDef | MotorDef) -> None:
-        """Caps of the keys that drive it."""
+        """Draw caps of the keys that drive it."""
         ui = self._ui
         keys = [key.upper() for key in (drive.key, drive.reverse_key) if key is not None]
         size = ui.px(15)

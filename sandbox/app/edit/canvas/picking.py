@@ -25,7 +25,7 @@ _HINTS = {
 class PickTool:
     """Waits for a pick of a kind, and gives it to `then`; is_over: it has been given, or given up."""
 
-    matrix: np.ndarray | None = None
+    transform: np.ndarray | None = None
 
     def __init__(self, screen: Editing, kind: Pick, then: Callable[[Any], object]) -> None:
         self._screen, self._kind, self._then = screen, kind, then
@@ -42,7 +42,7 @@ class PickTool:
 
     @property
     def measure(self) -> str:
-        """What would be picked."""
+        """The name of the particle or body under the pointer, or the size of the box."""
         if self._kind == "box":
             box = self._box
             return "" if box is None else f"{box[2] - box[0]:.3g} m x {box[3] - box[1]:.3g} m"
@@ -57,7 +57,7 @@ class PickTool:
         return left, bottom, right, top
 
     def _found(self, point: Point) -> str | None:
-        """The name of what is at a point."""
+        """The name of the particle or body at a point; None where none is."""
         screen = self._screen
         if self._kind == "particle":
             self._snap = snap(screen.scene, point, screen.reach, skip=screen.visibility.hidden)
@@ -66,7 +66,7 @@ class PickTool:
         return str(self.hovered.key) if self.hovered is not None and self.hovered.kind == "body" else None
 
     def down(self, point: Point, modifiers: int, clicks: int) -> None:
-        """Take what is there, or begin the box."""
+        """Pick the particle or body at a point [m], or begin the box there."""
         self._at = point
         if self._kind == "box":
             self._start = self._at = self._screen.snapped(point, modifiers).point
@@ -79,11 +79,11 @@ class PickTool:
         self._then(found)
 
     def move(self, point: Point, modifiers: int) -> None:
-        """The other corner of the box."""
+        """Drag the other corner of the box."""
         self._at = self._screen.snapped(point, modifiers).point if self._kind == "box" else point
 
     def up(self, point: Point, modifiers: int) -> None:
-        """The end of the box; a click alone begins none."""
+        """Pick the box; a click alone makes none."""
         box, self._start = self._box, None
         if self._kind == "box" and box is not None and box[0] < box[2] and box[1] < box[3]:
             self.is_over = True
@@ -94,16 +94,16 @@ class PickTool:
         self._at = point
 
     def cancel(self) -> bool:
-        """Give it up."""
+        """Give the box up; whether there was one."""
         self.is_over = True
         return True
 
     def ghost(self) -> Document | None:
-        """Nothing is drawn."""
+        """None: picking adds nothing to the level."""
         return None
 
     def draw(self, surface: pygame.Surface) -> None:
-        """The box so far, or the particle that would be taken."""
+        """Draw the box so far, and mark the particle that a click would pick."""
         box = self._box
         if box is not None:
             draw_box(surface, self._screen.camera, box)

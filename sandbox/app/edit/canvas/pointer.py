@@ -51,7 +51,7 @@ class SelectTool:
 
     @property
     def hint(self) -> str:
-        """The keys that join and take away, or what a piece of terrain lets do with its corners."""
+        """What keys and clicks do now: for the selection, the corners of terrain, or the ends of a body."""
         if self.corner is not None:
             return "Drag the corner or use the arrow keys; Delete removes it; drag a dot between corners to add one"
         if self.piece is not None and self._gesture is None:
@@ -87,17 +87,17 @@ class SelectTool:
 
     @property
     def measure(self) -> str:
-        """Of the drag."""
+        """Length, angle or factors of the drag, in words."""
         return self._gesture.measure if self._gesture is not None else ""
 
     @property
-    def matrix(self) -> np.ndarray | None:
-        """Of the drag."""
-        return self._gesture.matrix if self._gesture is not None else None
+    def transform(self) -> np.ndarray | None:
+        """The map (2, 3) by which the drag moves the selection so far; None = no drag does."""
+        return self._gesture.transform if self._gesture is not None else None
 
     @property
     def piece(self) -> Item | None:
-        """The piece of terrain that alone is selected."""
+        """The piece of terrain that is selected, if nothing else is."""
         selection = self._screen.document.selection
         only = next(iter(selection)) if len(selection) == 1 else None
         return only if only is not None and only.kind == "terrain" else None
@@ -115,7 +115,7 @@ class SelectTool:
         return None if piece is None else Corners(screen.document, piece, screen.camera, screen.scale)
 
     def delete_corner(self) -> bool:
-        """Take the clicked corner out; whether there is one."""
+        """Delete the clicked corner; whether there is one."""
         piece, corner = self.piece, self.corner
         if piece is None or corner is None:
             return False
@@ -153,10 +153,10 @@ class SelectTool:
         box = screen.selection_box
         if box is None or len(keys(selection, "spring")) == len(selection):
             return None
-        return Handles(box, screen.camera, screen.scale, screen.scales_apart)
+        return Handles(box, screen.camera, screen.scale, screen.scales_unevenly)
 
     def down(self, point: Point, modifiers: int, clicks: int) -> None:
-        """Take a handle, an item, or begin a box."""
+        """Take a handle or an item at a point [m], or begin a box there."""
         screen = self._screen
         handles = self.handles()
         name = handles.at(screen.camera.to_pixels(point)) if handles is not None else None
@@ -166,7 +166,7 @@ class SelectTool:
         if self._take_corner(pixel) or self._take_end(pixel):
             return
         if handles is not None and name is not None:
-            self._gesture = Transforming(screen, handles, name, point, not screen.scales_apart)
+            self._gesture = Transforming(screen, handles, name, point, not screen.scales_unevenly)
             return
         item = item_at(screen.scene, point, screen.reach, screen.visibility.closed)
         self._clicked = item
@@ -232,7 +232,7 @@ class SelectTool:
         return Lassoing(screen, start, self._taken) if self._lasso else Boxing(screen, start, self._taken)
 
     def up(self, point: Point, modifiers: int) -> None:
-        """End the drag; a click selects what is there alone, in the open nothing."""
+        """End the drag; a click selects the item under it alone, or nothing where none is."""
         gesture, pressed, self._gesture, self._pressed = self._gesture, self._pressed, None, None
         if gesture is not None:
             gesture.end()
@@ -260,11 +260,11 @@ class SelectTool:
         return True
 
     def ghost(self) -> Document | None:
-        """Of the drag."""
+        """The document as it would be if the drag ended now; None = the transform says it, or no drag goes on."""
         return self._gesture.ghost() if self._gesture is not None else None
 
     def draw(self, surface: pygame.Surface) -> None:
-        """The handles, or what the drag shows."""
+        """Draw the handles, or during a drag what the gesture shows."""
         if self._gesture is not None:
             self._gesture.draw(surface)
             return
@@ -281,7 +281,7 @@ class SelectTool:
 class DrawTool:
     """Draws with one of the editor's drawings; name: what a step of the history is called."""
 
-    matrix: np.ndarray | None = None
+    transform: np.ndarray | None = None
 
     def __init__(self, screen: Editing, drawing: Drawing[Any], name: str) -> None:
         self._screen, self.drawing, self._name = screen, drawing, name
@@ -297,7 +297,7 @@ class DrawTool:
 
     @property
     def measure(self) -> str:
-        """Sizes of what is drawn."""
+        """Sizes of what is drawn, in words."""
         return self.drawing.measure
 
     def _snapped(self, point: Point, modifiers: int) -> Snap:
@@ -306,20 +306,20 @@ class DrawTool:
         return self._snap
 
     def down(self, point: Point, modifiers: int, clicks: int) -> None:
-        """Begin, or go on."""
+        """Begin a drawing at a point [m], or set its next point there."""
         self.drawing.down(self._snapped(point, modifiers))
 
     def move(self, point: Point, modifiers: int) -> None:
-        """Move the end."""
+        """Move the last point of the drawing."""
         self.drawing.move(self._snapped(point, modifiers))
 
     def up(self, point: Point, modifiers: int) -> None:
-        """Draw it, where it is complete."""
+        """Add what is drawn to the level, if the drawing is complete."""
         self.drawing.up(self._snapped(point, modifiers))
         self._take()
 
     def finish(self) -> None:
-        """End it at the pointer."""
+        """End the drawing at the pointer, and add it to the level."""
         self.drawing.finish()
         self._take()
 
@@ -350,7 +350,7 @@ class DrawTool:
                 )
 
     def hover(self, point: Point | None, modifiers: int) -> None:
-        """Show what a click would do."""
+        """Move the next point of the drawing to the pointer."""
         if point is None:
             self._snap = None
         else:
@@ -369,7 +369,7 @@ class DrawTool:
         drawing.cancel()
 
     def cancel(self) -> bool:
-        """Give the drawing up."""
+        """Give the drawing up; whether there was one."""
         under_way = self.drawing.under_way
         self.drawing.cancel()
         return under_way
@@ -385,7 +385,7 @@ class DrawTool:
         return self._ghost
 
     def draw(self, surface: pygame.Surface) -> None:
-        """The corners so far, and where it snaps to."""
+        """Draw the corners so far, and mark what the pointer snaps to."""
         outline = [self._screen.camera.to_pixels(point) for point in self.drawing.outline]
         draw_outline(surface, outline, self._screen.scale)
         if self._snap is not None:

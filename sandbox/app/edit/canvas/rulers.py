@@ -25,7 +25,7 @@ class Rulers:
         self._pictures: list[pygame.Surface] = []
 
     def draw(self, surface: pygame.Surface, camera: Camera, pointer: Point | None) -> None:
-        """Draw them; pointer: where it is [pixels], if it is over the canvas."""
+        """Draw both rulers; pointer: where it is [pixels], if it is over the canvas."""
         size = self._ui.px(RULER)
         left, top, width, height = camera.viewport
         key = (camera.centre, camera.zoom, camera.viewport)
@@ -59,7 +59,7 @@ class Rulers:
         return pygame.transform.rotate(ruler, 90)
 
     def _mark(self, ruler: pygame.Surface, start: float, spacing: float, place: Callable[[float], float]) -> None:
-        """Marks and numbers along a ruler that begins at `start` [m]."""
+        """Draw marks and numbers along a ruler that begins at `start` [m]."""
         ruler.fill(SURFACE)
         length, size = ruler.get_size()
         thick = self._ui.px(1)

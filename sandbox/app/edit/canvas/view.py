@@ -70,7 +70,7 @@ class View:
 
     def _draw_scene(self, surface: pygame.Surface) -> None:
         screen = self._screen
-        scene, selection, matrix = screen.scene, screen.document.selection, screen.pointer_tool.matrix
+        scene, selection, matrix = screen.scene, screen.document.selection, screen.pointer_tool.transform
         hidden = screen.visibility.hidden
         now = (scene, selection, hidden)
         if self._chosen is None or any(old is not new for old, new in zip(self._chosen, now, strict=False)):
@@ -122,7 +122,7 @@ class View:
 
     def _draw_marks(self, surface: pygame.Surface) -> None:
         screen, tool = self._screen, self._screen.pointer_tool
-        under = tool.hovered if isinstance(tool, SelectTool) and tool.matrix is None else None
+        under = tool.hovered if isinstance(tool, SelectTool) and tool.transform is None else None
         pointed = self.pointed if under is None else frozenset({under})
         if pointed and not pointed <= screen.document.selection and pointed <= frozenset(screen.scene.items):
             self._painter.paint_hovered(surface, screen.camera, screen.scene, pointed)

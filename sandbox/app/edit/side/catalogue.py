@@ -63,7 +63,7 @@ class CataloguePage(SidePage):
         self._looked = 0
 
     def _add_buttons(self, left: int, top: int, width: int, container: Any) -> None:
-        """What is done with parts of one's own, side by side from a place [pixels] on."""
+        """Make the buttons for parts of one's own, side by side from a place [pixels] on."""
         ui = self._ui
         small, gap, height = ui.px(SMALL_WIDTH), ui.px(GAP), ui.px(BUTTON_HEIGHT)
         x = left + width - 2 * small - gap
@@ -141,7 +141,7 @@ class CataloguePage(SidePage):
         self._labels.append(TextBlock(ui, place, text, self.area.content, size, colour, is_bold=is_bold))
 
     def _add_section(self, title: str, parts: list[PartFile], y: float) -> float:
-        """Cards from a place [layout units] on, under a heading where that is not the top of a low page; their end."""
+        """Make cards from a place [layout units] on, under a heading but at the top of a low page; gives their end."""
         ui = self._ui
         if y > 0.0 or not self._is_low:
             self._add_label(title, y, 13.0, HEADING, is_bold=True)
@@ -190,7 +190,7 @@ class CataloguePage(SidePage):
             self._ui.blur()
 
     def carry(self, pixel: Pixel) -> None:
-        """Show the part where a drag has it."""
+        """Show the part on the canvas where a drag has it."""
         screen = self._screen
         over = self._drawing() is not None and screen.contains(pixel)
         screen.pointer = pixel if over else None
@@ -207,7 +207,7 @@ class CataloguePage(SidePage):
         screen.choose_tool("select")
 
     def go(self, card: PartCard, by: int) -> None:
-        """Give the keyboard to another card."""
+        """Give the keyboard to the card `by` places further."""
         index = self.cards.index(card) + by
         if 0 <= index < len(self.cards):
             self._ui.focus_on(self.cards[index])

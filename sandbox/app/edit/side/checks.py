@@ -37,7 +37,7 @@ class Trial:
 
     @property
     def is_running(self) -> bool:
-        """Whether there are checks to come."""
+        """Whether results of checks are still to come."""
         return self._thread.is_alive()
 
     def holds_for(self, level: Level) -> bool:

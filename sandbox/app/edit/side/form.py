@@ -135,7 +135,7 @@ class Form:
 
     @property
     def end(self) -> float:
-        """Where it ends [layout units]."""
+        """The lower end of the form [layout units]."""
         return self._y + 8.0
 
     def close(self) -> None:
@@ -167,7 +167,7 @@ class Form:
         return each.about.kind in ("list", "pairs", "outlines", "words") and len(each.texts[0]) > TEXT_LENGTH
 
     def _lines(self, each: Property) -> int:
-        """Lines that a text takes which is only shown."""
+        """How many lines a text takes that is only shown."""
         font = self._ui.font(11.0)
         return len(wrapped(each.texts[0], font, self._ui.px(self._inside - LABEL_WIDTH), NOTE_LINES))
 
@@ -368,7 +368,7 @@ class Form:
         return collision_groups(self._screen.document.level)
 
     def _toggle_of(self, each: Property, group: str) -> str:
-        """What a row of a collision group does."""
+        """The words on a row of a collision group: what a click does there."""
         listed = _listed(each.value)
         if not listed:
             return "this group alone"
@@ -478,7 +478,7 @@ class Form:
         ask(self._ui, each.about.title, "Red, green and blue, such as #F2557B", before, "Take it", take)
 
     def _offer_text(self, name: str) -> None:
-        """A list too long to type: it can be taken out and put in as text."""
+        """Offer to copy a list that is too long to type as text, or to paste one in its place."""
 
         def put() -> None:
             if not copy_text(self.properties[name].texts[0]):

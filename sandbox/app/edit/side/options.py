@@ -194,7 +194,7 @@ class OptionsRow:
         self._add_field(
             name, partial(self._type_option, tool, name, about), ENTRY_WIDTH, tip, about.empty if about.optional else ""
         )
-        self.fields[name].turn = partial(self._turn_option, tool, name, about)
+        self.fields[name].step_value = partial(self._step_option, tool, name, about)
 
     def _settle_material(self, tool: DrawTool, name: str) -> None:
         """Draw with a material that the level has."""
@@ -262,8 +262,8 @@ class OptionsRow:
             return self._set(tool, name, int(value))
         return self._set(tool, name, value)
 
-    def _turn_option(self, tool: DrawTool, name: str, about: OptionInfo, by: int) -> None:
-        """Step a value up or down; a number of parts from the one that fits."""
+    def _step_option(self, tool: DrawTool, name: str, about: OptionInfo, by: int) -> None:
+        """Step an option's value up or down; a number of parts that is open begins at the one that fits."""
         if name == tool.drawing.counted:
             tool.adjust(by)
         else:
@@ -311,6 +311,6 @@ class OptionsRow:
             screen.say(f"The {name} is {extent:g} m and cannot be made {value:g} m.")
             return False
         factor = value / extent
-        apart = screen.scales_apart
+        apart = screen.scales_unevenly
         sx, sy = (factor if name == "width" or not apart else 1.0), (factor if name == "height" or not apart else 1.0)
         return screen.edit("Scale", lambda document: scale(document, sx, sy, (x, y)))

@@ -79,7 +79,7 @@ class Side:
             self.tab = tab
             self.page = self._made()
 
-    def turn(self, by: int) -> None:
+    def turn_page(self, by: int) -> None:
         """Show the page that many tabs further, and give its tab the keyboard."""
         names = list(PAGES)
         here = names.index(self.tab) if self.tab in names else 0

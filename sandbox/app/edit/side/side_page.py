@@ -9,4 +9,4 @@ class SidePage:
         raise NotImplementedError
 
     def close(self) -> None:
-        """What it shows outside of its place goes with it."""
+        """End what the page shows outside of its place, such as a box on the sheet."""

@@ -83,7 +83,7 @@ class PadSweeps:
         return grid.material
 
     def follow(self, level: Level, settings: WorldSettings, material: str | None) -> None:
-        """Be of a level with settings as they are now, and of a material's springs (None = all)."""
+        """Show sweeps of a level with its settings as they are now, and of a material's springs (None = all)."""
         if self.measure is None:
             return
         if self._of is not None and self._of[0] is level and self._of[1:] == (settings, material):

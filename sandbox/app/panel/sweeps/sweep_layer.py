@@ -35,7 +35,7 @@ class SweepLayer:
 
     @property
     def measure(self) -> SweepMeasure:
-        """What is shown."""
+        """The measure that is shown."""
         return measure_of(self.figure)
 
     @property
@@ -103,7 +103,7 @@ class SweepLayer:
 
     @property
     def missing_colour(self) -> Colour:
-        """Of runs without a value."""
+        """The colour of runs without a value."""
         return mixed(FIELD, MUTED, 0.3)
 
 

@@ -1,4 +1,4 @@
-"""Whether things touch each other in a level that is played, and how: another way begins the run again."""
+"""ContactSettings: whether and how things touch in a level that is played; other settings begin the run again."""
 
 from dataclasses import dataclass, replace
 
@@ -12,8 +12,8 @@ from sandbox.level.format.quantities import replaced
 
 
 @dataclass(frozen=True)
-class Touching:
-    """Whether things touch, and friction and bounce of what says nothing else; fixed: terrain or walls are touched."""
+class ContactSettings:
+    """Whether things touch, and friction and bounce of what has none of its own; fixed: terrain or walls are there."""
 
     is_on: bool
     friction: float
@@ -21,41 +21,41 @@ class Touching:
     fixed: bool
 
     @classmethod
-    def of(cls, level: Level) -> "Touching":
-        """That of a level."""
+    def of(cls, level: Level) -> "ContactSettings":
+        """The contacts that a level has."""
         contacts = level.contacts or ContactsDef()
         fixed = level.walls is not None or bool(level.terrain)
         return cls(level.has_contacts, contacts.friction, contacts.restitution, fixed)
 
     @property
-    def other(self) -> "Touching":
-        """The other way."""
+    def other(self) -> "ContactSettings":
+        """The same with contacts on where they are off, or off where they are on."""
         return replace(self, is_on=not self.is_on)
 
 
-def level_touching(playback: Playback, touching: Touching) -> Level:
-    """The level of a run, with the springs and the solver that the run has now, in which things touch so.
+def level_with_contacts(playback: Playback, contacts: ContactSettings) -> Level:
+    """The level of a run with these contacts, and the springs and the solver that the run has now.
 
     Raises EditError where the run cannot be had as a level.
     """
     world = playback.session.world
     level = level_at_rate(playback.level, world, world.settings.tick_rate, in_pace=False)
-    contacts = ContactsDef(friction=touching.friction, restitution=touching.restitution)
-    return replaced(level, contacts=contacts if touching.is_on else None)
+    given = ContactsDef(friction=contacts.friction, restitution=contacts.restitution)
+    return replaced(level, contacts=given if contacts.is_on else None)
 
 
-def begin_touching(app: Application, playback: Playback, touching: Touching, of_document: bool) -> None:
-    """Begin a run again with things that touch so, or say why that cannot be."""
+def restart_with_contacts(app: Application, playback: Playback, contacts: ContactSettings, of_document: bool) -> None:
+    """Begin a run again with these contacts, or say why that cannot be."""
     if of_document:
         app.say("This run belongs to the editor. Change it there, on the page Level.")
         return
-    if touching.fixed and not touching.is_on:
+    if contacts.fixed and not contacts.is_on:
         app.say("This level has terrain or walls, so contacts stay on.")
         return
     try:
-        level = level_touching(playback, touching)
+        level = level_with_contacts(playback, contacts)
     except EditError as error:
         app.say(sentence(error))
         return
     app.start(Playback(level))
-    app.say(f"From the beginning: things {'touch' if touching.is_on else 'pass through'} each other.")
+    app.say(f"From the beginning: things {'touch' if contacts.is_on else 'pass through'} each other.")
