@@ -29,6 +29,7 @@ from sandbox.editor.tools.palette import TOOLS
 # A copy is put this many steps of the grid to the right of and below what it is of.
 COPY_STEPS = 2
 COPY_LIMIT = 1_000
+FIRST_COPY = "The selection counts as the first copy."
 # A step of the grid that a person may set [m].
 SMALLEST_GRID, LARGEST_GRID = 0.001, 1_000.0
 
@@ -297,80 +298,64 @@ def _ask_line(screen: Editing) -> None:
     box = screen.selection_box
     assert box is not None
     apart = box[2] - box[0] + 2 * screen.grid
-    fields = [
-        ("Number of copies, with the first", "5"),
-        ("Step to the right [m]", f"{apart:.4g}"),
-        ("Step upward [m]", "0"),
-    ]
-
-    def make(texts: list[str]) -> str | None:
-        try:
-            count, dx, dy = _count(texts[0]), _number(texts[1]), _number(texts[2])
-        except ValueError as error:
-            return str(error)
-        return None if screen.edit("Array", lambda document: array_line(document, count, dx, dy)) else "Not possible."
-
-    fill_in(screen.ui, "Array along a line", "The selection counts as the first copy.", fields, "Make", make)
+    _ask_numbers(
+        screen, "Array along a line", FIRST_COPY, "Array", array_line,
+        ("Number of copies, with the first", "5", _count),
+        ("Step to the right [m]", f"{apart:.4g}", _number), ("Step upward [m]", "0", _number),
+    )  # fmt: skip
 
 
 def _ask_grid(screen: Editing) -> None:
     box = screen.selection_box
     assert box is not None
     across, up = box[2] - box[0] + 2 * screen.grid, box[3] - box[1] + 2 * screen.grid
-    fields = [
-        ("Columns", "3"), ("Step to the right [m]", f"{across:.4g}"), ("Rows", "3"), ("Step upward [m]", f"{up:.4g}"),
-    ]  # fmt: skip
 
-    def make(texts: list[str]) -> str | None:
-        try:
-            columns, dx, rows, dy = _count(texts[0]), _number(texts[1]), _count(texts[2]), _number(texts[3])
-        except ValueError as error:
-            return str(error)
+    def filled(document: Document, columns: int, dx: float, rows: int, dy: float) -> Document:
+        return array_line(array_line(document, columns, dx, 0.0), rows, 0.0, dy)
 
-        def filled(document: Document) -> Document:
-            return array_line(array_line(document, columns, dx, 0.0), rows, 0.0, dy)
-
-        return None if screen.edit("Array", filled) else "Not possible."
-
-    fill_in(screen.ui, "Rows and columns", "The selection counts as the first copy.", fields, "Make", make)
+    _ask_numbers(
+        screen, "Rows and columns", FIRST_COPY, "Array", filled,
+        ("Columns", "3", _count), ("Step to the right [m]", f"{across:.4g}", _number),
+        ("Rows", "3", _count), ("Step upward [m]", f"{up:.4g}", _number),
+    )  # fmt: skip
 
 
 def _ask_circle(screen: Editing) -> None:
     box = screen.selection_box
     assert box is not None
     x, y = (box[0] + box[2]) / 2, box[1] - (box[3] - box[1]) - 1.0
-    fields = [
-        ("Number of copies, with the first", "6"),
-        ("Middle x [m]", f"{x:.4g}"),
-        ("Middle y [m]", f"{y:.4g}"),
-        ("Angle from one to the next [degrees]", "60"),
-    ]
 
-    def make(texts: list[str]) -> str | None:
-        try:
-            count, centre = _count(texts[0]), (_number(texts[1]), _number(texts[2]))
-            angle = math.radians(_number(texts[3]))
-        except ValueError as error:
-            return str(error)
-        done = screen.edit("Array", lambda document: array_circle(document, count, centre, angle))
-        return None if done else "Not possible."
+    def filled(document: Document, count: int, x: float, y: float, angle: float) -> Document:
+        return array_circle(document, count, (x, y), math.radians(angle))
 
-    fill_in(screen.ui, "Array along a circle", "The selection counts as the first copy.", fields, "Make", make)
+    _ask_numbers(
+        screen, "Array along a circle", FIRST_COPY, "Array", filled,
+        ("Number of copies, with the first", "6", _count),
+        ("Middle x [m]", f"{x:.4g}", _number), ("Middle y [m]", f"{y:.4g}", _number),
+        ("Angle from one to the next [degrees]", "60", _number),
+    )  # fmt: skip
 
 
 def _ask_wave(screen: Editing) -> None:
     """Ask for a wave through muscles in their order."""
+    hint = "Phases of the selected muscles, or of all, from first to last."
+    _ask_numbers(screen, "Phase wave", hint, "Phase wave", wave_in_order, ("Waves along them", "1", _number))
 
-    def make(texts: list[str]) -> str | None:
+
+def _ask_numbers(
+    screen: Editing, title: str, hint: str, step: str, change: Callable[..., Document],
+    *fields: tuple[str, str, Callable[[str], float]],
+) -> None:  # fmt: skip
+    """Ask for numbers, (label, first text, how it is read) each, and make change(document, *numbers) an edit."""
+
+    def make(*texts: str) -> str | None:
         try:
-            waves = _number(texts[0])
+            numbers = [read(text) for (_, _, read), text in zip(fields, texts, strict=True)]
         except ValueError as error:
             return str(error)
-        done = screen.edit("Phase wave", lambda document: wave_in_order(document, waves))
-        return None if done else "Not possible."
+        return None if screen.edit(step, lambda document: change(document, *numbers)) else "Not possible."
 
-    hint = "Phases of the selected muscles, or of all, from first to last."
-    fill_in(screen.ui, "Phase wave", hint, [("Waves along them", "1")], "Make", make)
+    fill_in(screen.ui, title, hint, [(label, text) for label, text, _ in fields], "Make", make)
 
 
 def _number(text: str) -> float:

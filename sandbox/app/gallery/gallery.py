@@ -413,7 +413,6 @@ class Gallery:
             target = _beside(shown, focus, dx, dy)
         if target is not None:
             self._ui.focus_on(target)
-            self._ui.show_focus()
 
     def scroll(self, notches: float) -> None:
         """Move the cards by notches of the wheel."""

@@ -8,6 +8,7 @@ import pygame
 from sandbox.app.base.desktop import copy_text
 from sandbox.app.draw.colours import MUTED, TEXT
 from sandbox.app.widgets.code_block import CodeBlock, code_height
+from sandbox.app.widgets.dialogs import AROUND, MARGIN, Dialog
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.texts import TextBlock, text_height
@@ -27,7 +28,7 @@ LANGUAGES = {"Python": "python", "C#": "csharp", "GDScript": "gdscript", "C++": 
 ALL = "All numbers"
 TARGETS = {**ENGINES, **LANGUAGES, ALL: "all"}
 # Sizes in layout units.
-WIDTH, HEIGHT, MARGIN, ROW, GAP, TEXT_SIZE = 820.0, 620.0, 28.0, 34.0, 10.0, 13.0
+WIDTH, HEIGHT, ROW, GAP, TEXT_SIZE = 820.0, 620.0, 34.0, 10.0, 13.0
 TOP, BETWEEN = 66.0, 14.0
 COLUMNS, MENU_WIDTH, ASKING_HEIGHT = 3, 200.0, 392.0
 QUESTION, OWN_LOOP = "Which engine?", "Or a loop of your own, in"
@@ -57,14 +58,12 @@ class _TakeHomePage:
         self, ui: Ui, world: World, say: Callable[[str], None], take: TakeHome, names: list[str], target: str | None
     ) -> None:  # fmt: skip
         self._ui, self._world, self._say, self._take, self._target = ui, world, say, take, target
-        self._width = min(WIDTH, ui.units[0] - 16)
+        self._wide = ui.px(min(WIDTH, ui.units[0] - AROUND) - 2 * MARGIN)
         self._code, self._about = ("", "") if target is None else _texts(take, TARGETS[target])
         high = ASKING_HEIGHT if target is None else TOP + self._content_height() / ui.scale + ROW + 36
-        self._height = min(high, HEIGHT, ui.units[1] - 16)
-        self._sheet = ui.open_sheet(is_page=True, reopen=self._reopen)
-        left, top = (ui.units[0] - self._width) / 2, (ui.units[1] - self._height) / 2
-        self._box = ui.panel(ui.rect(left, top, self._width, self._height), self._sheet, "dialog")
-        ui.label(ui.rect(MARGIN, 18, 220, 28), "Take it home" if target is None else target, self._box, "title")
+        title = target or "Take it home"
+        self._dialog = dialog = Dialog(ui, title, WIDTH, min(high, HEIGHT), self._reopen, is_page=True)
+        self._width, self._height, self._box = dialog.width, dialog.height, dialog.box
         menu = ui.rect(self._width - MARGIN - MENU_WIDTH, 18, MENU_WIDTH, ROW)
         WordPicker(ui, menu, names, take.body, lambda name: self._go(target, name), self._box)
         (self._ask if target is None else self._answer)()
@@ -73,7 +72,7 @@ class _TakeHomePage:
         show_take_home(ui, self._world, self._say, self._take.body, self._target)
 
     def _go(self, target: str | None, body: str | None = None) -> None:
-        self._sheet.remove()
+        self._dialog.end()
         show_take_home(self._ui, self._world, self._say, body or self._take.body, target)
 
     def _button(self, place: pygame.Rect, text: str, do: Callable[[], None], style: str = "") -> Any:
@@ -90,7 +89,7 @@ class _TakeHomePage:
         wide = (self._width - 2 * MARGIN - GAP) / 2
         place = ui.rect(MARGIN, self._height - 16 - ROW, wide, ROW)
         self._button(place, ALL, lambda: self._go(ALL))
-        self._button(ui.rect(MARGIN + wide + GAP, self._height - 16 - ROW, wide, ROW), "Close", self._sheet.remove)
+        self._button(ui.rect(MARGIN + wide + GAP, self._height - 16 - ROW, wide, ROW), "Close", self._dialog.end)
 
     def _choices(self, names: list[str], y: float) -> float:
         """A button for each name, in rows; where these end."""
@@ -104,11 +103,6 @@ class _TakeHomePage:
         return y + -(-len(names) // COLUMNS) * (ROW + GAP)
 
     # The answer.
-
-    @property
-    def _wide(self) -> int:
-        """How wide what is written is [pixels]."""
-        return self._ui.px(self._width - 2 * MARGIN)
 
     def _content_height(self) -> int:
         """How high code and text are [pixels]."""
@@ -130,7 +124,7 @@ class _TakeHomePage:
         actions = (
             ("Copy", self._copy, "primary"),
             ("Another engine", self._go_back, ""),
-            ("Close", self._sheet.remove, ""),
+            ("Close", self._dialog.end, ""),
         )
         for number, (text, do, style) in enumerate(actions):
             place = ui.rect(MARGIN + number * (wide + GAP), self._height - 16 - ROW, wide, ROW)

@@ -33,7 +33,9 @@ STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), p
 
 
 class Hands(Protocol):
-    """What takes a part from its card."""
+    """What takes a part from its card; cards: all of them, in their order."""
+
+    cards: "list[PartCard]"
 
     def take(self, part: PartFile, by_key: bool) -> None:
         """Take the part up; by_key: whether a key did it."""
@@ -45,10 +47,6 @@ class Hands(Protocol):
 
     def drop(self, pixel: Pixel) -> None:
         """Let the part go at a pixel."""
-        ...
-
-    def go(self, card: "PartCard", by: int) -> None:
-        """Give the keyboard to the card `by` places further."""
         ...
 
 
@@ -127,8 +125,10 @@ class PartCard(Widget):
             self._hands.take(self.part, by_key=True)
             return True
         if event.key in STEPS:
-            across, down = STEPS[event.key]
-            self._hands.go(self, across + down * self._columns)
+            (across, down), cards = STEPS[event.key], self._hands.cards
+            index = cards.index(self) + across + down * self._columns
+            if 0 <= index < len(cards):
+                self.ui.focus_on(cards[index])
             return True
         return False
 

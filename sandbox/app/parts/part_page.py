@@ -7,7 +7,8 @@ from sandbox.app.base.slice_queue import SliceQueue
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import MUTED, TEXT, WARNING, Colour
 from sandbox.app.parts.part_card import PartCard, card_places, fill_card
-from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.dialogs import MARGIN, Dialog
+from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
@@ -18,12 +19,11 @@ from sandbox.physics.world import World
 
 # Sizes in layout units.
 WIDTH, HEIGHT = 690.0, 620.0
-MARGIN, GAP = 24.0, 10.0
+GAP = 10.0
 # Cards are this wide at least; on a page that is lower than this they are smaller.
 LEAST_CARD, LEAST_OF_LOW, LOW = 130.0, 82.0, 420.0
 TOP, BOTTOM = 56.0, 66.0
 HEADING, LINE = 28.0, 22.0
-BUTTON = 34.0
 # Wall time [s] of a frame that cards are filled in.
 FILL_BUDGET = 0.008
 NOTHING_OWN = "Select something in the editor and press Ctrl+K. It then appears here as a part."
@@ -45,15 +45,12 @@ class PartPage:
         last_taken: Level | None = None,
     ) -> None:  # fmt: skip
         self._ui, self._world, self._take = ui, world, take
-        width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
-        self._width = width - 2 * MARGIN - 12
+        dialog = Dialog(ui, "Parts", WIDTH, HEIGHT, lambda _: reopen(self.area.offset), is_page=True)
+        self.sheet, box, height = dialog.sheet, dialog.box, dialog.height
+        self._width = dialog.inside - BAR_WIDTH
         least = LEAST_CARD if height >= LOW else LEAST_OF_LOW
         self._columns = max(2, int((self._width + GAP) // (least + GAP)))
-        self.sheet = ui.open_sheet(is_page=True, reopen=lambda _: reopen(self.area.offset))
-        place = ui.rect((ui.units[0] - width) / 2, (ui.units[1] - height) / 2, width, height)
-        box = ui.panel(place, self.sheet, "dialog")
-        ui.label(ui.rect(MARGIN, 16, self._width, 28), "Parts", box, "title")
-        self.area = ScrollArea(ui, ui.rect(MARGIN, TOP, self._width + 12, height - TOP - BOTTOM), box)
+        self.area = ScrollArea(ui, dialog.place(TOP, height - TOP - BOTTOM), box)
         self.cards: list[PartCard] = []
         self._unfilled = SliceQueue()
         found = catalogue()
@@ -66,13 +63,10 @@ class PartPage:
         self.area.set_height(ui.px(y))
         self.area.scroll_to(offset)
         self._note = TextBlock(ui, ui.rect(MARGIN, height - BOTTOM + 12, self._width - 110, BOTTOM - 18), "", box, 12.0)
-        place = ui.rect(width - MARGIN - 100, height - MARGIN - 26, 100, BUTTON)
-        ui.button(place, "Close", self.sheet.remove, box, style="primary")
+        dialog.add_buttons(("Close", dialog.end))
         possible = (card for card in self.cards if not refusal(card.part, world))
         last = (card for card in self.cards if last_taken is not None and card.part.level is last_taken)
         ui.focus_on(next(last, None) or next(possible, self.cards[0]))
-        if not offset:
-            self._ui.show_focus()
 
     def _add_section(self, title: str, parts: list[PartFile], y: float) -> float:
         """Make cards under a heading from a place [layout units] on; gives their end."""
@@ -127,13 +121,6 @@ class PartPage:
 
     def drop(self, pixel: Pixel) -> None:
         """Do nothing: no part is dragged off this page."""
-
-    def go(self, card: PartCard, by: int) -> None:
-        """Give the keyboard to the card `by` places further."""
-        index = self.cards.index(card) + by
-        if 0 <= index < len(self.cards):
-            self._ui.focus_on(self.cards[index])
-            self._ui.show_focus()
 
 
 def refusal(part: PartFile, world: World) -> str:

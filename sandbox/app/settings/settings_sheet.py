@@ -6,13 +6,13 @@ from sandbox.app.base.shortcuts import Mode, Shortcut, shortcuts, spoken, with_k
 from sandbox.app.draw.colours import TEXT
 from sandbox.app.settings.chosen import SETTINGS, Amount, Chosen, OneOf
 from sandbox.app.settings.key_row import KeyRow
-from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.dialogs import MARGIN, Dialog
+from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.texts import TextBlock, text_height
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
 WIDTH, HEIGHT = 720.0, 676.0
-MARGIN = 24.0
 TOP, BOTTOM = 104.0, 66.0
 ROW, KEY_ROW, HEADING = 56.0, 30.0, 36.0
 LABEL_SHARE = 0.42
@@ -37,24 +37,15 @@ class SettingsSheet:
     ) -> None:
         self._ui, self._chosen, self._page = ui, chosen, page
         self._y = 0.0
-        width, height = ui.units
-        box_width, box_height = min(WIDTH, width - 16), min(HEIGHT, height - 16)
-        self._width = box_width - 2 * MARGIN - 12
-        self._sheet = ui.open_sheet(is_page=True, reopen=self._reopen)
-        place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
-        box = ui.panel(place, self._sheet, "dialog")
-        ui.label(ui.rect(MARGIN, 16, 220, 28), "Settings", box, "title")
+        dialog = Dialog(ui, "Settings", WIDTH, HEIGHT, self._reopen, is_page=True)
+        self._sheet, box, height = dialog.sheet, dialog.box, dialog.height
+        self._width = dialog.inside - BAR_WIDTH
         tabs = ui.choice(ui.rect(MARGIN, 56, min(420, self._width), 32), PAGES, self._turn, box)
         tabs.show(page)
-        area = ui.rect(MARGIN, TOP, self._width + 12, box_height - TOP - BOTTOM)
-        self.area = ScrollArea(ui, area, box)
-        place = ui.rect(MARGIN, box_height - BOTTOM + 12, self._width - 236, BOTTOM - 18)
+        self.area = ScrollArea(ui, dialog.place(TOP, height - TOP - BOTTOM), box)
+        place = ui.rect(MARGIN, height - BOTTOM + 12, self._width - 236, BOTTOM - 18)
         self._note = TextBlock(ui, place, note or (KEYS_NOTE if page != "general" else ""), box, 12.0)
-        bottom = box_height - MARGIN - 26
-        ui.button(ui.rect(box_width - MARGIN - 226, bottom, 116, BUTTON), "Defaults", self._reset, box)
-        done = ui.button(
-            ui.rect(box_width - MARGIN - 100, bottom, 100, BUTTON), "Close", self._sheet.remove, box, style="primary"
-        )
+        done = dialog.add_buttons(("Close", dialog.end), ("Defaults", self._reset))
         if page == "general":
             self._add_settings()
         else:

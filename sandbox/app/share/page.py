@@ -10,6 +10,7 @@ from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, TEXT
 from sandbox.app.film.film import Film
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.share.sharing import LIVELY, SHORTEST_FILM, SIZES, Sharing
+from sandbox.app.widgets.dialogs import MARGIN, Dialog
 from sandbox.app.widgets.range_slider import RangeSlider
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
@@ -17,7 +18,7 @@ from sandbox.app.widgets.widget import Widget
 
 # Sizes in layout units.
 WIDTH, HEIGHT = 740.0, 424.0
-MARGIN, TOP, GAP = 22.0, 56.0, 22.0
+TOP, GAP = 56.0, 22.0
 ROW, LABEL, AFTER_ROW = 32.0, 19.0, 7.0
 BUTTON_WIDTH, BUTTON = 124.0, 36.0
 SLIDER, CAPTION = 32.0, 18.0
@@ -83,13 +84,8 @@ class ShareForm:
         self._ui, self._sharing, self._leave = ui, sharing, leave
         self.step = sharing.step
         self._seen: tuple[object, ...] = ()
-        width, height = (min(most, room - 16) for most, room in zip((WIDTH, HEIGHT), ui.units, strict=True))
-        self._width, self._height = width, height
-        self.sheet: Any = ui.open_sheet(leave, is_page=True, reopen=reopen)
-        left, top = ((room - side) / 2 for room, side in zip(ui.units, (width, height), strict=True))
-        self._box = ui.panel(ui.rect(left, top, width, height), self.sheet, "dialog")
-        film = sharing.film
-        ui.label(ui.rect(MARGIN, 16, width - 2 * MARGIN, 28), _title(film), self._box, "title")
+        dialog = Dialog(ui, _title(sharing.film), WIDTH, HEIGHT, reopen, leave, is_page=True)
+        self.sheet, self._box, self._width, self._height = dialog.sheet, dialog.box, dialog.width, dialog.height
         self._build_preview()
         {"choose": self._build_choices, "work": self._build_work, "done": self._build_outcome}[self.step]()
 

@@ -2,131 +2,151 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
 
 import pygame
 
 from sandbox.app.draw.colours import TEXT, WARNING
+from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.picker import MENU_ROWS
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.texts import TextBlock, text_height
 from sandbox.app.widgets.ui import Reopen, Ui
 
-# Sizes in layout units.
+# Sizes in layout units; around a box there is at least so much of the window, both sides together.
 WIDTH = 560.0
-MARGIN = 24.0
+MARGIN, AROUND = 24.0, 16.0
 LINE_HEIGHT = 21.0
 MOST_LINES = 14
 # Characters of a fault that fit on a line of the box.
 LINE_CHARACTERS = 74
-# Height of a row of a list, and of a choice; room around buttons for the ring of the keyboard.
-ROW_HEIGHT, CHOICE_ROW, RING = 29.0, 42.0, 4.0
-# The text of buttons, what they have around it, and what is between columns of them.
-BUTTON_TEXT, BUTTON_ROOM, COLUMN_GAP = 13.0, 24.0, 10.0
+# Height of a row of a list, of a choice, and of a line to type into; room around buttons for the ring of the keyboard.
+ROW_HEIGHT, CHOICE_ROW, FIELD_ROW, RING = 29.0, 42.0, 42.0, 4.0
+# Buttons at the bottom; the text of buttons, what they have around it, and what is between columns of them.
+BUTTON, BUTTON_WIDTH, BUTTON_TEXT, BUTTON_ROOM, COLUMN_GAP = 34.0, 110.0, 13.0, 24.0, 10.0
 HINT_TEXT = 12.0
 
 # A button: its label, and what it does.
 Choice = tuple[str, Callable[[], object]]
 
 
-def _box(
-    ui: Ui, title: str, height: float, reopen: Reopen, is_question: bool = False,
-    widest: float = WIDTH, *, is_page: bool = False,
-) -> tuple[Any, Any, float]:  # fmt: skip
-    """A modal box with a title in the middle: the sheet, the box and its width in layout units."""
-    width, tall = ui.units
-    box_width = min(widest, width - 40)
-    sheet = ui.open_sheet(reopen=reopen, is_question=is_question, is_page=is_page)
-    box = ui.panel(ui.rect((width - box_width) / 2, max((tall - height) / 2, 10), box_width, height), sheet, "dialog")
-    ui.label(ui.rect(MARGIN, MARGIN - 6, box_width - 2 * MARGIN, 28), title, box, "title")
-    return sheet, box, box_width
+class Dialog:
+    """A modal page with a box in the middle of the window, which has a title and is smaller in a small window.
+
+    width, height: of the box; inside: from margin to margin [layout units]. box: what widgets on it are in. The other
+    arguments are those of Sheet.
+    """
+
+    def __init__(
+        self, ui: Ui, title: str, width: float, height: float, reopen: Reopen,
+        close: Callable[[], object] | None = None, *, is_page: bool = False, is_question: bool = False,
+    ) -> None:  # fmt: skip
+        self._ui = ui
+        self.width, self.height = min(width, ui.units[0] - AROUND), min(height, ui.units[1] - AROUND)
+        self.inside = self.width - 2 * MARGIN
+        self.sheet = ui.open_sheet(close, is_page=is_page, reopen=reopen, is_question=is_question)
+        left, top = (ui.units[0] - self.width) / 2, (ui.units[1] - self.height) / 2
+        self.box = ui.panel(ui.rect(left, top, self.width, self.height), self.sheet, "dialog")
+        ui.label(self.place(MARGIN - 6, 28), title, self.box, "title")
+
+    def place(self, top: float, height: float) -> pygame.Rect:
+        """A place from margin to margin, below the top of the box [layout units]."""
+        return self._ui.rect(MARGIN, top, self.inside, height)
+
+    def end(self, action: Callable[[], object] | None = None) -> None:
+        """Take the page away, then do what was chosen on it."""
+        self.sheet.remove()
+        if action is not None:
+            action()
+
+    def add_buttons(self, *choices: Choice, style: str = "primary") -> Button:
+        """Add buttons at the bottom, from the right, the first of them in a style; gives that."""
+        ui, right = self._ui, self.width - MARGIN
+        buttons: list[Button] = []
+        for label, action in choices:
+            wide = max(BUTTON_WIDTH, _button_width(ui, label))
+            place = ui.rect(right - wide, self.height - MARGIN - BUTTON, wide, BUTTON)
+            buttons.append(ui.button(place, label, action, self.box, style="" if buttons else style))
+            right -= wide + COLUMN_GAP
+        return buttons[0]
+
+
+def _button_width(ui: Ui, label: str) -> float:
+    return ui.font(BUTTON_TEXT).size(label)[0] / ui.scale + BUTTON_ROOM
+
+
+def _inside(ui: Ui) -> int:
+    """How wide texts are on a box [pixels]."""
+    return ui.px(min(WIDTH, ui.units[0] - AROUND) - 2 * MARGIN)
 
 
 def show_lines(ui: Ui, title: str, lines: list[str], other: Choice | None = None) -> None:
     """Show lines until they are closed; more than fit are counted; other: what else can be done, on a second button."""
     shown = lines[:MOST_LINES] + ([f"... and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else [])
-    inside, text = ui.px(min(WIDTH, ui.units[0] - 40) - 2 * MARGIN), "\n".join(shown)
-    tall = text_height(text, ui.font(13.0), inside)
+    text = "\n".join(shown)
+    tall = text_height(text, ui.font(13.0), _inside(ui))
     # What does not fit is scrolled to.
-    height = min(MARGIN * 2 + 94 + tall / ui.scale, ui.units[1] - 20)
-
-    def do_other() -> None:
-        sheet.remove()
-        if other is not None:
-            other[1]()
-
-    def reopen(other_ui: Ui) -> None:
-        show_lines(other_ui, title, lines, other)
-
-    sheet, box, width = _box(ui, title, height, reopen)
-    place = ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN + BAR_WIDTH, height - MARGIN * 2 - 84)
-    area = ScrollArea(ui, place, box)
-    TextBlock(ui, pygame.Rect(0, 0, inside, tall), text, area.content, 13.0, TEXT)
+    around = MARGIN * 2 + 84
+    dialog = Dialog(
+        ui, title, WIDTH, around + 10 + tall / ui.scale, lambda other_ui: show_lines(other_ui, title, lines, other)
+    )
+    place = dialog.place(MARGIN + 34, dialog.height - around)
+    place.width += ui.px(BAR_WIDTH)
+    area = ScrollArea(ui, place, dialog.box)
+    TextBlock(ui, pygame.Rect(0, 0, _inside(ui), tall), text, area.content, 13.0, TEXT)
     area.set_height(tall)
-    bottom = height - MARGIN - 34
-    button = ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), "Close", sheet.remove, box, style="primary")
-    if other is not None:
-        ui.button(ui.rect(width - MARGIN - 310, bottom, 190, 34), other[0], do_other, box)
-    ui.focus_on(button)
-
-
-def _hint_height(ui: Ui, hint: str) -> float:
-    """How high a hint is in a box [layout units]."""
-    inside = ui.px(min(WIDTH, ui.units[0] - 40) - 2 * MARGIN)
-    return text_height(hint, ui.font(HINT_TEXT), inside) / ui.scale + 4
+    others = [] if other is None else [(other[0], partial(dialog.end, other[1]))]
+    ui.focus_on(dialog.add_buttons(("Close", dialog.end), *others))
 
 
 def ask(
-    ui: Ui,
-    title: str,
-    hint: str,
-    text: str,
-    verb: str,
-    answer: Callable[[str], str | None],
-    other: tuple[str, Callable[[], None]] | None = None,
-    then: Callable[[str], object] | None = None,
-) -> None:
-    """Ask for a line of text; answer gives None where it is taken, else what is wrong with it, and the box stays.
+    ui: Ui, title: str, hint: str, text: str, verb: str, answer: Callable[[str], str | None],
+    other: Choice | None = None, then: Callable[[str], object] | None = None,
+) -> None:  # fmt: skip
+    """Ask for a line of text, as `fill_in` asks for several."""
+    fill_in(ui, title, hint, [("", text)], verb, answer, other, then)
 
-    other: the second button and what it does, instead of one that leaves everything as it is, as Escape does.
-    then: what is done with a text that was taken, once the box is closed.
+
+def fill_in(
+    ui: Ui, title: str, hint: str, fields: Sequence[tuple[str, str]], verb: str, answer: Callable[..., str | None],
+    other: Choice | None = None, then: Callable[..., object] | None = None,
+) -> None:  # fmt: skip
+    """Ask for lines of text, (label, text) each; answer(*texts) gives None where they are taken.
+
+    answer: what it gives else is what is wrong with them, and the box stays. other: the second button and what it does,
+    instead of one that leaves everything as it is, as Escape does. then: called with texts that were taken, once the
+    box is closed.
     """
-    said = _hint_height(ui, hint)
-    height = 226.0 + said
 
-    def do_other() -> None:
-        sheet.remove()
-        if other is not None:
-            other[1]()
-
-    def accept() -> None:
-        take(field.typed)
-
-    def take(typed: str) -> bool:
-        fault = answer(typed.strip())
+    def accept(_: object = None) -> None:
+        texts = [entry.typed.strip() for entry in entries]
+        fault = answer(*texts)
         if fault is None:
-            sheet.remove()
-            if then is not None:
-                then(typed.strip())
-            return True
-        note.show_text(fault)
-        return False
+            dialog.end(None if then is None else partial(then, *texts))
+        else:
+            note.show_text(fault)
 
     def reopen(other_ui: Ui) -> None:
-        ask(other_ui, title, hint, field.typed, verb, answer, other, then)
+        typed = [(label, entry.typed) for (label, _), entry in zip(fields, entries, strict=True)]
+        fill_in(other_ui, title, hint, typed, verb, answer, other, then)
 
-    sheet, box, width = _box(ui, title, height, reopen)
-    inside = width - 2 * MARGIN
-    TextBlock(ui, ui.rect(MARGIN, MARGIN + 28, inside, said), hint, box, HINT_TEXT)
-    top = MARGIN + 32 + said
-    field = ui.field(ui.rect(MARGIN, top, inside, 34), text, lambda _: True, box, 400)
-    field.enter = take
-    note = TextBlock(ui, ui.rect(MARGIN, top + 42, inside, 50), "", box, 12.0, WARNING)
-    bottom = height - MARGIN - 34
-    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="primary")
-    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), other[0] if other else "Cancel", do_other, box)
-    ui.focus_on(field)
+    said = text_height(hint, ui.font(HINT_TEXT), _inside(ui)) / ui.scale + 4
+    dialog = Dialog(ui, title, WIDTH, 184 + said + len(fields) * FIELD_ROW, reopen)
+    TextBlock(ui, dialog.place(MARGIN + 28, said), hint, dialog.box, HINT_TEXT)
+    top, entries = MARGIN + 32 + said, []
+    for label, text in fields:
+        place = dialog.place(top, 34)
+        if label:
+            place.width //= 2
+            ui.label(place, label, dialog.box)
+            place = place.move(place.width, 0)
+        entries.append(ui.field(place, text, lambda _: True, dialog.box, 400))
+        entries[-1].enter = accept
+        top += FIELD_ROW
+    note = TextBlock(ui, dialog.place(top, 50), "", dialog.box, 12.0, WARNING)
+    second, action = other or ("Cancel", None)
+    dialog.add_buttons((verb, accept), (second, partial(dialog.end, action)))
+    ui.focus_on(entries[0])
 
 
 def choose(
@@ -136,99 +156,48 @@ def choose(
 
     is_question: it stays until it is answered, also where another screen comes.
     """
-    columns, widest = _columns_that_fit(ui, [label for label, _ in choices], columns)
-    rows = -(-len(choices) // columns)
+    beside, widest = _columns_that_fit(ui, [label for label, _ in choices], columns)
+    high = -(-len(choices) // beside) * CHOICE_ROW
     lines = 1 + len(text) // LINE_CHARACTERS if text else 0
-    around = MARGIN * 2 + 38 + lines * LINE_HEIGHT + 44
-    # What does not fit is scrolled to.
-    tall = min(rows * CHOICE_ROW, ui.units[1] - 20 - around)
-    height = around + tall
-
-    def do(action: Callable[[], object]) -> None:
-        sheet.remove()
-        action()
+    around = MARGIN * 2 + 82 + lines * LINE_HEIGHT
 
     def reopen(other_ui: Ui) -> None:
         choose(other_ui, title, text, choices, columns, is_question=is_question)
 
-    scrolls = tall < rows * CHOICE_ROW
-    sheet, box, width = _box(ui, title, height, reopen, is_question, widest, is_page=scrolls)
-    inside = width - 2 * MARGIN
-    TextBlock(ui, ui.rect(MARGIN, MARGIN + 32, inside, lines * LINE_HEIGHT + 4), text, box, 13.0, TEXT)
-    place = ui.rect(MARGIN - RING, MARGIN + 40 + lines * LINE_HEIGHT - RING, inside + 2 * RING + BAR_WIDTH, tall)
-    area, buttons = ScrollArea(ui, place, box), []
-    wide = (inside - COLUMN_GAP * (columns - 1)) / columns
+    # What does not fit is scrolled to.
+    scrolls = around + high > ui.units[1] - AROUND
+    dialog = Dialog(ui, title, widest, around + high, reopen, is_question=is_question, is_page=scrolls)
+    TextBlock(ui, dialog.place(MARGIN + 32, lines * LINE_HEIGHT + 4), text, dialog.box, 13.0, TEXT)
+    top = MARGIN + 40 + lines * LINE_HEIGHT - RING
+    place = ui.rect(MARGIN - RING, top, dialog.inside + 2 * RING + BAR_WIDTH, dialog.height - around)
+    area, buttons = ScrollArea(ui, place, dialog.box), []
+    wide = (dialog.inside - COLUMN_GAP * (beside - 1)) / beside
     for index, (label, action) in enumerate(choices):
-        x, y = RING + index % columns * (wide + COLUMN_GAP), RING + index // columns * CHOICE_ROW
-        style = "primary" if index == 0 and columns == 1 else ""
+        x, y = RING + index % beside * (wide + COLUMN_GAP), RING + index // beside * CHOICE_ROW
+        style = "primary" if index == 0 and beside == 1 else ""
         place = ui.rect(x, y, wide, CHOICE_ROW - 8)
-        buttons.append(ui.button(place, label, partial(do, action), area.content, style=style))
-    area.set_height(ui.px(rows * CHOICE_ROW))
-    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", sheet.remove, box, style="quiet")
+        buttons.append(ui.button(place, label, partial(dialog.end, action), area.content, style=style))
+    area.set_height(ui.px(high))
+    dialog.add_buttons(("Cancel", dialog.end), style="quiet")
     ui.focus_on(buttons[0])
 
 
 def _columns_that_fit(ui: Ui, labels: Sequence[str], columns: int) -> tuple[int, float]:
     """Columns of buttons with these labels, as many as are asked for or one, and the width of a box for them."""
-    longest = max(ui.font(BUTTON_TEXT).size(label)[0] for label in labels) / ui.scale + BUTTON_ROOM
+    longest = max(_button_width(ui, label) for label in labels)
     needed = columns * longest + COLUMN_GAP * (columns - 1) + 2 * MARGIN
-    return (columns if needed <= ui.units[0] - 40 else 1), max(WIDTH, needed if columns > 1 else 0.0)
+    return (columns if needed <= ui.units[0] - AROUND else 1), max(WIDTH, needed if columns > 1 else 0.0)
 
 
 def choose_row(ui: Ui, title: str, rows: Sequence[Row], take: Callable[[int], object]) -> None:
     """Offer a list of any length, which scrolls; take(index) is called once a row is chosen."""
-    tall = min(min(len(rows), MENU_ROWS) * ROW_HEIGHT, ui.units[1] - 20 - 2 * MARGIN - 84)
-    height = MARGIN * 2 + 84 + tall
-
-    def do(index: int) -> None:
-        sheet.remove()
-        take(index)
-
-    def reopen(other_ui: Ui) -> None:
-        choose_row(other_ui, title, rows, take)
-
-    sheet, box, width = _box(ui, title, height, reopen)
-    listed = RowList(ui, ui.rect(MARGIN, MARGIN + 34, width - 2 * MARGIN, tall), do, box, at_once=False)
+    around = MARGIN * 2 + 84
+    height = around + min(len(rows), MENU_ROWS) * ROW_HEIGHT
+    dialog = Dialog(ui, title, WIDTH, height, lambda other_ui: choose_row(other_ui, title, rows, take))
+    listed = RowList(
+        ui, dialog.place(MARGIN + 34, dialog.height - around), lambda index: dialog.end(partial(take, index)),
+        dialog.box, at_once=False,
+    )  # fmt: skip
     listed.show_rows(rows, None)
-    ui.button(ui.rect(width - MARGIN - 110, height - MARGIN - 34, 110, 34), "Cancel", sheet.remove, box, style="quiet")
+    dialog.add_buttons(("Cancel", dialog.end), style="quiet")
     ui.focus_on(listed)
-
-
-def fill_in(
-    ui: Ui,
-    title: str,
-    hint: str,
-    fields: Sequence[tuple[str, str]],
-    verb: str,
-    answer: Callable[[list[str]], str | None],
-) -> None:
-    """Ask for several lines, (label, text) each; answer gives None where they are taken, else what is wrong."""
-    said = _hint_height(ui, hint)
-    height = MARGIN * 2 + 42 + said + len(fields) * 42 + 78
-
-    def accept(_: object = None) -> None:
-        fault = answer([entry.typed.strip() for entry in entries])
-        if fault is None:
-            sheet.remove()
-        else:
-            note.show_text(fault)
-
-    def reopen(other_ui: Ui) -> None:
-        typed = [(label, entry.typed) for (label, _), entry in zip(fields, entries, strict=True)]
-        fill_in(other_ui, title, hint, typed, verb, answer)
-
-    sheet, box, width = _box(ui, title, height, reopen)
-    inside = width - 2 * MARGIN
-    TextBlock(ui, ui.rect(MARGIN, MARGIN + 28, inside, said), hint, box, HINT_TEXT)
-    entries = []
-    for index, (label, text) in enumerate(fields):
-        top = MARGIN + 36 + said + index * 42
-        ui.label(ui.rect(MARGIN, top, inside * 0.5, 34), label, box)
-        entry = ui.field(ui.rect(MARGIN + inside * 0.5, top, inside * 0.5, 34), text, lambda _: True, box, 40)
-        entry.enter = accept
-        entries.append(entry)
-    note = TextBlock(ui, ui.rect(MARGIN, height - MARGIN - 74, inside, 34), "", box, 12.0, WARNING)
-    bottom = height - MARGIN - 34
-    ui.button(ui.rect(width - MARGIN - 110, bottom, 110, 34), verb, accept, box, style="primary")
-    ui.button(ui.rect(width - MARGIN - 230, bottom, 110, 34), "Cancel", sheet.remove, box)
-    ui.focus_on(entries[0])

@@ -394,7 +394,7 @@ class Ui(WindowLayout):
         if before is not None:
             before.on_blur()
 
-    def show_focus(self) -> None:
+    def _show_focus(self) -> None:
         """Bring what has the keyboard into sight, once after each change of it."""
         widget, self._to_reveal = self._to_reveal, None
         holder = None if widget is None else widget.parent
@@ -406,7 +406,7 @@ class Ui(WindowLayout):
 
     def update(self, frame_time: float) -> None:
         """Let the widgets move on by frame_time [s]."""
-        self.show_focus()
+        self._show_focus()
         at = self._scaled(pygame.mouse.get_pos())
         if at != self.pointer or not self.is_laid:
             self._point(at)

@@ -1,6 +1,7 @@
 """Help: the page of all shortcuts."""
 
 from collections.abc import Callable
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -8,8 +9,9 @@ import pygame
 
 from sandbox.app.base.shortcuts import Mode, Shortcut, shortcuts
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT
+from sandbox.app.widgets.dialogs import AROUND, MARGIN, Dialog
 from sandbox.app.widgets.layout import WindowLayout
-from sandbox.app.widgets.scroll import ScrollArea
+from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
 
@@ -20,7 +22,6 @@ MOST_COLUMNS = 3
 ROW = 17.0
 HEADING = 27.0
 TOP = 56.0
-MARGIN = 28.0
 TEXT_SIZE = 12.0
 COLUMN_GAP = 16.0
 
@@ -35,27 +36,23 @@ def show_help(ui: Ui, mode: Mode, tour: Callable[[], object]) -> None:
     most = max(1, min(int((width - 20) // NARROWEST_COLUMN), MOST_COLUMNS))
     # As few columns as the height allows: they are read from top to bottom.
     layouts = [_columns(entries, count) for count in range(1, most + 1)]
-    layouts = [layout for layout in layouts if sum(_widths(ui, layout)) <= ui.px(width - 16 - 2 * MARGIN)][-2:]
+    layouts = [layout for layout in layouts if sum(_widths(ui, layout)) <= ui.px(width - AROUND - 2 * MARGIN)][-2:]
     layouts = layouts or [_columns(entries, 1)]
-    room = height - 16 - TOP - MARGIN
+    room = height - AROUND - TOP - MARGIN
     columns = next((layout for layout in layouts if max(map(_height, layout)) <= room), layouts[-1])
-    box_width = min(len(columns) * COLUMN_WIDTH, width - 16)
-    box_height = min(TOP + max(map(_height, columns)) + MARGIN, height - 16)
-
-    def begin_tour() -> None:
-        sheet.remove()
-        tour()
-
-    sheet = ui.open_sheet(is_page=True, reopen=lambda other: show_help(other, mode, tour))
-    place = ui.rect((width - box_width) / 2, (height - box_height) / 2, box_width, box_height)
-    box = ui.panel(place, sheet, "dialog")
-    ui.label(ui.rect(MARGIN, 18, 300, 28), "Shortcuts", box, "title")
-    ui.button(ui.rect(box_width - MARGIN - 218, 16, 120, 32), "Take the tour", begin_tour, box, style="quiet")
-    button = ui.button(ui.rect(box_width - MARGIN - 90, 16, 90, 32), "Close", sheet.remove, box)
     needed = max(map(_height, columns))
-    area = ScrollArea(ui, ui.rect(MARGIN, TOP, box_width - 2 * MARGIN + 12, box_height - TOP - 12), box)
+
+    def reopen(other_ui: Ui) -> None:
+        show_help(other_ui, mode, tour)
+
+    dialog = Dialog(ui, "Shortcuts", len(columns) * COLUMN_WIDTH, TOP + needed + MARGIN, reopen, is_page=True)
+    right, box = dialog.width - MARGIN, dialog.box
+    begin_tour = partial(dialog.end, tour)
+    ui.button(ui.rect(right - 218, 16, 120, 32), "Take the tour", begin_tour, box, style="quiet")
+    button = ui.button(ui.rect(right - 90, 16, 90, 32), "Close", dialog.end, box)
+    area = ScrollArea(ui, ui.rect(MARGIN, TOP, dialog.inside + BAR_WIDTH, dialog.height - TOP - 12), box)
     area.set_height(ui.px(needed))
-    ShortcutTable(ui, ui.rect(0, 0, box_width - 2 * MARGIN, needed), columns, area.content).repaint()
+    ShortcutTable(ui, ui.rect(0, 0, dialog.inside, needed), columns, area.content).repaint()
     ui.focus_on(area.bar if area.bar.needed else button)
 
 

@@ -206,13 +206,6 @@ class CataloguePage(SidePage):
         screen.point("up", pixel, modifiers)
         screen.choose_tool("select")
 
-    def go(self, card: PartCard, by: int) -> None:
-        """Give the keyboard to the card `by` places further."""
-        index = self.cards.index(card) + by
-        if 0 <= index < len(self.cards):
-            self._ui.focus_on(self.cards[index])
-            self._ui.show_focus()
-
     def focus(self, path: Path | None = None) -> None:
         """Give the keyboard to the part of a file, None = that in hand, or the first."""
         self._looked = 0
@@ -222,7 +215,6 @@ class CataloguePage(SidePage):
         wanted = next((card for card in self.cards if card.part == self._chosen), None) or next(iter(self.cards), None)
         if wanted is not None:
             self._ui.focus_on(wanted)
-            self._ui.show_focus()
 
     # Own parts.
 
