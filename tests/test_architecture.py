@@ -28,7 +28,7 @@ ROOMS_OF_APP = (
 # Folders that import each other both ways: the table of solvers says where joints bear a load.
 BOTH_WAYS: dict[str, list[tuple[str, str]]] = {"physics": [], "level": []}
 LIBRARIES = {
-    "physics": {"numpy", "platformdirs"},
+    "physics": {"numpy", "platformdirs", "filelock"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
     "export": {"numpy", "pydantic"},
     "session": {"numpy", "pydantic", "filelock", "distributed"},

@@ -141,6 +141,19 @@ def test_edited_kernels_are_compiled_once_on_this_machine(package, untouched):
     assert re.match(r"sandbox/physics/integrate\.py:\d+: kernels have no such operator of these: ", lines[1])
 
 
+@needs("zig", importlib.util.find_spec("ziglang"))
+def test_edited_kernels_are_interpreted_where_no_library_can_be_kept(package, untouched):
+    source = package / "physics" / "integrate.py"
+    source.write_text(source.read_text() + "\n\n@inner_kernel\ndef more() -> None:\n    return\n")
+    file = package / "a_file"
+    file.write_text("no folder")
+    caches = dict.fromkeys(("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"), str(file))
+    way, state, lines = outcome(package, "", **caches)
+    assert (way, state, len(lines)) == ("interpreted", untouched[1], 2)
+    assert lines[1].startswith("kernels were edited in physics/integrate.py, and no library can be kept in ")
+    assert lines[1].endswith(": kernels are interpreted, a hundred times slower")
+
+
 def test_what_is_no_kernel_may_be_edited(package, untouched):
     file = package / "physics" / "integrate.py"
     file.write_text(file.read_text() + "\n\n# a remark\ndef plain(value: int) -> int:\n    return value + 1\n")

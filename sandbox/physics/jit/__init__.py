@@ -110,7 +110,7 @@ def _wish() -> str:
     """How kernels are to run."""
     wish = os.environ.get(_WISH, "") or "library"
     if wish not in _WAYS:
-        say(f"{_WISH} is {', '.join(_WAYS)}, not {wish!r}")
+        say(f"{_WISH} is {', '.join(_WAYS[:-1])} or {_WAYS[-1]}, not {wish!r}: library is taken")
         return "library"
     return wish
 

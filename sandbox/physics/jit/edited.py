@@ -17,9 +17,10 @@ from pathlib import Path
 from typing import Any
 
 import platformdirs
+from filelock import FileLock
 
 from sandbox.physics.jit import say
-from sandbox.physics.jit.library import NoLibrary
+from sandbox.physics.jit.library import NoLibrary, file_digest
 from sandbox.physics.jit.sources import source_files, text_of
 
 # Versions that are kept: branches of a checkout take turns.
@@ -47,21 +48,47 @@ def compiled_here(why: str, checked: bool) -> tuple[Path, dict[str, Any]]:
         NoLibrary: where they cannot be.
     """
     folder = _folder() / _version(checked)
-    manifest = folder / "manifest.json"
-    if not manifest.exists():
+    found = _kept(folder)
+    if found is None:
         if importlib.util.find_spec("ziglang") is None:
             raise NoLibrary(f"{why}, and zig is not installed (the extra `build`)")
         say(f"{why}: they are compiled once, which takes about 20 s")
-        _compile(folder, checked)
-        _forget_others(folder)
+        try:
+            found = _made(folder, checked)
+        except OSError as error:
+            raise NoLibrary(f"{why}, and no library can be kept in {folder.parent}: {error.strerror}") from error
     with contextlib.suppress(OSError):
         os.utime(folder)
-    made = json.loads(manifest.read_text(encoding="utf-8"))
-    return folder / made["library"], dict(made)
+    return found
+
+
+def _kept(folder: Path) -> tuple[Path, dict[str, Any]] | None:
+    """The library in a folder and its manifest, if both are there and whole."""
+    try:
+        manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+        library = folder / manifest["library"]
+        return (library, manifest) if file_digest(library.read_bytes()) == manifest["digest"] else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _made(folder: Path, checked: bool) -> tuple[Path, dict[str, Any]]:
+    """What is kept in a folder, once it is compiled. Raises NoLibrary, OSError."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    # Processes that start together compile once: the others wait for the first.
+    with FileLock(folder.parent / ".lock"):
+        found = _kept(folder)
+        if found is None:
+            shutil.rmtree(folder, ignore_errors=True)
+            _compile(folder, checked)
+            _forget_others(folder)
+            found = _kept(folder)
+    if found is None:
+        raise NoLibrary(f"the library that was compiled cannot be read in {folder}")
+    return found
 
 
 def _compile(folder: Path, checked: bool) -> None:
-    folder.parent.mkdir(parents=True, exist_ok=True)
     aside = Path(tempfile.mkdtemp(prefix=".making-", dir=folder.parent))
     try:
         command = [sys.executable, "-P", "-m", f"{__package__}.making", str(aside)] + ["KERNELS_CHECKED"] * checked
@@ -76,9 +103,7 @@ def _compile(folder: Path, checked: bool) -> None:
         ended = subprocess.run(command, env=variables, capture_output=True, text=True, check=False)
         if ended.returncode:
             raise NoLibrary(_last_line(ended.stdout) or _last_line(ended.stderr))
-        # Another process may have been sooner.
-        with contextlib.suppress(OSError):
-            aside.rename(folder)
+        aside.rename(folder)
     finally:
         shutil.rmtree(aside, ignore_errors=True)
 

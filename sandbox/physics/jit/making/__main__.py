@@ -7,6 +7,7 @@ import json
 import sys
 from pathlib import Path
 
+from sandbox.physics.jit.library import file_digest
 from sandbox.physics.jit.making.compiling import NotCompiled, compiled
 from sandbox.physics.jit.making.gathering import all_entries, gathered
 from sandbox.physics.jit.making.platforms import this_machine
@@ -25,7 +26,8 @@ def _main(folder: Path, *defines: str) -> int:
     (folder / platform.file).write_bytes(content)
     for name, text in found.texts.items():
         (folder / name).write_text(text, encoding="utf-8")
-    (folder / "manifest.json").write_text(json.dumps({"library": platform.file, "entries": found.entries}))
+    manifest = {"library": platform.file, "digest": file_digest(content), "entries": found.entries}
+    (folder / "manifest.json").write_text(json.dumps(manifest))
     return 0
 
 
