@@ -143,7 +143,9 @@ def test_clicks_that_come_between_two_frames_are_carried_out_in_their_order(driv
 
 def test_names_of_recordings_are_safe_and_never_taken(tmp_path):
     assert plain_name("Rope, bridge & jelly!") == "rope-bridge-jelly"
-    assert plain_name("../..") == "run"
+    assert plain_name("../..") == plain_name("\U0001f388") == "run"
+    names = {"Мост №2": "мост-2", "Été à Zürich": "été-à-zürich", "हिन्दी पुल": "हिन्दी-पुल", "橋": "橋", "a_b": "a-b"}
+    assert {text: plain_name(text) for text in names} == names
     first = free_path(tmp_path, "run")
     first.touch()
     assert free_path(tmp_path, "run").name == "run-2.replay.jsonl"

@@ -3,6 +3,7 @@
 import datetime
 import os
 import re
+import unicodedata
 from pathlib import Path
 
 import platformdirs
@@ -40,8 +41,10 @@ def saved_recordings() -> list[Path]:
 
 
 def plain_name(text: str) -> str:
-    """A file name made of a level's name."""
-    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:60] or "run"
+    """A file name made of the letters and digits of a level's name, in any script."""
+    # Marks, M, are parts of letters: most vowels of Hindi are.
+    kept = (each if each.isalnum() or unicodedata.category(each)[0] == "M" else " " for each in text.lower())
+    return "-".join("".join(kept).split())[:60].strip("-") or "run"
 
 
 def readable_name(text: str) -> str:
