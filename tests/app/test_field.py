@@ -168,9 +168,9 @@ def test_what_is_selected_is_copied_cut_and_pasted(monkeypatch):
     person.key(pygame.K_x, CTRL)
     assert board == ["left"] and person.field.typed == " right"
     person.key(pygame.K_END)
-    board.append("two\nlines\0")
+    board.append(" two\r\nlines\0\tof\u3000words\n")
     person.key(pygame.K_v, CTRL)
-    assert person.field.typed == " righttwolines"
+    assert person.field.typed == " right two lines of words"
     board.append("x" * 500)
     person.key(pygame.K_v, CTRL)
     assert len(person.field.typed) == 200

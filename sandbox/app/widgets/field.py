@@ -132,7 +132,9 @@ class Field(Widget):
         """Put a text in the place of what is selected."""
         self.composed = ""
         low, high = self.selected
-        text = "".join(letter for letter in text if letter.isprintable())
+        # Ends of lines, tabs and the spaces of other scripts part words too.
+        kept = (letter for letter in text if letter.isspace() or letter.isprintable())
+        text = "".join(" " if letter.isspace() else letter for letter in kept)
         text = text[: max(self.limit - len(self.typed) + high - low, 0)]
         if text or low != high:
             end = low + len(text)
@@ -234,7 +236,7 @@ class Field(Widget):
                 self._delete(0, False)
         elif key == pygame.K_v:
             self._joins = False
-            self.insert(copied_text())
+            self.insert(" ".join(copied_text().strip("\r\n").splitlines()))
             self._joins = False
         elif key == pygame.K_y or (key == pygame.K_z and with_shift):
             self._take_back(self._after, self._before)
