@@ -6,6 +6,7 @@ import pygame
 
 from sandbox.app.base.shortcuts import action_of
 from sandbox.app.contracts.application import Application
+from sandbox.app.widgets.widget import ENTER_KEYS
 
 # A press of Space shorter than this [s], without a drag, is the pause key; longer ones are a hand for panning.
 TAP_SECONDS = 0.35
@@ -18,6 +19,8 @@ REPEATED = (
     "step", "back", "zoom_in", "zoom_out", "undo", "redo",
     "next_particle", "previous_particle", "next_item", "previous_item",
 )  # fmt: skip
+# Keys that press a button, take a line and close a page: held down, they do so once.
+PRESSED_ONCE = (*ENTER_KEYS, pygame.K_SPACE, pygame.K_ESCAPE)
 # Actions that lay the widgets out again, which keeps what is being typed; they work over a page, too.
 LAYOUT = ("fullscreen", "larger", "smaller")
 # Actions that open something else to play, or a page over it, which a gallery that nothing lies over has too.
@@ -61,19 +64,16 @@ class Input:
         self._pressed = False
         self._space_down: int | None = None
         self._space_used = False
-        self._held_keys: set[int] = set()
-        self._is_repeated = False
+        # What was seen when the keys were pressed that are down.
+        self._held_keys: dict[int, tuple[object, ...]] = {}
+        self._is_repeated = self._is_from_before = False
         self._last_press: tuple[int, Pixel] | None = None
 
     def process(self, events: list[pygame.event.Event]) -> None:
         """Hand out the events of a frame."""
         for event in map(by_place, events):
-            if event.type == pygame.KEYDOWN:
-                # What a widget takes is held all the same: what it opens does not have the key again.
-                self._is_repeated = event.key in self._held_keys
-                self._held_keys.add(event.key)
-            elif event.type == pygame.KEYUP:
-                self._held_keys.discard(event.key)
+            if self._goes_on(event):
+                continue
             if event.type == pygame.QUIT or event.type == pygame.WINDOWCLOSE:
                 self.app.quit()
             elif event.type == pygame.DROPFILE:
@@ -88,6 +88,19 @@ class Input:
                 self.app.documents.look_at_disk()
             elif self._follows_world(event) or not self.app.ui.process(event):
                 self._to_world(event)
+
+    def _goes_on(self, event: pygame.event.Event) -> bool:
+        """Whether a key that is held down comes again for nothing: nor does it anything to what it opened."""
+        if event.type == pygame.KEYDOWN:
+            seen = self.app.screen, self.app.gallery, self.app.ui.top_sheet
+            self._is_repeated = event.key in self._held_keys
+            self._is_from_before = self._held_keys.setdefault(event.key, seen) != seen
+            return self._is_from_before or (self._is_repeated and event.key in PRESSED_ONCE)
+        if event.type == pygame.KEYUP:
+            self._held_keys.pop(event.key, None)
+            self._is_from_before = False
+        # The letter of a key comes after it.
+        return event.type == pygame.TEXTINPUT and self._is_from_before
 
     def pointer_over_world(self) -> Pixel | None:
         """Where the mouse is, while it is over the world and no widget."""
