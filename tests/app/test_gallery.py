@@ -141,6 +141,16 @@ def test_clicks_that_come_between_two_frames_are_carried_out_in_their_order(driv
     assert driver.playback.level.name == "Mine"
 
 
+def test_what_is_typed_and_entered_within_a_frame_opens_the_level_that_it_names(open_app):
+    driver = open_app(None)
+    for letter in "pinball":
+        driver.post(pygame.KEYDOWN, key=ord(letter), mod=0, unicode=letter, scancode=0)
+        driver.post(pygame.TEXTINPUT, text=letter)
+        driver.post(pygame.KEYUP, key=ord(letter), mod=0, unicode=letter, scancode=0)
+    driver.key(pygame.K_RETURN)
+    assert driver.playback.level.name == "Pinball"
+
+
 def test_names_of_recordings_are_safe_and_never_taken(tmp_path):
     assert plain_name("Rope, bridge & jelly!") == "rope-bridge-jelly"
     assert plain_name("../..") == plain_name("\U0001f388") == "run"

@@ -97,7 +97,7 @@ class Gallery:
         self._width = ui.units[0] - 2 * MARGIN
         self._build_groups_of = {"levels": self._add_shipped, "mine": self._add_own, "recordings": self._add_recordings}
         self.header = Header(ui, app, section, self.sheet, query)
-        self.header.search.enter = lambda _: self._open_first()
+        self.header.search.enter = self._open_first
         top = self.header.height
         place = ui.rect(MARGIN - 6, top, ui.units[0] - 2 * MARGIN + 22, ui.units[1] - top)
         self.area = ScrollArea(ui, place, self.sheet)
@@ -383,7 +383,9 @@ class Gallery:
     def _shown(self) -> list[Card]:
         return [card for group in self.groups for card in group.cards if card.visible]
 
-    def _open_first(self) -> None:
+    def _open_first(self, query: str) -> None:
+        # A fast hand has typed it since the last frame.
+        self._search(query)
         found = self._shown()
         if self.query and found:
             min(found, key=lambda card: search_rank(self.query, card.name)).press()
