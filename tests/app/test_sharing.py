@@ -343,6 +343,19 @@ def test_a_film_shows_the_overlays_of_the_run_stability_among_them(driver):
     assert (picture() != plain).any()
 
 
+def test_in_a_narrow_window_the_seconds_that_are_taken_end_before_the_button_beside_them(driver, folder):
+    driver.key(pygame.K_ESCAPE)
+    driver.app.display.window.size = (480, 360)
+    for _ in range(90):
+        driver.playback.advance(0.08)
+    driver.app.act("share")
+    driver.frames()
+    caption = driver.app.share_page.page.caption
+    lively = next(each for each in driver.app.ui.buttons() if each.text == "Liveliest 5 s")
+    assert caption.text.endswith(", to the last moment")
+    assert caption.rect.width > 0 and caption.rect.right <= lively.rect.left
+
+
 def test_the_page_shows_the_film_and_outlives_a_new_size_of_the_window(driver, folder):
     while driver.app.sharing._filming is not None:
         driver.app.sharing.update(0.0)

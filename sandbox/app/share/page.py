@@ -146,6 +146,7 @@ class ShareForm:
                 wide = 92.0
                 spot = ui.rect(MARGIN + self._preview_width - wide, self._below + 2, wide, 24)
                 tip = f"The {LIVELY:g} seconds in which the most moved"
+                self.caption.resize((spot.left - self.caption.place.left, self.caption.place.height))
                 ui.button(spot, f"Liveliest {LIVELY:g} s", sharing.choose_liveliest, self._box, style="quiet", tip=tip)
         else:
             for kind in ("gif", "mp4", "html"):
