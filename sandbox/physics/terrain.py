@@ -133,7 +133,7 @@ class GridScratch(NamedTuple):
 
     length: Floats
     order: Slots
-    spare: Slots
+    merge_buffer: Slots
 
 
 @inner_kernel
@@ -159,7 +159,7 @@ def size_grid(count: int, edges: Terrain, work: GridScratch) -> None:
         dx, dy = edges.vertex[b, 0] - edges.vertex[a, 0], edges.vertex[b, 1] - edges.vertex[a, 1]
         work.length[k] = math.sqrt(dx * dx + dy * dy)
         work.order[k] = k
-    sort_by_value(work.length, work.order, 0, count, work.spare)
+    sort_by_value(work.length, work.order, 0, count, work.merge_buffer)
     place = 0.25 * (count - 1)
     below = math.floor(place)
     share = place - below

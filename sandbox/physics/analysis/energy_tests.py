@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.solvers.direct.energy_bank import BY_MASS
 from sandbox.physics.world import World
 

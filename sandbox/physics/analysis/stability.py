@@ -315,10 +315,10 @@ def most_springs(world: World, material: int | None = None) -> int:
     return int(degree[np.concatenate(ends)].max(initial=0))
 
 
-def demand_limit(world: World, material: int | None = None) -> float:
-    """What Cs + 2 Cd of a substep stays below where a material's springs (None = all) are proven stable, inf: nothing.
+def stability_limit(world: World, material: int | None = None) -> float:
+    """The limit of Cs + 2 Cd of a substep below which a material's springs (None = all) are proven stable; inf: none.
 
-    All have the same Cs and Cd then, and other springs what they have now; 0 or less where these are too much already.
+    All springs of the material are taken with the same Cs and Cd, others as they are; 0 or less: those are unstable.
     """
     _, chosen = _counted(world, material)
     slots, elements = chosen[: world.spring_count], chosen[world.spring_count :]
@@ -364,6 +364,6 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
     tightest = int(np.flatnonzero(chosen)[np.argmax(counts[chosen])])
     at = f"n_eff {counts[tightest]:.3g} at {_owner_name(world, tightest)}"
     reason = f"proven: Cs + 2 Cd of joined springs add up to less than {BOUND:g}, {at}"
-    demand = demand_limit(world, material)
+    demand = stability_limit(world, material)
     both = 0.0 if demand <= 0.0 else _equal_limit(world, BOUND / demand)
     return CoefficientLimits(limit("stiffness"), limit("damping"), reason, both)

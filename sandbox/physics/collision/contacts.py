@@ -207,7 +207,7 @@ def _is_hollow(first: int, last: int, colliders: Colliders) -> bool:
 
 
 @inner_kernel
-def bound_solids(colliders: Colliders, outline: Outline, begin: int, end: int, bounds: FloatRows) -> None:
+def update_aabbs(colliders: Colliders, outline: Outline, begin: int, end: int, bounds: FloatRows) -> None:
     """The box in which a particle can be inside each owner's solid edges begin..end; hollow ones: it is everything."""
     solid = outline.solid
     for k in range(begin, end):

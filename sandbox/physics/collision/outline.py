@@ -23,7 +23,7 @@ from sandbox.physics.collision.close_edges import CloseEdges, close_edges, no_cl
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import no_pins, pinned_edges
 from sandbox.physics.collision.types import Colliders
-from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, items_of, kernel, put
+from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
 from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.state import State, state_of
 from sandbox.physics.terrain import Terrain
@@ -304,10 +304,10 @@ class OutlinePlace(NamedTuple):
 
 
 @kernel
-def _derive_outline(lent: Bundle[OutlinePlace], arena: Arena) -> None:
-    place = contents(lent)
+def _derive_outline(pointer: Bundle[OutlinePlace], arena: Arena) -> None:
+    place = unpack(pointer)
     begin(arena)
-    put(place, "outline", new_outline(place.state, arena))
+    set_field(place, "outline", new_outline(place.state, arena))
 
 
 def outline_of(world: World) -> Outline:
@@ -316,9 +316,9 @@ def outline_of(world: World) -> Outline:
 
 
 def _make_outline(world: World) -> Outline:
-    lent = bundle(with_empty(OutlinePlace, state=state_of(world)))
-    lay_out(_derive_outline, lent, np.zeros(FIRST_ARENA, np.int64))
-    outline: Outline = items_of(lent, ("outline",))
+    pointer = bundle(with_empty(OutlinePlace, state=state_of(world)))
+    lay_out(_derive_outline, pointer, np.zeros(FIRST_ARENA, np.int64))
+    outline: Outline = items_of(pointer, ("outline",))
     return outline
 
 

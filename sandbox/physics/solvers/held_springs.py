@@ -30,7 +30,7 @@ LEAST_TAKEN = 0.2
 # How often j is made better where a hand is at its limit: along one line once is enough.
 ROUNDS = 4
 # The effective inverse mass of a spring with hands is at least this part of that without: what rounding leaves.
-LEAST_SHARE = 1e-12
+LEAST_INVERSE_MASS_SHARE = 1e-12
 
 
 class HeldSprings(NamedTuple):
@@ -158,7 +158,7 @@ def load_held_springs(
                 less += x * px + y * py
         if taken > LEAST_TAKEN * LEAST_TAKEN:
             inverse = 1.0 / mass[c]
-            held.mass[c] = 1.0 / max(inverse - less, LEAST_SHARE * inverse)
+            held.mass[c] = 1.0 / max(inverse - less, LEAST_INVERSE_MASS_SHARE * inverse)
             found = True
     return found
 
@@ -214,7 +214,7 @@ def _search(
                 yields = share * (yields - along / (first * first + second * second))
             left -= _along(held, c, place, share * first - rows.impulse[k], share * second - rows.impulse[k + 1])
             slope -= yields
-        j = min(max(j + left / max(slope, LEAST_SHARE / mass), least), most)
+        j = min(max(j + left / max(slope, LEAST_INVERSE_MASS_SHARE / mass), least), most)
     return j
 
 

@@ -354,7 +354,7 @@ def solve_free_contacts(
         work.local[p] = -1
         work.ahead[p, 0] = 0.0
         work.ahead[p, 1] = 0.0
-        if colliders.inverse_mass[p] > 0.0 and not islands.is_bound[islands.label[p]]:
+        if colliders.inverse_mass[p] > 0.0 and not islands.is_coupled[islands.label[p]]:
             work.ahead[p, 0] = early * (start[p, 0] - velocity[p, 0])
             work.ahead[p, 1] = early * (start[p, 1] - velocity[p, 1])
     plan_islands(contacts, islands, island_count, colliders, start, spin, h, work)

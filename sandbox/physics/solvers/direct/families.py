@@ -35,9 +35,9 @@ from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import clear_fronts
 from sandbox.physics.state import State
 
-# The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of
-# 1 / CHANGE_AHEAD steps. Without it, or with less, smooth turning takes two solves where one is enough.
-CHANGE_AHEAD = SLOW_SHARE / (1.0 - SLOW_SHARE)
+# The velocities predicted before a first solve are v + PREDICTOR_GAIN (v - s): where v changes evenly, s lags behind by
+# the change of 1 / PREDICTOR_GAIN steps. With a smaller gain, smooth turning takes two solves where one is enough.
+PREDICTOR_GAIN = SLOW_SHARE / (1.0 - SLOW_SHARE)
 
 
 @inner_kernel
@@ -63,7 +63,7 @@ def load_rows(system: System, state: State, inputs: Inputs, h: float) -> None:
         for axis in range(2):
             rows.v[r, axis] = rows.start[r, axis]
             if r < free_count:
-                rows.v[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - state.slow_velocity[p, axis])
+                rows.v[r, axis] += PREDICTOR_GAIN * (rows.start[r, axis] - state.slow_velocity[p, axis])
 
 
 @inner_kernel

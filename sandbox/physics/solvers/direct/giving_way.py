@@ -150,8 +150,8 @@ def _energy_beside(island: int, motion: RigidMotion, islands: BodyIslands, syste
                     u = system.rows.v[i, 0] - u
                     v = system.rows.v[i, 1] - v
                 else:
-                    u = islands.given[p, 0] + islands.delta_v[p, 0] - u
-                    v = islands.given[p, 1] + islands.delta_v[p, 1] - v
+                    u = islands.v0[p, 0] + islands.delta_v[p, 0] - u
+                    v = islands.v0[p, 1] + islands.delta_v[p, 1] - v
                 total += 0.5 * state.mass[p] * (u * u + v * v)
     return total
 
@@ -171,8 +171,8 @@ def _lower(island: int, share: float, motion: RigidMotion, islands: BodyIslands,
                 target[i, 0] -= share * (target[i, 0] - u)
                 target[i, 1] -= share * (target[i, 1] - v)
             else:
-                islands.given[p, 0] -= share * (islands.given[p, 0] - u)
-                islands.given[p, 1] -= share * (islands.given[p, 1] - v)
+                islands.v0[p, 0] -= share * (islands.v0[p, 0] - u)
+                islands.v0[p, 1] -= share * (islands.v0[p, 1] - v)
         if k < islands.counts[BODIES]:
             spin = spin_of_body(islands.body[k], system)
             spins[islands.body[k], MOMENTUM] -= share * (spin.momentum - turn_rate(motion) * spin.inertia)
@@ -222,5 +222,5 @@ def take_back(workspace: IslandWorkspace, system: System, state: State) -> None:
             system.bodies.spin[body, MOMENTUM] = system.bodies.spin[body, STAR_MOMENTUM]
         else:
             p = islands.free[k - bodies]
-            islands.given[p, 0] = state.velocity[p, 0]
-            islands.given[p, 1] = state.velocity[p, 1]
+            islands.v0[p, 0] = state.velocity[p, 0]
+            islands.v0[p, 1] = state.velocity[p, 1]

@@ -10,7 +10,7 @@ from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows, new
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.components import root_of, united
-from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.joints.joint_answers import Actions, Joints
 from sandbox.physics.solvers.contact.contact_order import ContactOrder, put_in_order
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus, terms_between
@@ -33,13 +33,14 @@ class BodyIslands(NamedTuple):
     There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
     particles. By member: island, mass [kg], bank, energies where the step begins (energy0) and ends (energy), limit,
     ahead, moves: the work of forces in half a step at v', and KE(v'), rises: what it seems to gain if it is stopped
-    [J]; fresh: its bank is begun for all of it. By particle (n,): member, -1: none, row in the matrix, -1: none; given,
-    delta_v [m/s]: velocities without contacts, and what those add. By touched body: misfit; due: to be solved again;
+    [J]; fresh: its bank is begun for all of it. By particle (n,): member, -1: none, row in the matrix, -1: none; v0,
+    delta_v [m/s]: velocities without contacts, and what contacts add. By touched body: misfit; due: to be solved again;
     rigid, firm: all its springs are; pressed: contacts press it by far more than forces do, and no joint acts on it;
     still: pressed and slow; driven: a joint acts on it; by_mass: it has no block, see DEAREST_BLOCK. By island: total,
     allowed, lent [J], see island_energy.py, fails; held: something outside holds it; parts: something in it overlaps
-    deeply; excess [J]: what it had too much, see giving_way.py; way: see energy_bank.py. By row: unpushed [m/s] =
-    velocities without contacts, pushed [m/s] = what contacts and joints add. label, root, marked: scratch.
+    deeply; excess [J]: what it had too much, see giving_way.py; way: see energy_bank.py. By row: v_free [m/s] =
+    velocities without contacts; impulse [N s] of contacts and joints, then the change by it [m/s]. label, root, marked:
+    scratch.
 
     Of all islands together bodies and free particles lie island by island; `alone` is one of them, its members numbered
     by themselves as those of the only island there is: so are `member` and the blocks of bodies.
@@ -76,9 +77,9 @@ class BodyIslands(NamedTuple):
     parts: Flags
     excess: Floats
     way: Slots
-    unpushed: FloatRows
-    pushed: FloatRows
-    given: FloatRows
+    v_free: FloatRows
+    impulse: FloatRows
+    v0: FloatRows
     delta_v: FloatRows
     label: Slots
     root: Slots
@@ -123,18 +124,18 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
         new_float_rows(arena, particles, 2), new_slots(arena, members), new_slots(arena, members),
         new_flags(arena, particles),
     )  # fmt: skip
-    put(out, "islands", islands)
-    put(out, "lists", IslandLists(
+    set_field(out, "islands", islands)
+    set_field(out, "lists", IslandLists(
         new_slots(arena, members + 1), new_slots(arena, members + 1), new_slots(arena, members + 1),
         new_slots(arena, COUNTED * members),
     ))  # fmt: skip
     place, point, block = new_slots(arena, particles), new_slots(arena, free_rows), new_slots(arena, particles)
     delassus = out.delassus
-    put(delassus, "block", block)
-    put(delassus, "place", place)
-    put(delassus, "point", point)
-    put(delassus, "start", new_slots(arena, bodies + 1))
-    put(delassus, "base", new_slots(arena, bodies + 1))
+    set_field(delassus, "block", block)
+    set_field(delassus, "place", place)
+    set_field(delassus, "point", point)
+    set_field(delassus, "start", new_slots(arena, bodies + 1))
+    set_field(delassus, "base", new_slots(arena, bodies + 1))
     if is_full(arena):
         return
     for p in range(particles):
@@ -144,11 +145,11 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
 
 
 @inner_kernel
-def lay_out_no_blocks(particles: int, arena: Arena, out: Delassus) -> None:
-    """Lay out that all particles answer by their own mass."""
+def use_diagonal_delassus(particles: int, arena: Arena, out: Delassus) -> None:
+    """Lay out a Delassus operator that is diagonal: each particle answers an impulse by its own mass."""
     block = new_slots(arena, particles)
-    put(out, "block", block)
-    put(out, "start", new_slots(arena, 1))
+    set_field(out, "block", block)
+    set_field(out, "start", new_slots(arena, 1))
     if not is_full(arena):
         for p in range(particles):
             block[p] = -1
@@ -392,7 +393,7 @@ def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
         w.rises[k:m], w.fresh[k:m], w.misfit[b:c], w.due[b:c], w.rigid[b:c], w.firm[b:c], w.pressed[b:c], w.still[b:c],
         w.driven[b:c], w.by_mass[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.lent[i : i + 1],
         w.fails[i : i + 1],
-        w.held[i : i + 1], w.parts[i : i + 1], w.excess[i : i + 1], w.way[i : i + 1], w.unpushed, w.pushed, w.given,
+        w.held[i : i + 1], w.parts[i : i + 1], w.excess[i : i + 1], w.way[i : i + 1], w.v_free, w.impulse, w.v0,
         w.delta_v, w.label, w.root, w.marked,
     )  # fmt: skip
     return IslandWorkspace(

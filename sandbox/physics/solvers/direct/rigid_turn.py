@@ -58,7 +58,7 @@ FORMLESS = -1.0
 # So many times Cd is the Cs of springs of little damping, at least.
 LITTLE_DAMPED = 2.0
 # What has turned so far in a step that r . r' is less than this share of r . r is turned about where the step begins.
-LEAST_ACROSS = 0.2
+LEAST_TURN_COSINE = 0.2
 
 
 @inner_kernel
@@ -374,7 +374,7 @@ def hold_spin(span: Span, rows: Rows, spin: RigidMotion, pivots: bool, aims: boo
     else:
         u /= total
         v /= total
-    if not across > LEAST_ACROSS * spin.inertia:
+    if not across > LEAST_TURN_COSINE * spin.inertia:
         across = spin.inertia
         ahead = 0.0
     turn = missing / across

@@ -61,7 +61,7 @@ def load_springs(
         if auto_substeps > 1:
             # Of the whole tick, to the bit: that of a part has other digits where Cd is near 1.
             _, whole = implicit_masses(state.stiffness[s], state.damping[s], mass)
-            springs.k_h2[k] = whole / (auto_substeps * auto_substeps * inputs.ease)
+            springs.k_h2[k] = whole / (auto_substeps * auto_substeps * inputs.drag_factor)
         rest = state.rest_length[s]
         springs.rest[k] = rest
         springs.start_rest[k] = inputs.start_length[s]

@@ -170,7 +170,7 @@ class System(NamedTuple):
     constraints: Constraints
     matrix: Matrix
     fronts: Fronts
-    goals: ShapeMatchGroups
+    shape_match_groups: ShapeMatchGroups
     triangles: ClampedTriangles
 
 

@@ -32,7 +32,7 @@ class Fronts(NamedTuple):
     first, last, child, border_start, border, to_parent: see Dissection, rows counted over all bodies. width (f,):
     scalars in a row of the front; base and remains (f,): its places in numbers and remainder. inverses (2n,): 1 / d.
     fork (f, 2): at the last front of a body, where its second half begins, and where that ends; equal: it has none.
-    apart (n, 2): of what lies above both halves, the right side that the first has left.
+    first_half_rhs (n, 2): of what lies above both halves, the right side that the first has left.
     """
 
     of_row: Slots
@@ -52,7 +52,7 @@ class Fronts(NamedTuple):
     inverses: Floats
     fork: SlotRows
     scratch: Scratch
-    apart: FloatRows
+    first_half_rhs: FloatRows
 
 
 @inner_kernel
