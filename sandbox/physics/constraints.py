@@ -130,7 +130,7 @@ def evaluate(
 @inner_kernel
 def rest_mass(first: int, last: int, inverse_mass: Floats, particle: Int32s, weight: Floats) -> float:
     """Effective mass of the corners first..last at rest; 0 where nothing of them can move."""
-    # m = 1 / (sum of w |g|^2)
+    # m = 1 / (sum of w |g|^2)  (17)
     total = 0.0
     for c in range(first, last):
         total += inverse_mass[particle[c]] * weight[c]

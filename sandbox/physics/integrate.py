@@ -18,7 +18,7 @@ def follow(velocity: FloatRows, slow_velocity: FloatRows, slow_change: FloatRows
     for p in range(active.shape[0]):
         if active[p]:
             for axis in range(2):
-                change = SLOW_SHARE * (velocity[p, axis] - slow_velocity[p, axis])
+                change = SLOW_SHARE * (velocity[p, axis] - slow_velocity[p, axis])  # (11)
                 slow_velocity[p, axis] += change
                 slow_change[p, axis] += SLOW_SHARE * (change - slow_change[p, axis])
 

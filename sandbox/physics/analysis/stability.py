@@ -98,7 +98,7 @@ def _springs_at_ends(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64]
 
 def effective_count(world: World) -> Floats:
     """n_eff of every spring (m,), 0 for those that do nothing; at most the larger n of its ends."""
-    # n_eff = m_r (w_a n_a + w_b n_b)
+    # n_eff = m_r (w_a n_a + w_b n_b)  (6)
     at_a, at_b = _springs_at_ends(world)
     weighted = world.inverse_mass[world.particle_a] * at_a + world.inverse_mass[world.particle_b] * at_b
     return np.where(_working(world), reduced_masses(world) * weighted, 0.0)
@@ -123,6 +123,7 @@ def largest_eigenvalue(world: World) -> float:
         share = (vector / size)[rows]
         along_x = np.bincount(ends, share * pull_x, world.particle_count)
         along_y = np.bincount(ends, share * pull_y, world.particle_count)
+        # G times the vector  (4)
         vector = np.bincount(rows, pull_x * along_x[ends] + pull_y * along_y[ends]).astype(np.float64, copy=False)
         size = _norm(vector)
         if size == 0.0:
@@ -242,7 +243,7 @@ def _equal_limit(world: World, effective: float) -> float:
 
     def inside(c: float) -> bool:
         stiffness, damping = turned(np.array([c]), np.array([c]), np.zeros(1), world.settings.fewest_substeps)
-        return bool((stiffness[0] + 2.0 * damping[0]) * effective < BOUND)
+        return bool((stiffness[0] + 2.0 * damping[0]) * effective < BOUND)  # (5)
 
     return _largest(inside)
 

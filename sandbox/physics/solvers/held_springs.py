@@ -214,7 +214,7 @@ def _search(
                 yields = share * (yields - along / (first * first + second * second))
             left -= _along(held, c, place, share * first - rows.impulse[k], share * second - rows.impulse[k + 1])
             slope -= yields
-        j = min(max(j + left / max(slope, LEAST_INVERSE_MASS_SHARE / mass), least), most)
+        j = min(max(j + left / max(slope, LEAST_INVERSE_MASS_SHARE / mass), least), most)  # (23)
     return j
 
 

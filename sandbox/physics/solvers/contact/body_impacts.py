@@ -91,7 +91,7 @@ def _solve_pass(
                 continue
             old = terms.search_direction[c, 0]
             lacks = wanted - approach_of(contacts, c, velocity, delta_v)
-            j = max(0.0, old + lacks / terms.normal[c]) - old
+            j = max(0.0, old + lacks / terms.normal[c]) - old  # (32)
             if j != 0.0:
                 terms.search_direction[c, 0] += j
                 push_contact(contacts, c, j, 0.0, terms.surface, delta_v, inverse_mass, delassus)

@@ -169,7 +169,7 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
         most = row[i, FRICTION] * new
         last = row[i, ACROSS]
         slip = nx * uy - ny * ux - arm * (motion[p, SURFACE] + motion[q, SURFACE])
-        across = min(most, max(-most, last - slip * row[i, MASS_ACROSS]))
+        across = min(most, max(-most, last - slip * row[i, MASS_ACROSS]))  # (28)
         row[i, ALONG] = new
         row[i, ACROSS] = across
         apply(work, i, nx, ny, new - old, across - last, arm, late, not pushes and new > 0.0)

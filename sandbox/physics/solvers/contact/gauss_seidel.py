@@ -237,7 +237,7 @@ def push_contact(
 def turn_surfaces(contacts: Contacts, c: int, jp: float, jq: float, surface: Floats) -> None:
     """Push the surfaces of what rolls: s += 2 / m J."""
     if contacts.turning[c, 0] > 0.0:
-        surface[contacts.particle[c]] += jp * contacts.turning[c, 0]
+        surface[contacts.particle[c]] += jp * contacts.turning[c, 0]  # (35)
     if contacts.turning[c, 1] > 0.0:
         surface[contacts.end_a[c]] += jq * contacts.turning[c, 1]
 
@@ -336,7 +336,7 @@ def load_biases(contacts: Contacts, terms: ContactConstraints, h: float) -> None
         terms.search_direction[c, 0] = 0.0
         terms.search_direction[c, 1] = 0.0
         gap = contacts.gap[c]
-        terms.bias[c] = gap / h if gap >= 0.0 else max(PENETRATION_SHARE * gap / h, -FASTEST_PUSH)
+        terms.bias[c] = gap / h if gap >= 0.0 else max(PENETRATION_SHARE * gap / h, -FASTEST_PUSH)  # (26)
         if contacts.bounce[c] >= 0.0:
             terms.bias[c] = -contacts.bounce[c]
 
@@ -383,7 +383,7 @@ def sweep(
         ny = contacts.normal[c, 1]
         soft = CONTACT_SOFTNESS * normal
         old = contacts.impulse[c, 0]
-        new = max(0.0, implicit_update(old, nx * ux + ny * uy + terms.bias[c], normal, soft))
+        new = max(0.0, implicit_update(old, nx * ux + ny * uy + terms.bias[c], normal, soft))  # (27)
         jn = new - old
         contacts.impulse[c, 0] = new
         jt = 0.0
@@ -395,7 +395,7 @@ def sweep(
                 slip += couple_velocity(contacts, c, velocity, delta_v)
             most = contacts.friction[c] * new
             last = contacts.impulse[c, 1]
-            jt = min(most, max(-most, last - slip / terms.tangent[c])) - last
+            jt = min(most, max(-most, last - slip / terms.tangent[c])) - last  # (28)
             contacts.impulse[c, 1] = last + jt
         if jn != 0.0 or jt != 0.0:
             push_contact(contacts, c, jn, jt, terms.surface, delta_v, inverse_mass, delassus)

@@ -74,7 +74,7 @@ def _coupling(work: FreeContactScratch, i: int, j: int) -> float:
 
 @inner_kernel
 def _solve_two(work: FreeContactScratch) -> None:
-    # 0 <= J, W J >= r, one of both; r: what each lacks.
+    # 0 <= J, W J >= r, one of both; r: what each lacks.  (32)
     row = work.constraint
     i, j = work.hit[0], work.hit[1]
     one = max(0.0, work.wanted[0] - work.speed[0])
@@ -129,7 +129,7 @@ def _solve_many(work: FreeContactScratch, hits: int, sweeps: int) -> int:
             if abs(lacks) <= settled:
                 continue
             old = work.pushed[k]
-            j = max(0.0, old + lacks * row[i, MASS]) - old
+            j = max(0.0, old + lacks * row[i, MASS]) - old  # (32)
             if j != 0.0:
                 _push_hit(work, k, j, 0.0)
                 largest = max(largest, abs(j) / row[i, MASS])

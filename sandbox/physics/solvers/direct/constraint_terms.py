@@ -87,7 +87,7 @@ def load_constraints(
         total = 0.0
         for c in range(constraints.first[k], constraints.first[k + 1]):
             total += rows.inverse_mass[constraints.row[c]] * constraints.weight[c]
-        mass = 1.0 / total if total > 0.0 else 0.0
+        mass = 1.0 / total if total > 0.0 else 0.0  # (17)
         constraints.floor[k] = 0.0
         if system.shape_match_groups.group[k] >= 0 and constraints.rest[k, 0] * constraints.rest[k, 1] > 0.0:
             constraints.floor[k] = FLOOR_STRENGTH * mass * (FLOOR_RATE * h) * (FLOOR_RATE * h)
@@ -176,7 +176,7 @@ def _floor_push(k: int, constraints: Constraints, growth: float, h: float) -> fl
     if gap < 0.0:
         gap *= FLOOR_BETA
     rate = growth if constraints.rest[k, 0] > 0.0 else -growth
-    return max(0.0, -(rate + gap) * constraints.floor[k] / FLOOR_BETA)
+    return max(0.0, -(rate + gap) * constraints.floor[k] / FLOOR_BETA)  # (19)
 
 
 @inner_kernel

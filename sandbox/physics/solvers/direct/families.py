@@ -99,7 +99,7 @@ def load_residual(span: Span, system: System) -> None:
     """The right side M (v* - v') + sum of impulses of one body, into `delta_v`."""
     rows = system.rows
     for r in range(span.first_row, span.last_row):
-        rows.delta_v[r, 0] = rows.inertia[r] * (rows.v_star_matched[r, 0] - rows.v[r, 0])
+        rows.delta_v[r, 0] = rows.inertia[r] * (rows.v_star_matched[r, 0] - rows.v[r, 0])  # (9)
         rows.delta_v[r, 1] = rows.inertia[r] * (rows.v_star_matched[r, 1] - rows.v[r, 1])
     push_springs(span, system)
     if span.last_constraint > span.first_constraint:
@@ -118,7 +118,7 @@ def assemble(span: Span, system: System) -> None:
             assemble_constraints(span, system, True)
     else:
         for r in range(span.first_row, span.last_row):
-            mass = rows.inertia[r]
+            mass = rows.inertia[r]  # (9)
             matrix.diagonal[r, 0] = mass
             matrix.diagonal[r, 1] = 0.0
             matrix.diagonal[r, 2] = mass

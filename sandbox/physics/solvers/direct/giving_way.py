@@ -46,7 +46,7 @@ WITHIN = 1e-9
 @inlined_kernel
 def share_to_give(excess: float, moves: float) -> float:
     """What share of its motion, of the energy `moves` [J], is to be given up for what is too much [J]; 0: it cannot."""
-    return 0.5 * MARGIN * excess / moves if MARGIN * excess < LARGEST_SHARE * moves else 0.0
+    return 0.5 * MARGIN * excess / moves if MARGIN * excess < LARGEST_SHARE * moves else 0.0  # (30)
 
 
 @inner_kernel
@@ -158,7 +158,7 @@ def _energy_beside(island: int, motion: RigidMotion, islands: BodyIslands, syste
 
 @inner_kernel
 def _lower(island: int, share: float, motion: RigidMotion, islands: BodyIslands, system: System, state: State) -> None:
-    # v* -= share (v* - V), and the spin that bodies are to keep with it.
+    # v* -= share (v* - V), and the spin that bodies are to keep with it.  (30)
     target, spins = system.rows.v_star_matched, system.bodies.spin
     for k in range(islands.counts[MEMBERS]):
         if islands.island[k] != island:

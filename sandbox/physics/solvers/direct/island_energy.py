@@ -304,7 +304,7 @@ def _lendable(island: int, islands: BodyIslands, system: System, state: State) -
             sinks += islands.ahead[k] - islands.moves[k]
             rises += islands.rises[k]
             owes -= min(0.0, state.parting_reserve[_slot_of(k, islands, system)])
-    return max(0.0, max(0.0, sinks) + max(0.0, rises) - owes)
+    return max(0.0, max(0.0, sinks) + max(0.0, rises) - owes)  # (29)
 
 
 @inner_kernel
