@@ -14,7 +14,7 @@ FULL_TURN = 6.283185307179586
 
 @inner_kernel
 def follow(velocity: FloatRows, slow_velocity: FloatRows, slow_change: FloatRows, active: Flags) -> None:
-    """Let the slow part of velocities follow them, and that of its change in a step."""
+    """Update the running means of velocities, and of their change in a step."""
     for p in range(active.shape[0]):
         if active[p]:
             for axis in range(2):

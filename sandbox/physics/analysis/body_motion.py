@@ -94,7 +94,7 @@ class BodyMotion:
             return np.asarray(np.where(square > 0.0, STANDING * self.gravity / square, np.inf))
 
     def sag_of_tick(self, stiffness: Floats, damping: Floats) -> Floats:
-        """The same (k,) from Cs and Cd of its springs in a tick; only where `tells_sag`."""
+        """The share of its height (k,) that a body sags by, from Cs and Cd of springs in a tick; see `tells_sag`."""
         sag = self.sag(*self.of_substep(stiffness, damping))
         assert sag is not None
         return sag

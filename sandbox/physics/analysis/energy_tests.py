@@ -39,5 +39,5 @@ def steps_by_mass(world: World) -> int:
 
 
 def forget_energy_tests(world: World) -> None:
-    """Count from 0 again."""
+    """Set the counts of energy tests to 0."""
     block_of(world).given.workspace.ways[:] = 0

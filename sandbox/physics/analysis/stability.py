@@ -189,10 +189,9 @@ def _summed_loads(world: World, demands: Floats, of_constraints: Floats) -> Floa
 
 
 def spring_loads(world: World) -> Floats:
-    """The load that must stay below BOUND for every spring, then every constraint (m + t,): of two proven bounds the
-    one that allows more.
+    """The load of every spring, then every constraint (m + t,), that must stay below BOUND to be proven stable.
 
-
+    Of two proven bounds the one that allows more.
     """
     demands = _demands(world, world.stiffness, world.damping)
     of_constraints = _constraint_demands(world, world.constraint_stiffness, world.constraint_damping)

@@ -287,7 +287,7 @@ def find_contacts(
 
 @inner_kernel
 def carry_over(contacts: Contacts, count: int, kept: KeptContacts, kept_count: int) -> None:
-    """Begin with the last step's impulses of the same features, and add to its impacts; both ascend by particle."""
+    """Start contacts with the last step's impulses of the same features; add its impacts. Both ascend by particle."""
     begin = 0
     for c in range(count):
         p = contacts.particle[c]

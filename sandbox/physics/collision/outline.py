@@ -39,13 +39,7 @@ EDGES, ALL_EDGES, JOINED, SPANS, SHAPES, MEMBERS, COUNTS = range(7)
 class Outline(NamedTuple):
     """The edges of a world's springs and of its terrain, which topology alone decides; see Colliders.
 
-    shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. attached (n,):
-    particles that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges
-    where any is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'.
-    Shapes are the owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by
-    shape, the row of solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. close:
-    edges of lines alone that were made close to each other. spring_end: one particle of each spring. pins: edges of
-    bodies of which both ends are pinned, as terrain; chain = the edge.
+    Shapes are the owners of edges of bodies, in the order of their edges.
     """
 
     edge_a: Slots
@@ -56,18 +50,18 @@ class Outline(NamedTuple):
     edge_of: Slots
     near_start: Slots
     near_of: Slots
-    solid: SlotRows
+    solid: SlotRows  # (k, 2): first edge and one past the last of each owner with a solid edge; terrain's last
     owner: Slots
-    shielded: Flags
-    attached: Flags
-    dynamic: Slots
-    shape: Slots
-    solid_of: Slots
+    shielded: Flags  # particles inside a solid body that no torn spring lays bare; discs do not hit them
+    attached: Flags  # (n,): particles that a spring or a constraint holds
+    dynamic: Slots  # (2,): edges of bodies, and how many rows of solid are bodies'
+    shape: Slots  # by vertex, -1: none
+    solid_of: Slots  # by shape: its row of solid, -1: it has lines alone
     member_start: Slots
-    member: Slots
-    close: CloseEdges
-    spring_end: Slots
-    pins: Terrain
+    member: Slots  # particles of shape s: member[member_start[s]:member_start[s + 1]]
+    close: CloseEdges  # edges of lines alone that were made close to each other
+    spring_end: Slots  # one particle of each spring
+    pins: Terrain  # edges of bodies with both ends pinned, as terrain; chain = the edge
 
 
 class OutlineScratch(NamedTuple):

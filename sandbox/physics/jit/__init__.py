@@ -200,7 +200,7 @@ def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
 
 
 def hold(bundle: Any, memory: Any) -> None:
-    """Let an array live as long as a bundle: kernels lay out in it what they put there."""
+    """Keep an array alive as long as a bundle: kernels lay out in it what they set in the bundle."""
     _chosen().hold(bundle, memory)
 
 

@@ -71,7 +71,7 @@ def unpack(bundle: Bundle[Items]) -> Items:
 
 
 def hold(bundle: Any, memory: Any) -> None:
-    """Nothing: the views of a bundle hold what they are of."""
+    """Do nothing: the views of a bundle keep their arrays alive."""
 
 
 def items_of(bundle: Any, path: tuple[str, ...] = ()) -> Any:

@@ -36,12 +36,7 @@ TIP_ROUNDS = 4
 
 
 class Collisions(NamedTuple):
-    """What topology decides of a world's collisions, and arrays that a step fills in.
-
-    bounds (k, 5): see update_aabbs. coupled: copies of the contacts that a solver solves with springs; source: which
-    they are. kept: contacts of the last step; the first counts[KEPT] are the world's. By particle (n,): attached to
-    springs, constraints or hands; moved: scratch.
-    """
+    """What topology decides of a world's collisions, and arrays that a step fills in."""
 
     outline: Outline
     triangles: Triangles
@@ -49,19 +44,19 @@ class Collisions(NamedTuple):
     boxes: Boxes
     grid: Grid
     candidates: Candidates
-    bounds: FloatRows
+    bounds: FloatRows  # (k, 5): see update_aabbs
     near: Near
     contacts: Contacts
-    coupled: Contacts
-    source: Slots
-    kept: KeptContacts
+    coupled: Contacts  # copies of the contacts that a solver solves with springs
+    source: Slots  # which contacts those are
+    kept: KeptContacts  # contacts of the last step; the first counts[KEPT] are the world's
     islands: Islands
     work: FreeContactScratch
     inversions: Inversions
     shape_bounds: ShapeBounds
     overlaps: Overlaps
-    moved: Flags
-    attached: Flags
+    moved: Flags  # (n,): scratch
+    attached: Flags  # (n,): springs, constraints or hands hold it
     counts: Slots
 
 

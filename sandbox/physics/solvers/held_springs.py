@@ -34,22 +34,16 @@ LEAST_INVERSE_MASS_SHARE = 1e-12
 
 
 class HeldSprings(NamedTuple):
-    """The hands that are solved with springs, and those springs.
+    """The hands that are solved with springs, and those springs."""
 
-    hand (g,): first row of each. By particle (n,): row = that of the hand that holds it, -1: none; entry = its place in
-    the row. By spring that pulls (m,): at (m, 2) = the rows of hands at its ends, the first -1: none; answer (m, 4) = y
-    of each; asked (m, 4) = A y; mass [kg] = the effective mass where no hand that answers at once is at its limit. free
-    (2, 2): scratch, P0.
-    """
-
-    hand: Slots
-    row: Slots
-    entry: Slots
-    at: SlotRows
-    answer: FloatRows
-    asked: FloatRows
-    mass: Floats
-    free: FloatRows
+    hand: Slots  # (g,): first row of each
+    row: Slots  # by particle (n,): that of the hand that holds it, -1: none
+    entry: Slots  # by particle (n,): its place in the row
+    at: SlotRows  # (m, 2) by spring that pulls: the rows of hands at its ends, the first -1: none
+    answer: FloatRows  # (m, 4): y of each
+    asked: FloatRows  # (m, 4): A y of each
+    mass: Floats  # [kg] (m,): effective mass where no hand that answers at once is at its limit
+    free: FloatRows  # (2, 2): scratch, P0
 
 
 @inner_kernel
@@ -174,7 +168,7 @@ def begin_with_hands(held: HeldSprings, joints: Joints, velocity: FloatRows, cha
 
 @inner_kernel
 def end_with_hands(held: HeldSprings, joints: Joints, change: FloatRows, inverse_mass: Floats) -> None:
-    """Let particles have what hands have answered in an iteration over all springs."""
+    """Add to particles what hands have answered in an iteration over all springs."""
     for i in range(held.hand.shape[0]):
         for k in range(held.hand[i], held.hand[i] + 2):
             more = joints.rows.impulse[k] - joints.last_impulse[k]

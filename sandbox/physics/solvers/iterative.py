@@ -58,50 +58,42 @@ AREA_SHARE = 0.5
 
 
 class ConstraintScratch(NamedTuple):
-    """Scratch of the constraints: corners' places and gradients (q, 2), and of each (t,) what `_iterate_constraints`
-    says.
+    """Scratch of the constraints: of corners (q, 2), then of each (t,), see `_iterate_constraints`.
 
-    wanted = -(Cs C / h + Cd dC/dt) m; impulse = the sum of its j. Of a bend, damped = Cd m, kept = 1 - Cd and whole =
-    kept + Cd m / present mass. Of an area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
+    Of a bend, damped = Cd m, kept = 1 - Cd and whole = kept + Cd m / present mass. Of an area, as of a spring, damped =
+    m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
     """
 
     place: FloatRows
-    slope: FloatRows
-    wanted: Floats
+    slope: FloatRows  # gradient
+    wanted: Floats  # -(Cs C / h + Cd dC/dt) m
     damped: Floats
     kept: Floats
     whole: Floats
-    impulse: Floats
+    impulse: Floats  # the sum of its j
 
 
 class SpringScratch(NamedTuple):
-    """Scratch of the springs that do something, count of them by slot: wanted [m/s] = r, mass [kg], normal (m, 2).
-
-    Of those of limited force, limit [N s], impulse [N s] = the sum of their impulses. By particle: change [m/s] (n, 2).
-    """
+    """Scratch of the springs that do something, count of them by slot."""
 
     slot: Slots
     normal: FloatRows
-    wanted: Floats
-    mass: Floats
-    limit: Floats
-    impulse: Floats
-    change: FloatRows
+    wanted: Floats  # [m/s]: r
+    mass: Floats  # [kg]
+    limit: Floats  # [N s]: of those of limited force, as impulse
+    impulse: Floats  # [N s]: the sum of its impulses
+    change: FloatRows  # [m/s] (n, 2) by particle
 
 
 class Iteration(NamedTuple):
-    """Slots of the springs that are iterated, as they are listed and those of heavy particles first; and scratch.
+    """Slots of the springs that are iterated, and scratch."""
 
-    limit [N] (m,): the force that each spring of the world gives at most, (0,) where none has a limit. held: follows
-    from what hands hold.
-    """
-
-    listed: Slots
-    heavy_first: Slots
-    limit: Floats
+    listed: Slots  # as they are listed
+    heavy_first: Slots  # those of heavy particles first
+    limit: Floats  # [N] (m,): the force that each spring gives at most, (0,): none has a limit
     spring_scratch: SpringScratch
     constraint_scratch: ConstraintScratch
-    held: HeldSprings
+    held: HeldSprings  # follows from what hands hold
 
 
 @inner_kernel

@@ -29,23 +29,18 @@ JOINT_DAMPING = 0.5
 
 
 class ExplicitPass(NamedTuple):
-    """What an explicit pass reads of springs (m,), and its scratch.
+    """What an explicit pass reads of springs (m,), and its scratch."""
 
-    chosen: the springs that it evaluates. limit [N]: the force that each gives at most. By particle (n, 2): impulse
-    [N s], still [m/s] = 0, change [m/s]. By corner (q, 2): place, slope. By row of joints: mass [kg] = 1 / (g W g), 0:
-    a hand's; joint_impulse [N s]: of this step. joints: of particles that answer by their own mass.
-    """
-
-    joints: Joints
-    chosen: Flags
-    limit: Floats
-    impulse: FloatRows
-    still: FloatRows
-    change: FloatRows
-    place: FloatRows
+    joints: Joints  # of particles that answer by their own mass
+    chosen: Flags  # (m,): the springs that it evaluates
+    limit: Floats  # [N] (m,): the force that each gives at most
+    impulse: FloatRows  # [N s] (n, 2)
+    still: FloatRows  # [m/s] (n, 2): 0
+    change: FloatRows  # [m/s] (n, 2)
+    place: FloatRows  # (q, 2) by corner, as slope
     slope: FloatRows
-    mass: Floats
-    joint_impulse: Floats
+    mass: Floats  # [kg] by row of joints: 1 / (g W g), 0: a hand's
+    joint_impulse: Floats  # [N s] by row of joints: of this step
 
 
 @inner_kernel

@@ -65,29 +65,22 @@ MASS, X, Y, U, V, INERTIA, SPIN, COUNT = range(8)
 
 
 class ClampedTriangles(NamedTuple):
-    """Triangles of areas and the rows that they join, particles of a world or rows of a system.
+    """Triangles of areas and the rows that they join, particles of a world or rows of a system."""
 
-    corner (k, 3): rows, of gaps too, each after a triangle beside it; gap (k,): which those are; group (k,): the jelly;
-    constraint (k,): of the triangle; those of constraint t: corner[start[t]:start[t + 1]]. rest (t, 2) [m^2]: area
-    wanted and of the form. By row (n,): position [m], velocity [m/s], which is clamped, mass [kg], inverse_mass [1/kg],
-    collides: of corners, 0 of all others. By jelly: inverted = let go. Scratch: label = what a row moves as one with,
-    fixed: what cannot move, sums.
-    """
-
-    corner: SlotRows
-    gap: Flags
-    group: Slots
-    constraint: Slots
-    start: Slots
-    rest: FloatRows
-    position: FloatRows
-    velocity: FloatRows
-    mass: Floats
-    inverse_mass: Floats
-    collides: Slots
-    inverted: Flags
-    label: Slots
-    fixed: Flags
+    corner: SlotRows  # (k, 3): rows, of gaps too, each after a triangle beside it
+    gap: Flags  # (k,): which are gaps
+    group: Slots  # (k,): the jelly
+    constraint: Slots  # (k,): of the triangle
+    start: Slots  # triangles of constraint t: corner[start[t]:start[t + 1]]
+    rest: FloatRows  # [m^2] (t, 2): area wanted and of the form
+    position: FloatRows  # [m] by row (n,), as all down to collides
+    velocity: FloatRows  # [m/s]: is clamped
+    mass: Floats  # [kg]
+    inverse_mass: Floats  # [1/kg]
+    collides: Slots  # of corners, 0 of all others
+    inverted: Flags  # by jelly: let go
+    label: Slots  # scratch, as the two below: what a row moves as one with
+    fixed: Flags  # what cannot move
     sums: FloatRows
     terrain: Terrain
 
@@ -401,7 +394,7 @@ def _hold_areas(
 
 @inner_kernel
 def clamp_triangles(begin: int, end: int, low: int, high: int, triangles: ClampedTriangles, h: float) -> int:
-    """Let no triangle of constraints begin..end turn over in the coming h [s]: AS_IT_WAS, SLOWED or JOINED.
+    """Clamp velocities so that no triangle of constraints begin..end turns over in h [s]: AS_IT_WAS, SLOWED or JOINED.
 
     low, high: the rows that triangles join lie there, but for pinned ones. Where anything is changed, none of them
     crosses terrain.
@@ -438,7 +431,7 @@ class WorldTriangles(NamedTuple):
 
 @inner_kernel
 def clamp_world(triangles: WorldTriangles, matches: bool, h: float) -> None:
-    """Let the velocities of a world turn no triangle over in the coming h [s]; terrain's clamp was before.
+    """Clamp the velocities of a world so that they turn no triangle over in h [s]; terrain's clamp was before.
 
     matches: whether the solver draws inverted jellies to their form, and has held triangles already.
     """

@@ -165,7 +165,7 @@ def propagate_all_impacts(
     contacts: Contacts, terms: ContactConstraints, order: ContactOrder, velocity: FloatRows, delta_v: FloatRows,
     inverse_mass: Floats, delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
-    """The same of every island by itself."""
+    """`propagate_impacts` of every island by itself."""
     for i in range(order.islands[0]):
         of_island, its_terms = _of_island(i, contacts, terms, order)
         propagate_impacts(of_island, its_terms, velocity, delta_v, inverse_mass, delassus, h)

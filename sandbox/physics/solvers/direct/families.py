@@ -156,7 +156,7 @@ def keep_tension(span: Span, system: System) -> None:
 
 @inner_kernel
 def find_tension(span: Span, system: System, h: float) -> None:
-    """The same of springs whose impulses are not known at `v`."""
+    """T = max(0, -J) of a body's springs, whose impulses are not known at `v`."""
     linearise_springs(span, system, h, 1.0, 0.0)
     keep_tension(span, system)
 

@@ -187,7 +187,7 @@ def note_excess(islands: BodyIslands) -> None:
 
 @inner_kernel
 def give_way(workspace: IslandWorkspace, system: System, state: State) -> bool:
-    """Let islands that fail solve on, or give way by what they gain; whether any of them can."""
+    """Lower the targets of islands that fail by what they gain, unless solving on helps; whether any can go on."""
     islands = workspace.islands
     goes_on = False
     for island in range(islands.counts[ISLANDS]):

@@ -353,7 +353,7 @@ def _member_of(c: int, contacts: Contacts, islands: BodyIslands, inverse_mass: F
 def drop_biases(
     contacts: Contacts, workspace: IslandWorkspace, inverse_mass: Floats, separates: bool, h: float
 ) -> None:
-    """Let contacts of islands that fail begin with no impulse and not bounce, and push apart as banks can pay or not.
+    """Restart contacts of islands that fail without impulse or bounce; they push apart only as far as banks can pay.
 
     separates: whether they push apart at all.
     """

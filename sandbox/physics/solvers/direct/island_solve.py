@@ -514,7 +514,7 @@ def solve_islands(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, inputs: Inputs, auto_substeps: int,
     h: float,
 ) -> None:  # fmt: skip
-    """Bring what contacts touch or joints act on to the end of a step of h [s]; rows are loaded, islands found."""
+    """Advance the islands of what contacts touch or joints act on by h [s]; rows are loaded, islands found."""
     islands, joints = workspace.islands, workspace.delassus.joints
     for p in range(state.velocity.shape[0]):
         for axis in range(2):

@@ -30,58 +30,47 @@ DEAREST_BLOCK = 4_000_000
 class BodyIslands(NamedTuple):
     """The bodies and free particles that contacts touch or joints act on, in this order the members of islands.
 
-    There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
-    particles. By member: island, mass [kg], bank, energies where the step begins (energy0) and ends (energy), limit,
-    ahead, moves: the work of forces in half a step at v', and KE(v'), rises: what it seems to gain if it is stopped
-    [J]; fresh: its bank is begun for all of it. By particle (n,): member, -1: none, row in the matrix, -1: none; v0,
-    delta_v [m/s]: velocities without contacts, and what contacts add. By touched body: misfit; due: to be solved again;
-    rigid, firm: all its springs are; pressed: contacts press it by far more than forces do, and no joint acts on it;
-    still: pressed and slow; driven: a joint acts on it; by_mass: it has no block, see DEAREST_BLOCK. By island: total,
-    allowed, lent [J], see island_energy.py, fails; held: something outside holds it; parts: something in it overlaps
-    deeply; excess [J]: what it had too much, see giving_way.py; way: see energy_bank.py. By row: v_free [m/s] =
-    velocities without contacts; impulse [N s] of contacts and joints, then the change by it [m/s]. label, root, marked:
-    scratch.
-
-    Of all islands together bodies and free particles lie island by island; `alone` is one of them, its members numbered
-    by themselves as those of the only island there is: so are `member` and the blocks of bodies.
+    There is room for all bodies and particles. Of all islands together bodies and free particles lie island by island;
+    `alone` is one of them, its members numbered by themselves as those of the only island there is: so are `member` and
+    the blocks of bodies.
     """
 
-    counts: Slots
-    body: Slots
-    free: Slots
-    island: Slots
-    member: Slots
-    row: Slots
-    mass: Floats
-    energy0: Floats
-    bank: Floats
-    energy: Floats
-    limit: Floats
-    ahead: Floats
-    moves: Floats
-    rises: Floats
-    fresh: Flags
-    misfit: Floats
-    due: Flags
-    rigid: Flags
-    firm: Flags
-    pressed: Flags
-    still: Flags
-    driven: Flags
-    by_mass: Flags
-    total: Floats
-    allowed: Floats
-    lent: Floats
+    counts: Slots  # (5,): how many there are
+    body: Slots  # their numbers
+    free: Slots  # slots of particles
+    island: Slots  # by member, as all from mass to fresh
+    member: Slots  # (n,) by particle, -1: none
+    row: Slots  # (n,) by particle: its row in the matrix, -1: none
+    mass: Floats  # [kg]
+    energy0: Floats  # [J]: where the step begins
+    bank: Floats  # [J]: in its energy bank
+    energy: Floats  # [J]: where the step ends
+    limit: Floats  # [J]: of its bank
+    ahead: Floats  # [J]: work of forces in half a step at v'
+    moves: Floats  # [J]: KE(v')
+    rises: Floats  # [J]: what it seems to gain if it is stopped
+    fresh: Flags  # its bank is begun for all of it
+    misfit: Floats  # by touched body, as all down to by_mass
+    due: Flags  # to be solved again
+    rigid: Flags  # all its springs are
+    firm: Flags  # all its springs are
+    pressed: Flags  # contacts press it by far more than forces do, and no joint acts on it
+    still: Flags  # pressed and slow
+    driven: Flags  # a joint acts on it
+    by_mass: Flags  # it has no block, see DEAREST_BLOCK
+    total: Floats  # [J] by island, as all down to way: energy of its members
+    allowed: Floats  # [J]: what that may be (island_energy.py)
+    lent: Floats  # [J]: part of that
     fails: Flags
-    held: Flags
-    parts: Flags
-    excess: Floats
-    way: Slots
-    v_free: FloatRows
-    impulse: FloatRows
-    v0: FloatRows
-    delta_v: FloatRows
-    label: Slots
+    held: Flags  # something outside holds it
+    parts: Flags  # something in it overlaps deeply
+    excess: Floats  # [J]: what it had too much (giving_way.py)
+    way: Slots  # see energy_bank.py
+    v_free: FloatRows  # [m/s] by row: velocities without contacts
+    impulse: FloatRows  # [N s] by row: of contacts and joints; then the change by it [m/s]
+    v0: FloatRows  # [m/s] (n,) by particle: velocities without contacts
+    delta_v: FloatRows  # [m/s] (n,): what contacts add
+    label: Slots  # label, root, marked: scratch
     root: Slots
     marked: Flags
 
@@ -382,7 +371,7 @@ def has_coarse(islands: BodyIslands) -> bool:
 
 @inner_kernel
 def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
-    """One island, as if there were no other."""
+    """One island, as if there were no other: the slices of the workspace that belong to it."""
     w, lists, delassus, order = workspace.islands, workspace.lists, workspace.delassus, workspace.order
     b, c, f, g = lists.body[i], lists.body[i + 1], lists.free[i], lists.free[i + 1]
     k, m = b + f, c + g

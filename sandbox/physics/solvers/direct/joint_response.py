@@ -63,7 +63,7 @@ def load_velocities(islands: BodyIslands, joints: Joints) -> None:
 
 @inner_kernel
 def release_joints(joints: Joints) -> None:
-    """Let the joints of an island that fails begin with no impulse."""
+    """Set the impulses of the joints of an island that fails to 0."""
     for i in range(joints.listed.shape[0]):
         joints.rows.impulse[joints.listed[i]] = 0.0
 

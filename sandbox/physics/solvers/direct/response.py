@@ -40,7 +40,7 @@ def load_block(k: int, span: Span, system: System, delassus: Delassus, row: Slot
 def hold_block(
     k: int, span: Span, system: System, spin: RigidMotion, delassus: Delassus, row: Slots, vector: FloatRows
 ) -> None:  # fmt: skip
-    """Let the block of a body answer with the spin that impulses give it.
+    """Change the block of a body so that its answers keep the spin that impulses give it.
 
     Directions ahead turn what is pressed, so that A^-1 gives another; contacts would not hold once that is put right.
     """

@@ -390,7 +390,7 @@ def hold_spin(span: Span, rows: Rows, spin: RigidMotion, pivots: bool, aims: boo
 
 @inner_kernel
 def damp_within(body: int, span: Span, system: System, found: FloatRows, share: float, h: float) -> None:
-    """Leave in `v` a share of what moves within a body, beside the rigid motion of its momenta.
+    """Scale what moves in `v` within a body by a share, beside the rigid motion of its momenta.
 
     found (n, 2) [m/s]: the velocities whose momenta those are.
     """
@@ -414,7 +414,7 @@ def damp_within(body: int, span: Span, system: System, found: FloatRows, share: 
 
 @inner_kernel
 def halve_within(span: Span, rows: Rows, spin: RigidMotion, share: float, h: float, vector: FloatRows) -> None:
-    """Leave this share of what moves beside the rigid motion that keeps a body's momenta and all its lengths."""
+    """Scale velocities by a share, beside the rigid motion that keeps a body's momenta and all its lengths."""
     # v = V + (R - 1) r / h,  whose angular momentum is I sin / h
     sine = h * spin.momentum / spin.inertia
     sine = min(max(sine, -1.0), 1.0)

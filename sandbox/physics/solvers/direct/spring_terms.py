@@ -165,7 +165,7 @@ def assemble_springs(span: Span, system: System) -> None:
 
 @inner_kernel
 def assemble_springs_in_fronts(span: Span, system: System) -> None:
-    """The same of a large body, whose matrix lies in fronts."""
+    """`assemble_springs` of a large body, whose matrix lies in fronts."""
     springs, fronts = system.springs, system.fronts
     free_count = system.matrix.diagonal.shape[0]
     numbers = fronts.numbers

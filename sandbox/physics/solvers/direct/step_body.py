@@ -258,7 +258,7 @@ def _damp(body: int, span: Span, system: System, spin: RigidMotion, allowed: flo
 def step_bodies(
     system: System, state: State, inputs: Inputs, ways: Slots, touched: bool, auto_substeps: int, h: float
 ) -> None:
-    """Bring what nothing touches to the end of a step of h [s], and s += 0.3 (v' - s) of all; rows are loaded.
+    """Advance the bodies that nothing touches by a step of h [s], and update s of all (11); rows are loaded.
 
     ways: counts, see energy_bank.py; touched: some bodies are, and at that end already.
     """

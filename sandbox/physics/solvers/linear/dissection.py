@@ -25,26 +25,21 @@ TOO_SHORT = -1
 
 
 class Halving(NamedTuple):
-    """Nodes (n,) while they are split: neighbours near[start[k]:start[k + 1]], place [m].
-
-    by_x, by_y: the nodes of one body after another, each in the order of that coordinate; by_x becomes the elimination
-    order. Scratch: part, merge_buffer; same (n,) = 0..n-1; mark, where; stack: first and last row, level, side, where
-    the separator begins, -1: not split yet; waiting: the fronts whose parent is yet to come, by level and side.
-    """
+    """Nodes (n,) while they are split; from part on scratch."""
 
     start: Slots
-    near: Slots
-    x: Floats
+    near: Slots  # neighbours of node k: near[start[k]:start[k + 1]]
+    x: Floats  # [m]
     y: Floats
-    by_x: Slots
-    by_y: Slots
+    by_x: Slots  # nodes of one body after another by x; becomes the elimination order
+    by_y: Slots  # the same by y
     part: Slots
     merge_buffer: Slots
-    same: Slots
+    same: Slots  # (n,): 0..n-1
     mark: Slots
     where: Slots
-    stack: SlotRows
-    waiting: SlotRows
+    stack: SlotRows  # first and last row, level, side, where the separator begins, -1: not split yet
+    waiting: SlotRows  # fronts whose parent is yet to come, by level and side
 
 
 class Dissection(NamedTuple):
