@@ -167,11 +167,11 @@ __all__ = ["solve", "spring_constant"]
 
 
 @inner_kernel
-def solve(state, step, given, h):
+def solve(state, step, inputs, h):
     for p in range(state.velocity.shape[0]):
         step.change[p, 0] = state.velocity[p, 0]
         step.change[p, 1] = state.velocity[p, 1]
-    apply_explicit(state, given, step, True, h)
+    apply_explicit(state, inputs, step, True, h)
     for p in range(state.velocity.shape[0]):
         state.velocity[p, 0] = 0.5 * (state.velocity[p, 0] + step.change[p, 0])
         state.velocity[p, 1] = 0.5 * (state.velocity[p, 1] + step.change[p, 1])
@@ -441,7 +441,7 @@ def test_a_solver_is_one_file_its_line_in_the_table_its_name_and_its_branch_of_t
     put(tick, "from sandbox.physics.settings import GENTLE\n", before="from sandbox.physics.settings import (")
     solve = "from sandbox.physics.solvers.gentle import solve as solve_gently\n"
     put(tick, solve, before="from sandbox.physics.solvers.iterative")
-    branch = "    if solver == GENTLE:\n        solve_gently(state, world.explicit, given, h)\n        return\n"
+    branch = "    if solver == GENTLE:\n        solve_gently(state, world.explicit, inputs, h)\n        return\n"
     put(tick, branch, before="    if solver == SINGLE_PASS:")
     put(table, '    "gentle": Solver("gentle", proven_limit=False, bounded=False),\n', before='    "direct": Solver(')
     script = """

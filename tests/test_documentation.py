@@ -279,6 +279,17 @@ def test_every_constant_of_the_derivation_has_the_value_that_the_page_says(const
     assert re.search(rf"^{name} = {re.escape(value)}$", (ROOT / file).read_text(encoding="utf-8"), re.M)
 
 
+def test_every_equation_of_the_derivation_has_a_number_that_stands_at_the_lines_that_compute_it():
+    sources = (ROOT / "sandbox" / "physics").rglob("*.py")
+    at_lines = {
+        int(n) for path in sources for n in re.findall(r"#.*\((\d+)\)$", path.read_text(encoding="utf-8"), re.M)
+    }
+    on_page = [int(n) for n in re.findall(r"^    .*   \((\d+)\)$", PHYSICS, re.M)]
+    assert on_page == list(range(1, len(on_page) + 1))
+    assert at_lines == set(on_page)
+    assert {int(n) for n in re.findall(r"(?<![\w`)(])\((\d{1,2})\)", PHYSICS)} <= at_lines
+
+
 @functools.cache
 def kernels():
     """Every function of the physics that is compiled, with its file."""

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 from sandbox.page.about import about
 from sandbox.page.image import Image, image_of
 from sandbox.page.room import Counts, leave_unused
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.world import World
 
 

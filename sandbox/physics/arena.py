@@ -109,12 +109,12 @@ def new_int32s(arena: Arena, rows: int) -> Int32s:
     return int32s_in(arena, _take(arena, (rows + INT32S_IN_WORD - 1) // INT32S_IN_WORD), rows)
 
 
-def lay_out(entry: Callable[..., Any], lent: Any, arena: Arena, *arguments: Any) -> Arena:
-    """Let a kernel entry(lent, arena, ...) lay out what it puts into a bundle; the arena, or a longer one."""
-    hold(lent, arena)
-    entry(lent, arena, *arguments)
+def lay_out(entry: Callable[..., Any], pointer: Any, arena: Arena, *arguments: Any) -> Arena:
+    """Let a kernel entry(pointer, arena, ...) lay out arrays for a bundle in an arena; return that, or a longer one."""
+    hold(pointer, arena)
+    entry(pointer, arena, *arguments)
     while arena[0] > len(arena):
         arena = np.zeros(MORE * int(arena[0]), np.int64)
-        hold(lent, arena)
-        entry(lent, arena, *arguments)
+        hold(pointer, arena)
+        entry(pointer, arena, *arguments)
     return arena

@@ -10,7 +10,7 @@ from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.pieces import new_piece_scratch, part
 from sandbox.physics.collision.sides import end_constraints
-from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, kernel
+from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
 from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
 from sandbox.physics.ramps import set_constraint, set_number, set_spring
@@ -76,9 +76,9 @@ class Commanded(NamedTuple):
 
 
 @kernel
-def command(lent: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
+def command(pointer: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
     """Carry out a command, see KINDS; how many particles were pushed or shaken, for all others 0; or see NO_ARENA."""
-    world = contents(lent)
+    world = unpack(pointer)
     state = world.state
     bad = _first_bad(state, kind, slots, numbers)
     if bad >= 0:
@@ -329,11 +329,11 @@ def lend(state: State, good: GoodValues, numbers: Floats) -> Bundle[Commanded]:
     return bundle(Commanded(state, good, numbers))
 
 
-def carry_out(lent: Any, name: str, given: Mapping[str, Any], state: StateArrays) -> int:
+def carry_out(pointer: Any, name: str, given: Mapping[str, Any], state: StateArrays) -> int:
     """Carry out a command of KINDS with what it is given, by name; how many particles were pushed or shaken.
 
-    lent: what `lend` made of the arrays of `state`. Raises IndexError for a slot that is not there or not in use, and
-    ValueError for a number that is not finite; nothing is changed then.
+    pointer: what `lend` made of the arrays of `state`. Raises IndexError for a slot that is not there or not in use,
+    and ValueError for a number that is not finite; nothing is changed then.
     """
     kind = KINDS[name]
     if kind.slots == ("springs",):
@@ -345,7 +345,7 @@ def carry_out(lent: Any, name: str, given: Mapping[str, Any], state: StateArrays
         [x for each in values for x in (each if isinstance(each, tuple) else (each or 0.0,))], np.float64
     )
     arena = np.zeros(1, np.int64)
-    while (result := command(lent, arena, kind.code, slots, numbers)) == NO_ARENA:
+    while (result := command(pointer, arena, kind.code, slots, numbers)) == NO_ARENA:
         arena = np.zeros(int(arena[0]), np.int64)
     if result <= BAD_SLOT:
         raise _fault(kind, BAD_SLOT - result, given, numbers, state)

@@ -29,7 +29,7 @@ BEND = 1
 TRIANGLE = 3
 # Cs and Cd at most of an area of more corners, whose size its sides may not allow: at 0.999 a rigid skin that is blown
 # up shakes for seconds at 20 m/s, at 1 for ever at 90; at 0.95 it breathes.
-HIGHEST_OF_RING = 0.99
+HIGHEST_RING_COEFFICIENT = 0.99
 # The gradient of an angle grows as 1 / length; a link shorter than its rest length over this [1] bends as if it were
 # that long. A higher bound makes crushed links stiffer than a factorisation can hold, a lower one costs them spin.
 STEEPEST = 30.0
@@ -130,7 +130,7 @@ def evaluate(
 @inner_kernel
 def rest_mass(first: int, last: int, inverse_mass: Floats, particle: Int32s, weight: Floats) -> float:
     """Effective mass of the corners first..last at rest; 0 where nothing of them can move."""
-    # m = 1 / (sum of w |g|^2)
+    # m = 1 / (sum of w |g|^2)  (17)
     total = 0.0
     for c in range(first, last):
         total += inverse_mass[particle[c]] * weight[c]

@@ -12,7 +12,7 @@ import numpy as np
 from sandbox.physics.actuators import Actuators
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, reduced_mass
-from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, kernel, scalar_kernel
+from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, scalar_kernel, unpack
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import DIRECT
 from sandbox.physics.state import GoodValues, State, good_of, state_of
@@ -134,8 +134,8 @@ def drive_springs(state: State, good: GoodValues, drives: Drives, tick: int, sol
 
 
 @kernel
-def _drive_muscles(lent: Bundle[tuple[State, GoodValues, Drives]], tick: int, solver: int, tick_rate: int) -> None:
-    state, good, drives = contents(lent)
+def _drive_muscles(pointer: Bundle[tuple[State, GoodValues, Drives]], tick: int, solver: int, tick_rate: int) -> None:
+    state, good, drives = unpack(pointer)
     _contract(state, good, drives, tick, solver, tick_rate)
 
 

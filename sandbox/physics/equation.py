@@ -43,7 +43,7 @@ def spring_impulse(
     stiffness: float, damping: float, distance_error: float, velocity_error: float, mass: float, h: float
 ) -> float:
     """Impulse [N s] of one spring along its direction (Nissen 2019, impulse-based spring)."""
-    # J = -(Cs x / h + Cd u) m_r
+    # J = -(Cs x / h + Cd u) m_r  (1)
     return -(stiffness * distance_error / h + damping * velocity_error) * mass
 
 
@@ -58,7 +58,7 @@ def capped(stiffness: float, damping: float, highest: float) -> tuple[float, flo
 @scalar_kernel
 def implicit_masses(stiffness: float, damping: float, mass: float) -> tuple[float, float]:
     """K and K beta [kg] of a spring whose effective mass is `mass` [kg]; K beta needs no division by Cd."""
-    # K = m Cd / (1 - Cd);  K beta = m Cs / (1 - Cd)
+    # K = m Cd / (1 - Cd);  K beta = m Cs / (1 - Cd)  (7)
     stiffness, damping = capped(stiffness, damping, HIGHEST_COEFFICIENT)
     return mass * damping / (1.0 - damping), mass * stiffness / (1.0 - damping)
 
@@ -66,7 +66,7 @@ def implicit_masses(stiffness: float, damping: float, mass: float) -> tuple[floa
 @scalar_kernel
 def implicit_impulse(stiff: float, restoring: float, growth: float, error: float, h: float) -> float:
     """Impulse [N s] of the implicit form, with K and K beta [kg] and the velocity error `growth` [m/s] of the step."""
-    # J = -(K (x' - x) / h + K beta x / h)
+    # J = -(K (x' - x) / h + K beta x / h)  (7)
     return -(stiff * growth + restoring * error / h)
 
 
@@ -76,7 +76,7 @@ def implicit_update(impulse: float, velocity_error: float, response: float, soft
 
     response [1/kg] = J W J^T; softness [1/kg] = response (1 - Cd) / Cd = 1 / K.
     """
-    # J - (u + b + J / K) / (W + 1 / K)
+    # J - (u + b + J / K) / (W + 1 / K)  (27)
     return impulse - (velocity_error + softness * impulse) / (response + softness)
 
 
@@ -88,7 +88,7 @@ def explicit_spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) 
 def implicit_spring_constant(stiffness: Any, damping: Any, mass: Any, h: float) -> Any:
     """k [N/m] of springs under the implicit form: Cs m_r / ((1 - Cd) h^2), with both capped as there."""
     highest = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)
-    return highest * mass / ((1.0 - np.minimum(damping, HIGHEST_COEFFICIENT)) * h * h)
+    return highest * mass / ((1.0 - np.minimum(damping, HIGHEST_COEFFICIENT)) * h * h)  # (8)
 
 
 @scalar_kernel
@@ -113,7 +113,7 @@ def half_step(stiffness: float, damping: float) -> tuple[float, float]:
 
     The map keeps 0..1, Cs <= Cd, and (1, 1); it preserves the eigenvalues of one spring's step.
     """
-    # e = sqrt(1 - Cd);  Cd' = 1 - e;  Cs' = 1 + e - sqrt(2 - Cs - Cd + 2 e)
+    # e = sqrt(1 - Cd);  Cd' = 1 - e;  Cs' = 1 + e - sqrt(2 - Cs - Cd + 2 e)  (15)
     # written as quotients: the differences lose the digits of small coefficients and can fall below 0.
     e = math.sqrt(max(0.0, 1.0 - damping))
     return stiffness / (1.0 + e + math.sqrt(max(0.0, 2.0 - stiffness - damping + 2.0 * e))), damping / (1.0 + e)
@@ -125,7 +125,7 @@ def of_body(stiffness: float, damping: float, lowest_mode: float) -> tuple[float
 
     lowest_mode: the least eigenvalue a > 0 of the body's form (lowest_mode.py).
     """
-    # Cd_a = a / (a + (1 - Cd) / Cd),  Cs_a = Cs / Cd Cd_a, in the implicit form
+    # Cd_a = a / (a + (1 - Cd) / Cd),  Cs_a = Cs / Cd Cd_a, in the implicit form  (21)
     share = lowest_mode / (lowest_mode * damping + (1.0 - damping))
     return stiffness * share, damping * share
 
@@ -133,7 +133,7 @@ def of_body(stiffness: float, damping: float, lowest_mode: float) -> tuple[float
 @scalar_kernel
 def of_springs(stiffness: float, damping: float, lowest_mode: float) -> tuple[float, float]:
     """Cs and Cd of a body's springs, areas and bends, from those of its slowest wobble: the inverse of `of_body`."""
-    # Cd = Cd_a / (Cd_a + a (1 - Cd_a)),  Cs = Cs_a / Cd_a Cd
+    # Cd = Cd_a / (Cd_a + a (1 - Cd_a)),  Cs = Cs_a / Cd_a Cd  (22)
     whole = damping + lowest_mode * (1.0 - damping)
     return stiffness / whole, damping / whole
 
@@ -165,7 +165,7 @@ def part_of_network(stiffness: float, damping: float, lowest_mode: float, subste
     restoring = stiffness / (1.0 - damping)
     stiff = damping / (1.0 - damping)
     while substeps > 1:
-        halved = stiff / (1.0 + math.sqrt(1.0 + mode * stiff))
+        halved = stiff / (1.0 + math.sqrt(1.0 + mode * stiff))  # (16)
         # Of Cs > Cd, c is below 0, and no less than a quarter of D is kept: Cs / Cd never rises.
         stiff = max(halved, 0.25 * max(stiff, 2.0 * stiff - restoring))
         restoring *= 0.25
@@ -209,7 +209,7 @@ def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float
 
 def _pole_match(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
     phase = 2.0 * math.pi * frequency * h
-    decay = math.exp(-damping_ratio * phase)
+    decay = math.exp(-damping_ratio * phase)  # (3)
     damping = 1.0 - decay * decay
     if damping_ratio < 1.0:
         return 2.0 - damping - 2.0 * decay * math.cos(phase * math.sqrt(1.0 - damping_ratio**2)), damping
@@ -278,7 +278,7 @@ def frequency_from_coefficients(stiffness: float, damping: float, h: float) -> t
     product = 1.0 - damping
     if product <= 0.0:
         return math.inf, math.inf
-    # The roots r of r^2 - trace r + product = 0 are exp(h times the poles).
+    # The roots r of r^2 - trace r + product = 0 are exp(h times the poles).  (2)
     trace = 2.0 - stiffness - damping
     fall = -0.5 * math.log(product) + 0.0
     cosine = 0.5 * trace / math.sqrt(product)

@@ -32,7 +32,7 @@ class Flight(NamedTuple):
 
 @inner_kernel
 def new_flight(particles: int, arena: Arena) -> Flight:
-    """Scratch to be filled in."""
+    """Lay out scratch for a start in flight."""
     return Flight(
         new_slots(arena, particles), new_flags(arena, particles), new_slots(arena, particles),
         new_floats(arena, particles), new_floats(arena, particles),

@@ -14,11 +14,11 @@ FULL_TURN = 6.283185307179586
 
 @inner_kernel
 def follow(velocity: FloatRows, slow_velocity: FloatRows, slow_change: FloatRows, active: Flags) -> None:
-    """Let the slow part of velocities follow them, and that of its change in a step."""
+    """Update the running means of velocities, and of their change in a step."""
     for p in range(active.shape[0]):
         if active[p]:
             for axis in range(2):
-                change = SLOW_SHARE * (velocity[p, axis] - slow_velocity[p, axis])
+                change = SLOW_SHARE * (velocity[p, axis] - slow_velocity[p, axis])  # (11)
                 slow_velocity[p, axis] += change
                 slow_change[p, axis] += SLOW_SHARE * (change - slow_change[p, axis])
 

@@ -66,7 +66,7 @@ class Column:
         return Annotated[NDArray[Any], ArrayKind(self.dtype, 2 if self.width > 1 else 1)]
 
     def empty(self) -> NDArray[Any]:
-        """The array of no rows."""
+        """An array of no rows."""
         return np.zeros((0, self.width) if self.width > 1 else 0, dtype=self.dtype)
 
 

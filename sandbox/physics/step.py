@@ -1,7 +1,7 @@
 """step(world): one tick. A kernel does it (pipeline/tick.py); what is rare is answered here."""
 
 from sandbox.physics.pipeline.block import BROKEN, CHECKED
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.tick import BROKE, LOST, NO_ROOM, UNSOUND, find_broken, tick
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.world import World

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from sandbox.physics.arrays import Floats
-from sandbox.physics.constraints import HIGHEST_OF_RING, TRIANGLE
+from sandbox.physics.constraints import HIGHEST_RING_COEFFICIENT, TRIANGLE
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, half_step_of_network, part_of_network
 from sandbox.physics.jit import inner_kernel, kernel, scalar_kernel
 from sandbox.physics.marks import GRAB_COUNT
@@ -55,35 +55,35 @@ def tick_constraint_coefficients(world: World) -> Pair:
     """Cs and Cd (t,) of constraints in a tick, as solvers take them; areas of more than three corners give way."""
     stiffness, damping = world.constraint_stiffness.copy(), world.constraint_damping.copy()
     for k in np.flatnonzero(world.constraint_corners > TRIANGLE).tolist():
-        stiffness[k], damping[k] = capped(float(stiffness[k]), float(damping[k]), HIGHEST_OF_RING)
+        stiffness[k], damping[k] = capped(float(stiffness[k]), float(damping[k]), HIGHEST_RING_COEFFICIENT)
     return stiffness, damping
 
 
 def _of_substep(world: World | Snapshot, coefficients: Pair, lowest_mode: Floats, highest: float) -> Pair:
     settings = world.settings
     count, (solver, tick_rate, _, is_auto, _) = settings.fewest_substeps, settings.choices
-    ease = ease_of(settings.drag, tick_rate, count)
-    if count == 1 and ease == 1.0:
+    drag_factor = drag_factor_of(settings.drag, tick_rate, count)
+    if count == 1 and drag_factor == 1.0:
         return coefficients
-    return turned(*coefficients, lowest_mode, count, kept_by(solver, is_auto), highest, ease)
+    return turned(*coefficients, lowest_mode, count, kept_by(solver, is_auto), highest, drag_factor)
 
 
 def turned(
     stiffness: Floats, damping: Floats, lowest_mode: Floats, count: int, keeps: int = MOTION, highest: float = math.inf,
-    ease: float = 1.0,
+    drag_factor: float = 1.0,
 ) -> Pair:  # fmt: skip
     """Cs and Cd (m,) of a substep of so many from those of a tick; see `turn_into_substep`.
 
     lowest_mode (m,): that of the body whose firmness they come from, 0: they are their own.
     """
     pair = np.array(stiffness, np.float64), np.array(damping, np.float64)
-    _turn_into_substep(*pair, lowest_mode, count, keeps, highest, ease)
+    _turn_into_substep(*pair, lowest_mode, count, keeps, highest, drag_factor)
     return pair
 
 
 @scalar_kernel
-def ease_of(drag: float, tick_rate: int, parts: int) -> float:
-    """1 + drag h, how many times as heavily the air lets everything be moved in one of so many parts of a tick."""
+def drag_factor_of(drag: float, tick_rate: int, parts: int) -> float:
+    """1 + drag h, by which drag makes masses heavier in one of so many parts of a tick."""
     return 1.0 + drag / (tick_rate * parts)
 
 
@@ -97,29 +97,30 @@ def kept_by(solver: int, is_auto: int) -> int:
 
 @inner_kernel
 def turn_into_substep(
-    stiffness: Floats, damping: Floats, lowest_mode: Floats, count: int, keeps: int, highest: float, ease: float
+    stiffness: Floats, damping: Floats, lowest_mode: Floats, count: int, keeps: int, highest: float, drag_factor: float
 ) -> None:
     """Turn Cs and Cd (m,) of a tick, in place, into those of a substep of so many; see `substep_coefficients`.
 
-    keeps: see `kept_by`; ease: see `ease_of`; highest: where there are several, those of a tick count as this at most.
+    keeps: see `kept_by`; drag_factor: see `drag_factor_of`; highest: where there are several substeps, Cs and Cd of a
+    tick count as this at most.
     """
     if count > 1:
         for s in range(stiffness.shape[0]):
             stiffness[s] = min(stiffness[s], highest)
             damping[s] = min(damping[s], highest)
     if keeps == MOTION:
-        _halve(stiffness, damping, lowest_mode, count)
+        _keep_motion(stiffness, damping, lowest_mode, count)
     else:
-        _divide(stiffness, damping, lowest_mode, count, keeps == ALL_BUT_FIRM)
-    if ease != 1.0:
-        _weigh_down(stiffness, damping, ease)
+        _keep_stiffness(stiffness, damping, lowest_mode, count, keeps == ALL_BUT_FIRM)
+    if drag_factor != 1.0:
+        _weigh_down(stiffness, damping, drag_factor)
 
 
 @kernel
 def _turn_into_substep(
-    stiffness: Floats, damping: Floats, lowest_mode: Floats, count: int, keeps: int, highest: float, ease: float
+    stiffness: Floats, damping: Floats, lowest_mode: Floats, count: int, keeps: int, highest: float, drag_factor: float
 ) -> None:
-    turn_into_substep(stiffness, damping, lowest_mode, count, keeps, highest, ease)
+    turn_into_substep(stiffness, damping, lowest_mode, count, keeps, highest, drag_factor)
 
 
 @inner_kernel
@@ -129,21 +130,21 @@ def limit_rings(state: State, stiffness: Floats, damping: Floats) -> None:
         stiffness[k] = state.constraint_stiffness[k]
         damping[k] = state.constraint_damping[k]
         if state.constraint_corners[k] > TRIANGLE:
-            stiffness[k], damping[k] = capped(stiffness[k], damping[k], HIGHEST_OF_RING)
+            stiffness[k], damping[k] = capped(stiffness[k], damping[k], HIGHEST_RING_COEFFICIENT)
 
 
 @inner_kernel
-def _weigh_down(stiffness: Floats, damping: Floats, ease: float) -> None:
+def _weigh_down(stiffness: Floats, damping: Floats, drag_factor: float) -> None:
     # Those of springs of the same k and c whose ends are heavier by a factor. The air takes part in every step:
     # (1 + drag h) m (v' - v*) = J.
     for s in range(stiffness.shape[0]):
-        whole = damping[s] + (1.0 - damping[s]) * ease
+        whole = damping[s] + (1.0 - damping[s]) * drag_factor
         stiffness[s] /= whole
         damping[s] /= whole
 
 
 @inner_kernel
-def _halve(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: int) -> None:
+def _keep_motion(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: int) -> None:
     # One exact halving of h at a time.
     for s in range(stiffness.shape[0]):
         count = 1
@@ -153,7 +154,7 @@ def _halve(stiffness: Floats, damping: Floats, lowest_mode: Floats, substeps: in
 
 
 @inner_kernel
-def _divide(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int, firm: bool) -> None:
+def _keep_stiffness(stiffness: Floats, damping: Floats, lowest_mode: Floats, parts: int, firm: bool) -> None:
     if parts > 1:
         for s in range(stiffness.shape[0]):
             # What is rigid, k at its cap, stays as rigid as a step lets it be.

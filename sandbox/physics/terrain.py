@@ -40,34 +40,25 @@ class Chain:
 
 
 class Terrain(NamedTuple):
-    """Edges of all chains and the grid that finds them.
+    """Edges of all chains and the grid that finds them."""
 
-    vertex [m] (k, 2); edge_a, edge_b (e,) = vertices, where solid (e,), the ground lies on the left of the way from a
-    to b; chain (e,); friction, restitution (e,). Grid: corner [m] (2,), cell [m] (1,), size (2,) = columns, rows; edges
-    by cell, row by row: cell_edge[cell_start[c]:cell_start[c + 1]].
-
-    tip (t,): the vertices that stand out, at which an edge of a body can be hit: no seams, no hollows. The ways along
-    all terrain that begins there, of length 1: way[way_start[i]:way_start[i + 1]] of tip i; tips by cell (their places
-    in tip) likewise: cell_tip[tip_start[c]:tip_start[c + 1]].
-    """
-
-    vertex: FloatRows
-    edge_a: Slots
+    vertex: FloatRows  # [m] (k, 2)
+    edge_a: Slots  # (e,): vertices, as edge_b
     edge_b: Slots
-    solid: Slots
+    solid: Slots  # (e,): where the ground lies on the left of the way from a to b
     chain: Slots
     friction: Floats
     restitution: Floats
-    corner: Floats
-    cell: Floats
-    size: Slots
+    corner: Floats  # [m] (2,): of the grid
+    cell: Floats  # [m] (1,)
+    size: Slots  # (2,): columns, rows
     cell_start: Slots
-    cell_edge: Slots
-    tip: Slots
+    cell_edge: Slots  # edges of cell c, row by row: cell_edge[cell_start[c]:cell_start[c + 1]]
+    tip: Slots  # (t,): vertices that stand out, which an edge of a body can hit: no seams, no hollows
     way_start: Slots
-    way: FloatRows
+    way: FloatRows  # of length 1: the ways along all terrain that begins at tip i: way[way_start[i]:way_start[i + 1]]
     tip_start: Slots
-    cell_tip: Slots
+    cell_tip: Slots  # places in tip by cell: cell_tip[tip_start[c]:tip_start[c + 1]]
 
 
 @inner_kernel
@@ -133,7 +124,7 @@ class GridScratch(NamedTuple):
 
     length: Floats
     order: Slots
-    spare: Slots
+    merge_buffer: Slots
 
 
 @inner_kernel
@@ -159,7 +150,7 @@ def size_grid(count: int, edges: Terrain, work: GridScratch) -> None:
         dx, dy = edges.vertex[b, 0] - edges.vertex[a, 0], edges.vertex[b, 1] - edges.vertex[a, 1]
         work.length[k] = math.sqrt(dx * dx + dy * dy)
         work.order[k] = k
-    sort_by_value(work.length, work.order, 0, count, work.spare)
+    sort_by_value(work.length, work.order, 0, count, work.merge_buffer)
     place = 0.25 * (count - 1)
     below = math.floor(place)
     share = place - below

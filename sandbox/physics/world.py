@@ -464,7 +464,7 @@ class World(StateArrays):
         self.change("spring_active", False, slice(self.grab_spring, None))
 
     def _command(self, name: str, **given: Any) -> int:
-        """Let a kernel carry out a command, see command.py; nothing is changed where it raises."""
+        """Carry out a command in a kernel, see command.py; nothing is changed where it raises."""
         given.update(first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate)
         arguments.ticks("duration", given.setdefault("duration", 0))
         self._numbers[:] = self._settings.numbers
@@ -539,7 +539,7 @@ class World(StateArrays):
         self, grab: int, particle: int, target: Point, strength: float = HAND_STRENGTH,
         radius: float = 0.0,
     ) -> None:  # fmt: skip
-        """Let a hand hold a particle and draw it to its cursor, at target [m]: a mouse joint (joints/hands.py).
+        """Grab a particle with a hand, which draws it to its cursor, at target [m]: a mouse joint (joints/hands.py).
 
         strength [m/s^2]: largest force over the mass of the body held. radius [m]: particles of the body that
         are nearer to this one share the force; 0: it bears all of it.
@@ -571,7 +571,7 @@ class World(StateArrays):
         self.__dict__["tick"] += 1
 
     def release(self, grab: int) -> None:
-        """Let go; the hand's slots wait for its next use. No bank keeps energy that the hand's work put into it."""
+        """Release what a hand holds; its slots wait for its next use. No bank keeps energy that the hand put in."""
         self._command("release", grab=grab)
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:

@@ -8,7 +8,7 @@ from sandbox.app.draw.colours import ACCENT
 from sandbox.app.draw.part_pictures import PartGhost
 from sandbox.app.play.palette import MORE, NAMES
 from sandbox.app.play.stage import CATALOGUE
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
 from sandbox.tools.parts import PARTS

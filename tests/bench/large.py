@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sandbox.physics.arrays import Floats
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.step import step
 from tests.bench import scenes
 from tests.bench.engines import pymunk_setting

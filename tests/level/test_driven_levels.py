@@ -12,7 +12,7 @@ from sandbox.level.format.limits import LIMITED_LIMIT, MOTOR_LIMIT
 from sandbox.level.plan.actuators import actuators, driving_keys
 from sandbox.level.reading.parse import parse_level
 from sandbox.level.reading.salvage import salvage
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 
 WHEEL = {"type": "wheel", "id": "w", "radius": 1, "thickness": 0.3, "segments": 6}
 ROPE = {"type": "rope", "id": "r", "start": [0, 5], "end": [4, 5], "segments": 4}

@@ -9,8 +9,8 @@ import pytest
 from sandbox.physics.arena import FIRST_ARENA, lay_out
 from sandbox.physics.pipeline import making
 from sandbox.physics.pipeline.block import WorldBlock
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.derive import derive_topology
-from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from tests.determinism.kernel_script import busy_world, touching_world

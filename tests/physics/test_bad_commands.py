@@ -141,11 +141,11 @@ def test_interpreted_kernels_say_the_same_of_each():
 
 def test_a_number_that_is_not_finite_is_refused_by_the_kernel_itself():
     world = made()
-    lent, given = (
+    pointer, given = (
         lend(state_of(world), good_of(world), np.zeros(6)),
         {"first_cursor": 4, "acceleration": (NAN, 0.0), "tick_rate": 60},
     )
-    assert outcome(world, lambda world: carry_out(lent, "shake", given, world)) == (
+    assert outcome(world, lambda world: carry_out(pointer, "shake", given, world)) == (
         "ValueError: acceleration, tick_rate [nan, 0.0, 60.0]: finite numbers are needed"
     )
 

@@ -7,7 +7,7 @@ from sandbox.physics.actuators import StrainLimits
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.tick import find_broken
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take

@@ -13,7 +13,7 @@ from sandbox.physics.collision.outline import new_colliders, outline_of
 from sandbox.physics.collision.pinned_edges import pinned_edges
 from sandbox.physics.components import find_joined
 from sandbox.physics.marks import GRAB_MATERIAL
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.state import state_of
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.topology import sorting

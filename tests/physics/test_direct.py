@@ -11,7 +11,7 @@ from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
 from sandbox.physics.analysis.stability import coefficient_limits, report
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.marks import LAW_HOOKE
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers.linear import matrix_layout

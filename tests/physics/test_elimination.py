@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.solvers.direct import choosing
 from sandbox.physics.solvers.direct.layout import cut_to
 from sandbox.physics.solvers.direct.tuning import tuning

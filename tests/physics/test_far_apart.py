@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session
 from tests.support.physics_scenes import scaled

@@ -10,7 +10,7 @@ import pytest
 from sandbox.physics.analysis.energy import spring_energy, total_energy
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.untangling.inversion import find_inverted, new_inversions

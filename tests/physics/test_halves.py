@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers.linear import dissection, halves
 from tests.bench import scenes

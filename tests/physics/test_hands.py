@@ -10,7 +10,7 @@ from sandbox.physics.analysis.query import grip_radius
 from sandbox.physics.analysis.stability import report
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.joints.hands import FASTEST_HAND
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
 from sandbox.physics.world import HAND_STRENGTH

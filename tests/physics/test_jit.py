@@ -31,7 +31,7 @@ def test_an_interpreted_kernel_changes_the_arrays_that_it_was_given():
 
 def test_a_bundle_hands_kernels_the_very_arrays_that_went_into_it():
     def add(items, factor):
-        values, active, total = jit.contents(items)
+        values, active, total = jit.unpack(items)
         for k in range(active.shape[0]):
             if active[k]:
                 total[k, 0] += factor * values[k]
@@ -59,7 +59,7 @@ from sandbox.physics import jit
 
 @jit.kernel
 def fill(items, share):
-    values, others = jit.contents(items)
+    values, others = jit.unpack(items)
     for k in range(values.shape[0]):
         values[k] = share * others[k]
 

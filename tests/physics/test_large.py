@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers.linear import dissection, halves

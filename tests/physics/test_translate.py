@@ -15,7 +15,7 @@ HEAD = """
 import math
 from typing import NamedTuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int32s, SlotRows, Slots
-from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel, put
+from sandbox.physics.jit import Bundle, unpack, inner_kernel, kernel, set_field
 
 LIMIT = 3
 SHARE = 0.1
@@ -109,13 +109,13 @@ def test_what_a_bundle_holds_is_not_copied(translated):
     text = translated(
         """
         @kernel
-        def fill(lent: Bundle[Pair], other: Floats) -> None:
-            pair = contents(lent)
-            put(pair, "values", other)
+        def fill(pointer: Bundle[Pair], other: Floats) -> None:
+            pair = unpack(pointer)
+            set_field(pair, "values", other)
             pair.rows[0, 1] = other[0]
         """
     )
-    assert "const Pair &pair = contents(lent);" in text and "put(pair.values, other);" in text
+    assert "const Pair &pair = unpack(pointer);" in text and "set_field(pair.values, other);" in text
 
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "kernels.md").read_text(encoding="utf-8")

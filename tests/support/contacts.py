@@ -2,8 +2,8 @@
 
 from sandbox.physics.arrays import empty
 from sandbox.physics.collision.types import Contacts
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.collide import CONTACTS, Collisions
-from sandbox.physics.pipeline.making import block_of
 from sandbox.physics.world import World
 
 NO_CONTACTS = empty(Contacts)

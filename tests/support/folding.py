@@ -9,7 +9,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.arrays import Floats
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.step import step
 from sandbox.physics.untangling.inversion import find_inverted, new_inversions
 from sandbox.physics.world import World

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from sandbox.physics.pipeline.block import COUNT
-from sandbox.physics.pipeline.making import Block, block_of
+from sandbox.physics.pipeline.block_owner import BlockOwner, block_of
 from sandbox.physics.settings import SUBSTEP_COUNT
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -26,10 +26,10 @@ def parts_of_next_tick(world: World) -> int:
 
 def set_parts(monkeypatch: pytest.MonkeyPatch, choose: Callable[[], int]) -> None:
     """Let `choose` say how many parts each tick takes, in place of what moves."""
-    begin = Block.begin
+    begin = BlockOwner.begin
 
-    def begin_with_parts(block: Block, world: World) -> None:
+    def begin_with_parts(block: BlockOwner, world: World) -> None:
         begin(block, world)
         block.given.choices[SUBSTEP_COUNT] = choose()
 
-    monkeypatch.setattr(Block, "begin", begin_with_parts)
+    monkeypatch.setattr(BlockOwner, "begin", begin_with_parts)

@@ -14,7 +14,7 @@ from sandbox.physics.analysis.sag_curve import SagCurve
 from sandbox.physics.analysis.spring_motion import SpringMotion, motion_of
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
-from sandbox.physics.keeping.forms import FirmBody, StiffForm, strength_of
+from sandbox.physics.keeping.forms import FirmBody, StiffForm, design_gravity
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import ALL_BUT_FIRM, MOTION, substep_coefficients, substep_time, turned
@@ -49,7 +49,7 @@ class BodyMotion:
     def of(cls, shape: StiffForm, settings: WorldSettings, lowest_mode: float | None = None) -> "BodyMotion":
         """That of a form; lowest_mode: where it is known."""
         mode = lowest_mode_of(shape) if lowest_mode is None else lowest_mode
-        height, gravity = shape.height(settings.gravity), strength_of(settings.gravity)
+        height, gravity = shape.height(settings.gravity), design_gravity(settings.gravity)
         substeps = settings.fewest_substeps
         return cls(mode, height, gravity, substep_time(settings), substeps, settings.solver, settings.iterations)
 
@@ -94,7 +94,7 @@ class BodyMotion:
             return np.asarray(np.where(square > 0.0, STANDING * self.gravity / square, np.inf))
 
     def sag_of_tick(self, stiffness: Floats, damping: Floats) -> Floats:
-        """The same (k,) from Cs and Cd of its springs in a tick; only where `tells_sag`."""
+        """The share of its height (k,) that a body sags by, from Cs and Cd of springs in a tick; see `tells_sag`."""
         sag = self.sag(*self.of_substep(stiffness, damping))
         assert sag is not None
         return sag

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.physics.analysis.stability import BOUND, demand_limit, largest_eigenvalue, most_springs
+from sandbox.physics.analysis.stability import BOUND, largest_eigenvalue, most_springs, stability_limit
 from sandbox.physics.arrays import Floats
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import turned
@@ -44,7 +44,7 @@ def coefficient_zones(world: World, material: int | None, stiffness: Floats) -> 
     if kind.bounded or most == 0:
         return CoefficientZones(stiffness, None, None, None, most, kind.bounded, True)
     count, article = world.settings.fewest_substeps, 1.0 / (most + 1.0)
-    limit, lam = demand_limit(world, material), 0.0
+    limit, lam = stability_limit(world, material), 0.0
     if world.spring_count <= MOST_ESTIMATED:
         lam = largest_eigenvalue(world)
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.solvers.direct.energy_bank import BY_MASS
 from sandbox.physics.world import World
 
@@ -39,5 +39,5 @@ def steps_by_mass(world: World) -> int:
 
 
 def forget_energy_tests(world: World) -> None:
-    """Count from 0 again."""
+    """Set the counts of energy tests to 0."""
     block_of(world).given.workspace.ways[:] = 0

@@ -22,7 +22,7 @@ from sandbox.physics.equation import (
     of_springs,
 )
 from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, strength_of
+from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, design_gravity
 from sandbox.physics.ramps import CONSTRAINTS, SPRINGS
 from sandbox.physics.world import World
 
@@ -73,7 +73,7 @@ class FirmnessRange:
     @classmethod
     def of(cls, shape: StiffForm, gravity: tuple[float, float], tick_rate: float) -> "FirmnessRange":
         """That of a form."""
-        return cls(lowest_mode_of(shape), shape.height(gravity), strength_of(gravity), 1.0 / tick_rate)
+        return cls(lowest_mode_of(shape), shape.height(gravity), design_gravity(gravity), 1.0 / tick_rate)
 
     def coefficients(self, firmness: Firmness) -> tuple[float, float]:
         """Cs and Cd of the body as a whole. Raises OutOfReach."""

@@ -84,7 +84,7 @@ def _iterate_inversely(
             for c in range(rows.first[k], rows.first[k + 1]):
                 i = rows.node[c]
                 rate += rows.gradient[c, 0] * vector[i, 0] + rows.gradient[c, 1] * vector[i, 1]
-            quotient += rows.mass[k] * rate * rate
+            quotient += rows.mass[k] * rate * rate  # (20)
         if abs(quotient - last_quotient) <= converged * quotient:
             break
         back_substitute(0, count, matrix, right_side)

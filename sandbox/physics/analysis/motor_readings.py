@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
 

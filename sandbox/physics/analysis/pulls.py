@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.physics.marks import GRAB_MATERIAL
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.world import World
 
 # A hand that pulls with this share of what it can is at its limit.

@@ -98,7 +98,7 @@ def _springs_at_ends(world: World) -> tuple[NDArray[np.int64], NDArray[np.int64]
 
 def effective_count(world: World) -> Floats:
     """n_eff of every spring (m,), 0 for those that do nothing; at most the larger n of its ends."""
-    # n_eff = m_r (w_a n_a + w_b n_b)
+    # n_eff = m_r (w_a n_a + w_b n_b)  (6)
     at_a, at_b = _springs_at_ends(world)
     weighted = world.inverse_mass[world.particle_a] * at_a + world.inverse_mass[world.particle_b] * at_b
     return np.where(_working(world), reduced_masses(world) * weighted, 0.0)
@@ -123,6 +123,7 @@ def largest_eigenvalue(world: World) -> float:
         share = (vector / size)[rows]
         along_x = np.bincount(ends, share * pull_x, world.particle_count)
         along_y = np.bincount(ends, share * pull_y, world.particle_count)
+        # G times the vector  (4)
         vector = np.bincount(rows, pull_x * along_x[ends] + pull_y * along_y[ends]).astype(np.float64, copy=False)
         size = _norm(vector)
         if size == 0.0:
@@ -188,10 +189,9 @@ def _summed_loads(world: World, demands: Floats, of_constraints: Floats) -> Floa
 
 
 def spring_loads(world: World) -> Floats:
-    """The load that must stay below BOUND for every spring, then every constraint (m + t,): of two proven bounds the
-    one that allows more.
+    """The load of every spring, then every constraint (m + t,), that must stay below BOUND to be proven stable.
 
-
+    Of two proven bounds the one that allows more.
     """
     demands = _demands(world, world.stiffness, world.damping)
     of_constraints = _constraint_demands(world, world.constraint_stiffness, world.constraint_damping)
@@ -242,7 +242,7 @@ def _equal_limit(world: World, effective: float) -> float:
 
     def inside(c: float) -> bool:
         stiffness, damping = turned(np.array([c]), np.array([c]), np.zeros(1), world.settings.fewest_substeps)
-        return bool((stiffness[0] + 2.0 * damping[0]) * effective < BOUND)
+        return bool((stiffness[0] + 2.0 * damping[0]) * effective < BOUND)  # (5)
 
     return _largest(inside)
 
@@ -315,10 +315,10 @@ def most_springs(world: World, material: int | None = None) -> int:
     return int(degree[np.concatenate(ends)].max(initial=0))
 
 
-def demand_limit(world: World, material: int | None = None) -> float:
-    """What Cs + 2 Cd of a substep stays below where a material's springs (None = all) are proven stable, inf: nothing.
+def stability_limit(world: World, material: int | None = None) -> float:
+    """The limit of Cs + 2 Cd of a substep below which a material's springs (None = all) are proven stable; inf: none.
 
-    All have the same Cs and Cd then, and other springs what they have now; 0 or less where these are too much already.
+    All springs of the material are taken with the same Cs and Cd, others as they are; 0 or less: those are unstable.
     """
     _, chosen = _counted(world, material)
     slots, elements = chosen[: world.spring_count], chosen[world.spring_count :]
@@ -364,6 +364,6 @@ def coefficient_limits(world: World, material: int | None = None) -> Coefficient
     tightest = int(np.flatnonzero(chosen)[np.argmax(counts[chosen])])
     at = f"n_eff {counts[tightest]:.3g} at {_owner_name(world, tightest)}"
     reason = f"proven: Cs + 2 Cd of joined springs add up to less than {BOUND:g}, {at}"
-    demand = demand_limit(world, material)
+    demand = stability_limit(world, material)
     both = 0.0 if demand <= 0.0 else _equal_limit(world, BOUND / demand)
     return CoefficientLimits(limit("stiffness"), limit("damping"), reason, both)

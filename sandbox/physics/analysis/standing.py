@@ -9,7 +9,7 @@ from sandbox.physics.analysis.stance import Stance, Support
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.keeping.forms import strength_of
+from sandbox.physics.keeping.forms import design_gravity
 from sandbox.physics.marks import BANK_UNOPENED
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
@@ -37,7 +37,7 @@ class StandingRun:
     def __init__(self, stance: Stance, settings: WorldSettings) -> None:
         self.stance = stance
         self.sag: float | None = None
-        strength = strength_of(settings.gravity)
+        strength = design_gravity(settings.gravity)
         gravity = (LEAN * strength if _may_buckle(stance) else 0.0, -strength)
         self.world = world = World(replace(settings, gravity=gravity, wind=(0.0, 0.0)))
         lowest = float((stance.points[:, 1] - stance.radius).min())

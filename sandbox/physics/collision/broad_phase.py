@@ -250,7 +250,7 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
 
 @inner_kernel
 def new_boxes(particles: int, objects: int, arena: Arena) -> Boxes:
-    """Boxes to be filled in."""
+    """Lay out bounding boxes for a step to fill in."""
     return Boxes(new_float_rows(arena, objects, 4), new_flags(arena, objects), new_slots(arena, particles))
 
 

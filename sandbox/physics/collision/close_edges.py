@@ -157,7 +157,7 @@ def find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) -> 
 
 @inner_kernel
 def no_close_edges(arena: Arena) -> CloseEdges:
-    """Of no edges."""
+    """Lay out an empty list of close edges."""
     return CloseEdges(new_slots(arena, 1), new_slot_rows(arena, 0, 2), new_floats(arena, 0), new_floats(arena, 0))
 
 

@@ -207,7 +207,7 @@ def _is_hollow(first: int, last: int, colliders: Colliders) -> bool:
 
 
 @inner_kernel
-def bound_solids(colliders: Colliders, outline: Outline, begin: int, end: int, bounds: FloatRows) -> None:
+def update_aabbs(colliders: Colliders, outline: Outline, begin: int, end: int, bounds: FloatRows) -> None:
     """The box in which a particle can be inside each owner's solid edges begin..end; hollow ones: it is everything."""
     solid = outline.solid
     for k in range(begin, end):
@@ -287,7 +287,7 @@ def find_contacts(
 
 @inner_kernel
 def carry_over(contacts: Contacts, count: int, kept: KeptContacts, kept_count: int) -> None:
-    """Begin with the last step's impulses of the same features, and add to its impacts; both ascend by particle."""
+    """Start contacts with the last step's impulses of the same features; add its impacts. Both ascend by particle."""
     begin = 0
     for c in range(count):
         p = contacts.particle[c]

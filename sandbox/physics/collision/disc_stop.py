@@ -66,7 +66,7 @@ def stop_discs(
     contacts: Contacts, count: int, outline: Outline, colliders: Colliders, velocity: FloatRows, mass: Floats,
     inverse_mass: Floats, h: float,
 ) -> None:  # fmt: skip
-    """Let no disc's centre come behind an edge of a solid body that it touches in the coming h [s].
+    """Stop discs whose centres would come behind an edge of a solid body that they touch in the coming h [s].
 
     Both get what takes their centres of mass, at most, to a common velocity along the normal, so energy is only lost.
     """

@@ -33,7 +33,7 @@ class LobeScratch(NamedTuple):
 
 @inner_kernel
 def new_lobe_scratch(particles: int, arena: Arena) -> LobeScratch:
-    """Scratch for `let_go`."""
+    """Lay out scratch for `let_go`."""
     return LobeScratch(
         new_slots(arena, particles), new_slots(arena, particles), new_slots(arena, particles),
         new_slots(arena, particles),

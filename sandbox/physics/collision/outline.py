@@ -23,7 +23,7 @@ from sandbox.physics.collision.close_edges import CloseEdges, close_edges, no_cl
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import no_pins, pinned_edges
 from sandbox.physics.collision.types import Colliders
-from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, items_of, kernel, put
+from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
 from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.state import State, state_of
 from sandbox.physics.terrain import Terrain
@@ -39,13 +39,7 @@ EDGES, ALL_EDGES, JOINED, SPANS, SHAPES, MEMBERS, COUNTS = range(7)
 class Outline(NamedTuple):
     """The edges of a world's springs and of its terrain, which topology alone decides; see Colliders.
 
-    shielded: particles inside a solid body that no torn spring lays bare; discs do not hit them. attached (n,):
-    particles that a spring or a constraint holds. solid (k, 2): first edge and one past the last of each owner's edges
-    where any is solid, terrain's last. dynamic (2,): edges of bodies, and how many of those in solid are bodies'.
-    Shapes are the owners of edges of bodies, in the order of their edges: shape, by vertex, -1: none; solid_of = by
-    shape, the row of solid, -1: lines alone; particles of shape s: member[member_start[s]:member_start[s + 1]]. close:
-    edges of lines alone that were made close to each other. spring_end: one particle of each spring. pins: edges of
-    bodies of which both ends are pinned, as terrain; chain = the edge.
+    Shapes are the owners of edges of bodies, in the order of their edges.
     """
 
     edge_a: Slots
@@ -56,18 +50,18 @@ class Outline(NamedTuple):
     edge_of: Slots
     near_start: Slots
     near_of: Slots
-    solid: SlotRows
+    solid: SlotRows  # (k, 2): first edge and one past the last of each owner with a solid edge; terrain's last
     owner: Slots
-    shielded: Flags
-    attached: Flags
-    dynamic: Slots
-    shape: Slots
-    solid_of: Slots
+    shielded: Flags  # particles inside a solid body that no torn spring lays bare; discs do not hit them
+    attached: Flags  # (n,): particles that a spring or a constraint holds
+    dynamic: Slots  # (2,): edges of bodies, and how many rows of solid are bodies'
+    shape: Slots  # by vertex, -1: none
+    solid_of: Slots  # by shape: its row of solid, -1: it has lines alone
     member_start: Slots
-    member: Slots
-    close: CloseEdges
-    spring_end: Slots
-    pins: Terrain
+    member: Slots  # particles of shape s: member[member_start[s]:member_start[s + 1]]
+    close: CloseEdges  # edges of lines alone that were made close to each other
+    spring_end: Slots  # one particle of each spring
+    pins: Terrain  # edges of bodies with both ends pinned, as terrain; chain = the edge
 
 
 class OutlineScratch(NamedTuple):
@@ -304,10 +298,10 @@ class OutlinePlace(NamedTuple):
 
 
 @kernel
-def _derive_outline(lent: Bundle[OutlinePlace], arena: Arena) -> None:
-    place = contents(lent)
+def _derive_outline(pointer: Bundle[OutlinePlace], arena: Arena) -> None:
+    place = unpack(pointer)
     begin(arena)
-    put(place, "outline", new_outline(place.state, arena))
+    set_field(place, "outline", new_outline(place.state, arena))
 
 
 def outline_of(world: World) -> Outline:
@@ -316,9 +310,9 @@ def outline_of(world: World) -> Outline:
 
 
 def _make_outline(world: World) -> Outline:
-    lent = bundle(with_empty(OutlinePlace, state=state_of(world)))
-    lay_out(_derive_outline, lent, np.zeros(FIRST_ARENA, np.int64))
-    outline: Outline = items_of(lent, ("outline",))
+    pointer = bundle(with_empty(OutlinePlace, state=state_of(world)))
+    lay_out(_derive_outline, pointer, np.zeros(FIRST_ARENA, np.int64))
+    outline: Outline = items_of(pointer, ("outline",))
     return outline
 
 

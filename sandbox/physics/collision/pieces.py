@@ -45,7 +45,7 @@ class PieceScratch(NamedTuple):
 
 @inner_kernel
 def new_piece_scratch(state: State, arena: Arena) -> PieceScratch:
-    """Scratch for `part`."""
+    """Lay out scratch for `part`."""
     particles, springs = state.owner.shape[0], state.spring_active.shape[0]
     return PieceScratch(
         new_slots(arena, particles), new_slots(arena, particles), new_flags(arena, particles),

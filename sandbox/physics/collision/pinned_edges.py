@@ -45,7 +45,7 @@ def find_pinned(state: State, edge_a: Slots, edge_b: Slots, side: Slots, pins: T
 
 @inner_kernel
 def no_pins(arena: Arena) -> Terrain:
-    """Of no edges."""
+    """Lay out pinned edges for a world that has none."""
     none, nothing = new_slots(arena, 0), new_float_rows(arena, 0, 2)
     pins = Terrain(
         nothing, none, none, none, none, new_floats(arena, 0), new_floats(arena, 0), new_floats(arena, 2),

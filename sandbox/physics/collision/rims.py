@@ -87,7 +87,7 @@ def load_couple(contacts: Contacts, c: int, of: int, p: int, arm: float, collide
         dx, dy = difference(p, q, colliders.position)
         squared = max(dx * dx + dy * dy, SHORT * SHORT * arm * arm)
         if squared > 0.0:
-            contacts.couple[c, 2 * of] = -arm * dy / squared
+            contacts.couple[c, 2 * of] = -arm * dy / squared  # (36)
             contacts.couple[c, 2 * of + 1] = arm * dx / squared
 
 

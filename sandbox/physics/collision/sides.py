@@ -34,7 +34,7 @@ def acts_between(state: State, p: int, q: int, start: Slots, listed: Slots) -> b
 
 @inner_kernel
 def end_constraints(state: State, start: Slots, listed: Slots, gone: Flags) -> None:
-    """End the constraints of which a side is lost: a spring of it is gone (m,), and no other acts there."""
+    """Deactivate the constraints that have lost a side: a spring of it is gone (m,), and no other acts there."""
     for k in range(state.constraint_kind.shape[0]):
         first, last = state.constraint_first[k], state.constraint_first[k] + state.constraint_corners[k]
         # A bend's two outer corners are no side of it.

@@ -78,7 +78,7 @@ def clamp_at_pins(
     position: FloatRows, velocity: FloatRows, ahead: FloatRows, inverse_mass: Floats, outline: Outline,
     colliders: Colliders, box: FloatRows, near_start: Slots, h: float,
 ) -> None:  # fmt: skip
-    """The same at edges of bodies that pins hold, which particles of other bodies may touch.
+    """Stop particles at edges of other bodies that pins hold, as `clamp_at_terrain` does at terrain.
 
     near_start (n + 1,): how many discs and edges of bodies are in each box, summed up.
     """

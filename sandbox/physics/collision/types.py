@@ -14,45 +14,35 @@ ENDS = 5
 
 
 class Colliders(NamedTuple):
-    """Everything that can collide: particles, then the vertices of terrain; edges between them, then those of terrain.
+    """Everything that can collide: particles, then vertices of terrain; edges between those, then edges of terrain."""
 
-    By vertex: position [m], velocity [m/s], origin [m], radius [m], friction, restitution, owner, group, collides,
-    inverse_mass [1/kg], turning [1/kg] = the weight of its surface (turning.py), 0: it does not turn, rolling. By edge:
-    edge_a, edge_b, side (1: solid on the left, 0: two sides), number = its spring, or of
-    terrain. Edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]; particles that a spring joins to p: near_of
-    likewise. shielded (n,): see outline.py. inverted, by vertex: whether its body is now, or wound, and so does not
-    touch itself. shape, by vertex: the number of the outline of its owner, -1: none. parting, by vertex: whether it
-    gives way where its shape and another part, of which one is solid at least; caught: the same of two lines, or of one
-    with itself. parted (k, 3): these pairs of shapes, the lower first, and 1 where both are lines; parted_count (1,).
-    """
-
-    position: FloatRows
-    velocity: FloatRows
-    origin: FloatRows
-    radius: Floats
+    position: FloatRows  # [m], by vertex, as all down to rolling
+    velocity: FloatRows  # [m/s]
+    origin: FloatRows  # [m]: where it was created
+    radius: Floats  # [m]
     friction: Floats
     restitution: Floats
     owner: Slots
     group: Slots
     collides: Slots
-    inverse_mass: Floats
-    turning: Floats
+    inverse_mass: Floats  # [1/kg]
+    turning: Floats  # [1/kg]: the weight of its surface (turning.py), 0: it does not turn
     rolling: Floats
-    edge_a: Slots
+    edge_a: Slots  # by edge, as the three below
     edge_b: Slots
-    side: Slots
-    number: Slots
+    side: Slots  # 1: solid on the left, 0: two sides
+    number: Slots  # its spring, or edge of terrain
     edge_start: Slots
-    edge_of: Slots
+    edge_of: Slots  # edges of vertex v: edge_of[edge_start[v]:edge_start[v + 1]]
     near_start: Slots
-    near_of: Slots
-    shielded: Flags
-    inverted: Flags
-    shape: Slots
-    parting: Flags
-    caught: Flags
-    parted: SlotRows
-    parted_count: Slots
+    near_of: Slots  # particles that a spring joins to p: likewise
+    shielded: Flags  # (n,): see Outline
+    inverted: Flags  # by vertex: its body is inverted or wound, and so does not touch itself
+    shape: Slots  # by vertex: see Outline
+    parting: Flags  # by vertex: its shape and another, one of them solid, part here
+    caught: Flags  # the same of two lines, or of one with itself
+    parted: SlotRows  # (k, 3): pairs of shapes that part, the lower first, and 1 where both are lines
+    parted_count: Slots  # (1,)
 
 
 class Near(NamedTuple):
@@ -66,41 +56,31 @@ class Near(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts in ascending order of particle: particle, feature = 3 number + kind, the particles it pushes against.
+    """Contacts in ascending order of the particle that touches.
 
-    end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain; -1, b: the particle and b are the ends
-    of an edge that lies on a corner of terrain. share: place along the edge. normal:
-    towards the particle. gap [m], below 0: penetration; bounce [m/s]: the velocity along the normal that is left where
-    it bounces, below 0: it does not; impulse [N s] (k, 2) along normal and tangent; impact [N s]: what impacts in this
-    tick have given along the normal, which is no part of the impulse and starts no sweep.
-
-    Of its particle and of the other disc (k, 2): turning [1/kg], arm = that of friction over the radius, ratio = the
-    smaller radius over its own; and their rolling resistance. An impulse across acts at the surface of what does not
-    roll as well, and turns it by a couple: couple (k, 4), of the particle and of end_a, times the impulse is added to
-    these and taken from their partner (k, 2), -1: none; see rims.py.
-
-    ahead: it is with an edge of a hollow that a disc comes to from others, on which it lies (seams.py).
+    An impulse across acts at the surface of what does not roll as well, and turns it by a couple with its partner: see
+    rims.py.
     """
 
     particle: Slots
-    feature: Slots
-    end_a: Slots
-    end_b: Slots
-    share: Floats
-    normal: FloatRows
-    gap: Floats
+    feature: Slots  # 3 number + kind
+    end_a: Slots  # end_a, end_b: the other disc and -1, or the ends of an edge; -1, -1: terrain;
+    end_b: Slots  # -1, b: the particle and b are the ends of an edge that lies on a corner of terrain
+    share: Floats  # place along the edge
+    normal: FloatRows  # towards the particle
+    gap: Floats  # [m], below 0: penetration
     friction: Floats
     restitution: Floats
-    bounce: Floats
-    impulse: FloatRows
-    turning: FloatRows
-    arm: FloatRows
-    ratio: FloatRows
-    rolling: Floats
-    partner: SlotRows
-    couple: FloatRows
-    impact: Floats
-    ahead: Flags
+    bounce: Floats  # [m/s]: velocity along the normal that is left where it bounces, below 0: it does not
+    impulse: FloatRows  # [N s] (k, 2): along normal and tangent
+    turning: FloatRows  # [1/kg] (k, 2): of the particle and of the other disc, as arm and ratio
+    arm: FloatRows  # that of friction over the radius
+    ratio: FloatRows  # the smaller radius over its own
+    rolling: Floats  # rolling resistance of both
+    partner: SlotRows  # (k, 2): which particles the couple is taken from, -1: none
+    couple: FloatRows  # (k, 4): of the particle and of end_a, by a unit impulse
+    impact: Floats  # [N s]: what impacts of this tick gave along the normal; not in impulse, and starts no sweep
+    ahead: Flags  # with an edge of a hollow that a disc comes to from others, on which it lies (seams.py)
 
 
 class KeptContacts(NamedTuple):
@@ -151,7 +131,7 @@ def couple_of(contacts: Contacts, c: int, end: int) -> tuple[float, float]:
 
 @inner_kernel
 def contacts_between(contacts: Contacts, first: int, last: int) -> Contacts:
-    """Some of the contacts."""
+    """The contacts first..last, in the same arrays."""
     b = contacts
     return Contacts(
         b.particle[first:last], b.feature[first:last], b.end_a[first:last], b.end_b[first:last], b.share[first:last],
@@ -163,7 +143,7 @@ def contacts_between(contacts: Contacts, first: int, last: int) -> Contacts:
 
 @inner_kernel
 def new_contacts(arena: Arena, count: int) -> Contacts:
-    """Contacts to be filled in."""
+    """Lay out contacts for a step to fill in."""
     return Contacts(
         new_slots(arena, count), new_slots(arena, count), new_slots(arena, count), new_slots(arena, count),
         new_floats(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count), new_floats(arena, count),

@@ -24,10 +24,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 COMPILED: bool
 # In kernels: the items of a bundle, as they were given to it.
-contents = interpreted.contents
+unpack = interpreted.unpack
 Bundle = interpreted.Bundle
-# In kernels: write an array, or a named tuple of arrays, in place of what a lent named tuple has by that name.
-put: Any = interpreted.put
+# In kernels: set a field of a named tuple in a bundle to another array, or named tuple of arrays.
+set_field: Any = interpreted.set_field
 # In kernels: arrays in the memory of another, an int64 array, from an item on; (memory, first, rows) or, for rows of
 # some width, (memory, first, rows, width).
 slots_in: Any = interpreted.slots_in
@@ -186,7 +186,7 @@ def scalar_kernel(function: Function) -> Function:
 
 
 def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
-    """One argument for kernels in place of many that stay: arrays, and named tuples of them, there its `contents`.
+    """One argument for kernels in place of many that stay: arrays, and named tuples of them, there its unpack.
 
     like: a bundle that is much the same; what is in both costs nothing again.
 
@@ -200,7 +200,7 @@ def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
 
 
 def hold(bundle: Any, memory: Any) -> None:
-    """Let an array live as long as a bundle: kernels lay out in it what they put there."""
+    """Keep an array alive as long as a bundle: kernels lay out in it what they set in the bundle."""
     _chosen().hold(bundle, memory)
 
 

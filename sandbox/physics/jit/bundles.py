@@ -115,7 +115,7 @@ def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
 
 
 def hold(bundle: Any, memory: Any) -> None:
-    """Let an array of words live as long as a bundle: what kernels put there lies in it."""
+    """Keep an array of words alive as long as a bundle: what kernels set in the bundle lies in it."""
     memories = owner_of(bundle).memories
     if not any(memory is one for one in memories):
         memories.append(memory)

@@ -65,13 +65,13 @@ def bundle(items: tuple[Any, ...], like: Any = None) -> Any:
     return Bundle(items)
 
 
-def contents(bundle: Bundle[Items]) -> Items:
+def unpack(bundle: Bundle[Items]) -> Items:
     """The items of a bundle."""
     return bundle.items
 
 
 def hold(bundle: Any, memory: Any) -> None:
-    """Nothing: the views of a bundle hold what they are of."""
+    """Do nothing: the views of a bundle keep their arrays alive."""
 
 
 def items_of(bundle: Any, path: tuple[str, ...] = ()) -> Any:
@@ -90,8 +90,8 @@ def _returned(item: Any, given: Any) -> Any:
     return item.obj if isinstance(item, memoryview) and item.obj is given else np.asarray(item)
 
 
-def put(place: Any, field: str, value: Any) -> None:
-    """Write an array, or a named tuple of arrays, where a lent named tuple has the field of that name."""
+def set_field(place: Any, field: str, value: Any) -> None:
+    """Set a field of a named tuple in a bundle to another array, or named tuple of arrays."""
     if isinstance(value, LentTuple):
         vars(vars(place)[field]).update(vars(value))
     else:

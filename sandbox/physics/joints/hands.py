@@ -51,25 +51,19 @@ LARGEST_LEAD = 0.05
 
 
 class Grips(NamedTuple):
-    """The hands that hold something that can move, g of them, and the particles that they grip, k in all.
+    """The hands that hold something that can move, g of them, and the particles that they grip, k in all."""
 
-    hand (g,): numbers; cursor, spring, held (g,): slots; mass (g,): M [kg]; arm [m] (g, 2): the point that is held,
-    about the mean, in the form that the body was created in; lead [m] (g,): how far at most it is off the particle for
-    that. Of hand i: particle[start[i]:start[i + 1]], with share s of each (k,), and its place about the mean in that
-    form, [m] (k, 2).
-    """
-
-    hand: Slots
-    cursor: Slots
+    hand: Slots  # (g,): its number
+    cursor: Slots  # (g,): slot of its particle, as spring and held
     spring: Slots
     held: Slots
-    mass: Floats
-    arm: FloatRows
-    lead: Floats
-    start: Slots
+    mass: Floats  # (g,): M [kg]
+    arm: FloatRows  # [m] (g, 2): the point that is held, about the mean, in the form that the body was created in
+    lead: Floats  # [m] (g,): how far that point may be off the held particle
+    start: Slots  # particles of hand i: particle[start[i]:start[i + 1]]
     particle: Slots
-    share: Floats
-    form: FloatRows
+    share: Floats  # (k,): s of each
+    form: FloatRows  # [m] (k, 2): its place about the mean in that form
 
 
 @inner_kernel

@@ -15,26 +15,20 @@ from sandbox.physics.topology.sorting import list_by_key, place_among
 
 
 class Actions(NamedTuple):
-    """What rows act on: nodes, each a body or a particle in none; an action is that of one row on one node.
+    """What rows act on: nodes, each a body or a particle in none; an action is that of one row on one node."""
 
-    Nodes (q,): particles particle[start[q]:start[q + 1]], those of a body in the order of the matrix; body: its number,
-    -1: none. By particle (n,): node, -1: none, and its place in that. Actions of row k: first[k] to first[k + 1]; by
-    action: row, on = its node, answers = where those of the node's particles begin; by entry of rows: entry = its
-    action. Actions on node q: at[at_first[q]:at_first[q + 1]].
-    """
-
-    start: Slots
-    particle: Slots
-    body: Slots
-    node: Slots
-    place: Slots
-    first: Slots
-    row: Slots
-    on: Slots
-    answers: Slots
-    entry: Slots
+    start: Slots  # particles of node q: particle[start[q]:start[q + 1]],
+    particle: Slots  # those of a body in the order of the matrix
+    body: Slots  # (q,): its number, -1: a particle
+    node: Slots  # by particle (n,), -1: none
+    place: Slots  # by particle (n,): its place in its node
+    first: Slots  # actions of row k: first[k] to first[k + 1]
+    row: Slots  # by action
+    on: Slots  # by action: its node
+    answers: Slots  # by action: where those of the node's particles begin
+    entry: Slots  # by entry of rows: its action
     at_first: Slots
-    at: Slots
+    at: Slots  # actions on node q: at[at_first[q]:at_first[q + 1]]
 
 
 class Couplings(NamedTuple):
@@ -51,24 +45,17 @@ class Couplings(NamedTuple):
 
 
 class Joints(NamedTuple):
-    """The rows of joints, and how bodies answer to them.
-
-    listed: the rows that are swept, ascending; room: as long as there are rows. answer (a, 2): velocities by a unit
-    impulse, see Actions.
-
-    Scratch of a step: velocity (k,) = u; last_impulse and search_direction (k,) as those of contacts; push (n, 2)
-    [N s]: what the joints together give each particle.
-    """
+    """The rows of joints, and how bodies answer to them."""
 
     rows: JointRows
     actions: Actions
     couplings: Couplings
-    listed: Slots
-    answer: FloatRows
-    velocity: Floats
-    last_impulse: Floats
-    search_direction: Floats
-    push: FloatRows
+    listed: Slots  # the rows that are swept, ascending; as long as there are rows
+    answer: FloatRows  # (a, 2): velocities by a unit impulse, see Actions
+    velocity: Floats  # (k,): u; scratch of a step, as all below
+    last_impulse: Floats  # (k,): as that of contacts
+    search_direction: Floats  # (k,): likewise
+    push: FloatRows  # (n, 2) [N s]: what the joints together give each particle
 
 
 @inner_kernel
@@ -190,7 +177,7 @@ def _new_couplings(actions: Actions, count: int, arena: Arena) -> Couplings:
 
 @inner_kernel
 def new_joints(rows: JointRows, particle: Slots, row_of: Slots, row_start: Slots, arena: Arena) -> Joints:
-    """Room for joints.
+    """Lay out joints, with room for the rows of a world.
 
     particle: of each row of the matrix; row_of (n,): the row of each particle, -1: in none; row_start: of each body.
     """
@@ -271,7 +258,7 @@ def couple_joints(joints: Joints) -> None:
 
 @inner_kernel
 def couple_masses(joints: Joints, inverse_mass: Floats) -> None:
-    """The same where every particle answers by its own mass: of each row, and of two with each other."""
+    """The responses of rows, and of two with each other, where every particle answers by its own mass."""
     rows, couplings = joints.rows, joints.couplings
     for k in range(rows.limit.shape[0]):
         other = k + 1 if rows.pair[k] == PAIR else k

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, is_full, new_floats, new_slots
 from sandbox.physics.arrays import Floats
-from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.joints.hands import Grips, HandRows, load_hands, store_hands
 from sandbox.physics.joints.limited_springs import (
     LimitedRows,
@@ -56,13 +56,13 @@ def lay_out_joints(
                 e += 1
             rows.first[row + 1] = e
     used = rows.first[alone + 2 * hands]
-    put(out, "rows", JointRows(
+    set_field(out, "rows", JointRows(
         rows.first, rows.particle[:used], rows.pair, rows.gradient[:used], rows.target, rows.softness, rows.limit,
         rows.impulse,
     ))  # fmt: skip
-    put(out, "motors", motor_rows)
-    put(out, "limited", limited_rows)
-    put(out, "hands", HandRows(first_of_hand, grips))
+    set_field(out, "motors", motor_rows)
+    set_field(out, "limited", limited_rows)
+    set_field(out, "hands", HandRows(first_of_hand, grips))
 
 
 @inner_kernel

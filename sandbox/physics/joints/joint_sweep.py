@@ -55,7 +55,7 @@ def _of_two(joints: Joints, k: int, u: float, v: float) -> tuple[float, float]:
 @inner_kernel
 def _alone(joints: Joints, k: int, u: float) -> float:
     rows = joints.rows
-    new = implicit_update(rows.impulse[k], u - rows.target[k], own_response(joints, k), rows.softness[k])
+    new = implicit_update(rows.impulse[k], u - rows.target[k], own_response(joints, k), rows.softness[k])  # (25)
     return clamped(new, rows.limit[k])
 
 

@@ -19,7 +19,7 @@ from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.state import State
 
 # K at least, as a share of the reduced mass: of a spring without damping it would be 0, and 1/K infinite.
-LEAST_SHARE = 1e-9
+LEAST_STIFFNESS_SHARE = 1e-9
 
 
 class LimitedRows(NamedTuple):
@@ -101,7 +101,7 @@ def load_limited(
         x = length - state.rest_length[s]
         m = reduced_mass(inverse_mass[a], inverse_mass[b])
         stiff, restoring = implicit_masses(stiffness[s], damping[s], m)
-        stiff = max(stiff, LEAST_SHARE * m)
+        stiff = max(stiff, LEAST_STIFFNESS_SHARE * m)
         rows.softness[k] = 1.0 / stiff
         rows.target[k] = -restoring / stiff * x / h
         rows.limit[k] = limited.force[i] * h

@@ -190,7 +190,7 @@ def list_motors(sides: MotorSides, rows: JointRows, motors: MotorRows) -> None:
 @inner_kernel
 def _turn_of(rows: JointRows, first: int, last: int, sign: float, state: State) -> float:
     # The gradient of a group's angular velocity about its centre of mass, times a sign, and 1/I; -1: it has none.
-    # omega = sum m r x v / I,  I = sum m r^2,  g = m perp(r) / I;  sum m r = 0, so that sum g = 0
+    # omega = sum m r x v / I,  I = sum m r^2,  g = m perp(r) / I;  sum m r = 0, so that sum g = 0  (24)
     position, mass = state.position, state.mass
     sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for e in range(first, last):
@@ -230,7 +230,7 @@ def load_motors(rows: JointRows, motors: MotorRows, state: State, h: float) -> N
         if of_wheel < 0.0 or of_mount < 0.0:
             continue
         rows.target[k] = value * motors.speed[k]
-        rows.softness[k] = MOTOR_SOFTNESS * (of_wheel + of_mount)
+        rows.softness[k] = MOTOR_SOFTNESS * (of_wheel + of_mount)  # (24)
         rows.limit[k] = motors.torque[k] * h
         rows.impulse[k] = clamped(state.actuator_impulse[motors.part[k]], rows.limit[k])
 

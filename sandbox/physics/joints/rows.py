@@ -23,26 +23,21 @@ SCALAR, PAIR, SECOND_OF_TWO = 0, 1, -1
 
 
 class JointRows(NamedTuple):
-    """The rows of a world's joints; entries of row k: particle and gradient [first[k]:first[k + 1]].
+    """The rows of a world's joints. Topology decides the first three fields, a substep the others."""
 
-    What topology decides: first (k+1,), particle (e,): free ones, each at most once in a row; pair (k,): SCALAR or one
-    of two that follow each other. Of a substep: gradient (e, 2); target; softness = 1/K; limit of the impulse, 0: the
-    row is off; two that are clamped together have the same. impulse: that of the last substep, then of this one.
-    """
-
-    first: Slots
-    particle: Slots
-    pair: Slots
-    gradient: FloatRows
+    first: Slots  # (k + 1,): entries of row k are first[k] to first[k + 1]
+    particle: Slots  # (e,): free ones, each at most once in a row
+    pair: Slots  # (k,): SCALAR, or one of two that follow each other
+    gradient: FloatRows  # (e, 2)
     target: Floats
-    softness: Floats
-    limit: Floats
-    impulse: Floats
+    softness: Floats  # 1/K
+    limit: Floats  # of the impulse, 0: the row is off; two that are clamped together have the same
+    impulse: Floats  # that of the last substep, then of this one
 
 
 @inner_kernel
 def new_rows(rows: int, entries: int, arena: Arena) -> JointRows:
-    """So many rows of so many entries, to be filled in."""
+    """Lay out so many rows of so many entries, to be filled in."""
     return JointRows(
         new_slots(arena, rows + 1), new_slots(arena, entries), new_slots(arena, rows),
         new_float_rows(arena, entries, 2), new_floats(arena, rows), new_floats(arena, rows), new_floats(arena, rows),

@@ -45,7 +45,7 @@ class StiffForm:
 
     def height(self, gravity: tuple[float, float]) -> float:
         """Extent [m] along gravity [m/s^2]; along y where there is none."""
-        strength = strength_of(gravity)
+        strength = design_gravity(gravity)
         x, y = (gravity[0] / strength, gravity[1] / strength) if any(gravity) else (0.0, 1.0)
         along = self.points[:, 0] * x + self.points[:, 1] * y
         return float(along.max() - along.min())
@@ -64,6 +64,6 @@ class FirmBody:
     constraints: NDArray[np.int64]
 
 
-def strength_of(gravity: tuple[float, float]) -> float:
-    """How strong gravity is that sags are meant for [m/s^2]."""
+def design_gravity(gravity: tuple[float, float]) -> float:
+    """The strength of gravity [m/s^2] that a sag is designed for: the usual one where a level has none."""
     return math.sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1]) or USUAL_GRAVITY

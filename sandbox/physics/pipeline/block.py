@@ -37,32 +37,27 @@ class Coefficients(NamedTuple):
 
 
 class WorldBlock(NamedTuple):
-    """A world as kernels take it.
+    """A world as kernels take it: what Python gives, then, from start on, what is derived (derive.py).
 
-    Given: state, good: its arrays; numbers, choices: its settings, see settings.py; drives, wheels, limits; tuning, see
-    elimination.py. plan, progress: see above. wanted: the most of each that a step has asked for, see derive.py; counts
-    of the collisions: what there is in the present step; ways of the workspace: see energy_bank.py.
-
-    Derived, see derive.py: start [m/s] (n, 2): velocities before anything acted in a substep; start_length [m] (m,):
-    rest lengths before drives; shortest (GRAB_COUNT,): scratch; body_label (n,): see hands.py. All else is of one phase
-    or solver each, and empty where that has nothing to do.
+    Of the collisions and the workspace, counts and ways are given too. What is below body_label is of one phase or
+    solver each, and empty where that has nothing to do.
     """
 
     state: State
     good: GoodValues
-    numbers: Floats
+    numbers: Floats  # numbers, choices: the settings (settings.py)
     choices: Slots
-    plan: Slots
+    plan: Slots  # plan, progress: see above
     progress: Slots
-    wanted: Slots
+    wanted: Slots  # the most of each that a step has asked for (derive.py)
     drives: Drives
     wheels: DrivenWheels
     limits: MaterialLimits
-    tuning: Tuning
-    start: FloatRows
-    start_length: Floats
-    shortest: Floats
-    body_label: Slots
+    tuning: Tuning  # see elimination.py
+    start: FloatRows  # [m/s] (n, 2): velocities before anything acted in a substep
+    start_length: Floats  # [m] (m,): rest lengths before drives
+    shortest: Floats  # (GRAB_COUNT,): scratch
+    body_label: Slots  # (n,): see hands.py
     coefficients: Coefficients
     forces: SpringForces
     sides: MotorSides

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Candidates, Grid, cell_size, fill_grid, find_pairs
-from sandbox.physics.collision.contacts import bound_solids, carry_over, fill_boxes, find_contacts, find_terrain
+from sandbox.physics.collision.contacts import carry_over, fill_boxes, find_contacts, find_terrain, update_aabbs
 from sandbox.physics.collision.disc_stop import stop_discs
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.restitution import find_bounces
@@ -29,19 +29,14 @@ from sandbox.physics.untangling.overlaps import CROSSINGS, OVERLAPS, Overlaps, f
 from sandbox.physics.untangling.parting import MovedParticles, part_overlaps
 
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
-# crossings of outlines, pairs of shapes that overlap; contacts that are left to a solver.
-CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING, BOUND = range(8)
+# crossings of outlines, pairs of shapes that overlap; coupled contacts, which a solver solves with springs.
+CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING, COUPLED = range(8)
 # Rounds in which edges are stopped at corners of terrain, and particles at terrain; the latter has the last word.
 TIP_ROUNDS = 4
 
 
 class Collisions(NamedTuple):
-    """What topology decides of a world's collisions, and arrays that a step fills in.
-
-    bounds (k, 5): see bound_solids. bound: the contacts that are left to a solver; source: which they are. kept: those
-    of the last step, the first counts[KEPT] of which are the world's own. By particle (n,): attached to springs,
-    constraints or hands; moved: scratch.
-    """
+    """What topology decides of a world's collisions, and arrays that a step fills in."""
 
     outline: Outline
     triangles: Triangles
@@ -49,19 +44,19 @@ class Collisions(NamedTuple):
     boxes: Boxes
     grid: Grid
     candidates: Candidates
-    bounds: FloatRows
+    bounds: FloatRows  # (k, 5): see update_aabbs
     near: Near
     contacts: Contacts
-    bound: Contacts
-    source: Slots
-    kept: KeptContacts
+    coupled: Contacts  # copies of the contacts that a solver solves with springs
+    source: Slots  # which contacts those are
+    kept: KeptContacts  # contacts of the last step; the first counts[KEPT] are the world's
     islands: Islands
     work: FreeContactScratch
     inversions: Inversions
     shape_bounds: ShapeBounds
     overlaps: Overlaps
-    moved: Flags
-    attached: Flags
+    moved: Flags  # (n,): scratch
+    attached: Flags  # (n,): springs, constraints or hands hold it
     counts: Slots
 
 
@@ -97,10 +92,10 @@ def _load_particles(state: State, attached: Flags, colliders: Colliders) -> None
 
 
 @inner_kernel
-def bound_terrain(collisions: Collisions) -> None:
-    """Bound what is solid of terrain, which stays where it is."""
+def update_terrain_aabbs(collisions: Collisions) -> None:
+    """Update the bounding boxes of solid terrain, which does not move."""
     outline = collisions.outline
-    bound_solids(collisions.colliders, outline, outline.dynamic[1], outline.solid.shape[0], collisions.bounds)
+    update_aabbs(collisions.colliders, outline, outline.dynamic[1], outline.solid.shape[0], collisions.bounds)
 
 
 @inner_kernel
@@ -143,7 +138,7 @@ def detect(state: State, collisions: Collisions, grab_spring: int, tick: int, h:
     counts[TERRAIN_PAIRS] = find_terrain(boxes, state.terrain, terrain_pairs)
     if counts[PAIRS] > pairs.other.shape[0] or counts[TERRAIN_PAIRS] > terrain_pairs.other.shape[0]:
         return False
-    bound_solids(colliders, outline, 0, outline.dynamic[1], collisions.bounds)
+    update_aabbs(colliders, outline, 0, outline.dynamic[1], collisions.bounds)
     if not _find_overlaps(collisions, larges):
         return False
     count = find_contacts(
@@ -154,27 +149,27 @@ def detect(state: State, collisions: Collisions, grab_spring: int, tick: int, h:
     if count > collisions.contacts.particle.shape[0]:
         return False
     choose_partners(collisions.contacts, count, collisions.attached, colliders, collisions.moved)
-    counts[BOUND] = find_islands(
+    counts[COUPLED] = find_islands(
         collisions.contacts, count, state.inverse_mass, collisions.attached, collisions.islands
     )  # fmt: skip
-    _list_bound(count, collisions.islands.bound, collisions.source)
+    _list_coupled(count, collisions.islands.coupled, collisions.source)
     return True
 
 
 @inner_kernel
-def _list_bound(count: int, bound: Flags, source: Slots) -> None:
+def _list_coupled(count: int, coupled: Flags, source: Slots) -> None:
     k = 0
     for c in range(count):
-        if bound[c]:
+        if coupled[c]:
             source[k] = c
             k += 1
 
 
 @inner_kernel
-def copy_bound(collisions: Collisions) -> None:
-    """Copy the contacts that are left to a solver, but for what `prepare_contacts` finds."""
-    contacts, to = collisions.contacts, collisions.bound
-    for k in range(collisions.counts[BOUND]):
+def copy_coupled(collisions: Collisions) -> None:
+    """Copy the coupled contacts, without what `prepare_contacts` finds later."""
+    contacts, to = collisions.contacts, collisions.coupled
+    for k in range(collisions.counts[COUPLED]):
         c = collisions.source[k]
         to.particle[k] = contacts.particle[c]
         to.feature[k] = contacts.feature[c]
@@ -205,15 +200,15 @@ def separate_overlaps(state: State, start: FloatRows, collisions: Collisions) ->
 @inner_kernel
 def prepare_contacts(state: State, start: FloatRows, collisions: Collisions, h: float) -> None:
     """Find what bounces in a step of h [s], and give contacts the impulses that they begin with."""
-    contacts, counts, bound = collisions.contacts, collisions.counts, collisions.bound
+    contacts, counts, coupled = collisions.contacts, collisions.counts, collisions.coupled
     find_bounces(contacts, counts[CONTACTS], start, state.velocity, collisions.attached, h, h / small_steps(h))
     carry_over(contacts, counts[CONTACTS], collisions.kept, counts[KEPT])
-    for k in range(counts[BOUND]):
+    for k in range(counts[COUPLED]):
         c = collisions.source[k]
-        bound.bounce[k] = contacts.bounce[c]
-        bound.impulse[k, 0], bound.impulse[k, 1] = contacts.impulse[c, 0], contacts.impulse[c, 1]
-    if counts[BOUND] > 0:
-        load_arms(bound, counts[BOUND], collisions.colliders)
+        coupled.bounce[k] = contacts.bounce[c]
+        coupled.impulse[k, 0], coupled.impulse[k, 1] = contacts.impulse[c, 0], contacts.impulse[c, 1]
+    if counts[COUPLED] > 0:
+        load_arms(coupled, counts[COUPLED], collisions.colliders)
 
 
 @inner_kernel
@@ -221,7 +216,7 @@ def solve_free(state: State, start: FloatRows, collisions: Collisions, h: float)
     """Solve the contacts of what no spring or constraint holds."""
     contacts, counts = collisions.contacts, collisions.counts
     found = 0
-    if counts[BOUND] < counts[CONTACTS]:
+    if counts[COUPLED] < counts[CONTACTS]:
         found = sort_free_contacts(counts[CONTACTS], collisions.islands)
     solve_free_contacts(
         contacts, collisions.islands, found, collisions.colliders, start, state.velocity, state.spin, h,
@@ -230,21 +225,21 @@ def solve_free(state: State, start: FloatRows, collisions: Collisions, h: float)
 
 
 @inner_kernel
-def bound_contacts(collisions: Collisions) -> Contacts:
-    """The contacts that are left to a solver."""
-    return contacts_between(collisions.bound, 0, collisions.counts[BOUND])
+def coupled_contacts(collisions: Collisions) -> Contacts:
+    """The coupled contacts of a step, which a solver solves with springs."""
+    return contacts_between(collisions.coupled, 0, collisions.counts[COUPLED])
 
 
 @inner_kernel
 def mark_pushed(collisions: Collisions, label: Slots, marks: Flags) -> None:
     """Mark the labels of the particles that contacts of the present step push."""
-    contacts, bound = collisions.contacts, collisions.bound
+    contacts, coupled = collisions.contacts, collisions.coupled
     for c in range(collisions.counts[CONTACTS]):
-        if not collisions.islands.bound[c] and contacts.impulse[c, 0] > 0.0:
+        if not collisions.islands.coupled[c] and contacts.impulse[c, 0] > 0.0:
             _mark_ends(contacts, c, label, marks)
-    for k in range(collisions.counts[BOUND]):
-        if bound.impulse[k, 0] > 0.0:
-            _mark_ends(bound, k, label, marks)
+    for k in range(collisions.counts[COUPLED]):
+        if coupled.impulse[k, 0] > 0.0:
+            _mark_ends(coupled, k, label, marks)
 
 
 @inner_kernel
@@ -259,14 +254,14 @@ def _mark_ends(contacts: Contacts, c: int, label: Slots, marks: Flags) -> None:
 @inner_kernel
 def store_impulses(collisions: Collisions) -> None:
     """Keep a step's contacts with their impulses for the next."""
-    contacts, bound, kept = collisions.contacts, collisions.bound, collisions.kept
+    contacts, coupled, kept = collisions.contacts, collisions.coupled, collisions.kept
     count = collisions.counts[CONTACTS]
-    for k in range(collisions.counts[BOUND]):
+    for k in range(collisions.counts[COUPLED]):
         c = collisions.source[k]
-        contacts.impulse[c, 0], contacts.impulse[c, 1] = bound.impulse[k, 0], bound.impulse[k, 1]
-        if bound.bounce[k] >= 0.0:
+        contacts.impulse[c, 0], contacts.impulse[c, 1] = coupled.impulse[k, 0], coupled.impulse[k, 1]
+        if coupled.bounce[k] >= 0.0:
             # The impulse of an impact is no guess of what the next step needs.
-            contacts.impact[c] += bound.impulse[k, 0]
+            contacts.impact[c] += coupled.impulse[k, 0]
             contacts.impulse[c, 0], contacts.impulse[c, 1] = 0.0, 0.0
     for c in range(count):
         kept.particle[c] = contacts.particle[c]

@@ -20,7 +20,7 @@ from sandbox.physics.collision.outline import new_colliders, new_outline
 from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
 from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.flight import new_flight
-from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel, put
+from sandbox.physics.jit import Bundle, inner_kernel, kernel, set_field, unpack
 from sandbox.physics.joints.hands import label_bodies, new_grips
 from sandbox.physics.joints.joint_answers import joints_by_mass, new_joints
 from sandbox.physics.joints.joint_set import lay_out_joints
@@ -37,22 +37,22 @@ from sandbox.physics.pipeline.block import (
     WorldBlock,
 )
 from sandbox.physics.pipeline.collide import (
-    BOUND,
     CONTACTS,
+    COUPLED,
     CROSSED,
     ENTRIES,
     KEPT,
     OVERLAPPING,
     PAIRS,
     TERRAIN_PAIRS,
-    bound_terrain,
+    update_terrain_aabbs,
 )
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER
 from sandbox.physics.solvers.contact.contact_order import new_contact_order
 from sandbox.physics.solvers.contact.free_constraints import new_work
 from sandbox.physics.solvers.contact.free_islands import new_islands as new_free_islands
 from sandbox.physics.solvers.contact.gauss_seidel import new_contact_constraints
-from sandbox.physics.solvers.direct.islands import COLUMNS, NUMBERS, lay_out_islands, lay_out_no_blocks
+from sandbox.physics.solvers.direct.islands import COLUMNS, NUMBERS, lay_out_islands, use_diagonal_delassus
 from sandbox.physics.solvers.direct.layout import lay_out_system
 from sandbox.physics.solvers.held_springs import new_held_springs
 from sandbox.physics.solvers.iterative import new_iteration
@@ -63,35 +63,35 @@ from sandbox.physics.untangling.overlaps import new_overlaps
 from sandbox.physics.untangling.triangle_clamp import lay_out_world_triangles
 
 # Places in `wanted`: those of the counts of collisions, then numbers and columns of blocks of bodies.
-BLOCK_NUMBERS, BLOCK_COLUMNS, WANTED = BOUND, BOUND + 1, BOUND + 2
+BLOCK_NUMBERS, BLOCK_COLUMNS, WANTED = COUPLED, COUPLED + 1, COUPLED + 2
 # What there is room for at least; and how much more than was asked for there is then.
 LEAST_ROOM = 64
 MORE_ROOM = 2
 
 
 @kernel
-def derive_topology(lent: Bundle[WorldBlock], arena: Arena) -> None:
+def derive_topology(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     """Lay out what follows from the topology of a world, and its solver."""
-    world = contents(lent)
+    world = unpack(pointer)
     begin(arena)
     state = world.state
     _find_plan(world)
     _lay_out_scratch(world, arena)
-    put(world, "forces", new_spring_forces(state, world.drives, arena))
-    put(world, "sides", new_motor_sides(state, world.wheels, arena))
+    set_field(world, "forces", new_spring_forces(state, world.drives, arena))
+    set_field(world, "sides", new_motor_sides(state, world.wheels, arena))
     _lay_out_labels(world, arena)
     lay_out_world_triangles(state, arena, world.triangles)
     if world.plan[HAS_CONTACTS] != 0:
-        put(world.collisions, "outline", new_outline(state, arena))
-        put(world.collisions, "triangles", world.triangles.of_world)
+        set_field(world.collisions, "outline", new_outline(state, arena))
+        set_field(world.collisions, "triangles", world.triangles.of_world)
     if not is_full(arena):
         _lay_out_solver(world, arena)
 
 
 @kernel
-def derive_hands(lent: Bundle[WorldBlock], arena: Arena) -> None:
+def derive_hands(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     """Lay out the joints of a world, which follow from what hands hold as well."""
-    world = contents(lent)
+    world = unpack(pointer)
     begin(arena)
     state, solver = world.state, world.choices[SOLVER]
     grips = new_grips(state, world.body_label, world.plan[GRAB_PARTICLE], world.plan[GRAB_SPRING], arena)
@@ -107,46 +107,46 @@ def derive_hands(lent: Bundle[WorldBlock], arena: Arena) -> None:
         return
     rows = world.joints.rows
     if solver == SINGLE_PASS:
-        put(world.explicit, "joints", joints_by_mass(rows, arena))
-        put(world.explicit, "mass", new_floats(arena, rows.limit.shape[0]))
-        put(world.explicit, "given", new_floats(arena, rows.limit.shape[0]))
+        set_field(world.explicit, "joints", joints_by_mass(rows, arena))
+        set_field(world.explicit, "mass", new_floats(arena, rows.limit.shape[0]))
+        set_field(world.explicit, "joint_impulse", new_floats(arena, rows.limit.shape[0]))
     elif solver == DIRECT:
         system = world.system
         joints = new_joints(
             rows, system.rows.particle, world.workspace.islands.row, system.bodies.row_start, arena
         )  # fmt: skip
-        put(world.workspace.delassus, "joints", joints)
+        set_field(world.workspace.delassus, "joints", joints)
     else:
-        put(world.workspace.delassus, "joints", joints_by_mass(rows, arena))
+        set_field(world.workspace.delassus, "joints", joints_by_mass(rows, arena))
         springs = world.iteration.listed.shape[0]
-        put(world.iteration, "held", new_held_springs(world.joints.hands, state, springs, arena))
+        set_field(world.iteration, "held", new_held_springs(world.joints.hands, state, springs, arena))
 
 
 @kernel
-def make_room(lent: Bundle[WorldBlock], arena: Arena) -> None:
+def make_room(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     """Lay out what a step fills in, with room for more than any has asked for. Contacts that were kept are lost."""
-    world = contents(lent)
+    world = unpack(pointer)
     begin(arena)
     collisions, wanted, particles = world.collisions, world.wanted, world.state.owner.shape[0]
-    for k in range(BOUND):
+    for k in range(COUPLED):
         wanted[k] = max(wanted[k], collisions.counts[k])
     wanted[ENTRIES] = max(wanted[ENTRIES], particles)
     if world.choices[SOLVER] == DIRECT:
         asked = world.workspace.islands.counts
         wanted[BLOCK_NUMBERS] = max(wanted[BLOCK_NUMBERS], asked[NUMBERS])
         wanted[BLOCK_COLUMNS] = max(wanted[BLOCK_COLUMNS], asked[COLUMNS])
-        put(world.workspace.delassus, "numbers", new_floats(arena, MORE_ROOM * wanted[BLOCK_NUMBERS]))
-        put(world.workspace.delassus, "columns", new_floats(arena, MORE_ROOM * wanted[BLOCK_COLUMNS]))
+        set_field(world.workspace.delassus, "numbers", new_floats(arena, MORE_ROOM * wanted[BLOCK_NUMBERS]))
+        set_field(world.workspace.delassus, "columns", new_floats(arena, MORE_ROOM * wanted[BLOCK_COLUMNS]))
     contacts = max(_room(world, CONTACTS), _room(world, KEPT))
-    put(world.collisions, "kept", new_kept_contacts(arena, contacts))
-    bound = contacts if world.plan[HAS_CONTACTS] != 0 else 0
-    put(world.workspace, "terms", new_contact_constraints(bound, particles, arena))
+    set_field(world.collisions, "kept", new_kept_contacts(arena, contacts))
+    coupled = contacts if world.plan[HAS_CONTACTS] != 0 else 0
+    set_field(world.workspace, "terms", new_contact_constraints(coupled, particles, arena))
     members = particles + world.system.bodies.lowest.shape[0]
-    put(world.workspace, "order", new_contact_order(bound, max(bound, members), arena))
-    if bound > 0:
+    set_field(world.workspace, "order", new_contact_order(coupled, max(coupled, members), arena))
+    if coupled > 0:
         _lay_out_collisions(world, contacts, arena)
         if not is_full(arena):
-            bound_terrain(world.collisions)
+            update_terrain_aabbs(world.collisions)
 
 
 @inner_kernel
@@ -173,11 +173,11 @@ def _find_plan(world: WorldBlock) -> None:
 def _lay_out_scratch(world: WorldBlock, arena: Arena) -> None:
     state = world.state
     particles, springs, constraints = state.owner.shape[0], state.law.shape[0], state.constraint_kind.shape[0]
-    put(world, "start", new_float_rows(arena, particles, 2))
-    put(world, "start_length", new_floats(arena, springs))
-    put(world, "shortest", new_floats(arena, GRAB_COUNT))
-    put(world, "flight", new_flight(particles, arena))
-    put(world, "coefficients", Coefficients(
+    set_field(world, "start", new_float_rows(arena, particles, 2))
+    set_field(world, "start_length", new_floats(arena, springs))
+    set_field(world, "shortest", new_floats(arena, GRAB_COUNT))
+    set_field(world, "flight", new_flight(particles, arena))
+    set_field(world, "coefficients", Coefficients(
         new_floats(arena, springs), new_floats(arena, springs), new_floats(arena, constraints),
         new_floats(arena, constraints),
     ))  # fmt: skip
@@ -187,7 +187,7 @@ def _lay_out_scratch(world: WorldBlock, arena: Arena) -> None:
 def _lay_out_labels(world: WorldBlock, arena: Arena) -> None:
     state = world.state
     label = new_slots(arena, state.owner.shape[0])
-    put(world, "body_label", label)
+    set_field(world, "body_label", label)
     scratch = mark(arena)
     joins, free = new_flags(arena, state.law.shape[0]), new_flags(arena, state.owner.shape[0])
     if not is_full(arena):
@@ -205,9 +205,9 @@ def _lay_out_solver(world: WorldBlock, arena: Arena) -> None:
             return
         lay_out_islands(world.system, particles, arena, world.workspace)
     else:
-        lay_out_no_blocks(particles, arena, world.workspace.delassus)
+        use_diagonal_delassus(particles, arena, world.workspace.delassus)
     if solver == ITERATIVE:
-        put(world, "iteration", new_iteration(state, forces.limit, arena))
+        set_field(world, "iteration", new_iteration(state, forces.limit, arena))
     # These take springs of Hooke's law apart, all others take all springs so.
     takes_apart = solver in (DIRECT, ITERATIVE)
     if not takes_apart or world.plan[HAS_HOOKE] != 0:
@@ -224,19 +224,19 @@ def _lay_out_collisions(world: WorldBlock, contacts: int, arena: Arena) -> None:
         new_pairs(particles, _room(world, PAIRS), arena), new_pairs(particles, _room(world, TERRAIN_PAIRS), arena),
         boxes.box,
     )  # fmt: skip
-    put(collisions, "boxes", boxes)
-    put(collisions, "candidates", candidates)
-    put(collisions, "colliders", new_colliders(world.state.terrain, outline, _room(world, OVERLAPPING), arena))
-    put(collisions, "grid", new_grid(objects, _room(world, ENTRIES), arena))
-    put(collisions, "bounds", new_float_rows(arena, outline.solid.shape[0], 5))
-    put(collisions, "near", new_near(arena))
-    put(collisions, "contacts", new_contacts(arena, contacts))
-    put(collisions, "bound", new_contacts(arena, contacts))
-    put(collisions, "source", new_slots(arena, contacts))
-    put(collisions, "islands", new_free_islands(particles, contacts, arena))
-    put(collisions, "work", new_work(particles, contacts, arena))
-    put(collisions, "inversions", new_inversions(jellies, arena))
-    put(collisions, "shape_bounds", new_shape_bounds(shapes, arena))
-    put(collisions, "overlaps", new_overlaps(shapes, _room(world, CROSSED), _room(world, OVERLAPPING), arena))
-    put(collisions, "moved", new_flags(arena, particles))
-    put(collisions, "attached", new_flags(arena, particles))
+    set_field(collisions, "boxes", boxes)
+    set_field(collisions, "candidates", candidates)
+    set_field(collisions, "colliders", new_colliders(world.state.terrain, outline, _room(world, OVERLAPPING), arena))
+    set_field(collisions, "grid", new_grid(objects, _room(world, ENTRIES), arena))
+    set_field(collisions, "bounds", new_float_rows(arena, outline.solid.shape[0], 5))
+    set_field(collisions, "near", new_near(arena))
+    set_field(collisions, "contacts", new_contacts(arena, contacts))
+    set_field(collisions, "coupled", new_contacts(arena, contacts))
+    set_field(collisions, "source", new_slots(arena, contacts))
+    set_field(collisions, "islands", new_free_islands(particles, contacts, arena))
+    set_field(collisions, "work", new_work(particles, contacts, arena))
+    set_field(collisions, "inversions", new_inversions(jellies, arena))
+    set_field(collisions, "shape_bounds", new_shape_bounds(shapes, arena))
+    set_field(collisions, "overlaps", new_overlaps(shapes, _room(world, CROSSED), _room(world, OVERLAPPING), arena))
+    set_field(collisions, "moved", new_flags(arena, particles))
+    set_field(collisions, "attached", new_flags(arena, particles))

@@ -5,7 +5,7 @@ from sandbox.physics.driving import drive_springs
 from sandbox.physics.flight import begin_flight, label_all_joined
 from sandbox.physics.forces import integrate_velocities
 from sandbox.physics.integrate import integrate_positions
-from sandbox.physics.jit import Bundle, contents, inner_kernel, kernel
+from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.joints.joint_set import prepare_joints, store_joint_impulses
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline.block import (
@@ -23,11 +23,11 @@ from sandbox.physics.pipeline.block import (
     WorldBlock,
 )
 from sandbox.physics.pipeline.collide import (
-    BOUND,
+    COUPLED,
     KEPT,
-    bound_contacts,
     clamp,
-    copy_bound,
+    copy_coupled,
+    coupled_contacts,
     detect,
     mark_pushed,
     prepare_contacts,
@@ -59,7 +59,7 @@ from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.iterative import solve as solve_iterative
 from sandbox.physics.solvers.single_pass import apply_explicit
 from sandbox.physics.solvers.single_pass import solve as solve_single_pass
-from sandbox.physics.substeps import choose_substeps, ease_of, kept_by, limit_rings, turn_into_substep
+from sandbox.physics.substeps import choose_substeps, drag_factor_of, kept_by, limit_rings, turn_into_substep
 from sandbox.physics.untangling.triangle_clamp import clamp_world
 
 # What a tick says at its end. It has changed nothing where something that it begins with is not sound, and goes on
@@ -68,9 +68,9 @@ FINISHED, UNSOUND, NO_ROOM, LOST, BROKE = range(5)
 
 
 @kernel
-def tick(lent: Bundle[WorldBlock]) -> int:
+def tick(pointer: Bundle[WorldBlock]) -> int:
     """Advance a world by one tick of 1 / tick_rate seconds; what is to be done about it, see FINISHED."""
-    world = contents(lent)
+    world = unpack(pointer)
     state, start, collisions, joints = world.state, world.start, world.collisions, world.joints
     progress, solver, touches = world.progress, world.choices[SOLVER], world.plan[HAS_CONTACTS] != 0
     if progress[COUNT] == 0:
@@ -81,8 +81,8 @@ def tick(lent: Bundle[WorldBlock]) -> int:
     h = 1.0 / (world.choices[TICK_RATE] * progress[COUNT])
     while progress[DONE] < progress[COUNT]:
         integrate_velocities(state, world.numbers, start, h)
-        given = _inputs(world)
-        has_joints = prepare_joints(joints, state, given.stiffness, given.damping, h)
+        inputs = _inputs(world)
+        has_joints = prepare_joints(joints, state, inputs.stiffness, inputs.damping, h)
         if not _find_contacts(world, touches, has_joints, h):
             _take_back_forces(world)
             return NO_ROOM
@@ -90,7 +90,7 @@ def tick(lent: Bundle[WorldBlock]) -> int:
             separate_overlaps(state, start, collisions)
             prepare_contacts(state, start, collisions, h)
             solve_free(state, start, collisions, h)
-        _solve(world, given, has_joints, h)
+        _solve(world, inputs, has_joints, h)
         _begin_flight(world, touches, h)
         store_joint_impulses(joints, state, h)
         if touches:
@@ -109,9 +109,9 @@ def tick(lent: Bundle[WorldBlock]) -> int:
 
 
 @kernel
-def find_broken(lent: Bundle[WorldBlock]) -> int:
+def find_broken(pointer: Bundle[WorldBlock]) -> int:
     """Let springs yield and find those that break, at the end of a tick in which something was lost; how many."""
-    return _find_broken(contents(lent))
+    return _find_broken(unpack(pointer))
 
 
 @inner_kernel
@@ -134,12 +134,12 @@ def _begin_tick(world: WorldBlock) -> None:
         count = choose_substeps(state, world.plan[GRAB_SPRING], choices[TICK_RATE], world.shortest)
     progress[COUNT] = count
     progress[DONE] = 0
-    ease = _ease(world)
-    if count > 1 or ease != 1.0:
+    factor = _drag_factor(world)
+    if count > 1 or factor != 1.0:
         for s in range(state.stiffness.shape[0]):
             world.coefficients.stiffness[s] = state.stiffness[s]
             world.coefficients.damping[s] = state.damping[s]
-        _turn_all_into_substep(world, ease)
+        _turn_all_into_substep(world, factor)
     elif world.plan[HAS_RINGS] != 0:
         limit_rings(state, world.coefficients.constraint_stiffness, world.coefficients.constraint_damping)
     if choices[IS_AUTO] != 0 and count > 1:
@@ -151,21 +151,22 @@ def _begin_tick(world: WorldBlock) -> None:
 
 
 @inner_kernel
-def _ease(world: WorldBlock) -> float:
+def _drag_factor(world: WorldBlock) -> float:
     # That of a whole tick where ticks choose their parts: the energy of a spring does not depend on the parts.
     choices = world.choices
-    return ease_of(world.numbers[DRAG], choices[TICK_RATE], 1 if choices[IS_AUTO] != 0 else world.progress[COUNT])
+    parts = 1 if choices[IS_AUTO] != 0 else world.progress[COUNT]
+    return drag_factor_of(world.numbers[DRAG], choices[TICK_RATE], parts)
 
 
 @inner_kernel
-def _turn_all_into_substep(world: WorldBlock, ease: float) -> None:
+def _turn_all_into_substep(world: WorldBlock, factor: float) -> None:
     state, into, count = world.state, world.coefficients, world.progress[COUNT]
     keeps = kept_by(world.choices[SOLVER], world.choices[IS_AUTO])
     limit_rings(state, into.constraint_stiffness, into.constraint_damping)
     highest = HIGHEST_ITERATED if world.choices[SOLVER] == ITERATIVE else 1.0
-    turn_into_substep(into.stiffness, into.damping, state.lowest_mode, count, keeps, highest, ease)
+    turn_into_substep(into.stiffness, into.damping, state.lowest_mode, count, keeps, highest, factor)
     turn_into_substep(
-        into.constraint_stiffness, into.constraint_damping, state.constraint_lowest_mode, count, keeps, highest, ease
+        into.constraint_stiffness, into.constraint_damping, state.constraint_lowest_mode, count, keeps, highest, factor
     )
 
 
@@ -187,8 +188,8 @@ def _scale_impulses(world: WorldBlock, factor: float) -> None:
 def _inputs(world: WorldBlock) -> Inputs:
     # Where nothing turns them into others, Cs and Cd are those of the tick.
     state, into, progress = world.state, world.coefficients, world.progress
-    ease = _ease(world)
-    turned = progress[COUNT] > 1 or ease != 1.0
+    factor = _drag_factor(world)
+    turned = progress[COUNT] > 1 or factor != 1.0
     limited = turned or world.plan[HAS_RINGS] != 0
     driven = progress[DONE] == 0 and world.drives.muscle.shape[0] + world.drives.hydraulic.shape[0] > 0
     return Inputs(
@@ -198,7 +199,7 @@ def _inputs(world: WorldBlock) -> Inputs:
         into.constraint_damping if limited else state.constraint_damping,
         world.start,
         world.start_length if driven else state.rest_length,
-        ease,
+        factor,
     )
 
 
@@ -208,12 +209,12 @@ def _find_contacts(world: WorldBlock, touches: bool, has_joints: bool, h: float)
     collisions, state = world.collisions, world.state
     if touches and not detect(state, collisions, world.plan[GRAB_SPRING], world.progress[TICK], h):
         return False
-    source, workspace, has_room = collisions.source[: collisions.counts[BOUND]], world.workspace, True
+    source, workspace, has_room = collisions.source[: collisions.counts[COUPLED]], world.workspace, True
     if world.choices[SOLVER] != DIRECT:
         order_by_label(source, collisions.islands.contact_label, workspace.order, collisions.islands.at)
-    elif has_joints or collisions.counts[BOUND] > 0:
+    elif has_joints or collisions.counts[COUPLED] > 0:
         has_room = find_body_islands(collisions.contacts, source, state.inverse_mass, world.system, workspace)
-    copy_bound(collisions)
+    copy_coupled(collisions)
     return has_room
 
 
@@ -225,28 +226,28 @@ def _take_back_forces(world: WorldBlock) -> None:
 
 
 @inner_kernel
-def _solve(world: WorldBlock, given: Inputs, has_joints: bool, h: float) -> None:
+def _solve(world: WorldBlock, inputs: Inputs, has_joints: bool, h: float) -> None:
     # Bring velocities to the end of a substep by the solver that is set. Another solver is a branch here.
     state, solver, workspace, choices = world.state, world.choices[SOLVER], world.workspace, world.choices
-    contacts = bound_contacts(world.collisions)
+    contacts = coupled_contacts(world.collisions)
     if solver == SINGLE_PASS:
         solve_single_pass(
-            state, world.explicit, given, contacts, workspace.terms, workspace.order, workspace.delassus,
+            state, world.explicit, inputs, contacts, workspace.terms, workspace.order, workspace.delassus,
             choices[ITERATIONS], h,
         )  # fmt: skip
         return
     if world.plan[HAS_HOOKE] != 0:
-        apply_explicit(state, given, world.explicit, False, h)
+        apply_explicit(state, inputs, world.explicit, False, h)
     count = world.progress[COUNT]
     if solver == ITERATIVE:
         solve_iterative(
-            state, world.iteration, given, contacts, workspace.terms, workspace.order, workspace.delassus,
+            state, world.iteration, inputs, contacts, workspace.terms, workspace.order, workspace.delassus,
             choices[ITERATIONS], world.numbers[WARM_START], count > 1, h,
         )  # fmt: skip
     else:
         has_islands = has_joints or contacts.particle.shape[0] > 0
         auto_substeps = count if choices[IS_AUTO] != 0 else 0
-        solve_direct(state, world.system, given, contacts, workspace, has_islands, auto_substeps, h)
+        solve_direct(state, world.system, inputs, contacts, workspace, has_islands, auto_substeps, h)
 
 
 @inner_kernel

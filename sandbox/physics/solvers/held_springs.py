@@ -30,26 +30,20 @@ LEAST_TAKEN = 0.2
 # How often j is made better where a hand is at its limit: along one line once is enough.
 ROUNDS = 4
 # The effective inverse mass of a spring with hands is at least this part of that without: what rounding leaves.
-LEAST_SHARE = 1e-12
+LEAST_INVERSE_MASS_SHARE = 1e-12
 
 
 class HeldSprings(NamedTuple):
-    """The hands that are solved with springs, and those springs.
+    """The hands that are solved with springs, and those springs."""
 
-    hand (g,): first row of each. By particle (n,): row = that of the hand that holds it, -1: none; entry = its place in
-    the row. By spring that pulls (m,): at (m, 2) = the rows of hands at its ends, the first -1: none; answer (m, 4) = y
-    of each; asked (m, 4) = A y; mass [kg] = the effective mass where no hand that answers at once is at its limit. free
-    (2, 2): scratch, P0.
-    """
-
-    hand: Slots
-    row: Slots
-    entry: Slots
-    at: SlotRows
-    answer: FloatRows
-    asked: FloatRows
-    mass: Floats
-    free: FloatRows
+    hand: Slots  # (g,): first row of each
+    row: Slots  # by particle (n,): that of the hand that holds it, -1: none
+    entry: Slots  # by particle (n,): its place in the row
+    at: SlotRows  # (m, 2) by spring that pulls: the rows of hands at its ends, the first -1: none
+    answer: FloatRows  # (m, 4): y of each
+    asked: FloatRows  # (m, 4): A y of each
+    mass: Floats  # [kg] (m,): effective mass where no hand that answers at once is at its limit
+    free: FloatRows  # (2, 2): scratch, P0
 
 
 @inner_kernel
@@ -158,7 +152,7 @@ def load_held_springs(
                 less += x * px + y * py
         if taken > LEAST_TAKEN * LEAST_TAKEN:
             inverse = 1.0 / mass[c]
-            held.mass[c] = 1.0 / max(inverse - less, LEAST_SHARE * inverse)
+            held.mass[c] = 1.0 / max(inverse - less, LEAST_INVERSE_MASS_SHARE * inverse)
             found = True
     return found
 
@@ -174,7 +168,7 @@ def begin_with_hands(held: HeldSprings, joints: Joints, velocity: FloatRows, cha
 
 @inner_kernel
 def end_with_hands(held: HeldSprings, joints: Joints, change: FloatRows, inverse_mass: Floats) -> None:
-    """Let particles have what hands have answered in an iteration over all springs."""
+    """Add to particles what hands have answered in an iteration over all springs."""
     for i in range(held.hand.shape[0]):
         for k in range(held.hand[i], held.hand[i] + 2):
             more = joints.rows.impulse[k] - joints.last_impulse[k]
@@ -214,7 +208,7 @@ def _search(
                 yields = share * (yields - along / (first * first + second * second))
             left -= _along(held, c, place, share * first - rows.impulse[k], share * second - rows.impulse[k + 1])
             slope -= yields
-        j = min(max(j + left / max(slope, LEAST_SHARE / mass), least), most)
+        j = min(max(j + left / max(slope, LEAST_INVERSE_MASS_SHARE / mass), least), most)  # (23)
     return j
 
 

@@ -8,7 +8,8 @@ from sandbox.physics.arrays import FloatRows, Floats
 class Inputs(NamedTuple):
     """The input of a substep: Cs and Cd of springs (m,) and constraints (t,) in it, and its start.
 
-    start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives. ease: 1 + drag h.
+    start [m/s] (n, 2), start_length [m] (m,): velocities and rest lengths before forces and drives. drag_factor: see
+    `drag_factor_of`.
     """
 
     stiffness: Floats
@@ -17,4 +18,4 @@ class Inputs(NamedTuple):
     constraint_damping: Floats
     start: FloatRows
     start_length: Floats
-    ease: float
+    drag_factor: float

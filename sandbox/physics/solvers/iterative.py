@@ -26,7 +26,7 @@ from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints
 from sandbox.physics.joints.joint_sweep import iterate_joints, warm_start_joints
 from sandbox.physics.marks import LAW_NISSEN
-from sandbox.physics.solvers.contact.body_impacts import pass_on_all
+from sandbox.physics.solvers.contact.body_impacts import propagate_all_impacts
 from sandbox.physics.solvers.contact.contact_order import ContactOrder
 from sandbox.physics.solvers.contact.gauss_seidel import (
     ContactConstraints,
@@ -57,114 +57,106 @@ from sandbox.physics.topology.sorting import sort_by_value
 AREA_SHARE = 0.5
 
 
-class Wanted(NamedTuple):
-    """Scratch of the constraints: corners' places and gradients (q, 2), and of each (t,) what `_iterate_constraints`
-    says.
+class ConstraintScratch(NamedTuple):
+    """Scratch of the constraints: of corners (q, 2), then of each (t,), see `_iterate_constraints`.
 
-    wanted = -(Cs C / h + Cd dC/dt) m; impulse = the sum of its j. Of a bend, damped = Cd m, kept = 1 - Cd and whole =
-    kept + Cd m / present mass. Of an area, as of a spring, damped = m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
+    Of a bend, damped = Cd m, kept = 1 - Cd and whole = kept + Cd m / present mass. Of an area, as of a spring, damped =
+    m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
     """
 
     place: FloatRows
-    slope: FloatRows
-    wanted: Floats
+    slope: FloatRows  # gradient
+    wanted: Floats  # -(Cs C / h + Cd dC/dt) m
     damped: Floats
     kept: Floats
     whole: Floats
-    impulse: Floats
+    impulse: Floats  # the sum of its j
 
 
-class Pulling(NamedTuple):
-    """Scratch of the springs that do something, count of them by slot: wanted [m/s] = r, mass [kg], normal (m, 2).
-
-    Of those of limited force, limit [N s], given [N s] = the sum of their impulses. By particle: change [m/s] (n, 2).
-    """
+class SpringScratch(NamedTuple):
+    """Scratch of the springs that do something, count of them by slot."""
 
     slot: Slots
     normal: FloatRows
-    wanted: Floats
-    mass: Floats
-    limit: Floats
-    given: Floats
-    change: FloatRows
+    wanted: Floats  # [m/s]: r
+    mass: Floats  # [kg]
+    limit: Floats  # [N s]: of those of limited force, as impulse
+    impulse: Floats  # [N s]: the sum of its impulses
+    change: FloatRows  # [m/s] (n, 2) by particle
 
 
 class Iteration(NamedTuple):
-    """Slots of the springs that are iterated, as they are listed and those of heavy particles first; and scratch.
+    """Slots of the springs that are iterated, and scratch."""
 
-    limit [N] (m,): the force that each spring of the world gives at most, (0,) where none has a limit. held: follows
-    from what hands hold.
-    """
-
-    listed: Slots
-    heavy_first: Slots
-    limit: Floats
-    pulling: Pulling
-    wanted: Wanted
-    held: HeldSprings
+    listed: Slots  # as they are listed
+    heavy_first: Slots  # those of heavy particles first
+    limit: Floats  # [N] (m,): the force that each spring gives at most, (0,): none has a limit
+    spring_scratch: SpringScratch
+    constraint_scratch: ConstraintScratch
+    held: HeldSprings  # follows from what hands hold
 
 
 @inner_kernel
 def _prepare_constraints(
-    state: State, constraints: ConstraintArrays, given: Inputs, h: float, wanted: Wanted
+    state: State, constraints: ConstraintArrays, inputs: Inputs, h: float, scratch: ConstraintScratch
 ) -> None:  # fmt: skip
     # wanted = -(Cs C / h + Cd dC/dt) m
     for k in range(constraints.kind.shape[0]):
-        wanted.whole[k] = 0.0
+        scratch.whole[k] = 0.0
         if not constraints.active[k]:
             continue
         first = constraints.first[k]
         last = first + constraints.corners[k]
-        look(first, last, state.position, constraints.particle, wanted.place)
+        look(first, last, state.position, constraints.particle, scratch.place)
         error = evaluate(
-            constraints.kind[k], wanted.place, first, last, constraints.rest, k, constraints.weight, wanted.slope
+            constraints.kind[k], scratch.place, first, last, constraints.rest, k, constraints.weight, scratch.slope
         )  # fmt: skip
         mass, share = explicit_mass(
-            first, last, state.inverse_mass, constraints.particle, constraints.weight, wanted.slope
+            first, last, state.inverse_mass, constraints.particle, constraints.weight, scratch.slope
         )  # fmt: skip
-        rate = constraint_rate(first, last, state.velocity, constraints.particle, wanted.slope)
-        damping = given.constraint_damping[k]
-        wanted.wanted[k] = spring_impulse(given.constraint_stiffness[k], damping, error, rate, mass, h)
+        rate = constraint_rate(first, last, state.velocity, constraints.particle, scratch.slope)
+        damping = inputs.constraint_damping[k]
+        scratch.wanted[k] = spring_impulse(inputs.constraint_stiffness[k], damping, error, rate, mass, h)
         if constraints.kind[k] == BEND:
-            wanted.damped[k] = damping * mass
-            wanted.kept[k] = 1.0 - damping
-            wanted.whole[k] = wanted.kept[k] + damping * share
+            scratch.damped[k] = damping * mass
+            scratch.kept[k] = 1.0 - damping
+            scratch.whole[k] = scratch.kept[k] + damping * share
         else:
-            wanted.damped[k] = mass
-            wanted.kept[k] = 0.0
-            wanted.whole[k] = 1.0
-        wanted.impulse[k] = 0.0
+            scratch.damped[k] = mass
+            scratch.kept[k] = 0.0
+            scratch.whole[k] = 1.0
+        scratch.impulse[k] = 0.0
 
 
 @inner_kernel
 def _iterate_constraints(
-    inverse_mass: Floats, constraints: ConstraintArrays, wanted: Wanted, change: FloatRows
+    inverse_mass: Floats, constraints: ConstraintArrays, scratch: ConstraintScratch, change: FloatRows
 ) -> None:
     # A bend obeys (1 - Cd) j = -(Cs C / h + Cd (dC/dt + g . dv)) m, the equation with the velocity after the step
     # (equation.py): so can all of more bends than there are ways to bend. Both go at once into the velocity change dv.
     for k in range(constraints.kind.shape[0]):
-        if wanted.whole[k] == 0.0:
+        if scratch.whole[k] == 0.0:
             continue
         first = constraints.first[k]
         last = first + constraints.corners[k]
-        rate = constraint_rate(first, last, change, constraints.particle, wanted.slope)
-        j = (wanted.wanted[k] - wanted.damped[k] * rate - wanted.kept[k] * wanted.impulse[k]) / wanted.whole[k]
-        wanted.impulse[k] += j
+        rate = constraint_rate(first, last, change, constraints.particle, scratch.slope)
+        j = (scratch.wanted[k] - scratch.damped[k] * rate - scratch.kept[k] * scratch.impulse[k]) / scratch.whole[k]
+        scratch.impulse[k] += j
         if constraints.kind[k] == AREA:
-            wanted.whole[k] = 1.0 / AREA_SHARE
+            scratch.whole[k] = 1.0 / AREA_SHARE
         for c in range(first, last):
             p = constraints.particle[c]
-            change[p, 0] += j * wanted.slope[c, 0] * inverse_mass[p]
-            change[p, 1] += j * wanted.slope[c, 1] * inverse_mass[p]
+            change[p, 0] += j * scratch.slope[c, 0] * inverse_mass[p]
+            change[p, 1] += j * scratch.slope[c, 1] * inverse_mass[p]
 
 
 @inner_kernel
 def _prepare_springs(
-    state: State, order: Slots, limit: Floats, given: Inputs, warm_start: float, h: float, pulling: Pulling
+    state: State, order: Slots, limit: Floats, inputs: Inputs, warm_start: float, h: float, scratch: SpringScratch
 ) -> int:  # fmt: skip
     # r = -(Cs x / h + Cd u), the wanted change of relative velocity; how many springs want one.
     position, velocity, inverse_mass = state.position, state.velocity, state.inverse_mass
-    change, accumulated = pulling.change, state.impulse
+    change, accumulated = scratch.change, state.impulse
     count = 0
     for i in range(order.shape[0]):
         s = order[i]
@@ -181,19 +173,19 @@ def _prepare_springs(
         du = velocity[b, 0] - velocity[a, 0]
         dv = velocity[b, 1] - velocity[a, 1]
         nx, ny, length = direction(position[b, 0] - position[a, 0], position[b, 1] - position[a, 1], du, dv)
-        pulling.slot[count] = s
-        pulling.normal[count, 0] = nx
-        pulling.normal[count, 1] = ny
-        pulling.mass[count] = m
-        pulling.wanted[count] = spring_impulse(
-            given.stiffness[s], given.damping[s], length - state.rest_length[s], nx * du + ny * dv, 1.0, h
+        scratch.slot[count] = s
+        scratch.normal[count, 0] = nx
+        scratch.normal[count, 1] = ny
+        scratch.mass[count] = m
+        scratch.wanted[count] = spring_impulse(
+            inputs.stiffness[s], inputs.damping[s], length - state.rest_length[s], nx * du + ny * dv, 1.0, h
         )  # fmt: skip
         p = nx * warm_x + ny * warm_y
         if limit.shape[0] > 0:
-            pulling.limit[count] = limit[s] * h
-            pulling.given[count] = min(max(warm_start * p, -pulling.limit[count]), 0.0)
+            scratch.limit[count] = limit[s] * h
+            scratch.impulse[count] = min(max(warm_start * p, -scratch.limit[count]), 0.0)
         if p < 0.0:
-            j = pulling.given[count] if limit.shape[0] > 0 else warm_start * p
+            j = scratch.impulse[count] if limit.shape[0] > 0 else warm_start * p
             change[a, 0] -= j * nx * inverse_mass[a]
             change[a, 1] -= j * ny * inverse_mass[a]
             change[b, 0] += j * nx * inverse_mass[b]
@@ -203,19 +195,19 @@ def _prepare_springs(
 
 
 @inner_kernel
-def _iterate_springs(count: int, state: State, pulling: Pulling, backwards: bool) -> None:
+def _iterate_springs(count: int, state: State, scratch: SpringScratch, backwards: bool) -> None:
     # j = -(n . (dv_b - dv_a) - r) m_r, applied at once to the velocity change dv.
-    change, accumulated, inverse_mass = pulling.change, state.impulse, state.inverse_mass
+    change, accumulated, inverse_mass = scratch.change, state.impulse, state.inverse_mass
     for i in range(count):
         c = count - 1 - i if backwards else i
-        s = pulling.slot[c]
+        s = scratch.slot[c]
         a = state.particle_a[s]
         b = state.particle_b[s]
-        nx = pulling.normal[c, 0]
-        ny = pulling.normal[c, 1]
+        nx = scratch.normal[c, 0]
+        ny = scratch.normal[c, 1]
         du = change[b, 0] - change[a, 0]
         dv = change[b, 1] - change[a, 1]
-        j = -(nx * du + ny * dv - pulling.wanted[c]) * pulling.mass[c]
+        j = -(nx * du + ny * dv - scratch.wanted[c]) * scratch.mass[c]
         jx = j * nx
         jy = j * ny
         change[a, 0] -= jx * inverse_mass[a]
@@ -231,27 +223,27 @@ def _iterate_bounded_springs(
     count: int, state: State, step: Iteration, joints: Joints, hands_answer: bool, backwards: bool
 ) -> None:  # fmt: skip
     # The same where hands answer at once, or some springs are of limited force.
-    pulling, held, limits = step.pulling, step.held, step.limit.shape[0] > 0
-    change, accumulated, inverse_mass = pulling.change, state.impulse, state.inverse_mass
+    scratch, held, limits = step.spring_scratch, step.held, step.limit.shape[0] > 0
+    change, accumulated, inverse_mass = scratch.change, state.impulse, state.inverse_mass
     for i in range(count):
         c = count - 1 - i if backwards else i
-        s = pulling.slot[c]
+        s = scratch.slot[c]
         a = state.particle_a[s]
         b = state.particle_b[s]
-        nx = pulling.normal[c, 0]
-        ny = pulling.normal[c, 1]
+        nx = scratch.normal[c, 0]
+        ny = scratch.normal[c, 1]
         du = change[b, 0] - change[a, 0]
         dv = change[b, 1] - change[a, 1]
-        lacks = -(nx * du + ny * dv - pulling.wanted[c])
+        lacks = -(nx * du + ny * dv - scratch.wanted[c])
         least, most = -math.inf, math.inf
         if limits:
-            least, most = -pulling.limit[c] - pulling.given[c], pulling.limit[c] - pulling.given[c]
+            least, most = -scratch.limit[c] - scratch.impulse[c], scratch.limit[c] - scratch.impulse[c]
         if hands_answer and held.at[c, 0] >= 0:
-            j = pull_held(held, joints, c, lacks, pulling.mass[c], least, most)
+            j = pull_held(held, joints, c, lacks, scratch.mass[c], least, most)
         else:
-            j = min(max(lacks * pulling.mass[c], least), most)
+            j = min(max(lacks * scratch.mass[c], least), most)
         if limits:
-            pulling.given[c] += j
+            scratch.impulse[c] += j
         jx = j * nx
         jy = j * ny
         change[a, 0] -= jx * inverse_mass[a]
@@ -264,7 +256,7 @@ def _iterate_bounded_springs(
 
 @inner_kernel
 def solve(
-    state: State, step: Iteration, given: Inputs, contacts: Contacts, terms: ContactConstraints, order: ContactOrder,
+    state: State, step: Iteration, inputs: Inputs, contacts: Contacts, terms: ContactConstraints, order: ContactOrder,
     delassus: Delassus, iterations: int, warm_start: float, alternates: bool, h: float,
 ) -> None:  # fmt: skip
     """Bring the velocities to the end of a substep of h [s]; the springs' impulses are kept for the next warm start.
@@ -275,8 +267,8 @@ def solve(
     # wheels would sink in under heavy loads. There each goes from the springs of heavy particles to those of light
     # ones: what a load asks for goes on to what bears it within an iteration, and a wheel of 0.2 kg a particle sinks
     # 3 cm under 60 kg in place of 9.
-    velocity, inverse_mass, change = state.velocity, state.inverse_mass, step.pulling.change
-    joints, pulling = delassus.joints, step.pulling
+    velocity, inverse_mass, change = state.velocity, state.inverse_mass, step.spring_scratch.change
+    joints, scratch = delassus.joints, step.spring_scratch
     for p in range(change.shape[0]):
         change[p, 0] = 0.0
         change[p, 1] = 0.0
@@ -284,14 +276,14 @@ def solve(
     springs = step.listed if alternates else step.heavy_first
     load_biases(contacts, terms, h)
     load_responses(contacts, terms, inverse_mass, delassus)
-    pass_on_all(contacts, terms, order, velocity, change, inverse_mass, delassus, h)
-    count = _prepare_springs(state, springs, step.limit, given, warm_start, h, pulling)
+    propagate_all_impacts(contacts, terms, order, velocity, change, inverse_mass, delassus, h)
+    count = _prepare_springs(state, springs, step.limit, inputs, warm_start, h, scratch)
     constraints = constraints_of(state)
-    _prepare_constraints(state, constraints, given, h, step.wanted)
+    _prepare_constraints(state, constraints, inputs, h, step.constraint_scratch)
     warm_start_contacts(contacts, terms, change, inverse_mass, delassus)
     warm_start_joints(joints, change, inverse_mass)
     hands_answer = step.held.hand.shape[0] > 0 and load_held_springs(
-        step.held, joints, state, pulling.slot, pulling.normal, pulling.mass, count
+        step.held, joints, state, scratch.slot, scratch.normal, scratch.mass, count
     )
     for k in range(iterations):
         backwards = alternates and k % 2 == 1
@@ -300,10 +292,10 @@ def solve(
         if hands_answer or step.limit.shape[0] > 0:
             _iterate_bounded_springs(count, state, step, joints, hands_answer, backwards)
         else:
-            _iterate_springs(count, state, pulling, backwards)
+            _iterate_springs(count, state, scratch, backwards)
         if hands_answer:
             end_with_hands(step.held, joints, change, inverse_mass)
-        _iterate_constraints(inverse_mass, constraints, step.wanted, change)
+        _iterate_constraints(inverse_mass, constraints, step.constraint_scratch, change)
         iterate_joints(joints, velocity, change, inverse_mass)
         sweep(contacts, terms, velocity, change, inverse_mass, delassus)
     add_change(velocity, change, inverse_mass)
@@ -316,7 +308,7 @@ def new_iteration(state: State, limit: Floats, arena: Arena) -> Iteration:
     springs, corners, constraints = state.law.shape[0], state.corner_particle.shape[0], state.constraint_kind.shape[0]
     listed, heavy_first = new_slots(arena, springs), new_slots(arena, springs)
     scratch = mark(arena)
-    lightness, order, spare = new_floats(arena, springs), new_slots(arena, springs), new_slots(arena, springs)
+    lightness, order, merge_buffer = new_floats(arena, springs), new_slots(arena, springs), new_slots(arena, springs)
     count = 0
     limits = False
     if not is_full(arena):
@@ -327,18 +319,18 @@ def new_iteration(state: State, limit: Floats, arena: Arena) -> Iteration:
                 order[count] = count
                 lightness[count] = min(_lightness(state, state.particle_a[s]), _lightness(state, state.particle_b[s]))
                 count += 1
-        sort_by_value(lightness, order, 0, count, spare)
+        sort_by_value(lightness, order, 0, count, merge_buffer)
         for k in range(count):
             heavy_first[k] = listed[order[k]]
         give_back(arena, scratch)
     return Iteration(
         listed[:count], heavy_first[:count], limit if limits else limit[:0],
-        Pulling(
+        SpringScratch(
             new_slots(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count),
             new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
             new_float_rows(arena, state.owner.shape[0], 2),
         ),
-        Wanted(
+        ConstraintScratch(
             new_float_rows(arena, corners, 2), new_float_rows(arena, corners, 2), new_floats(arena, constraints),
             new_floats(arena, constraints), new_floats(arena, constraints), new_floats(arena, constraints),
             new_floats(arena, constraints),

@@ -12,7 +12,7 @@ from sandbox.physics.arrays import Flags, FloatRows, Floats
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import constraint_rate, constraints_of, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
-from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.joints.joint_answers import Joints, couple_masses, own_response
 from sandbox.physics.joints.joint_sweep import iterate_joint
 from sandbox.physics.joints.rows import PAIR, SCALAR, clamped, row_velocity
@@ -29,23 +29,18 @@ JOINT_DAMPING = 0.5
 
 
 class ExplicitPass(NamedTuple):
-    """What an explicit pass reads of springs (m,), and its scratch.
+    """What an explicit pass reads of springs (m,), and its scratch."""
 
-    chosen: the springs that it evaluates. limit [N]: the force that each gives at most. By particle (n, 2): impulse
-    [N s], still [m/s] = 0, change [m/s]. By corner (q, 2): place, slope. By row of joints: mass [kg] = 1 / (g W g), 0:
-    a hand's; given [N s]: impulse in this step. joints: of particles that answer by their own mass.
-    """
-
-    joints: Joints
-    chosen: Flags
-    limit: Floats
-    impulse: FloatRows
-    still: FloatRows
-    change: FloatRows
-    place: FloatRows
+    joints: Joints  # of particles that answer by their own mass
+    chosen: Flags  # (m,): the springs that it evaluates
+    limit: Floats  # [N] (m,): the force that each gives at most
+    impulse: FloatRows  # [N s] (n, 2)
+    still: FloatRows  # [m/s] (n, 2): 0
+    change: FloatRows  # [m/s] (n, 2)
+    place: FloatRows  # (q, 2) by corner, as slope
     slope: FloatRows
-    mass: Floats
-    given: Floats
+    mass: Floats  # [kg] by row of joints: 1 / (g W g), 0: a hand's
+    joint_impulse: Floats  # [N s] by row of joints: of this step
 
 
 @inner_kernel
@@ -55,24 +50,24 @@ def lay_out_explicit_pass(state: State, limit: Floats, hooke: bool, arena: Arena
     limit [N] (m,): the force that each spring gives at most.
     """
     springs, particles, corners = state.law.shape[0], state.owner.shape[0], state.corner_particle.shape[0]
-    put(out, "limit", limit)
-    put(out, "impulse", new_float_rows(arena, particles, 2))
-    put(out, "still", new_float_rows(arena, particles, 2))
-    put(out, "change", new_float_rows(arena, particles, 2))
-    put(out, "place", new_float_rows(arena, corners, 2))
-    put(out, "slope", new_float_rows(arena, corners, 2))
+    set_field(out, "limit", limit)
+    set_field(out, "impulse", new_float_rows(arena, particles, 2))
+    set_field(out, "still", new_float_rows(arena, particles, 2))
+    set_field(out, "change", new_float_rows(arena, particles, 2))
+    set_field(out, "place", new_float_rows(arena, corners, 2))
+    set_field(out, "slope", new_float_rows(arena, corners, 2))
     if not hooke:
-        put(out, "chosen", state.spring_active)
+        set_field(out, "chosen", state.spring_active)
         return
     chosen = new_flags(arena, springs)
-    put(out, "chosen", chosen)
+    set_field(out, "chosen", chosen)
     if not is_full(arena):
         for s in range(springs):
             chosen[s] = state.spring_active[s] and state.law[s] == LAW_HOOKE
 
 
 @inner_kernel
-def _add_constraint_impulses(state: State, given: Inputs, step: ExplicitPass, h: float) -> None:
+def _add_constraint_impulses(state: State, inputs: Inputs, step: ExplicitPass, h: float) -> None:
     # J = -(Cs C / h + Cd dC/dt) m, along the gradient at each corner
     constraints, place, slope = constraints_of(state), step.place, step.slope
     for k in range(constraints.kind.shape[0]):
@@ -84,17 +79,17 @@ def _add_constraint_impulses(state: State, given: Inputs, step: ExplicitPass, h:
         error = evaluate(constraints.kind[k], place, first, last, constraints.rest, k, constraints.weight, slope)
         mass, _ = explicit_mass(first, last, state.inverse_mass, constraints.particle, constraints.weight, slope)
         rate = constraint_rate(first, last, state.velocity, constraints.particle, slope)
-        j = spring_impulse(given.constraint_stiffness[k], given.constraint_damping[k], error, rate, mass, h)
+        j = spring_impulse(inputs.constraint_stiffness[k], inputs.constraint_damping[k], error, rate, mass, h)
         for c in range(first, last):
             step.impulse[constraints.particle[c], 0] += j * slope[c, 0]
             step.impulse[constraints.particle[c], 1] += j * slope[c, 1]
 
 
 @inner_kernel
-def _add_spring_impulses(state: State, given: Inputs, step: ExplicitPass, h: float) -> None:
-    # Nissen: J = -(Cs x / h + Cd u) m_r.  Hooke: J = -(k x + c u) h / ease, u before forces: at rest it is 0, and so
-    # k x alone carries a weight.
-    position, velocity, inverse_mass, start = state.position, state.velocity, state.inverse_mass, given.start
+def _add_spring_impulses(state: State, inputs: Inputs, step: ExplicitPass, h: float) -> None:
+    # Nissen: J = -(Cs x / h + Cd u) m_r.  Hooke: J = -(k x + c u) h / drag_factor, u before forces: at rest that is 0,
+    # and so k x alone carries a weight.
+    position, velocity, inverse_mass, start = state.position, state.velocity, state.inverse_mass, inputs.start
     impulse = step.impulse
     for s in range(step.chosen.shape[0]):
         if not step.chosen[s]:
@@ -110,10 +105,10 @@ def _add_spring_impulses(state: State, given: Inputs, step: ExplicitPass, h: flo
         x = length - state.rest_length[s]
         u = nx * du + ny * dv
         if state.law[s] == LAW_NISSEN:
-            j = spring_impulse(given.stiffness[s], given.damping[s], x, u, mass, h)
+            j = spring_impulse(inputs.stiffness[s], inputs.damping[s], x, u, mass, h)
         else:
             u = nx * (start[b, 0] - start[a, 0]) + ny * (start[b, 1] - start[a, 1])
-            j = -(state.hooke_stiffness[s] * x + state.hooke_damping[s] * u) * h / given.ease
+            j = -(state.hooke_stiffness[s] * x + state.hooke_damping[s] * u) * h / inputs.drag_factor
         if step.limit[s] < math.inf:
             j = clamped(j, step.limit[s] * h)
         impulse[a, 0] -= j * nx
@@ -123,7 +118,7 @@ def _add_spring_impulses(state: State, given: Inputs, step: ExplicitPass, h: flo
 
 
 @inner_kernel
-def apply_explicit(state: State, given: Inputs, step: ExplicitPass, constrains: bool, h: float) -> None:
+def apply_explicit(state: State, inputs: Inputs, step: ExplicitPass, constrains: bool, h: float) -> None:
     """Evaluate the chosen springs on the present velocities and apply their summed impulses over a step of h [s].
 
     constrains: all constraints too.
@@ -133,8 +128,8 @@ def apply_explicit(state: State, given: Inputs, step: ExplicitPass, constrains: 
         impulse[p, 0] = 0.0
         impulse[p, 1] = 0.0
     if constrains:
-        _add_constraint_impulses(state, given, step, h)
-    _add_spring_impulses(state, given, step, h)
+        _add_constraint_impulses(state, inputs, step, h)
+    _add_spring_impulses(state, inputs, step, h)
     # The guard keeps pinned particles where they are also when a mistuned Hooke spring pulls with inf: inf * 0 is NaN.
     for p in range(inverse_mass.shape[0]):
         if inverse_mass[p] > 0.0:
@@ -153,7 +148,7 @@ def _find_joint_impulses(joints: Joints, state: State, step: ExplicitPass) -> No
         step.mass[k] = 1.0 / response if response > 0.0 and rows.pair[k] == SCALAR else 0.0
         lag = rows.impulse[k] if rows.pair[k] == SCALAR else 0.0
         u = row_velocity(rows, k, state.velocity, step.still)
-        step.given[k] = clamped(lag - JOINT_DAMPING * (u - rows.target[k]) * step.mass[k], rows.limit[k])
+        step.joint_impulse[k] = clamped(lag - JOINT_DAMPING * (u - rows.target[k]) * step.mass[k], rows.limit[k])
 
 
 @inner_kernel
@@ -162,8 +157,8 @@ def _give_joint_impulses(joints: Joints, state: State, step: ExplicitPass) -> No
     for k in range(rows.limit.shape[0]):
         for e in range(rows.first[k], rows.first[k + 1]):
             p = rows.particle[e]
-            velocity[p, 0] += rows.gradient[e, 0] * step.given[k] * inverse_mass[p]
-            velocity[p, 1] += rows.gradient[e, 1] * step.given[k] * inverse_mass[p]
+            velocity[p, 0] += rows.gradient[e, 0] * step.joint_impulse[k] * inverse_mass[p]
+            velocity[p, 1] += rows.gradient[e, 1] * step.joint_impulse[k] * inverse_mass[p]
     # A hand comes last and has its velocity at once, as a pin that is moved: that is stable wherever the springs are.
     for k in range(rows.limit.shape[0]):
         if rows.pair[k] != SCALAR:
@@ -188,15 +183,15 @@ spring_constant = explicit_spring_constant
 
 @inner_kernel
 def solve(
-    state: State, step: ExplicitPass, given: Inputs, contacts: Contacts, terms: ContactConstraints, order: ContactOrder,
-    delassus: Delassus, sweeps: int, h: float,
+    state: State, step: ExplicitPass, inputs: Inputs, contacts: Contacts, terms: ContactConstraints,
+    order: ContactOrder, delassus: Delassus, sweeps: int, h: float,
 ) -> None:  # fmt: skip
     """Bring the velocities to the end of a substep of h [s]; contacts are swept after springs, constraints and joints.
 
     delassus: of particles that answer by their own mass, without joints.
     """
     _find_joint_impulses(step.joints, state, step)
-    apply_explicit(state, given, step, True, h)
+    apply_explicit(state, inputs, step, True, h)
     _give_joint_impulses(step.joints, state, step)
     if contacts.particle.shape[0] > 0:
         sweep_masses(contacts, terms, order, state, step.change, delassus, sweeps, h)

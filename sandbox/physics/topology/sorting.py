@@ -100,10 +100,10 @@ def list_neighbours(
 
 
 @inner_kernel
-def sort_by_value(value: Slots | Floats, order: Slots, begin: int, end: int, spare: Slots) -> None:
+def sort_by_value(value: Slots | Floats, order: Slots, begin: int, end: int, merge_buffer: Slots) -> None:
     """Sort order[begin:end] by the value of each, integers or floats; equal ones stay as they are.
 
-    spare: scratch of that length. By merging runs, from the shortest up.
+    merge_buffer: scratch of that length. By merging runs, from the shortest up.
     """
     width = 1
     while width < end - begin:
@@ -111,29 +111,29 @@ def sort_by_value(value: Slots | Floats, order: Slots, begin: int, end: int, spa
         while first + width < end:
             middle = first + width
             if value[order[middle]] < value[order[middle - 1]]:
-                _merge(value, order, first, middle, min(middle + width, end), spare)
+                _merge(value, order, first, middle, min(middle + width, end), merge_buffer)
             first += 2 * width
         width *= 2
 
 
 @inner_kernel
-def _merge(value: Slots | Floats, order: Slots, first: int, middle: int, last: int, spare: Slots) -> None:
+def _merge(value: Slots | Floats, order: Slots, first: int, middle: int, last: int, merge_buffer: Slots) -> None:
     # Two sorted runs as one.
     for at in range(first, middle):
-        spare[at - first] = order[at]
+        merge_buffer[at - first] = order[at]
     left = 0
     right = middle
     at = first
     while left < middle - first and right < last:
-        if value[order[right]] < value[spare[left]]:
+        if value[order[right]] < value[merge_buffer[left]]:
             order[at] = order[right]
             right += 1
         else:
-            order[at] = spare[left]
+            order[at] = merge_buffer[left]
             left += 1
         at += 1
     while left < middle - first:
-        order[at] = spare[left]
+        order[at] = merge_buffer[left]
         left += 1
         at += 1
 

@@ -138,5 +138,5 @@ def triangles_of(state: State, arena: Arena) -> Triangles:
 
 @inner_kernel
 def new_inversions(jellies: Jellies, arena: Arena) -> Inversions:
-    """Inversions to be filled in."""
+    """Lay out inversions for a step to fill in."""
     return Inversions(new_slots(arena, jellies.particle.shape[0]), new_flags(arena, jellies.first.shape[0]))

@@ -15,26 +15,18 @@ NO_SIDE, SEVERAL = -1, -2
 
 
 class Jellies(NamedTuple):
-    """Jellies of t triangles: g of them, with k particles in all.
+    """Jellies of t triangles: g of them, with k particles in all."""
 
-    Of triangles: group (t,) and member (t, 3) = their corners among the k. first (g,): a triangle of each jelly; start
-    (g+1,): where its particles begin; particle (k,); corner (k,): one of the 3 t corners that stands there; inner (k,):
-    whether triangles are all round it. fan (f, 4): a particle of an outline, the next one on that, and the other two
-    corners of each triangle about it but the first; those of jelly g: fan[fan_start[g]:fan_start[g + 1]]. gap (q, 4):
-    the triangle at which those about a particle of an outline begin, that particle, the one before and the next one on
-    that outline.
-    """
-
-    group: Slots
-    member: SlotRows
-    first: Slots
-    start: Slots
-    particle: Slots
-    corner: Slots
-    inner: Flags
-    fan: SlotRows
-    fan_start: Slots
-    gap: SlotRows
+    group: Slots  # (t,) of a triangle
+    member: SlotRows  # (t, 3): its corners among the k
+    first: Slots  # (g,): a triangle of each jelly
+    start: Slots  # (g + 1,): where its particles begin
+    particle: Slots  # (k,)
+    corner: Slots  # (k,): one of the 3 t corners that stands there
+    inner: Flags  # (k,): triangles are all round it
+    fan: SlotRows  # (f, 4): particle of an outline, the next, the other corners of each triangle about it but the first
+    fan_start: Slots  # fans of jelly g: fan[fan_start[g]:fan_start[g + 1]]
+    gap: SlotRows  # (q, 4): triangle where those about a particle of an outline begin, it, the one before and the next
 
 
 class TriangleScratch(NamedTuple):

@@ -32,21 +32,16 @@ CROSSINGS, OVERLAPS, COUNTS = range(3)
 
 
 class Overlaps(NamedTuple):
-    """The overlaps of a step: crossings of edges, and the pairs of shapes that overlap; there is room for more.
+    """The overlaps of a step: crossings of edges, and the pairs of shapes that overlap; there is room for more."""
 
-    Of crossings: edge (k, 2), that of the lower shape first; share (k, 2) along them; following = the next one of the
-    same pair, -1: none. Of pairs: shape (q, 2), the lower first; first = of its crossings, -1: none; separates: whether
-    they do; next_pair = of the same lower shape. first_pair = by shape.
-    """
-
-    edge: SlotRows
-    share: FloatRows
-    following: Slots
-    shape: SlotRows
-    first: Slots
-    separates: Flags
-    next_pair: Slots
-    first_pair: Slots
+    edge: SlotRows  # (k, 2) of a crossing: that of the lower shape first
+    share: FloatRows  # (k, 2): along them
+    following: Slots  # (k,): the next crossing of the same pair, -1: none
+    shape: SlotRows  # (q, 2) of a pair: the lower first
+    first: Slots  # (q,): its first crossing
+    separates: Flags  # (q,): whether they do
+    next_pair: Slots  # (q,): the next of the same lower shape
+    first_pair: Slots  # by shape
     counts: Slots
 
 

@@ -252,7 +252,7 @@ def _part(
         speed = min(speed, math.sqrt(along * along + 2.0 * (saved_a + saved_b) / reduced))
     if not speed > along:
         return
-    impulse = (speed - along) * reduced
+    impulse = (speed - along) * reduced  # (31)
     _push(s, nx, ny, impulse * of_a, outline, particles, flags)
     _push(t, -nx, -ny, impulse * of_b, outline, particles, flags)
     _spend(t, _spend(s, 0.5 * reduced * (speed * speed - along * along), outline, particles), outline, particles)

@@ -34,7 +34,7 @@ from sandbox.physics.geometry.rigid import (
     with_turn,
 )
 from sandbox.physics.geometry.segment import doubled_area_of
-from sandbox.physics.jit import inlined_kernel, inner_kernel, put
+from sandbox.physics.jit import inlined_kernel, inner_kernel, set_field
 from sandbox.physics.state import State
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.topology.sorting import list_by_key
@@ -44,7 +44,7 @@ from sandbox.physics.untangling.jellies import Jellies
 # A step leaves a triangle at least this share of the area wanted, or of the area that it has, if that is less. Higher
 # stiffens what is merely squeezed, lower lets triangles be pressed flat in fewer steps.
 LEAST_AREA = 0.05
-LEAST_SHARE = 0.5
+LEAST_AREA_KEPT = 0.5
 # Below this share of the area wanted a triangle keeps what it has, but for rounding: halved in each step under a load,
 # its area would be rounding within a second, and then its sign is luck.
 FLATTEST = 0.01
@@ -65,29 +65,22 @@ MASS, X, Y, U, V, INERTIA, SPIN, COUNT = range(8)
 
 
 class ClampedTriangles(NamedTuple):
-    """Triangles of areas and the rows that they join, particles of a world or rows of a system.
+    """Triangles of areas and the rows that they join, particles of a world or rows of a system."""
 
-    corner (k, 3): rows, of gaps too, each after a triangle beside it; gap (k,): which those are; group (k,): the jelly;
-    constraint (k,): of the triangle; those of constraint t: corner[start[t]:start[t + 1]]. rest (t, 2) [m^2]: area
-    wanted and of the form. By row (n,): position [m], velocity [m/s], which is clamped, mass [kg], inverse_mass [1/kg],
-    collides: of corners, 0 of all others. By jelly: inverted = let go. Scratch: label = what a row moves as one with,
-    fixed: what cannot move, sums.
-    """
-
-    corner: SlotRows
-    gap: Flags
-    group: Slots
-    constraint: Slots
-    start: Slots
-    rest: FloatRows
-    position: FloatRows
-    velocity: FloatRows
-    mass: Floats
-    inverse_mass: Floats
-    collides: Slots
-    inverted: Flags
-    label: Slots
-    fixed: Flags
+    corner: SlotRows  # (k, 3): rows, of gaps too, each after a triangle beside it
+    gap: Flags  # (k,): which are gaps
+    group: Slots  # (k,): the jelly
+    constraint: Slots  # (k,): of the triangle
+    start: Slots  # triangles of constraint t: corner[start[t]:start[t + 1]]
+    rest: FloatRows  # [m^2] (t, 2): area wanted and of the form
+    position: FloatRows  # [m] by row (n,), as all down to collides
+    velocity: FloatRows  # [m/s]: is clamped
+    mass: Floats  # [kg]
+    inverse_mass: Floats  # [1/kg]
+    collides: Slots  # of corners, 0 of all others
+    inverted: Flags  # by jelly: let go
+    label: Slots  # scratch, as the two below: what a row moves as one with
+    fixed: Flags  # what cannot move
     sums: FloatRows
     terrain: Terrain
 
@@ -130,7 +123,7 @@ def _least_area(k: int, triangles: ClampedTriangles, share: float) -> float:
             return 0.0
     if now < FLATTEST * wanted:
         return FLAT_SHARE * now
-    return share * min(LEAST_AREA * wanted, LEAST_SHARE * now)
+    return share * min(LEAST_AREA * wanted, LEAST_AREA_KEPT * now)
 
 
 @inner_kernel
@@ -401,7 +394,7 @@ def _hold_areas(
 
 @inner_kernel
 def clamp_triangles(begin: int, end: int, low: int, high: int, triangles: ClampedTriangles, h: float) -> int:
-    """Let no triangle of constraints begin..end turn over in the coming h [s]: AS_IT_WAS, SLOWED or JOINED.
+    """Clamp velocities so that no triangle of constraints begin..end turns over in h [s]: AS_IT_WAS, SLOWED or JOINED.
 
     low, high: the rows that triangles join lie there, but for pinned ones. Where anything is changed, none of them
     crosses terrain.
@@ -438,7 +431,7 @@ class WorldTriangles(NamedTuple):
 
 @inner_kernel
 def clamp_world(triangles: WorldTriangles, matches: bool, h: float) -> None:
-    """Let the velocities of a world turn no triangle over in the coming h [s]; terrain's clamp was before.
+    """Clamp the velocities of a world so that they turn no triangle over in h [s]; terrain's clamp was before.
 
     matches: whether the solver draws inverted jellies to their form, and has held triangles already.
     """
@@ -463,14 +456,14 @@ def lay_out_triangles(
     count, gaps = corners.shape[0], jellies.gap.shape[0]
     corner, gap = new_slot_rows(arena, count + gaps, 3), new_flags(arena, count + gaps)
     group, owned, start = new_slots(arena, count + gaps), new_slots(arena, count + gaps), new_slots(arena, rests + 1)
-    put(out, "corner", corner)
-    put(out, "gap", gap)
-    put(out, "group", group)
-    put(out, "constraint", owned)
-    put(out, "start", start)
-    put(out, "label", new_slots(arena, rows))
-    put(out, "fixed", new_flags(arena, rows))
-    put(out, "sums", new_float_rows(arena, rows, COUNT + 1))
+    set_field(out, "corner", corner)
+    set_field(out, "gap", gap)
+    set_field(out, "group", group)
+    set_field(out, "constraint", owned)
+    set_field(out, "start", start)
+    set_field(out, "label", new_slots(arena, rows))
+    set_field(out, "fixed", new_flags(arena, rows))
+    set_field(out, "sums", new_float_rows(arena, rows, COUNT + 1))
     scratch = mark(arena)
     beside, listed, first = new_slots(arena, gaps), new_slots(arena, gaps), new_slots(arena, count + 1)
     if is_full(arena):
@@ -498,8 +491,8 @@ def lay_out_triangles(
 def lay_out_collides(corners: SlotRows, state: State, row: Slots, arena: Arena, out: ClampedTriangles) -> None:
     """Lay out what the rows of triangles (t, 3) collide with, of particles row (n,); all others with nothing."""
     collides = new_slots(arena, row.shape[0])
-    put(out, "collides", collides)
-    put(out, "terrain", state.terrain)
+    set_field(out, "collides", collides)
+    set_field(out, "terrain", state.terrain)
     if not is_full(arena):
         for t in range(corners.shape[0]):
             for c in range(3):
@@ -510,12 +503,12 @@ def lay_out_collides(corners: SlotRows, state: State, row: Slots, arena: Arena, 
 def lay_out_world_triangles(state: State, arena: Arena, out: WorldTriangles) -> None:
     """Lay out the triangles of a world, as its topology is now."""
     particles, clamped = state.owner.shape[0], out.clamped
-    put(out, "of_world", triangles_of(state, arena))
+    set_field(out, "of_world", triangles_of(state, arena))
     if is_full(arena):
         return
     found = out.of_world
-    put(out, "found", new_inversions(found.jellies, arena))
-    put(out, "marked", new_flags(arena, particles))
+    set_field(out, "found", new_inversions(found.jellies, arena))
+    set_field(out, "marked", new_flags(arena, particles))
     lay_out_triangles(
         found.constraint, found.corners, found.jellies, state.constraint_rest.shape[0], particles, arena, clamped
     )
@@ -525,9 +518,9 @@ def lay_out_world_triangles(state: State, arena: Arena, out: WorldTriangles) -> 
     for p in range(particles):
         every[p] = p
     lay_out_collides(found.corners, state, every, arena, clamped)
-    put(clamped, "rest", state.constraint_rest)
-    put(clamped, "position", state.position)
-    put(clamped, "velocity", state.velocity)
-    put(clamped, "mass", state.mass)
-    put(clamped, "inverse_mass", state.inverse_mass)
-    put(clamped, "inverted", out.found.is_inverted)
+    set_field(clamped, "rest", state.constraint_rest)
+    set_field(clamped, "position", state.position)
+    set_field(clamped, "velocity", state.velocity)
+    set_field(clamped, "mass", state.mass)
+    set_field(clamped, "inverse_mass", state.inverse_mass)
+    set_field(clamped, "inverted", out.found.is_inverted)

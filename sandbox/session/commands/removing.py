@@ -8,7 +8,7 @@ from sandbox.level.format.level_error import suggestion
 from sandbox.level.format.quantities import Name
 from sandbox.physics.arrays import Slots
 from sandbox.physics.changing.removing import remove_particles
-from sandbox.physics.pipeline.making import block_of
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot

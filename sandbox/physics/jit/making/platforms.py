@@ -7,7 +7,7 @@ from sandbox.physics.jit.library import WIDE, library_name
 
 @dataclass(frozen=True)
 class Platform:
-    """One of them.
+    """A platform that libraries are compiled for.
 
     name: of its library, before the suffix. target, processor: for zig. options: for its linker. entries: names of the
     only kernels that are called there; empty: all.

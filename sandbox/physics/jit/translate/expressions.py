@@ -319,11 +319,11 @@ class Expressions:
             dtype, dimensions = _LYING[known]
             made = Array(dtype, dimensions)
             return Code(f"lying<{made.cpp}>({', '.join(self.code(each).text for each in node.args)})", made)
-        if value is interpreted.contents:
+        if value is interpreted.unpack:
             bundle = self.code(node.args[0])
             if not isinstance(bundle.type, BundleType):
                 raise self.refuse(node, f"{ast.unparse(node.args[0])} is no bundle")
-            return Code(f"contents({bundle.text})", bundle.type.items, stays=True)
+            return Code(f"unpack({bundle.text})", bundle.type.items, stays=True)
         raise self.refuse(node, f"{ast.unparse(node.func)} is no kernel")
 
     def _kernel(self, node: ast.Call, kernel: Kernel) -> Code:

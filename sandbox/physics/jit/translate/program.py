@@ -157,7 +157,7 @@ class Translation:
     # The whole text
 
     def text(self) -> str:
-        """All of it: kernels, and their entries."""
+        """The whole program in C++: kernels, and their entries."""
         return "\n\n".join([self.kernels_text(), *map(self._entry_text, self.entries)]) + "\n"
 
     def kernels_text(self) -> str:

@@ -56,8 +56,8 @@ template <class T, int dimensions> struct Array {
 
 // What a bundle is to Python: an array of one record, which lies at its data.
 template <class T> struct Bundle : Array<T, 1> {};
-template <class T> const T &contents(const Bundle<T> &bundle) { return *(const T *)bundle.data; }
-template <class T> void put(const T &place, const T &value) { const_cast<T &>(place) = value; }
+template <class T> const T &unpack(const Bundle<T> &bundle) { return *(const T *)bundle.data; }
+template <class T> void set_field(const T &place, const T &value) { const_cast<T &>(place) = value; }
 
 // An array in the memory of another, from an item on, of so many rows.
 template <class A, class... Sizes> static A lying(const Array<int64_t, 1> &memory, int64_t first, Sizes... sizes) {

@@ -183,7 +183,7 @@ class Body(Expressions):
     def _put(self, node: ast.expr) -> str | None:
         if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
             return None
-        if meaning(self.module, node.func.id) is not interpreted.put:
+        if meaning(self.module, node.func.id) is not interpreted.set_field:
             return None
         place, name, value = node.args
         whole, given = self.code(place), self.code(value)
@@ -192,7 +192,7 @@ class Body(Expressions):
         kind = whole.type.field(name.value) if isinstance(whole.type, Struct) else None
         if kind != given.type:
             raise self.refuse(node, f"{ast.unparse(place)}.{name.value} is not {given.type.cpp}")
-        return f"put({whole.within(PRIMARY)}.{spelled(name.value)}, {given.text})"
+        return f"set_field({whole.within(PRIMARY)}.{spelled(name.value)}, {given.text})"
 
     def _augmented(self, statement: ast.AugAssign) -> list[str]:
         place = statement.target
@@ -274,7 +274,7 @@ class Body(Expressions):
                 raise self.refuse(statement, f"{ast.unparse(target)} is {place.type.cpp}, given {value.type.cpp}")
             return f"{place.text} = {value.text};"
         if not isinstance(target, ast.Name):
-            raise self.refuse(statement, "a field of a named tuple is set by put")
+            raise self.refuse(statement, "a field of a named tuple is set by set_field")
         name, kind = spelled(target.id), self.types[target.id]
         if target.id not in self.places.first.get(id(statement), ()):
             return f"{name} = {value.text};"
@@ -354,7 +354,7 @@ class Body(Expressions):
         is_shape = (
             isinstance(node, ast.Subscript) and isinstance(node.value, ast.Attribute) and node.value.attr == "shape"
         )
-        puts = any(isinstance(each, ast.Name) and each.id == "put" for each in ast.walk(statement))
+        puts = any(isinstance(each, ast.Name) and each.id == "set_field" for each in ast.walk(statement))
         return (
             is_shape
             and not puts

@@ -63,7 +63,7 @@ def find_rows(contacts: Contacts, terms: ContactConstraints, count: int) -> int:
         at.bound[c] = 0.0
         normal = terms.normal[c]
         jn = contacts.impulse[c, 0]
-        if normal > 0.0 and jn * (1.0 - CONTACT_SOFTNESS) * normal - at.u[c, 0] > 0.0:
+        if normal > 0.0 and jn * (1.0 - CONTACT_SOFTNESS) * normal - at.u[c, 0] > 0.0:  # (33)
             at.state[c, 0] = FREE
             at.row[2 * c] = rows
             at.of_row[rows] = 2 * c

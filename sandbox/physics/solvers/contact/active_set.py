@@ -17,35 +17,29 @@ SMALLEST_PIVOT = 1e-12
 class ActiveSet(NamedTuple):
     """Scratch of the exact solve of one island's contacts that carry and stick.
 
-    Nodes are the blocks of the Delassus operator, then particles. By node: its contacts as a list: the place head, -1:
-    none, of the first, from which following leads to the next; rank in a walk. A place is ENDS contact + end. queue:
-    nodes by rank. By contact: slow: all that it touches is, and firm. order (k,): slow contacts along the walk. By
-    contact: row (2 k,) of its normal and tangent, -1: at its bound; state (k, 2) as in active_rows.py; u [m/s] (k, 2);
-    bound, centre [N s]: friction that it goes to, and that from which sticking is soft; best [N s] (k, 2): the impulses
-    that miss least. By row: of_row = 2 contact + axis, the matrix [1/kg] from start on, its first column, pivot, rhs.
-    answer, turned [m/s]: velocities by particle that an impulse of 1 gives, else 0.
+    Nodes are the blocks of the Delassus operator, then particles. A place is ENDS contact + end.
     """
 
-    head: Slots
-    following: Slots
-    rank: Slots
-    queue: Slots
-    slow: Flags
-    order: Slots
-    row: Slots
-    state: SlotRows
-    u: FloatRows
-    bound: Floats
-    centre: Floats
-    best: FloatRows
-    of_row: Slots
-    start: Slots
-    first: Slots
+    head: Slots  # by node: place of its first contact, -1: none
+    following: Slots  # by place: the next one of the node
+    rank: Slots  # by node: in a walk
+    queue: Slots  # nodes by rank
+    slow: Flags  # by contact: all that it touches is slow, and firm
+    order: Slots  # (k,): slow contacts along the walk
+    row: Slots  # (2 k,): row of a contact's normal and tangent, -1: at its bound
+    state: SlotRows  # (k, 2): see active_rows.py
+    u: FloatRows  # [m/s] (k, 2)
+    bound: Floats  # [N s] (k,): friction that a contact goes to
+    centre: Floats  # [N s] (k,): friction from which sticking is soft
+    best: FloatRows  # [N s] (k, 2): the impulses that miss least
+    of_row: Slots  # by row: 2 contact + axis
+    start: Slots  # by row: where it begins in matrix
+    first: Slots  # by row: its first column
     pivot: Floats
     rhs: Floats
-    matrix: Floats
-    answer: FloatRows
-    turned: Floats
+    matrix: Floats  # [1/kg]
+    answer: FloatRows  # [m/s] by particle: velocities by a unit impulse, else 0
+    turned: Floats  # [m/s] by particle: the same of surfaces
 
 
 @inner_kernel

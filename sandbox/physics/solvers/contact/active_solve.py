@@ -129,6 +129,7 @@ def _step(
             c = at.of_row[i] // 2
             un, ut = velocity_of(contacts, c, velocity, delta_v, terms.surface)
             if at.of_row[i] % 2 == 0:
+                # (33)
                 at.rhs[i] = -(un + terms.bias[c] + CONTACT_SOFTNESS * terms.normal[c] * contacts.impulse[c, 0])
             else:
                 at.rhs[i] = -(ut + STICK_SOFTNESS * terms.tangent[c] * (contacts.impulse[c, 1] - at.centre[c]))

@@ -91,7 +91,7 @@ def _solve_pass(
                 continue
             old = terms.search_direction[c, 0]
             lacks = wanted - approach_of(contacts, c, velocity, delta_v)
-            j = max(0.0, old + lacks / terms.normal[c]) - old
+            j = max(0.0, old + lacks / terms.normal[c]) - old  # (32)
             if j != 0.0:
                 terms.search_direction[c, 0] += j
                 push_contact(contacts, c, j, 0.0, terms.surface, delta_v, inverse_mass, delassus)
@@ -121,7 +121,7 @@ def _begins_with_passes(contacts: Contacts, terms: ContactConstraints, velocity:
 
 
 @inner_kernel
-def pass_on(
+def propagate_impacts(
     contacts: Contacts, terms: ContactConstraints, velocity: FloatRows, delta_v: FloatRows, inverse_mass: Floats,
     delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
@@ -161,14 +161,14 @@ def pass_on(
 
 
 @inner_kernel
-def pass_on_all(
+def propagate_all_impacts(
     contacts: Contacts, terms: ContactConstraints, order: ContactOrder, velocity: FloatRows, delta_v: FloatRows,
     inverse_mass: Floats, delassus: Delassus, h: float,
 ) -> None:  # fmt: skip
-    """The same of every island by itself."""
+    """`propagate_impacts` of every island by itself."""
     for i in range(order.islands[0]):
         of_island, its_terms = _of_island(i, contacts, terms, order)
-        pass_on(of_island, its_terms, velocity, delta_v, inverse_mass, delassus, h)
+        propagate_impacts(of_island, its_terms, velocity, delta_v, inverse_mass, delassus, h)
 
 
 @inner_kernel
@@ -196,7 +196,7 @@ def sweep_masses(
     load_responses(contacts, terms, state.inverse_mass, delassus)
     for i in range(order.islands[0]):
         of_island, its_terms = _of_island(i, contacts, terms, order)
-        pass_on(of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, h)
+        propagate_impacts(of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, h)
         solve_contacts(
             of_island, its_terms, state.velocity, delta_v, state.inverse_mass, delassus, sweeps, sweeps, 0.0, 1.0, True
         )  # fmt: skip

@@ -112,7 +112,7 @@ def go_on(
     contacts: Contacts, terms: ContactConstraints, delta_v: FloatRows, inverse_mass: Floats, delassus: Delassus,
     ratio: float,
 ) -> None:  # fmt: skip
-    """Go on in the direction of the sweeps before: by so much of it, then the change of the last one is added to it."""
+    """Move impulses along the search direction times a ratio, and add the last sweep's change to that direction."""
     # J += ratio p, clamped;  p = ratio p + what the sweep has changed.
     go_on_with_joints(delassus.joints, delta_v, ratio)
     for c in range(contacts.particle.shape[0]):

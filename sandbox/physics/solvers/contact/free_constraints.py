@@ -52,58 +52,45 @@ class FreeContactScratch(NamedTuple):
     are solved side by side are sorted by level, one above the highest before it at the same particles: what lies in a
     level does not wait for each other's velocities, which makes an iteration twice as fast.
 
-    By contact as islands have them: place (k, 2) of its particle and of what it pushes; level, way (k,). As
-    constraints: constraint (k, COLUMNS); end (k, 2) = their places; contact (k,); at (k + 1,): scratch, where each
-    level goes on. By island: begin (g + 1,) = its first place; steps, hardness (g,); alone (g,) = whether nothing is
-    solved beside it; allowed [J] (g,) = the energy that it may end with; beside (g,) = the islands that are solved side
-    by side. By place: particle, weight [1/kg], turning [1/kg] = the weight of its surface, motion (m, 8), see the
-    columns, gain [m/s] (m, 2) = what forces add to the velocity in the step, highest = level so far; turned [s]: when
-    in a small step it has met an edge that rises, 0: it has not; onto: that constraint; what cannot move has a place
-    for each contact. local (n,): the place of a particle, -1: none. ahead [m] (n, 2): how much further than h v' each
-    particle has gone in the step. There is room for more.
-
-    Of impacts (impacts.py), by place: added [m/s] (m, 2) = what has been added in this small step; stamp, since: the
-    pass that it was hit in, and when [s]; first [s]: when its first hit of a pass is. By hit: hit = the constraint;
-    pushed, across [N s]; met [s] = when; speed, slip, wanted [m/s]: before it along and across, and after it along;
-    last_across [N s]: across before the last friction; last [N s]: what pushed for that.
+    There is room for more contacts. What cannot move has a place for each contact.
     """
 
-    place: SlotRows
-    level: Slots
+    place: SlotRows  # (k, 2): of a contact's particle and of what it pushes
+    level: Slots  # (k,): of a contact, as way
     way: Floats
-    constraint: FloatRows
-    end: SlotRows
-    contact: Slots
-    at: Slots
-    begin: Slots
-    steps: Slots
-    hardness: Floats
-    alone: Flags
-    allowed: Floats
-    beside: Slots
-    particle: Slots
-    weight: Floats
-    turning: Floats
-    motion: FloatRows
-    gain: FloatRows
-    highest: Slots
-    local: Slots
-    ahead: FloatRows
-    added: FloatRows
-    stamp: Slots
-    since: Floats
-    hit: Slots
-    pushed: Floats
-    across: Floats
-    met: Floats
-    speed: Floats
-    wanted: Floats
-    slip: Floats
-    last_across: Floats
-    last: Floats
-    first: Floats
-    turned: Floats
-    onto: Slots
+    constraint: FloatRows  # (k, COLUMNS): see the columns
+    end: SlotRows  # (k, 2): places of a constraint
+    contact: Slots  # (k,): that of a constraint
+    at: Slots  # (k + 1,): scratch, where each level goes on
+    begin: Slots  # (g + 1,): first place of an island
+    steps: Slots  # (g,): small steps of an island
+    hardness: Floats  # (g,)
+    alone: Flags  # (g,): nothing is solved beside the island
+    allowed: Floats  # [J] (g,): energy that the island may end with
+    beside: Slots  # (g,): islands that are solved side by side
+    particle: Slots  # (m,): that of a place
+    weight: Floats  # [1/kg] (m,)
+    turning: Floats  # [1/kg] (m,): the weight of its surface
+    motion: FloatRows  # (m, 8): see the columns of a place
+    gain: FloatRows  # [m/s] (m, 2): what forces add to the velocity in the step
+    highest: Slots  # (m,): level so far
+    local: Slots  # (n,): the place of a particle, -1: none
+    ahead: FloatRows  # [m] (n, 2): how much further than h v' a particle has gone in the step
+    added: FloatRows  # [m/s] (m, 2): what impacts (impacts.py) have added in this small step
+    stamp: Slots  # (m,): the pass that it was hit in
+    since: Floats  # [s] (m,): when that was
+    hit: Slots  # the constraint of a hit; by hit, as all down to last
+    pushed: Floats  # [N s]: impulse along
+    across: Floats  # [N s]: impulse across
+    met: Floats  # [s]: when
+    speed: Floats  # [m/s]: along, before it
+    wanted: Floats  # [m/s]: along, after it
+    slip: Floats  # [m/s]: across, before it
+    last_across: Floats  # [N s]: across before the last friction
+    last: Floats  # [N s]: what pushed for that
+    first: Floats  # [s] (m,): when the first hit of a pass is
+    turned: Floats  # [s] (m,): when in a small step it met an edge that rises, 0: it has not
+    onto: Slots  # (m,): the constraint with that edge
 
 
 @inner_kernel

@@ -169,7 +169,7 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
         most = row[i, FRICTION] * new
         last = row[i, ACROSS]
         slip = nx * uy - ny * ux - arm * (motion[p, SURFACE] + motion[q, SURFACE])
-        across = min(most, max(-most, last - slip * row[i, MASS_ACROSS]))
+        across = min(most, max(-most, last - slip * row[i, MASS_ACROSS]))  # (28)
         row[i, ALONG] = new
         row[i, ACROSS] = across
         apply(work, i, nx, ny, new - old, across - last, arm, late, not pushes and new > 0.0)
@@ -354,7 +354,7 @@ def solve_free_contacts(
         work.local[p] = -1
         work.ahead[p, 0] = 0.0
         work.ahead[p, 1] = 0.0
-        if colliders.inverse_mass[p] > 0.0 and not islands.is_bound[islands.label[p]]:
+        if colliders.inverse_mass[p] > 0.0 and not islands.is_coupled[islands.label[p]]:
             work.ahead[p, 0] = early * (start[p, 0] - velocity[p, 0])
             work.ahead[p, 1] = early * (start[p, 1] - velocity[p, 1])
     plan_islands(contacts, islands, island_count, colliders, start, spin, h, work)

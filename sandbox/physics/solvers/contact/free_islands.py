@@ -1,6 +1,7 @@
 """Islands of contacts: contacts that movable particles connect.
 
-An island with a particle that a spring or a constraint holds belongs to the solver; the other islands are free.
+The contacts of an island with a particle that a spring or a constraint holds are coupled: the solver solves them with
+springs. Contacts of other islands are free.
 """
 
 from typing import NamedTuple
@@ -15,14 +16,15 @@ from sandbox.physics.jit import inner_kernel
 class Islands(NamedTuple):
     """Islands of a step's contacts, filled in by each step; there is room for more contacts.
 
-    Of particles: label (n,) = the first of its island; is_bound (n,), by label. Of contacts: label (k,), bound (k,).
-    Free contacts, island by island: contact (k,), those of the g-th at first[g]:first[g + 1]. at (n + 1,): scratch.
+    Of particles: label (n,) = the first of its island; is_coupled (n,), by label. Of contacts (k,): contact_label,
+    coupled. Free contacts, island by island: contact (k,), those of the g-th at first[g]:first[g + 1]. at (n + 1,):
+    scratch.
     """
 
     label: Slots
-    is_bound: Flags
+    is_coupled: Flags
     contact_label: Slots
-    bound: Flags
+    coupled: Flags
     contact: Slots
     first: Slots
     at: Slots
@@ -47,29 +49,29 @@ def _join(contacts: Contacts, count: int, inverse_mass: Floats, label: Slots) ->
 
 @inner_kernel
 def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, attached: Flags, islands: Islands) -> int:
-    """The islands of the first `count` contacts; how many contacts are bound.
+    """Find the islands of the first `count` contacts; return how many contacts are coupled.
 
     attached (n,): particles that a spring or a constraint holds.
     """
     label = islands.label
     _join(contacts, count, inverse_mass, label)
     for p in range(label.shape[0]):
-        islands.is_bound[p] = False
+        islands.is_coupled[p] = False
     for p in range(label.shape[0]):
         if attached[p] and inverse_mass[p] > 0.0:
-            islands.is_bound[label[p]] = True
-    bound = 0
+            islands.is_coupled[label[p]] = True
+    coupled = 0
     for c in range(count):
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
             if p >= 0 and inverse_mass[p] > 0.0:
                 # All that move have the same.
                 islands.contact_label[c] = label[p]
-                islands.bound[c] = islands.is_bound[label[p]]
+                islands.coupled[c] = islands.is_coupled[label[p]]
                 break
-        if islands.bound[c]:
-            bound += 1
-    return bound
+        if islands.coupled[c]:
+            coupled += 1
+    return coupled
 
 
 @inner_kernel
@@ -79,7 +81,7 @@ def sort_free_contacts(count: int, islands: Islands) -> int:
     for p in range(at.shape[0]):
         at[p] = 0
     for c in range(count):
-        if not islands.bound[c]:
+        if not islands.coupled[c]:
             at[islands.contact_label[c] + 1] += 1
     found = 0
     total = 0
@@ -92,7 +94,7 @@ def sort_free_contacts(count: int, islands: Islands) -> int:
         at[p + 1] = total
     islands.first[found] = total
     for c in range(count):
-        if not islands.bound[c]:
+        if not islands.coupled[c]:
             label = islands.contact_label[c]
             islands.contact[at[label]] = c
             at[label] += 1

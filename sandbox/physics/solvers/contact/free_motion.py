@@ -133,7 +133,7 @@ def apply(
     surface_p, surface_q = motion[p, SURFACE], motion[q, SURFACE]
     roll_p, roll_q = row[i, ROLL_P], row[i, ROLL_Q]
     turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
-    surface_p -= jt * (arm * row[i, TURN_P])
+    surface_p -= jt * (arm * row[i, TURN_P])  # (35)
     surface_q -= jt * (arm * row[i, TURN_Q])
     if rolls and row[i, ROLLING] > 0.0:
         most = row[i, ROLLING] * row[i, ALONG]

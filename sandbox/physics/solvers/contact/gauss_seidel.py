@@ -50,29 +50,23 @@ class Delassus(NamedTuple):
 
 
 class ContactConstraints(NamedTuple):
-    """By contact: bias [m/s] that it adds to its velocity, and J W J^T [1/kg]: normal, coupling, tangent.
+    """What sweeps keep by contact, with room for more contacts; surface is by particle."""
 
-    last_impulse, search_direction [N s] (k, 2): its impulse before a sweep, and where the sweeps so far have led;
-    resisted [N s]: that of its rolling resistance, at the smaller radius. There may be room for more contacts. By
-    particle: surface [m/s] (n,) = its spin times its radius, which sweeps change. By contact again: calm = 1, or 0
-    where what it touches is fast or not rigid. active: what active_solve.py needs.
-    """
-
-    bias: Floats
-    normal: Floats
-    coupling: Floats
-    tangent: Floats
-    last_impulse: FloatRows
-    search_direction: FloatRows
-    resisted: Floats
-    surface: Floats
-    calm: Floats
-    active: ActiveSet
+    bias: Floats  # [m/s]: added to its velocity
+    normal: Floats  # J W J^T [1/kg]: along the normal,
+    coupling: Floats  # between both,
+    tangent: Floats  # and along the tangent
+    last_impulse: FloatRows  # [N s] (k, 2): before a sweep
+    search_direction: FloatRows  # [N s] (k, 2): where the sweeps so far have led
+    resisted: Floats  # [N s]: of its rolling resistance, at the smaller radius
+    surface: Floats  # [m/s] (n,): spin times radius, which sweeps change
+    calm: Floats  # 1, or 0 where what it touches is fast or not rigid
+    active: ActiveSet  # see active_solve.py
 
 
 @inner_kernel
 def new_contact_constraints(count: int, particles: int, arena: Arena) -> ContactConstraints:
-    """Terms with room for a number of contacts, of so many particles."""
+    """Lay out constraints for a number of contacts, of so many particles."""
     return ContactConstraints(
         new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
         new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_floats(arena, count),
@@ -82,7 +76,7 @@ def new_contact_constraints(count: int, particles: int, arena: Arena) -> Contact
 
 @inner_kernel
 def terms_between(terms: ContactConstraints, first: int, last: int) -> ContactConstraints:
-    """The terms of some contacts."""
+    """The constraints of the contacts first..last, in the same arrays."""
     return ContactConstraints(
         terms.bias[first:last], terms.normal[first:last], terms.coupling[first:last], terms.tangent[first:last],
         terms.last_impulse[first:last], terms.search_direction[first:last], terms.resisted[first:last], terms.surface,
@@ -92,14 +86,14 @@ def terms_between(terms: ContactConstraints, first: int, last: int) -> ContactCo
 
 @inner_kernel
 def load_surfaces(terms: ContactConstraints, spin: Floats, radius: Floats) -> None:
-    """Let surfaces move as their particles turn now."""
+    """Set the speeds of surfaces from the spins of their particles."""
     for p in range(terms.surface.shape[0]):
         terms.surface[p] = spin[p] * radius[p]
 
 
 @inner_kernel
 def store_spins(terms: ContactConstraints, spin: Floats, radius: Floats) -> None:
-    """Let particles turn as sweeps have left their surfaces."""
+    """Set the spins of particles from the speeds that sweeps left their surfaces."""
     for p in range(terms.surface.shape[0]):
         spin[p] = spin_of(terms.surface[p], spin[p], radius[p])
 
@@ -237,7 +231,7 @@ def push_contact(
 def turn_surfaces(contacts: Contacts, c: int, jp: float, jq: float, surface: Floats) -> None:
     """Push the surfaces of what rolls: s += 2 / m J."""
     if contacts.turning[c, 0] > 0.0:
-        surface[contacts.particle[c]] += jp * contacts.turning[c, 0]
+        surface[contacts.particle[c]] += jp * contacts.turning[c, 0]  # (35)
     if contacts.turning[c, 1] > 0.0:
         surface[contacts.end_a[c]] += jq * contacts.turning[c, 1]
 
@@ -336,7 +330,7 @@ def load_biases(contacts: Contacts, terms: ContactConstraints, h: float) -> None
         terms.search_direction[c, 0] = 0.0
         terms.search_direction[c, 1] = 0.0
         gap = contacts.gap[c]
-        terms.bias[c] = gap / h if gap >= 0.0 else max(PENETRATION_SHARE * gap / h, -FASTEST_PUSH)
+        terms.bias[c] = gap / h if gap >= 0.0 else max(PENETRATION_SHARE * gap / h, -FASTEST_PUSH)  # (26)
         if contacts.bounce[c] >= 0.0:
             terms.bias[c] = -contacts.bounce[c]
 
@@ -383,7 +377,7 @@ def sweep(
         ny = contacts.normal[c, 1]
         soft = CONTACT_SOFTNESS * normal
         old = contacts.impulse[c, 0]
-        new = max(0.0, implicit_update(old, nx * ux + ny * uy + terms.bias[c], normal, soft))
+        new = max(0.0, implicit_update(old, nx * ux + ny * uy + terms.bias[c], normal, soft))  # (27)
         jn = new - old
         contacts.impulse[c, 0] = new
         jt = 0.0
@@ -395,7 +389,7 @@ def sweep(
                 slip += couple_velocity(contacts, c, velocity, delta_v)
             most = contacts.friction[c] * new
             last = contacts.impulse[c, 1]
-            jt = min(most, max(-most, last - slip / terms.tangent[c])) - last
+            jt = min(most, max(-most, last - slip / terms.tangent[c])) - last  # (28)
             contacts.impulse[c, 1] = last + jt
         if jn != 0.0 or jt != 0.0:
             push_contact(contacts, c, jn, jt, terms.surface, delta_v, inverse_mass, delassus)

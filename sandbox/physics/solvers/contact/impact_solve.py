@@ -31,14 +31,14 @@ from sandbox.physics.solvers.contact.free_constraints import (
 from sandbox.physics.solvers.contact.free_motion import apply, approach, slip
 
 # Sweeps over the hits of a pass, where they are more than two: less leaves a symmetric hit of three askew. And over
-# their friction, and at most over more hits than a few.
+# their friction, and at most over more than EXACT_HITS hits.
 SWEEPS = 100
 FRICTION_SWEEPS = 16
-FEW = 8
+EXACT_HITS = 8
 CROWD_SWEEPS = 20
 # And at least, however little work is left.
 LEAST_SWEEPS = 4
-# Sweeps end where no hit changed its velocity by more [m/s]; of more hits than a few, where none did by more.
+# Sweeps end where no hit changed its velocity by more [m/s]; of more than EXACT_HITS hits, where none did by more.
 SETTLED = 1e-8
 CROWD_SETTLED = 1e-3
 # Two hits whose answers to each other come nearer than this to being the same are one.
@@ -55,7 +55,7 @@ def _push_hit(work: FreeContactScratch, k: int, jn: float, jt: float) -> None:
 
 
 @inner_kernel
-def _answer_between(work: FreeContactScratch, i: int, j: int) -> float:
+def _coupling(work: FreeContactScratch, i: int, j: int) -> float:
     # What an impulse of 1 along the normal of one contact does to the velocity of another.
     row = work.constraint
     p, q = work.end[i, 0], work.end[i, 1]
@@ -74,13 +74,13 @@ def _answer_between(work: FreeContactScratch, i: int, j: int) -> float:
 
 @inner_kernel
 def _solve_two(work: FreeContactScratch) -> None:
-    # 0 <= J, W J >= r, one of both; r: what each lacks.
+    # 0 <= J, W J >= r, one of both; r: what each lacks.  (32)
     row = work.constraint
     i, j = work.hit[0], work.hit[1]
     one = max(0.0, work.wanted[0] - work.speed[0])
     two = max(0.0, work.wanted[1] - work.speed[1])
     a, b = 1.0 / row[i, MASS], 1.0 / row[j, MASS]
-    c = _answer_between(work, i, j)
+    c = _coupling(work, i, j)
     jn, jm = one / a, two / b
     if c != 0.0:
         inside = a * b - c * c
@@ -118,7 +118,7 @@ def _restrain(work: FreeContactScratch, hits: int) -> None:
 def _solve_many(work: FreeContactScratch, hits: int, sweeps: int) -> int:
     # The same of many, in sweeps; how many there were.
     row = work.constraint
-    settled = SETTLED if hits <= FEW else CROWD_SETTLED
+    settled = SETTLED if hits <= EXACT_HITS else CROWD_SETTLED
     done = sweeps
     largest = 0.0
     for sweep in range(sweeps):
@@ -129,7 +129,7 @@ def _solve_many(work: FreeContactScratch, hits: int, sweeps: int) -> int:
             if abs(lacks) <= settled:
                 continue
             old = work.pushed[k]
-            j = max(0.0, old + lacks * row[i, MASS]) - old
+            j = max(0.0, old + lacks * row[i, MASS]) - old  # (32)
             if j != 0.0:
                 _push_hit(work, k, j, 0.0)
                 largest = max(largest, abs(j) / row[i, MASS])
@@ -145,7 +145,7 @@ def _solve_many(work: FreeContactScratch, hits: int, sweeps: int) -> int:
 def _rub(work: FreeContactScratch, hits: int) -> int:
     # Friction of what `last` of the hits pushes, beyond what there is: sweeps that only take energy.
     row = work.constraint
-    settled = SETTLED if hits <= FEW else CROWD_SETTLED
+    settled = SETTLED if hits <= EXACT_HITS else CROWD_SETTLED
     for k in range(hits):
         work.last_across[k] = work.across[k]
     for sweep in range(FRICTION_SWEEPS):
@@ -171,7 +171,7 @@ def _solve_rubbing(work: FreeContactScratch, hits: int, sweeps: int) -> int:
     # Several hits with friction: first all that approaches is stopped, then what pushed it gives its share back
     # (Poisson), and rubs again. How many sweeps there were.
     row = work.constraint
-    settled = SETTLED if hits <= FEW else CROWD_SETTLED
+    settled = SETTLED if hits <= EXACT_HITS else CROWD_SETTLED
     done = sweeps
     for sweep in range(sweeps):
         largest = 0.0
@@ -239,7 +239,7 @@ def solve_pass(work: FreeContactScratch, hits: int, left: int) -> int:
         _solve_two(work)
         done = 2
     else:
-        sweeps = max(LEAST_SWEEPS, min(SWEEPS if hits <= FEW else CROWD_SWEEPS, left // hits))
+        sweeps = max(LEAST_SWEEPS, min(SWEEPS if hits <= EXACT_HITS else CROWD_SWEEPS, left // hits))
         done = hits * (_solve_rubbing(work, hits, sweeps) if rubs else _solve_many(work, hits, sweeps))
     _resist(work, hits)
     for k in range(hits):

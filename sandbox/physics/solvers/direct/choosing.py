@@ -16,23 +16,17 @@ SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, MOST_WIDE, COUNTS = range(
 
 
 class MatrixContents(NamedTuple):
-    """What is in the matrix, slots ascending, in arrays with room for all there is.
-
-    spring; constraint, those with a free corner, k of them: corners corner[start[k]:start[k + 1]]. particle: free ones,
-    the nodes, then pinned ones; number (n,): place of each in that, -1: none. link_a, link_b: nodes that are joined, of
-    a narrow constraint all, of a wide one each free corner and the next free one, past the pinned. x, y [m]: where
-    nodes were created.
-    """
+    """What is in the matrix, slots ascending, in arrays with room for all there is."""
 
     spring: Slots
-    constraint: Slots
+    constraint: Slots  # (k,): those with a free corner
     start: Slots
-    corner: Slots
-    particle: Slots
-    number: Slots
-    link_a: Slots
-    link_b: Slots
-    x: Floats
+    corner: Slots  # corners of constraint i: corner[start[i]:start[i + 1]]
+    particle: Slots  # free ones, which are the nodes, then pinned ones
+    number: Slots  # (n,): place of a particle in that, -1: none
+    link_a: Slots  # nodes that are joined: of a narrow constraint all,
+    link_b: Slots  # of a wide one each free corner and the next free one, past the pinned
+    x: Floats  # [m]: where nodes were created
     y: Floats
 
 

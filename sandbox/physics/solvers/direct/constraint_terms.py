@@ -15,7 +15,7 @@ from sandbox.physics.constraints import (
     FLOOR,
     FLOOR_RATE,
     FLOOR_STRENGTH,
-    HIGHEST_OF_RING,
+    HIGHEST_RING_COEFFICIENT,
     TRIANGLE,
     evaluate,
 )
@@ -69,7 +69,7 @@ def _whole_restoring(k: int, constraints: Constraints, state: State, mass: float
     stiffness = state.constraint_stiffness[constraints.slot[k]]
     damping = state.constraint_damping[constraints.slot[k]]
     if constraints.first[k + 1] - constraints.first[k] > TRIANGLE:
-        stiffness, damping = capped(stiffness, damping, HIGHEST_OF_RING)
+        stiffness, damping = capped(stiffness, damping, HIGHEST_RING_COEFFICIENT)
     _, restoring = implicit_masses(stiffness, damping, mass)
     return restoring
 
@@ -87,9 +87,9 @@ def load_constraints(
         total = 0.0
         for c in range(constraints.first[k], constraints.first[k + 1]):
             total += rows.inverse_mass[constraints.row[c]] * constraints.weight[c]
-        mass = 1.0 / total if total > 0.0 else 0.0
+        mass = 1.0 / total if total > 0.0 else 0.0  # (17)
         constraints.floor[k] = 0.0
-        if system.goals.group[k] >= 0 and constraints.rest[k, 0] * constraints.rest[k, 1] > 0.0:
+        if system.shape_match_groups.group[k] >= 0 and constraints.rest[k, 0] * constraints.rest[k, 1] > 0.0:
             constraints.floor[k] = FLOOR_STRENGTH * mass * (FLOOR_RATE * h) * (FLOOR_RATE * h)
         stiff, restoring = implicit_masses(constraints.stiffness[k], constraints.damping[k], mass)
         constraints.K[k] = stiff
@@ -99,7 +99,7 @@ def load_constraints(
         constraints.k_h2[k] = restoring
         if auto_substeps > 1:
             constraints.k_h2[k] = _whole_restoring(k, constraints, state, mass) / (
-                auto_substeps * auto_substeps * inputs.ease
+                auto_substeps * auto_substeps * inputs.drag_factor
             )
         _look(k, constraints, rows.x_moved, rows.x_moved, 0.0)
         error = _error(k, constraints, constraints.spare)
@@ -176,7 +176,7 @@ def _floor_push(k: int, constraints: Constraints, growth: float, h: float) -> fl
     if gap < 0.0:
         gap *= FLOOR_BETA
     rate = growth if constraints.rest[k, 0] > 0.0 else -growth
-    return max(0.0, -(rate + gap) * constraints.floor[k] / FLOOR_BETA)
+    return max(0.0, -(rate + gap) * constraints.floor[k] / FLOOR_BETA)  # (19)
 
 
 @inner_kernel

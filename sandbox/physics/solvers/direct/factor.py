@@ -99,7 +99,7 @@ def _take_in_wide(span: Span, system: System) -> None:
 
 @inner_kernel
 def _correct_wide(span: Span, system: System, last: int) -> None:
-    # x -= scale (g . x) z, for the wide constraints before the last.
+    # x -= scale (g . x) z, for the wide constraints before the last.  (18)
     rows, constraints = system.rows, system.constraints
     free_count = system.matrix.diagonal.shape[0]
     for k in range(span.first_constraint, last):

@@ -35,9 +35,9 @@ from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.solvers.linear.fronts import clear_fronts
 from sandbox.physics.state import State
 
-# The velocities foreseen before a first solve are v + CHANGE_AHEAD (v - s): of an even change, s lags behind by that of
-# 1 / CHANGE_AHEAD steps. Without it, or with less, smooth turning takes two solves where one is enough.
-CHANGE_AHEAD = SLOW_SHARE / (1.0 - SLOW_SHARE)
+# The velocities predicted before a first solve are v + PREDICTOR_GAIN (v - s): where v changes evenly, s lags behind by
+# the change of 1 / PREDICTOR_GAIN steps. With a smaller gain, smooth turning takes two solves where one is enough.
+PREDICTOR_GAIN = SLOW_SHARE / (1.0 - SLOW_SHARE)
 
 
 @inner_kernel
@@ -63,7 +63,7 @@ def load_rows(system: System, state: State, inputs: Inputs, h: float) -> None:
         for axis in range(2):
             rows.v[r, axis] = rows.start[r, axis]
             if r < free_count:
-                rows.v[r, axis] += CHANGE_AHEAD * (rows.start[r, axis] - state.slow_velocity[p, axis])
+                rows.v[r, axis] += PREDICTOR_GAIN * (rows.start[r, axis] - state.slow_velocity[p, axis])
 
 
 @inner_kernel
@@ -99,7 +99,7 @@ def load_residual(span: Span, system: System) -> None:
     """The right side M (v* - v') + sum of impulses of one body, into `delta_v`."""
     rows = system.rows
     for r in range(span.first_row, span.last_row):
-        rows.delta_v[r, 0] = rows.inertia[r] * (rows.v_star_matched[r, 0] - rows.v[r, 0])
+        rows.delta_v[r, 0] = rows.inertia[r] * (rows.v_star_matched[r, 0] - rows.v[r, 0])  # (9)
         rows.delta_v[r, 1] = rows.inertia[r] * (rows.v_star_matched[r, 1] - rows.v[r, 1])
     push_springs(span, system)
     if span.last_constraint > span.first_constraint:
@@ -118,7 +118,7 @@ def assemble(span: Span, system: System) -> None:
             assemble_constraints(span, system, True)
     else:
         for r in range(span.first_row, span.last_row):
-            mass = rows.inertia[r]
+            mass = rows.inertia[r]  # (9)
             matrix.diagonal[r, 0] = mass
             matrix.diagonal[r, 1] = 0.0
             matrix.diagonal[r, 2] = mass
@@ -156,7 +156,7 @@ def keep_tension(span: Span, system: System) -> None:
 
 @inner_kernel
 def find_tension(span: Span, system: System, h: float) -> None:
-    """The same of springs whose impulses are not known at `v`."""
+    """T = max(0, -J) of a body's springs, whose impulses are not known at `v`."""
     linearise_springs(span, system, h, 1.0, 0.0)
     keep_tension(span, system)
 

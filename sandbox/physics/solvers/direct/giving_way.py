@@ -46,7 +46,7 @@ WITHIN = 1e-9
 @inlined_kernel
 def share_to_give(excess: float, moves: float) -> float:
     """What share of its motion, of the energy `moves` [J], is to be given up for what is too much [J]; 0: it cannot."""
-    return 0.5 * MARGIN * excess / moves if MARGIN * excess < LARGEST_SHARE * moves else 0.0
+    return 0.5 * MARGIN * excess / moves if MARGIN * excess < LARGEST_SHARE * moves else 0.0  # (30)
 
 
 @inner_kernel
@@ -150,15 +150,15 @@ def _energy_beside(island: int, motion: RigidMotion, islands: BodyIslands, syste
                     u = system.rows.v[i, 0] - u
                     v = system.rows.v[i, 1] - v
                 else:
-                    u = islands.given[p, 0] + islands.delta_v[p, 0] - u
-                    v = islands.given[p, 1] + islands.delta_v[p, 1] - v
+                    u = islands.v0[p, 0] + islands.delta_v[p, 0] - u
+                    v = islands.v0[p, 1] + islands.delta_v[p, 1] - v
                 total += 0.5 * state.mass[p] * (u * u + v * v)
     return total
 
 
 @inner_kernel
 def _lower(island: int, share: float, motion: RigidMotion, islands: BodyIslands, system: System, state: State) -> None:
-    # v* -= share (v* - V), and the spin that bodies are to keep with it.
+    # v* -= share (v* - V), and the spin that bodies are to keep with it.  (30)
     target, spins = system.rows.v_star_matched, system.bodies.spin
     for k in range(islands.counts[MEMBERS]):
         if islands.island[k] != island:
@@ -171,8 +171,8 @@ def _lower(island: int, share: float, motion: RigidMotion, islands: BodyIslands,
                 target[i, 0] -= share * (target[i, 0] - u)
                 target[i, 1] -= share * (target[i, 1] - v)
             else:
-                islands.given[p, 0] -= share * (islands.given[p, 0] - u)
-                islands.given[p, 1] -= share * (islands.given[p, 1] - v)
+                islands.v0[p, 0] -= share * (islands.v0[p, 0] - u)
+                islands.v0[p, 1] -= share * (islands.v0[p, 1] - v)
         if k < islands.counts[BODIES]:
             spin = spin_of_body(islands.body[k], system)
             spins[islands.body[k], MOMENTUM] -= share * (spin.momentum - turn_rate(motion) * spin.inertia)
@@ -187,7 +187,7 @@ def note_excess(islands: BodyIslands) -> None:
 
 @inner_kernel
 def give_way(workspace: IslandWorkspace, system: System, state: State) -> bool:
-    """Let islands that fail solve on, or give way by what they gain; whether any of them can."""
+    """Lower the targets of islands that fail by what they gain, unless solving on helps; whether any can go on."""
     islands = workspace.islands
     goes_on = False
     for island in range(islands.counts[ISLANDS]):
@@ -222,5 +222,5 @@ def take_back(workspace: IslandWorkspace, system: System, state: State) -> None:
             system.bodies.spin[body, MOMENTUM] = system.bodies.spin[body, STAR_MOMENTUM]
         else:
             p = islands.free[k - bodies]
-            islands.given[p, 0] = state.velocity[p, 0]
-            islands.given[p, 1] = state.velocity[p, 1]
+            islands.v0[p, 0] = state.velocity[p, 0]
+            islands.v0[p, 1] = state.velocity[p, 1]

@@ -84,12 +84,12 @@ def clamp_free(islands: BodyIslands, state: State, h: float) -> None:
         p = islands.free[i]
         if state.collides[p] & TERRAIN_GROUP == 0:
             continue
-        wx = h * (islands.given[p, 0] + islands.delta_v[p, 0])
-        wy = h * (islands.given[p, 1] + islands.delta_v[p, 1])
+        wx = h * (islands.v0[p, 0] + islands.delta_v[p, 0])
+        wy = h * (islands.v0[p, 1] + islands.delta_v[p, 1])
         stops, x, y = stopped(state.position[p, 0], state.position[p, 1], wx, wy, state.terrain)
         if stops > STOPS:
-            islands.delta_v[p, 0] = -islands.given[p, 0]
-            islands.delta_v[p, 1] = -islands.given[p, 1]
+            islands.delta_v[p, 0] = -islands.v0[p, 0]
+            islands.delta_v[p, 1] = -islands.v0[p, 1]
         elif stops > 0:
             islands.delta_v[p, 0] += (x - wx) / h
             islands.delta_v[p, 1] += (y - wy) / h
@@ -185,7 +185,7 @@ def open_free(islands: BodyIslands, state: State, start: FloatRows) -> None:
         p = islands.free[i]
         k = bodies + i
         islands.mass[k] = state.mass[p]
-        ux, uy = islands.given[p, 0], islands.given[p, 1]
+        ux, uy = islands.v0[p, 0], islands.v0[p, 1]
         islands.rises[k] = -0.5 * state.mass[p] * (start[p, 0] * ux + start[p, 1] * uy)
         surface = state.spin[p] * state.radius[p]
         islands.energy0[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
@@ -304,13 +304,13 @@ def _lendable(island: int, islands: BodyIslands, system: System, state: State) -
             sinks += islands.ahead[k] - islands.moves[k]
             rises += islands.rises[k]
             owes -= min(0.0, state.parting_reserve[_slot_of(k, islands, system)])
-    return max(0.0, max(0.0, sinks) + max(0.0, rises) - owes)
+    return max(0.0, max(0.0, sinks) + max(0.0, rises) - owes)  # (29)
 
 
 @inner_kernel
 def check_energies(workspace: IslandWorkspace, system: System, state: State, start: FloatRows) -> bool:
     """Check the energy of every island; whether any fails."""
-    # Where a free particle gave way, `given` is below what forces left it.
+    # Where a free particle gave way, `v0` is below what forces left it.
     islands, surface, push = workspace.islands, workspace.terms.surface, workspace.delassus.joints.push
     bodies = islands.counts[BODIES]
     for island in range(islands.counts[ISLANDS]):
@@ -319,7 +319,7 @@ def check_energies(workspace: IslandWorkspace, system: System, state: State, sta
     for i in range(islands.counts[MEMBERS] - bodies):
         p = islands.free[i]
         ux, uy = state.velocity[p, 0], state.velocity[p, 1]
-        vx, vy = islands.given[p, 0] + islands.delta_v[p, 0], islands.given[p, 1] + islands.delta_v[p, 1]
+        vx, vy = islands.v0[p, 0] + islands.delta_v[p, 0], islands.v0[p, 1] + islands.delta_v[p, 1]
         work = (ux - start[p, 0]) * (vx - ux) + (uy - start[p, 1]) * (vy - uy)
         turning = surface[p] * surface[p] / SURFACE_WEIGHT
         islands.energy[bodies + i] = 0.5 * state.mass[p] * (vx * vx + vy * vy + turning - work)
@@ -353,7 +353,7 @@ def _member_of(c: int, contacts: Contacts, islands: BodyIslands, inverse_mass: F
 def drop_biases(
     contacts: Contacts, workspace: IslandWorkspace, inverse_mass: Floats, separates: bool, h: float
 ) -> None:
-    """Let contacts of islands that fail begin with no impulse and not bounce, and push apart as banks can pay or not.
+    """Restart contacts of islands that fail without impulse or bounce; they push apart only as far as banks can pay.
 
     separates: whether they push apart at all.
     """
@@ -401,21 +401,21 @@ def _damp_bodies(workspace: IslandWorkspace, system: System, state: State, halvi
             islands.due[k] = True
             # As it was found, not what terrain and triangles have left of it, which may lead nowhere.
             for r in range(span.first_row, span.last_row):
-                islands.unpushed[r, 0] += islands.pushed[r, 0]
-                islands.unpushed[r, 1] += islands.pushed[r, 1]
+                islands.v_free[r, 0] += islands.impulse[r, 0]
+                islands.v_free[r, 1] += islands.impulse[r, 1]
         turns = bodies.spin[body, INERTIA] > 0.0
         # Contacts hold what is to stop, and springs what is to come back; joints alone drive what goes round.
         fine = turns and islands.driven[k] and workspace.delassus.start[k] == workspace.delassus.start[k + 1]
         if halving < INNER_HALVINGS or (fine and halving < DRIVEN_HALVINGS):
             if turns:
-                damp_within(body, span, system, islands.unpushed, 0.5, h)
+                damp_within(body, span, system, islands.v_free, 0.5, h)
         elif fine and halving < DRIVEN_HALVINGS + 8:
             # As one that is rigid, no length of which changes however fast it turns.
-            scale(span, _slower(halving), islands.unpushed)
-            damp_within(body, span, system, islands.unpushed, 0.0, h)
+            scale(span, _slower(halving), islands.v_free)
+            damp_within(body, span, system, islands.v_free, 0.0, h)
         else:
-            scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, islands.unpushed)
-            copy(span, islands.unpushed, rows.v)
+            scale(span, 0.5 if halving < LAST_HALVINGS else 0.0, islands.v_free)
+            copy(span, islands.v_free, rows.v)
         clamp_rows(span, rows, state, h)
         hold_triangles(span, system, h)
         measure_body(k, span, system, workspace, body_energy(body, span, system, h), h)
@@ -436,8 +436,8 @@ def damp_islands(workspace: IslandWorkspace, system: System, state: State, start
                 p = islands.free[i]
                 factor = 0.5 if halving < LAST_HALVINGS else 0.0
                 for axis in range(2):
-                    v = islands.given[p, axis] + islands.delta_v[p, axis]
-                    islands.delta_v[p, axis] = factor * v - islands.given[p, axis]
+                    v = islands.v0[p, axis] + islands.delta_v[p, axis]
+                    islands.delta_v[p, axis] = factor * v - islands.v0[p, axis]
                 surface[p] *= factor
         if not check_energies(workspace, system, state, start):
             break

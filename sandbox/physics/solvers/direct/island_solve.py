@@ -14,7 +14,7 @@ from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, couple_joints
 from sandbox.physics.joints.joint_sweep import gather_push
-from sandbox.physics.solvers.contact.body_impacts import pass_on
+from sandbox.physics.solvers.contact.body_impacts import propagate_impacts
 from sandbox.physics.solvers.contact.contact_solve import (
     change_of_sweep,
     go_on,
@@ -195,27 +195,27 @@ def _solve_due(workspace: IslandWorkspace, system: System, h: float, ahead: floa
         islands.still[k] = not islands.by_mass[k] and _is_still(k, span, system, islands)
         linearise(span, system, h, ahead, behind)
         solve_linear(span, system)
-        _leave_unpushed(span, system.rows, islands.unpushed)
+        _store_free_velocities(span, system.rows, islands.v_free)
         if not islands.by_mass[k]:
-            load_block(k, span, system, delassus, islands.row, islands.pushed)
+            load_block(k, span, system, delassus, islands.row, islands.impulse)
         if islands.still[k]:
             spin = spin_of_body(body, system)
-            turn_to(span, system.rows, spin, spin.momentum, islands.unpushed)
-            hold_block(k, span, system, spin, delassus, islands.row, islands.pushed)
+            turn_to(span, system.rows, spin, spin.momentum, islands.v_free)
+            hold_block(k, span, system, spin, delassus, islands.row, islands.impulse)
         if islands.driven[k]:
-            load_answers(span, system, delassus.joints, islands.row, islands.pushed)
+            load_answers(span, system, delassus.joints, islands.row, islands.impulse)
         for i in range(delassus.start[k], delassus.start[k + 1]):
             p = delassus.point[i]
-            islands.given[p, 0] = islands.unpushed[islands.row[p], 0]
-            islands.given[p, 1] = islands.unpushed[islands.row[p], 1]
+            islands.v0[p, 0] = islands.v_free[islands.row[p], 0]
+            islands.v0[p, 1] = islands.v_free[islands.row[p], 1]
 
 
 @inner_kernel
-def _leave_unpushed(span: Span, rows: Rows, unpushed: FloatRows) -> None:
+def _store_free_velocities(span: Span, rows: Rows, v_free: FloatRows) -> None:
     # What a body does without contacts; `v` stays where the body was linearised.
     for r in range(span.first_row, span.last_row):
-        unpushed[r, 0] = rows.v[r, 0] + rows.delta_v[r, 0]
-        unpushed[r, 1] = rows.v[r, 1] + rows.delta_v[r, 1]
+        v_free[r, 0] = rows.v[r, 0] + rows.delta_v[r, 0]
+        v_free[r, 1] = rows.v[r, 1] + rows.delta_v[r, 1]
 
 
 @inner_kernel
@@ -225,7 +225,7 @@ def _clear(islands: BodyIslands, system: System, surface: Floats, state: State) 
         span = span_of(system, islands.body[k])
         for r in range(span.first_row, span.last_row):
             for axis in range(2):
-                islands.pushed[r, axis] = islands.delta_v[system.rows.particle[r], axis] = 0.0
+                islands.impulse[r, axis] = islands.delta_v[system.rows.particle[r], axis] = 0.0
     for i in range(islands.counts[MEMBERS] - islands.counts[BODIES]):
         p = islands.free[i]
         islands.delta_v[p, 0] = islands.delta_v[p, 1] = 0.0
@@ -262,8 +262,8 @@ def _load_push(islands: BodyIslands, joints: Joints) -> None:
         for e in range(joints.rows.first[k], joints.rows.first[k + 1]):
             p = joints.rows.particle[e]
             if islands.row[p] >= 0:
-                islands.pushed[islands.row[p], 0] = joints.push[p, 0]
-                islands.pushed[islands.row[p], 1] = joints.push[p, 1]
+                islands.impulse[islands.row[p], 0] = joints.push[p, 0]
+                islands.impulse[islands.row[p], 1] = joints.push[p, 1]
 
 
 @inner_kernel
@@ -272,7 +272,7 @@ def _push_all(
     affordable: int, accelerate: bool, begins: bool, h: float,
 ) -> int:  # fmt: skip
     # Sweep an island's contacts and joints, and look for impacts before where the step begins; what it took, in sweeps.
-    # The impulses J^T lambda of bodies are left in `pushed`.
+    # The impulses J^T lambda of bodies are left in `impulse`.
     islands, terms, delassus = workspace.islands, workspace.terms, workspace.delassus
     inverse_mass = state.inverse_mass
     load_responses(contacts, terms, inverse_mass, delassus)
@@ -280,7 +280,7 @@ def _push_all(
     _clear(islands, system, terms.surface, state)
     if begins:
         mark_calm(contacts, terms, state.velocity, delassus.block, islands.rigid, islands.firm)
-        pass_on(contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, h)
+        propagate_impacts(contacts, terms, islands.v0, islands.delta_v, inverse_mass, delassus, h)
     # Passes only look ahead, but push joints as well.
     load_velocities(islands, delassus.joints)
     # Sweeps that are not hastened take energy, each of them; and joints change what an exact solve has found.
@@ -289,7 +289,7 @@ def _push_all(
         done = _sweep_by_mass(contacts, workspace, system, state, min(SWEEPS_BY_MASS, most))
     else:
         done = solve_contacts(
-            contacts, terms, islands.given, islands.delta_v, inverse_mass, delassus, sweeps, most, exactly,
+            contacts, terms, islands.v0, islands.delta_v, inverse_mass, delassus, sweeps, most, exactly,
             float(_cost_of(contacts, workspace, system)), accelerate,
         )  # fmt: skip
     _load_push(islands, delassus.joints)
@@ -309,8 +309,8 @@ def _add_push(contacts: Contacts, islands: BodyIslands) -> None:
             p, weight = weight_of(contacts, c, end)
             if p >= 0 and islands.row[p] >= 0:
                 cx, cy = couple_of(contacts, c, end)
-                islands.pushed[islands.row[p], 0] += weight * jx + jt * cx
-                islands.pushed[islands.row[p], 1] += weight * jy + jt * cy
+                islands.impulse[islands.row[p], 0] += weight * jx + jt * cx
+                islands.impulse[islands.row[p], 1] += weight * jy + jt * cy
 
 
 @inner_kernel
@@ -323,7 +323,7 @@ def _sweep_by_mass(
     for done in range(1, sweeps + 1):
         start_sweeps(contacts, terms, islands.delta_v, state.inverse_mass, delassus)
         of_joints, swept, _ = sweep_all(
-            contacts, terms, islands.given, islands.delta_v, state.inverse_mass, delassus
+            contacts, terms, islands.v0, islands.delta_v, state.inverse_mass, delassus
         )  # fmt: skip
         if max(of_joints, swept) < CALM_SETTLED or done == sweeps:
             return done
@@ -333,14 +333,14 @@ def _sweep_by_mass(
         previous = squared
         _clear(islands, system, terms.surface, state)
         _add_push(contacts, islands)
-        _answer_between(workspace, system, state.inverse_mass)
+        _apply_between_sweeps(workspace, system, state.inverse_mass)
         _clear(islands, system, terms.surface, state)
         load_velocities(islands, delassus.joints)
     return sweeps
 
 
 @inner_kernel
-def _answer_between(workspace: IslandWorkspace, system: System, inverse_mass: Floats) -> None:
+def _apply_between_sweeps(workspace: IslandWorkspace, system: System, inverse_mass: Floats) -> None:
     # Set what bodies without a block are given so that with the answers of their masses it is that of their springs.
     islands, delassus = workspace.islands, workspace.delassus
     for k in range(islands.counts[BODIES]):
@@ -350,31 +350,31 @@ def _answer_between(workspace: IslandWorkspace, system: System, inverse_mass: Fl
             p = delassus.point[i]
             for axis in range(2):
                 r = islands.row[p]
-                islands.given[p, axis] = islands.unpushed[r, axis] - inverse_mass[p] * islands.pushed[r, axis]
-        respond(span_of(system, islands.body[k]), system, islands.pushed)
+                islands.v0[p, axis] = islands.v_free[r, axis] - inverse_mass[p] * islands.impulse[r, axis]
+        respond(span_of(system, islands.body[k]), system, islands.impulse)
         for i in range(delassus.start[k], delassus.start[k + 1]):
             p = delassus.point[i]
             for axis in range(2):
-                islands.given[p, axis] += islands.pushed[islands.row[p], axis]
+                islands.v0[p, axis] += islands.impulse[islands.row[p], axis]
 
 
 @inner_kernel
-def _answer(workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
-    # v' = unpushed + A^-1 J^T lambda of every body, clamped; its energy and misfit.
+def _apply_impulses(workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
+    # v' = v_free + A^-1 J^T lambda of every body, clamped; its energy and misfit.
     islands, rows = workspace.islands, system.rows
     for k in range(islands.counts[BODIES]):
         span = span_of(system, islands.body[k])
         spin = spin_of_body(islands.body[k], system)
-        torque = torque_of(span, rows, spin, islands.pushed)
+        torque = torque_of(span, rows, spin, islands.impulse)
         still = islands.still[k]
         if still:
-            add_torque(span, rows, spin, -torque, islands.pushed)
-        respond(span, system, islands.pushed)
+            add_torque(span, rows, spin, -torque, islands.impulse)
+        respond(span, system, islands.impulse)
         if still:
-            turn_to(span, rows, spin, 0.0, islands.pushed)
+            turn_to(span, rows, spin, 0.0, islands.impulse)
         for r in range(span.first_row, span.last_row):
             for axis in range(2):
-                v = islands.unpushed[r, axis] + islands.pushed[r, axis]
+                v = islands.v_free[r, axis] + islands.impulse[r, axis]
                 rows.delta_v[r, axis] = v - rows.v[r, axis]
                 rows.v[r, axis] = v
         hold_spin(span, rows, spin, system.bodies.pivot[islands.body[k]] >= 0, not still, spin.momentum + torque, h)
@@ -401,8 +401,8 @@ def _finish(islands: BodyIslands, surface: Floats, system: System, state: State)
             state.tension[springs.slot[s]] = springs.tension[s]
     for i in range(islands.counts[MEMBERS] - islands.counts[BODIES]):
         p = islands.free[i]
-        state.velocity[p, 0] = islands.given[p, 0] + islands.delta_v[p, 0]
-        state.velocity[p, 1] = islands.given[p, 1] + islands.delta_v[p, 1]
+        state.velocity[p, 0] = islands.v0[p, 0] + islands.delta_v[p, 0]
+        state.velocity[p, 1] = islands.v0[p, 1] + islands.delta_v[p, 1]
         state.spin[p] = spin_of(surface[p], state.spin[p], state.radius[p])
 
 
@@ -434,7 +434,7 @@ def _push_and_test(
     if begins:
         credit_penetration(contacts, workspace, state.inverse_mass, h)
         draw_on_reserves(contacts, workspace, system, state)
-    _answer(workspace, system, state, h)
+    _apply_impulses(workspace, system, state, h)
     check_energies(workspace, system, state, start)
     return affordable - done
 
@@ -514,11 +514,11 @@ def solve_islands(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, inputs: Inputs, auto_substeps: int,
     h: float,
 ) -> None:  # fmt: skip
-    """Bring what contacts touch or joints act on to the end of a step of h [s]; rows are loaded, islands found."""
+    """Advance the islands of what contacts touch or joints act on by h [s]; rows are loaded, islands found."""
     islands, joints = workspace.islands, workspace.delassus.joints
     for p in range(state.velocity.shape[0]):
         for axis in range(2):
-            islands.given[p, axis] = state.velocity[p, axis]
+            islands.v0[p, axis] = state.velocity[p, axis]
             islands.delta_v[p, axis] = 0.0
     for p in range(joints.push.shape[0]):
         joints.push[p, 0] = joints.push[p, 1] = 0.0

@@ -10,7 +10,7 @@ from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows, new
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.components import root_of, united
-from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.joints.joint_answers import Actions, Joints
 from sandbox.physics.solvers.contact.contact_order import ContactOrder, put_in_order
 from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus, terms_between
@@ -30,57 +30,47 @@ DEAREST_BLOCK = 4_000_000
 class BodyIslands(NamedTuple):
     """The bodies and free particles that contacts touch or joints act on, in this order the members of islands.
 
-    There is room for all bodies and particles; counts (5,) says how many there are. body: their numbers; free: slots of
-    particles. By member: island, mass [kg], bank, energies where the step begins (energy0) and ends (energy), limit,
-    ahead, moves: the work of forces in half a step at v', and KE(v'), rises: what it seems to gain if it is stopped
-    [J]; fresh: its bank is begun for all of it. By particle (n,): member, -1: none, row in the matrix, -1: none; given,
-    delta_v [m/s]: velocities without contacts, and what those add. By touched body: misfit; due: to be solved again;
-    rigid, firm: all its springs are; pressed: contacts press it by far more than forces do, and no joint acts on it;
-    still: pressed and slow; driven: a joint acts on it; by_mass: it has no block, see DEAREST_BLOCK. By island: total,
-    allowed, lent [J], see island_energy.py, fails; held: something outside holds it; parts: something in it overlaps
-    deeply; excess [J]: what it had too much, see giving_way.py; way: see energy_bank.py. By row: unpushed [m/s] =
-    velocities without contacts, pushed [m/s] = what contacts and joints add. label, root, marked: scratch.
-
-    Of all islands together bodies and free particles lie island by island; `alone` is one of them, its members numbered
-    by themselves as those of the only island there is: so are `member` and the blocks of bodies.
+    There is room for all bodies and particles. Of all islands together bodies and free particles lie island by island;
+    `alone` is one of them, its members numbered by themselves as those of the only island there is: so are `member` and
+    the blocks of bodies.
     """
 
-    counts: Slots
-    body: Slots
-    free: Slots
-    island: Slots
-    member: Slots
-    row: Slots
-    mass: Floats
-    energy0: Floats
-    bank: Floats
-    energy: Floats
-    limit: Floats
-    ahead: Floats
-    moves: Floats
-    rises: Floats
-    fresh: Flags
-    misfit: Floats
-    due: Flags
-    rigid: Flags
-    firm: Flags
-    pressed: Flags
-    still: Flags
-    driven: Flags
-    by_mass: Flags
-    total: Floats
-    allowed: Floats
-    lent: Floats
+    counts: Slots  # (5,): how many there are
+    body: Slots  # their numbers
+    free: Slots  # slots of particles
+    island: Slots  # by member, as all from mass to fresh
+    member: Slots  # (n,) by particle, -1: none
+    row: Slots  # (n,) by particle: its row in the matrix, -1: none
+    mass: Floats  # [kg]
+    energy0: Floats  # [J]: where the step begins
+    bank: Floats  # [J]: in its energy bank
+    energy: Floats  # [J]: where the step ends
+    limit: Floats  # [J]: of its bank
+    ahead: Floats  # [J]: work of forces in half a step at v'
+    moves: Floats  # [J]: KE(v')
+    rises: Floats  # [J]: what it seems to gain if it is stopped
+    fresh: Flags  # its bank is begun for all of it
+    misfit: Floats  # by touched body, as all down to by_mass
+    due: Flags  # to be solved again
+    rigid: Flags  # all its springs are
+    firm: Flags  # all its springs are
+    pressed: Flags  # contacts press it by far more than forces do, and no joint acts on it
+    still: Flags  # pressed and slow
+    driven: Flags  # a joint acts on it
+    by_mass: Flags  # it has no block, see DEAREST_BLOCK
+    total: Floats  # [J] by island, as all down to way: energy of its members
+    allowed: Floats  # [J]: what that may be (island_energy.py)
+    lent: Floats  # [J]: part of that
     fails: Flags
-    held: Flags
-    parts: Flags
-    excess: Floats
-    way: Slots
-    unpushed: FloatRows
-    pushed: FloatRows
-    given: FloatRows
-    delta_v: FloatRows
-    label: Slots
+    held: Flags  # something outside holds it
+    parts: Flags  # something in it overlaps deeply
+    excess: Floats  # [J]: what it had too much (giving_way.py)
+    way: Slots  # see energy_bank.py
+    v_free: FloatRows  # [m/s] by row: velocities without contacts
+    impulse: FloatRows  # [N s] by row: of contacts and joints; then the change by it [m/s]
+    v0: FloatRows  # [m/s] (n,) by particle: velocities without contacts
+    delta_v: FloatRows  # [m/s] (n,): what contacts add
+    label: Slots  # label, root, marked: scratch
     root: Slots
     marked: Flags
 
@@ -123,18 +113,18 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
         new_float_rows(arena, particles, 2), new_slots(arena, members), new_slots(arena, members),
         new_flags(arena, particles),
     )  # fmt: skip
-    put(out, "islands", islands)
-    put(out, "lists", IslandLists(
+    set_field(out, "islands", islands)
+    set_field(out, "lists", IslandLists(
         new_slots(arena, members + 1), new_slots(arena, members + 1), new_slots(arena, members + 1),
         new_slots(arena, COUNTED * members),
     ))  # fmt: skip
     place, point, block = new_slots(arena, particles), new_slots(arena, free_rows), new_slots(arena, particles)
     delassus = out.delassus
-    put(delassus, "block", block)
-    put(delassus, "place", place)
-    put(delassus, "point", point)
-    put(delassus, "start", new_slots(arena, bodies + 1))
-    put(delassus, "base", new_slots(arena, bodies + 1))
+    set_field(delassus, "block", block)
+    set_field(delassus, "place", place)
+    set_field(delassus, "point", point)
+    set_field(delassus, "start", new_slots(arena, bodies + 1))
+    set_field(delassus, "base", new_slots(arena, bodies + 1))
     if is_full(arena):
         return
     for p in range(particles):
@@ -144,11 +134,11 @@ def lay_out_islands(system: System, particles: int, arena: Arena, out: IslandWor
 
 
 @inner_kernel
-def lay_out_no_blocks(particles: int, arena: Arena, out: Delassus) -> None:
-    """Lay out that all particles answer by their own mass."""
+def use_diagonal_delassus(particles: int, arena: Arena, out: Delassus) -> None:
+    """Lay out a Delassus operator that is diagonal: each particle answers an impulse by its own mass."""
     block = new_slots(arena, particles)
-    put(out, "block", block)
-    put(out, "start", new_slots(arena, 1))
+    set_field(out, "block", block)
+    set_field(out, "start", new_slots(arena, 1))
     if not is_full(arena):
         for p in range(particles):
             block[p] = -1
@@ -381,7 +371,7 @@ def has_coarse(islands: BodyIslands) -> bool:
 
 @inner_kernel
 def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
-    """One island, as if there were no other."""
+    """One island, as if there were no other: the slices of the workspace that belong to it."""
     w, lists, delassus, order = workspace.islands, workspace.lists, workspace.delassus, workspace.order
     b, c, f, g = lists.body[i], lists.body[i + 1], lists.free[i], lists.free[i + 1]
     k, m = b + f, c + g
@@ -392,7 +382,7 @@ def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
         w.rises[k:m], w.fresh[k:m], w.misfit[b:c], w.due[b:c], w.rigid[b:c], w.firm[b:c], w.pressed[b:c], w.still[b:c],
         w.driven[b:c], w.by_mass[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.lent[i : i + 1],
         w.fails[i : i + 1],
-        w.held[i : i + 1], w.parts[i : i + 1], w.excess[i : i + 1], w.way[i : i + 1], w.unpushed, w.pushed, w.given,
+        w.held[i : i + 1], w.parts[i : i + 1], w.excess[i : i + 1], w.way[i : i + 1], w.v_free, w.impulse, w.v0,
         w.delta_v, w.label, w.root, w.marked,
     )  # fmt: skip
     return IslandWorkspace(

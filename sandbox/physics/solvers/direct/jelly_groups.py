@@ -5,7 +5,7 @@ from typing import NamedTuple
 from sandbox.physics.arena import Arena, is_full, new_flags, new_float_rows, new_slot_rows, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.constraints import AREA
-from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.solvers.direct.system import ShapeMatchGroups, System
 from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import place_among
@@ -92,15 +92,15 @@ def lay_out_groups(state: State, constraint_start: Slots, arena: Arena, out: Sys
         new_slot_rows(arena, count, 3), jellies.inner, jellies.fan, jellies.fan_start, new_slots(arena, members),
         new_flags(arena, kinds), new_flags(arena, kinds),
     )  # fmt: skip
-    put(out, "goals", groups)
+    set_field(out, "shape_match_groups", groups)
     lay_out_triangles(found.constraint, found.row, jellies, count, rows, arena, out.triangles)
     lay_out_collides(found.row, state, out.rows.particle, arena, out.triangles)
     if is_full(arena):
         return
     fill_groups(given, found, jellies, state.corner_form, groups)
-    put(out.triangles, "rest", made.rest)
-    put(out.triangles, "position", out.rows.position)
-    put(out.triangles, "velocity", out.rows.v)
-    put(out.triangles, "mass", out.rows.mass)
-    put(out.triangles, "inverse_mass", out.rows.inverse_mass)
-    put(out.triangles, "inverted", groups.inverted)
+    set_field(out.triangles, "rest", made.rest)
+    set_field(out.triangles, "position", out.rows.position)
+    set_field(out.triangles, "velocity", out.rows.v)
+    set_field(out.triangles, "mass", out.rows.mass)
+    set_field(out.triangles, "inverse_mass", out.rows.inverse_mass)
+    set_field(out.triangles, "inverted", groups.inverted)

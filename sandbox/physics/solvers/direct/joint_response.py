@@ -55,15 +55,15 @@ def load_velocities(islands: BodyIslands, joints: Joints) -> None:
             p = rows.particle[e]
             r = islands.row[p]
             if r >= 0:
-                u += rows.gradient[e, 0] * islands.unpushed[r, 0] + rows.gradient[e, 1] * islands.unpushed[r, 1]
+                u += rows.gradient[e, 0] * islands.v_free[r, 0] + rows.gradient[e, 1] * islands.v_free[r, 1]
             else:
-                u += rows.gradient[e, 0] * islands.given[p, 0] + rows.gradient[e, 1] * islands.given[p, 1]
+                u += rows.gradient[e, 0] * islands.v0[p, 0] + rows.gradient[e, 1] * islands.v0[p, 1]
         joints.velocity[k] = u
 
 
 @inner_kernel
 def release_joints(joints: Joints) -> None:
-    """Let the joints of an island that fails begin with no impulse."""
+    """Set the impulses of the joints of an island that fails to 0."""
     for i in range(joints.listed.shape[0]):
         joints.rows.impulse[joints.listed[i]] = 0.0
 

@@ -13,7 +13,7 @@ from sandbox.physics.arena import (
     new_slots,
 )
 from sandbox.physics.arrays import Flags
-from sandbox.physics.jit import inner_kernel, put
+from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.solvers.direct.choosing import COUNTS, LINKS, MOST_WIDE, NODES, chosen_for_matrix
 from sandbox.physics.solvers.direct.jelly_groups import lay_out_groups
 from sandbox.physics.solvers.direct.placing import Lying, Places, places_of
@@ -64,12 +64,12 @@ def lay_out_system(state: State, unlimited: Flags, given: Tuning, arena: Arena, 
         made.order, made.rank, made.body, made.first_row, made.lowest, matrix.column_start, matrix.row, blocks
     )
     places = places_of(state, counts, bodies, given.whole[WIDEST_NARROW], chosen, lying, arena)
-    put(out, "fronts", fronts)
-    put(out, "matrix", matrix)
-    put(out, "bodies", _new_bodies(places, arena))
-    put(out, "rows", _new_rows(places, arena))
-    put(out, "springs", _new_springs(places, arena))
-    put(out, "constraints", _new_constraints(places, nodes, counts[MOST_WIDE], arena))
+    set_field(out, "fronts", fronts)
+    set_field(out, "matrix", matrix)
+    set_field(out, "bodies", _new_bodies(places, arena))
+    set_field(out, "rows", _new_rows(places, arena))
+    set_field(out, "springs", _new_springs(places, arena))
+    set_field(out, "constraints", _new_constraints(places, nodes, counts[MOST_WIDE], arena))
     if not is_full(arena):
         lay_out_groups(state, places.constraint_start, arena, out)
 

@@ -34,7 +34,7 @@ def kinetic(span: Span, mass: Floats, velocity: FloatRows) -> float:
 
 @inner_kernel
 def hold_triangles(span: Span, system: System, h: float) -> int:
-    """Let `v` turn over no triangle of a body in a step of h [s]; what that took: see clamp_triangles."""
+    """Clamp `v` so that no triangle of a body turns over in a step of h [s]; what that took: see clamp_triangles."""
     if span.last_constraint == span.first_constraint:
         return AS_IT_WAS
     return clamp_triangles(

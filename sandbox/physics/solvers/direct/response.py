@@ -40,11 +40,11 @@ def load_block(k: int, span: Span, system: System, delassus: Delassus, row: Slot
 def hold_block(
     k: int, span: Span, system: System, spin: RigidMotion, delassus: Delassus, row: Slots, vector: FloatRows
 ) -> None:  # fmt: skip
-    """Let the block of a body answer with the spin that impulses give it.
+    """Change the block of a body so that its answers keep the spin that impulses give it.
 
     Directions ahead turn what is pressed, so that A^-1 gives another; contacts would not hold once that is put right.
     """
-    # W' = (1 - e e^T M / I) W (1 - M e e^T / I) + e e^T / I,  e the velocities of a turn at rate 1;  z = A^-1 M e
+    # W' = (1 - e e^T M / I) W (1 - M e e^T / I) + e e^T / I,  e the velocities of a turn at rate 1;  z = A^-1 M e  (34)
     rows, numbers = system.rows, delassus.numbers
     first, base = delassus.start[k], delassus.base[k]
     points = delassus.start[k + 1] - first

@@ -58,7 +58,7 @@ FORMLESS = -1.0
 # So many times Cd is the Cs of springs of little damping, at least.
 LITTLE_DAMPED = 2.0
 # What has turned so far in a step that r . r' is less than this share of r . r is turned about where the step begins.
-LEAST_ACROSS = 0.2
+LEAST_TURN_COSINE = 0.2
 
 
 @inner_kernel
@@ -374,7 +374,7 @@ def hold_spin(span: Span, rows: Rows, spin: RigidMotion, pivots: bool, aims: boo
     else:
         u /= total
         v /= total
-    if not across > LEAST_ACROSS * spin.inertia:
+    if not across > LEAST_TURN_COSINE * spin.inertia:
         across = spin.inertia
         ahead = 0.0
     turn = missing / across
@@ -390,7 +390,7 @@ def hold_spin(span: Span, rows: Rows, spin: RigidMotion, pivots: bool, aims: boo
 
 @inner_kernel
 def damp_within(body: int, span: Span, system: System, found: FloatRows, share: float, h: float) -> None:
-    """Leave in `v` a share of what moves within a body, beside the rigid motion of its momenta.
+    """Scale what moves in `v` within a body by a share, beside the rigid motion of its momenta.
 
     found (n, 2) [m/s]: the velocities whose momenta those are.
     """
@@ -414,7 +414,7 @@ def damp_within(body: int, span: Span, system: System, found: FloatRows, share: 
 
 @inner_kernel
 def halve_within(span: Span, rows: Rows, spin: RigidMotion, share: float, h: float, vector: FloatRows) -> None:
-    """Leave this share of what moves beside the rigid motion that keeps a body's momenta and all its lengths."""
+    """Scale velocities by a share, beside the rigid motion that keeps a body's momenta and all its lengths."""
     # v = V + (R - 1) r / h,  whose angular momentum is I sin / h
     sine = h * spin.momentum / spin.inertia
     sine = min(max(sine, -1.0), 1.0)

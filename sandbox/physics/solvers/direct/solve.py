@@ -20,7 +20,7 @@ spring_constant = implicit_spring_constant
 
 @inner_kernel
 def solve(
-    state: State, system: System, given: Inputs, contacts: Contacts, workspace: IslandWorkspace, has_islands: bool,
+    state: State, system: System, inputs: Inputs, contacts: Contacts, workspace: IslandWorkspace, has_islands: bool,
     auto_substeps: int, h: float,
 ) -> None:  # fmt: skip
     """Bring the velocities to the end of a substep of h [s]; slow_velocity, energy_bank and tension go with them.
@@ -28,7 +28,7 @@ def solve(
     has_islands: contacts touch bodies, or joints act on them, and the islands are found. auto_substeps: how many the
     tick chose, 0: the settings give them.
     """
-    load_rows(system, state, given, h)
+    load_rows(system, state, inputs, h)
     if has_islands:
-        solve_islands(contacts, workspace, system, state, given, auto_substeps, h)
-    step_bodies(system, state, given, workspace.ways, has_islands, auto_substeps, h)
+        solve_islands(contacts, workspace, system, state, inputs, auto_substeps, h)
+    step_bodies(system, state, inputs, workspace.ways, has_islands, auto_substeps, h)

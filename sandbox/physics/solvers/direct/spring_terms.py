@@ -61,7 +61,7 @@ def load_springs(
         if auto_substeps > 1:
             # Of the whole tick, to the bit: that of a part has other digits where Cd is near 1.
             _, whole = implicit_masses(state.stiffness[s], state.damping[s], mass)
-            springs.k_h2[k] = whole / (auto_substeps * auto_substeps * inputs.ease)
+            springs.k_h2[k] = whole / (auto_substeps * auto_substeps * inputs.drag_factor)
         rest = state.rest_length[s]
         springs.rest[k] = rest
         springs.start_rest[k] = inputs.start_length[s]
@@ -91,7 +91,7 @@ def linearise_springs(span: Span, system: System, h: float, ahead: float, behind
         b = springs.row_b[k]
         dx, dy = difference(a, b, rows.position)
         ux, uy = difference(a, b, rows.v)
-        px = dx + h * (ahead * ux - behind * (rows.slow[b, 0] - rows.slow[a, 0]))
+        px = dx + h * (ahead * ux - behind * (rows.slow[b, 0] - rows.slow[a, 0]))  # (11)
         py = dy + h * (ahead * uy - behind * (rows.slow[b, 1] - rows.slow[a, 1]))
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
         # A spring foreseen to turn over is taken as it lies: else it pushes where it would have to pull. So is one of
@@ -113,7 +113,7 @@ def linearise_springs(span: Span, system: System, h: float, ahead: float, behind
         pulled = springs.tension[k]
         if behind == 0.0:
             pulled = max(0.0, -impulse)
-        # h T / l, with T the impulse by which the spring pulls
+        # h T / l, with T the impulse by which the spring pulls  (12)
         transverse = ahead * h * pulled / length if length > SHORTEST else stiff
         if behind > 0.0 and not transverse < stiff:
             transverse = stiff
@@ -133,7 +133,7 @@ def _growth(dx: float, dy: float, ux: float, uy: float, length: float, h: float)
 
 @scalar_kernel
 def _block(nx: float, ny: float, stiff: float, transverse: float) -> tuple[float, float, float]:
-    # K n n^T + g (I - n n^T)
+    # K n n^T + g (I - n n^T)  (12)
     more = stiff - transverse
     return transverse + more * nx * nx, more * nx * ny, transverse + more * ny * ny
 
@@ -165,7 +165,7 @@ def assemble_springs(span: Span, system: System) -> None:
 
 @inner_kernel
 def assemble_springs_in_fronts(span: Span, system: System) -> None:
-    """The same of a large body, whose matrix lies in fronts."""
+    """`assemble_springs` of a large body, whose matrix lies in fronts."""
     springs, fronts = system.springs, system.fronts
     free_count = system.matrix.diagonal.shape[0]
     numbers = fronts.numbers
@@ -268,6 +268,7 @@ def spring_objective(span: Span, system: System, h: float) -> float:
         growth = _growth(dx, dy, ux, uy, springs.length[k], h)
         error = springs.error[k] / h
         after = error + growth
+        # (10)
         total += 0.5 * (springs.K[k] * growth * growth + springs.K_beta[k] * (after * after - growth * growth))
     return total
 

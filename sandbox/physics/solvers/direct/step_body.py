@@ -64,7 +64,7 @@ def open_body(
     bodies, rows = system.bodies, system.rows
     underdamped, moved = load(span, system, state, inputs, not bodies.anchored[body], auto_substeps, h)
     bodies.underdamped[body] = underdamped
-    bodies.energy0[body] = kinetic(span, rows.mass, rows.v_star) + moved
+    bodies.energy0[body] = kinetic(span, rows.mass, rows.v_star) + moved  # (13)
     bodies.bank[body] = open_bank(body, span, system, state.energy_bank, moved, h)
     begin_turn(body, span, system, state, arc, h)
     bodies.inverted[body] = False
@@ -186,7 +186,7 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
     bodies, rows = system.bodies, system.rows
     energy0 = bodies.energy0[body]
     bank = bodies.bank[body]
-    allowed = energy0 * (1.0 + ENERGY_ROUNDING) + bank
+    allowed = energy0 * (1.0 + ENERGY_ROUNDING) + bank  # (14)
     spin = spin_of_body(body, system)
     energies = _solve_within(body, span, system, spin, allowed, h)
     after, _ = energies
@@ -205,7 +205,7 @@ def step_body(body: int, span: Span, system: System, state: State, h: float) -> 
             way = SLOWED_DOWN
             after = _damp(body, span, system, spin, allowed, h)
     limit = bank_limit(body, system)
-    saved = bank + energy0 - after
+    saved = bank + energy0 - after  # (14)
     # An inverted body keeps all that it lost for the way back to its form; one that grabs move, no more than others do.
     if saved > limit and not (bodies.inverted[body] and not bodies.anchored[body]):
         reserve(body, span, system, state, saved - limit)
@@ -258,7 +258,7 @@ def _damp(body: int, span: Span, system: System, spin: RigidMotion, allowed: flo
 def step_bodies(
     system: System, state: State, inputs: Inputs, ways: Slots, touched: bool, auto_substeps: int, h: float
 ) -> None:
-    """Bring what nothing touches to the end of a step of h [s], and s += 0.3 (v' - s) of all; rows are loaded.
+    """Advance the bodies that nothing touches by a step of h [s], and update s of all (11); rows are loaded.
 
     ways: counts, see energy_bank.py; touched: some bodies are, and at that end already.
     """

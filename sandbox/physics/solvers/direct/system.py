@@ -22,144 +22,114 @@ STAR_MOMENTUM, SPIN_NUMBERS = 12, 13
 
 
 class Bodies(NamedTuple):
-    """First row, spring and constraint of each body and one past the last; free particle of lowest slot; if anchored.
-
-    pivot: the row of the one pinned particle that holds it; -1: none does, -2: several do.
-
-    The rest is scratch: touched by contacts; underdamped: some Cs is above its Cd; inverted, matched: see
-    shape_matching.py; energy0 [J]: once forces, pins and drives have moved; bank [J]: what its energy bank has;
-    spared [kg m^2/s], spin (b, SPIN_NUMBERS): see rigid_turn.py.
-    """
+    """First row, spring and constraint of each body and one past the last; from touched on scratch."""
 
     row_start: Slots
     spring_start: Slots
     constraint_start: Slots
-    lowest: Slots
-    pivot: Slots
+    lowest: Slots  # its free particle of lowest slot
+    pivot: Slots  # row of the one pinned particle that holds it; -1: none does, -2: several do
     anchored: Flags
-    touched: Flags
-    underdamped: Flags
-    inverted: Flags
+    touched: Flags  # by contacts
+    underdamped: Flags  # some Cs is above its Cd
+    inverted: Flags  # inverted, matched: see shape_matching.py
     matched: Flags
-    energy0: Floats
-    bank: Floats
-    spared: Floats
-    spin: FloatRows
+    energy0: Floats  # [J]: once forces, pins and drives have moved
+    bank: Floats  # [J]: what its energy bank has
+    spared: Floats  # [kg m^2/s]: see rigid_turn.py
+    spin: FloatRows  # (b, SPIN_NUMBERS): likewise
 
 
 class Rows(NamedTuple):
-    """One row for every particle that springs of the matrix touch: free ones in elimination order, then pinned ones.
-
-    position [m]; x_moved [m]: once pins have moved; velocities [m/s]: start, v_star = v* after forces, v_star_matched =
-    v* or what shape matching makes of it, slow, v = v', v_best, delta_v = D, saved_delta_v. inertia [kg] = mass, or
-    what shape matching makes of it.
-    """
+    """One row for every particle that springs of the matrix touch: free ones in elimination order, then pinned ones."""
 
     particle: Slots
-    mass: Floats
+    mass: Floats  # [kg]
     inverse_mass: Floats
-    inertia: Floats
-    position: FloatRows
-    start: FloatRows
-    v_star: FloatRows
-    v_star_matched: FloatRows
-    slow: FloatRows
-    x_moved: FloatRows
-    v: FloatRows
+    inertia: Floats  # [kg]: mass, or what shape matching makes of it
+    position: FloatRows  # [m]
+    start: FloatRows  # [m/s], as all below but x_moved: before forces
+    v_star: FloatRows  # v*, after forces
+    v_star_matched: FloatRows  # v*, or what shape matching makes of it
+    slow: FloatRows  # see slow_motion.py
+    x_moved: FloatRows  # [m]: once pins have moved
+    v: FloatRows  # v'
     v_best: FloatRows
-    delta_v: FloatRows
+    delta_v: FloatRows  # D
     saved_delta_v: FloatRows
 
 
 class Springs(NamedTuple):
-    """The springs of the matrix by body: ends as rows, the block they share (-1: one end is pinned), and scratch.
-
-    rest, start_rest [m]: rest length, and at the start of the step; K, K_beta [kg]: K and K beta of the equation,
-    transverse [kg] = the geometric stiffness h T / l; k_h2 [kg]: k h^2 of their energy, that of a tick in one step
-    where ticks choose their substeps; length, error, predicted [m]; normal; impulse, tangential, tension [N s].
-    """
+    """The springs of the matrix by body, and their scratch."""
 
     slot: Slots
-    row_a: Slots
+    row_a: Slots  # row_a, row_b: ends
     row_b: Slots
-    block: Slots
-    rest: Floats
-    start_rest: Floats
-    K: Floats
-    K_beta: Floats
-    transverse: Floats
-    k_h2: Floats
-    length: Floats
-    error: Floats
-    predicted: Floats
-    impulse: Floats
-    tangential: Floats
-    tension: Floats
+    block: Slots  # that its ends share, -1: one end is pinned
+    rest: Floats  # [m]
+    start_rest: Floats  # [m]: rest length at the start of the step
+    K: Floats  # [kg]: K of the equation
+    K_beta: Floats  # [kg]: K beta
+    transverse: Floats  # [kg]: geometric stiffness h T / l
+    k_h2: Floats  # [kg]: k h^2 of its energy; that of a tick in one step where ticks choose their substeps
+    length: Floats  # [m]
+    error: Floats  # [m]
+    predicted: Floats  # [m]
+    impulse: Floats  # [N s]
+    tangential: Floats  # [N s]
+    tension: Floats  # [N s]
     normal: FloatRows
 
 
 class Constraints(NamedTuple):
-    """The constraints of many corners of the matrix by body: t of them, q corners.
-
-    first (t+1,): where corners begin; row (q,); corner (q,): slots; block (t, 3): where the pairs of a narrow one's
-    corners (0, 1), (1, 2), (2, 0) lie, -1: one is pinned; wide (t,): number among the body's wide ones, -1: narrow.
-    rest and weight are those of the step, copied; stiffness, damping too, as the solver caps them. response (w, n, 2)
-    and scale (w,): z and 1 / (1 / K + g . z) of the wide ones. All else is scratch, as that of springs: error and
-    predicted of C; gradient, spare, place (q, 2); floor [kg] = k h^2 of what holds a triangle from outside, 0: nothing,
-    K_with_floor [kg]: K with that of the floor where it is foreseen to push.
-    """
+    """The constraints of many corners of the matrix by body, t of them with q corners in all, and their scratch."""
 
     slot: Slots
     kind: Slots
-    first: Slots
-    row: Slots
-    corner: Slots
-    block: SlotRows
-    wide: Slots
-    rest: FloatRows
+    first: Slots  # (t + 1,): where corners begin
+    row: Slots  # (q,)
+    corner: Slots  # (q,): slots
+    block: SlotRows  # (t, 3): of the pairs (0, 1), (1, 2), (2, 0) of a narrow one's corners, -1: one is pinned
+    wide: Slots  # (t,): number among the body's wide ones, -1: narrow
+    rest: FloatRows  # rest, weight: those of the step, copied
     weight: Floats
-    place: FloatRows
+    place: FloatRows  # (q, 2), as gradient and spare
     gradient: FloatRows
     spare: FloatRows
-    stiffness: Floats
+    stiffness: Floats  # stiffness, damping: as the solver caps them
     damping: Floats
     K: Floats
     K_beta: Floats
-    K_with_floor: Floats
-    floor: Floats
+    K_with_floor: Floats  # [kg]: K with that of the floor where it is predicted to push
+    floor: Floats  # [kg]: k h^2 of what holds a triangle from outside, 0: nothing
     k_h2: Floats
-    error: Floats
+    error: Floats  # error, predicted: of C
     predicted: Floats
     impulse: Floats
-    response: FloatTables
-    scale: Floats
+    response: FloatTables  # (w, n, 2): z of the wide ones
+    scale: Floats  # (w,): 1 / (1 / K + g . z) of those
 
 
 class ShapeMatchGroups(NamedTuple):
-    """The jellies of the matrix by body: g groups of triangles that share sides, of k particles in all.
+    """The jellies of the matrix by body: g groups of triangles that share sides, of k particles in all."""
 
-    of_body (b+1,): first group of each body; start (g+1,): first particle of each; row (k,), form [m] (k, 2); sample
-    (g,): a constraint of each. Of constraints (t,): group, -1: in none, and member (t, 3) = their corners among the k.
-    inner (k,), fan (f, 4), fan_start (g+1,): see Jellies. Scratch: turns (k,); inverted (g,); drawn (g,): or wound.
-    """
-
-    of_body: Slots
-    start: Slots
-    row: Slots
-    form: FloatRows
-    sample: Slots
-    group: Slots
-    member: SlotRows
-    inner: Flags
+    of_body: Slots  # (b + 1,): first group of each body
+    start: Slots  # (g + 1,): first particle of each group
+    row: Slots  # (k,)
+    form: FloatRows  # [m] (k, 2)
+    sample: Slots  # (g,): a constraint of each
+    group: Slots  # (t,) of a constraint, -1: in none
+    member: SlotRows  # (t, 3): its corners among the k
+    inner: Flags  # inner, fan, fan_start: see Jellies
     fan: SlotRows
     fan_start: Slots
-    turns: Slots
-    inverted: Flags
-    drawn: Flags
+    turns: Slots  # (k,): scratch, as the two below
+    inverted: Flags  # (g,)
+    drawn: Flags  # (g,): inverted or wound
 
 
 class System(NamedTuple):
-    """All of it. matrix: the columns of large bodies are empty, those are in the fronts.
+    """The bodies of the direct solver, and their matrix, in which the columns of large bodies are empty: see fronts.
 
     triangles: the narrow areas among the constraints, by their numbers, over the rows and their `v`.
     """
@@ -170,7 +140,7 @@ class System(NamedTuple):
     constraints: Constraints
     matrix: Matrix
     fronts: Fronts
-    goals: ShapeMatchGroups
+    shape_match_groups: ShapeMatchGroups
     triangles: ClampedTriangles
 
 

@@ -25,26 +25,21 @@ TOO_SHORT = -1
 
 
 class Halving(NamedTuple):
-    """Nodes (n,) while they are split: neighbours near[start[k]:start[k + 1]], place [m].
-
-    by_x, by_y: the nodes of one body after another, each in the order of that coordinate; by_x becomes the elimination
-    order. part, spare; same (n,) = 0..n-1; mark, where; stack: first and last row, level, side, where the separator
-    begins, -1: not split yet; waiting: the fronts whose parent is yet to come, by level and side: scratch.
-    """
+    """Nodes (n,) while they are split; from part on scratch."""
 
     start: Slots
-    near: Slots
-    x: Floats
+    near: Slots  # neighbours of node k: near[start[k]:start[k + 1]]
+    x: Floats  # [m]
     y: Floats
-    by_x: Slots
-    by_y: Slots
+    by_x: Slots  # nodes of one body after another by x; becomes the elimination order
+    by_y: Slots  # the same by y
     part: Slots
-    spare: Slots
-    same: Slots
+    merge_buffer: Slots
+    same: Slots  # (n,): 0..n-1
     mark: Slots
     where: Slots
-    stack: SlotRows
-    waiting: SlotRows
+    stack: SlotRows  # first and last row, level, side, where the separator begins, -1: not split yet
+    waiting: SlotRows  # fronts whose parent is yet to come, by level and side
 
 
 class Dissection(NamedTuple):
@@ -66,7 +61,7 @@ class Dissection(NamedTuple):
 
 @inner_kernel
 def _partition(
-    first: int, last: int, split: int, apart: int, left: int, part: Slots, nodes: Slots, spare: Slots
+    first: int, last: int, split: int, apart: int, left: int, part: Slots, nodes: Slots, merge_buffer: Slots
 ) -> None:
     # The left half, the right one and what separates them, each in the order that it has.
     at_left = first
@@ -75,16 +70,16 @@ def _partition(
     for at in range(first, last):
         node = nodes[at]
         if part[node] == left:
-            spare[at_left] = node
+            merge_buffer[at_left] = node
             at_left += 1
         elif part[node] == left + 1:
-            spare[at_right] = node
+            merge_buffer[at_right] = node
             at_right += 1
         else:
-            spare[at_apart] = node
+            merge_buffer[at_apart] = node
             at_apart += 1
     for at in range(first, last):
-        nodes[at] = spare[at]
+        nodes[at] = merge_buffer[at]
 
 
 @inner_kernel
@@ -106,8 +101,8 @@ def _split(first: int, last: int, left: int, nodes: Halving) -> int:
                 part[node] = left + 2
                 apart -= 1
                 break
-    _partition(first, last, middle, apart, left, part, by_x, nodes.spare)
-    _partition(first, last, middle, apart, left, part, by_y, nodes.spare)
+    _partition(first, last, middle, apart, left, part, by_x, nodes.merge_buffer)
+    _partition(first, last, middle, apart, left, part, by_y, nodes.merge_buffer)
     return apart
 
 
@@ -190,7 +185,7 @@ def _find_border(front: int, rank: Slots, nodes: Halving, fronts: Dissection) ->
                 if top < 0:
                     return False
     fronts.border_start[front + 1] = top
-    sort_by_value(nodes.same, fronts.border, fronts.border_start[front], top, nodes.spare)
+    sort_by_value(nodes.same, fronts.border, fronts.border_start[front], top, nodes.merge_buffer)
     return True
 
 
@@ -229,9 +224,9 @@ def dissect(
     rank (n,): the rows of its nodes, of which the order is found. As many as before: it is better off without, since
     its borders have fewer rows than `narrowest` on average. TOO_SHORT: there is too little room for borders.
     """
-    spare = nodes.spare
-    sort_by_value(nodes.x, nodes.by_x, first_row, last_row, spare)
-    sort_by_value(nodes.y, nodes.by_y, first_row, last_row, spare)
+    merge_buffer = nodes.merge_buffer
+    sort_by_value(nodes.x, nodes.by_x, first_row, last_row, merge_buffer)
+    sort_by_value(nodes.y, nodes.by_y, first_row, last_row, merge_buffer)
     last_front = _dissect(first_row, last_row, first_front, nodes, fronts, leaf)
     for row in range(first_row, last_row):
         rank[nodes.by_x[row]] = row

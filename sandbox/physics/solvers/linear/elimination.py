@@ -38,22 +38,17 @@ class Links(NamedTuple):
 
 
 class Elimination(NamedTuple):
-    """The order of n nodes, which are the rows of the matrix from then on: order (n,) by row, rank (n,) by node.
+    """The order of n nodes, which become the rows of the matrix; b bodies in the order of their lowest nodes."""
 
-    body (n,) by row: the number of its body. Of b bodies in the order of their lowest nodes: first_row (b+1,), lowest
-    (b,) node, first_front (b+1,). row_of: the row of each of the nodes ordered by minimum degree, by their numbers.
-    label, number, ends (n,) are scratch.
-    """
-
-    order: Slots
-    rank: Slots
-    body: Slots
-    first_row: Slots
-    lowest: Slots
-    first_front: Slots
-    label: Slots
+    order: Slots  # (n,) by row
+    rank: Slots  # (n,) by node
+    body: Slots  # (n,) by row
+    first_row: Slots  # (b + 1,)
+    lowest: Slots  # (b,): node
+    first_front: Slots  # (b + 1,)
+    label: Slots  # label, number, ends (n,): scratch
     number: Slots
-    row_of: Slots
+    row_of: Slots  # the row of each node ordered by minimum degree, by their numbers
     ends: Slots
 
 

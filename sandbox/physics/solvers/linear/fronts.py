@@ -17,7 +17,7 @@ PANEL = 8
 
 
 class Scratch(NamedTuple):
-    """Room for work on a front."""
+    """Scratch for work on a front."""
 
     panel: Floats
     inverse: Floats
@@ -25,34 +25,26 @@ class Scratch(NamedTuple):
 
 
 class Fronts(NamedTuple):
-    """The fronts of all large bodies, children before parents.
+    """The fronts of all large bodies, children before parents; of first to to_parent see Dissection."""
 
-    of_row (n,): the front that eliminates a row, -1 for a row of a small body; diagonal, row_width (n,): its place in
-    numbers and the width of its front.
-    first, last, child, border_start, border, to_parent: see Dissection, rows counted over all bodies. width (f,):
-    scalars in a row of the front; base and remains (f,): its places in numbers and remainder. inverses (2n,): 1 / d.
-    fork (f, 2): at the last front of a body, where its second half begins, and where that ends; equal: it has none.
-    apart (n, 2): of what lies above both halves, the right side that the first has left.
-    """
-
-    of_row: Slots
-    diagonal: Slots
-    row_width: Slots
+    of_row: Slots  # (n,): the front that eliminates a row, -1: of a small body
+    diagonal: Slots  # (n,): its place in numbers
+    row_width: Slots  # (n,): the width of its front
     first: Slots
     last: Slots
     child: SlotRows
     border_start: Slots
     border: Slots
     to_parent: Slots
-    width: Slots
-    base: Slots
-    remains: Slots
+    width: Slots  # (f,): scalars in a row of the front
+    base: Slots  # (f,): its place in numbers
+    remains: Slots  # (f,): its place in remainder
     numbers: Floats
     remainder: Floats
-    inverses: Floats
-    fork: SlotRows
+    inverses: Floats  # (2 n,): 1 / d
+    fork: SlotRows  # (f, 2): at the last front of a body, begin and end of its second half; equal: it has none
     scratch: Scratch
-    apart: FloatRows
+    first_half_rhs: FloatRows  # (n, 2): of what lies above both halves, the right side that the first left
 
 
 @inner_kernel
@@ -200,7 +192,7 @@ def add_block(numbers: Floats, at: int, width: int, sign: float, xx: float, xy: 
 
 @inner_kernel
 def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) -> None:
-    """Begin the matrix of one body: its masses [kg], all else 0."""
+    """Fill the matrix of one body with its masses [kg], and 0 elsewhere."""
     first_front = fronts.of_row[first_row]
     last = fronts.of_row[last_row - 1]
     rows = 2 * (fronts.last[last] - fronts.first[last])
@@ -326,7 +318,7 @@ def _eliminate_rows(front: int, fronts: Fronts, change: FloatRows) -> None:
 
 @inner_kernel
 def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
-    """Begin to solve for the rows of the factored fronts first_front..last_front of change (n, 2)."""
+    """Eliminate the rows of the factored fronts first_front..last_front from change (n, 2)."""
     for front in range(first_front, last_front):
         _eliminate_rows(front, fronts, change)
 

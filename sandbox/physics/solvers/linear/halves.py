@@ -65,12 +65,12 @@ def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, 
         _eliminate(wanted, first_front, begin, fronts, change)
         for row in range(fronts.first[above], last_row):
             for axis in range(2):
-                fronts.apart[row, axis] = change[row, axis]
+                fronts.first_half_rhs[row, axis] = change[row, axis]
                 change[row, axis] = 0.0
         _eliminate(wanted, begin, above, fronts, change)
         for row in range(fronts.first[above], last_row):
             for axis in range(2):
-                change[row, axis] += fronts.apart[row, axis]
+                change[row, axis] += fronts.first_half_rhs[row, axis]
         _eliminate(wanted, above, body + 1, fronts, change)
     else:
         _eliminate(wanted, first_front, body + 1, fronts, change)

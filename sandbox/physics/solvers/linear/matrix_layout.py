@@ -17,7 +17,7 @@ from sandbox.physics.arena import (
     new_slots,
 )
 from sandbox.physics.arrays import Slots, empty
-from sandbox.physics.jit import Bundle, bundle, contents, inner_kernel, items_of, kernel, put
+from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
 from sandbox.physics.solvers.linear.minimum_degree import Columns, order_by_degree, update_targets
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.topology.sorting import place_among, sort_by_value
@@ -30,12 +30,12 @@ LARGEST_TABLE = 1 << 25
 @inner_kernel
 def lay_out_columns(
     order: Slots, columns: Columns, row_of: Slots, column_start: Slots, row: Slots, pairs: Slots, same: Slots,
-    spare: Slots,
+    merge_buffer: Slots,
 ) -> int:  # fmt: skip
     """Lay out the blocks below the diagonal, by column; how long the longest one is.
 
     order, columns: of the nodes that were eliminated; row_of: their rows, all others have no blocks. column_start and
-    pairs (n+1,): pairs of blocks in all columns before. same (n,), spare (n,): scratch.
+    pairs (n+1,): pairs of blocks in all columns before. same (n,), merge_buffer (n,): scratch.
     """
     rows = same.shape[0]
     for j in range(rows):
@@ -55,7 +55,7 @@ def lay_out_columns(
         j = row_of[order[step]]
         for k in range(columns.start[step + 1] - columns.start[step]):
             row[column_start[j] + k] = row_of[columns.node[columns.start[step] + k]]
-        sort_by_value(same, row, column_start[j], column_start[j + 1], spare)
+        sort_by_value(same, row, column_start[j], column_start[j + 1], merge_buffer)
     return longest
 
 
@@ -79,9 +79,9 @@ def new_matrix(rows: int, order: Slots, columns: Columns, row_of: Slots, arena: 
     column_start, pairs, where = new_slots(arena, rows + 1), new_slots(arena, rows + 1), new_slots(arena, rows)
     row, longest, updates = new_slots(arena, blocks), 0, 0
     scratch = mark(arena)
-    same, spare = new_slots(arena, rows), new_slots(arena, rows)
+    same, merge_buffer = new_slots(arena, rows), new_slots(arena, rows)
     if not is_full(arena):
-        longest = lay_out_columns(order, columns, row_of, column_start, row, pairs, same, spare)
+        longest = lay_out_columns(order, columns, row_of, column_start, row, pairs, same, merge_buffer)
         give_back(arena, scratch)
         updates = pairs[rows] if pairs[rows] <= LARGEST_TABLE else 0
     target = new_int32s(arena, updates)
@@ -102,22 +102,22 @@ class GraphMatrix(NamedTuple):
 
 
 @kernel
-def _lay_out_graph(lent: Bundle[GraphMatrix], arena: Arena, nodes: int, link_a: Slots, link_b: Slots) -> None:
+def _lay_out_graph(pointer: Bundle[GraphMatrix], arena: Arena, nodes: int, link_a: Slots, link_b: Slots) -> None:
     begin(arena)
-    made = contents(lent)
+    made = unpack(pointer)
     ordered, rank = order_by_degree(nodes, link_a, link_b, arena), new_slots(arena, nodes)
     if is_full(arena):
         return
     for row in range(nodes):
         rank[ordered.order[row]] = row
-    put(made, "order", ordered.order)
-    put(made, "rank", rank)
-    put(made, "matrix", new_matrix(nodes, ordered.order, ordered.columns, rank, arena))
+    set_field(made, "order", ordered.order)
+    set_field(made, "rank", rank)
+    set_field(made, "matrix", new_matrix(nodes, ordered.order, ordered.columns, rank, arena))
 
 
 def matrix_of_graph(nodes: int, link_a: Slots, link_b: Slots) -> GraphMatrix:
     """A matrix of a block for each node and each link (l,), ready for numbers."""
-    lent = bundle(empty(GraphMatrix))
-    lay_out(_lay_out_graph, lent, np.zeros(FIRST_ARENA, np.int64), nodes, link_a, link_b)
-    made: GraphMatrix = items_of(lent)
+    pointer = bundle(empty(GraphMatrix))
+    lay_out(_lay_out_graph, pointer, np.zeros(FIRST_ARENA, np.int64), nodes, link_a, link_b)
+    made: GraphMatrix = items_of(pointer)
     return made

@@ -11,22 +11,16 @@ SMALLEST_PIVOT = 1e-15
 
 
 class Matrix(NamedTuple):
-    """A symmetric matrix of n rows of 2x2 blocks by columns, then its factor: b blocks below the diagonal.
+    """A symmetric matrix of n rows of 2x2 blocks by columns, then its factor: b blocks below the diagonal."""
 
-    column_start (n+1,), row (b,) = where each column begins and the rows of its blocks. target_start (n+1,), target:
-    the block that each pair of blocks of a column updates, or empty: found anew then, by way of where (n,). diagonal
-    (n, 3) = the symmetric blocks (xx, xy, yy), lower (b, 4) = those below (xx, xy, yx, yy). scaled (longest column, 4)
-    is scratch.
-    """
-
-    column_start: Slots
-    row: Slots
-    target_start: Slots
-    target: Int32s
-    where: Slots
-    diagonal: FloatRows
-    lower: FloatRows
-    scaled: FloatRows
+    column_start: Slots  # (n + 1,): where each column begins
+    row: Slots  # (b,): rows of its blocks
+    target_start: Slots  # (n + 1,)
+    target: Int32s  # the block that each pair of blocks of a column updates, or empty: found anew then
+    where: Slots  # (n,): scratch of that
+    diagonal: FloatRows  # (n, 3): symmetric blocks xx, xy, yy
+    lower: FloatRows  # (b, 4): blocks below, xx, xy, yx, yy
+    scaled: FloatRows  # (longest column, 4): scratch
 
 
 @inner_kernel

@@ -23,7 +23,7 @@ from sandbox.physics.pipeline.block import (
     TICK,
     WorldBlock,
 )
-from sandbox.physics.pipeline.collide import BOUND, KEPT, Collisions
+from sandbox.physics.pipeline.collide import COUPLED, KEPT, Collisions
 from sandbox.physics.pipeline.derive import WANTED, derive_hands, derive_topology, make_room
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers.direct.energy_bank import WAYS
@@ -33,7 +33,7 @@ from sandbox.physics.state import good_of, state_of
 from sandbox.physics.world import World
 
 
-class Block:
+class BlockOwner:
     """The block of a world, and the pointer that kernels take.
 
     given: what it was given, all else is empty there. A world's contacts are the first of those that the block has room
@@ -57,7 +57,7 @@ class Block:
             plan=np.zeros(PLANNED, np.int64),
             progress=np.zeros(PROGRESS, np.int64),
             wanted=np.zeros(WANTED, np.int64),
-            collisions=with_empty(Collisions, counts=np.zeros(BOUND + 1, np.int64)),
+            collisions=with_empty(Collisions, counts=np.zeros(COUPLED + 1, np.int64)),
             workspace=with_empty(IslandWorkspace, ways=np.zeros(WAYS, np.int64)),
         )
         self._constant: tuple[Any, ...] = ()
@@ -159,9 +159,9 @@ class Block:
         world.keep_contacts(*self._kept)
 
 
-def block_of(world: World) -> Block:
+def block_of(world: World) -> BlockOwner:
     """The block of a world, as its topology is now."""
-    block = world.lasting(Block)
+    block = world.lasting(BlockOwner)
     block.follow(world)
     return block
 
