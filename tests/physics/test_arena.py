@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.arena import FIRST_ARENA, lay_out
-from sandbox.physics.pipeline import making
+from sandbox.physics.pipeline import block_owner
 from sandbox.physics.pipeline.block import WorldBlock
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.derive import derive_topology
@@ -29,7 +29,7 @@ def arrays_of(item: Any, path: str = "") -> dict[str, np.ndarray]:
 
 def test_a_full_arena_is_asked_for_again_and_nothing_is_lost(monkeypatch):
     wanted = block_of(busy_world("direct", 1)).arrays
-    monkeypatch.setattr(making, "FIRST_ARENA", 2)
+    monkeypatch.setattr(block_owner, "FIRST_ARENA", 2)
     found = block_of(busy_world("direct", 1)).arrays
     for (name, one), other in zip(arrays_of(wanted).items(), arrays_of(found).values(), strict=True):
         assert np.array_equal(one, other, equal_nan=True), name
