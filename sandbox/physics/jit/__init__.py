@@ -3,7 +3,8 @@
 Kernels run from the library of this platform. Where their sources were edited, or there is none, zig compiles them once
 and keeps them; where zig is not installed, or does not take them, they are interpreted. One line says so.
 SANDBOX_KERNELS chooses: library; generic, which any processor of this kind runs; checked, which is compiled here and
-ends the process at an index that is out of range; interpreted. COMPILED says whether they are not interpreted.
+ends the process at an index out of range and at what C++ leaves undefined; interpreted. COMPILED says whether they are
+not interpreted.
 
 A kernel costs nothing until it is called: before the first call of one, or the first question for COMPILED, nothing is
 made of any, and no library is opened.

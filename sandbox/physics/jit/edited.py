@@ -26,6 +26,8 @@ from sandbox.physics.jit.sources import source_files, text_of
 # Versions that are kept: branches of a checkout take turns.
 _KEPT = 8
 _DIGEST_SIZE = 8
+# Where a library is made: one is left behind by a process that was killed.
+_ASIDE = ".making-"
 
 
 def _folder() -> Path:
@@ -52,7 +54,7 @@ def compiled_here(why: str, checked: bool) -> tuple[Path, dict[str, Any]]:
     if found is None:
         if importlib.util.find_spec("ziglang") is None:
             raise NoLibrary(f"{why}, and zig is not installed (the extra `build`)")
-        say(f"{why}: they are compiled once, which takes about 20 s")
+        say(f"{why}: they are compiled once, which takes about 15 s")
         try:
             found = _made(folder, checked)
         except OSError as error:
@@ -79,7 +81,8 @@ def _made(folder: Path, checked: bool) -> tuple[Path, dict[str, Any]]:
     with FileLock(folder.parent / ".lock"):
         found = _kept(folder)
         if found is None:
-            shutil.rmtree(folder, ignore_errors=True)
+            for left in (folder, *folder.parent.glob(f"{_ASIDE}*")):
+                shutil.rmtree(left, ignore_errors=True)
             _compile(folder, checked)
             _forget_others(folder)
             found = _kept(folder)
@@ -89,9 +92,9 @@ def _made(folder: Path, checked: bool) -> tuple[Path, dict[str, Any]]:
 
 
 def _compile(folder: Path, checked: bool) -> None:
-    aside = Path(tempfile.mkdtemp(prefix=".making-", dir=folder.parent))
+    aside = Path(tempfile.mkdtemp(prefix=_ASIDE, dir=folder.parent))
     try:
-        command = [sys.executable, "-P", "-m", f"{__package__}.making", str(aside)] + ["KERNELS_CHECKED"] * checked
+        command = [sys.executable, "-P", "-m", f"{__package__}.making", str(aside)] + ["checked"] * checked
         home = str(Path(__file__).resolve().parents[3])
         path = os.pathsep.join(filter(None, (home, os.environ.get("PYTHONPATH"))))
         variables = {

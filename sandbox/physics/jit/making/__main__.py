@@ -1,6 +1,6 @@
 """Compile the kernels for this machine: a library and its manifest, into a folder.
 
-python -m sandbox.physics.jit.making FOLDER [KERNELS_CHECKED]
+python -m sandbox.physics.jit.making FOLDER [checked]
 """
 
 import json
@@ -14,11 +14,11 @@ from sandbox.physics.jit.making.platforms import this_machine
 from sandbox.physics.jit.translate.definitions import Untranslatable
 
 
-def _main(folder: Path, *defines: str) -> int:
+def _main(folder: Path, *checked: str) -> int:
     platform = this_machine()
     try:
         found = gathered(all_entries())
-        content = compiled(found.texts, found.symbols, platform, folder.parent / "zig", defines)
+        content = compiled(found.texts, found.symbols, platform, folder.parent / "zig", bool(checked))
     except (Untranslatable, NotCompiled) as fault:
         print(fault)
         return 1

@@ -1,10 +1,14 @@
-"""Compiling: from the C++ of kernels to the library of a platform, by zig, which can for all of them on any of them."""
+"""Compiling: from the C++ of kernels to the library of a platform, by zig, which can for all of them on any of them.
+
+Units are compiled at the same time, each by a process of its own, and linked into one library.
+"""
 
 import os
 import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from sandbox.physics.jit.making.platforms import Platform
@@ -15,9 +19,6 @@ _OPTIONS = (
     "-O3", "-g0", "-fno-builtin", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off", "-fno-stack-protector",
     "-fvisibility=hidden", "-Wall", "-Werror", "-Wno-unused",
 )  # fmt: skip
-_CPP = ("-std=c++20", "-fno-exceptions", "-fno-rtti")
-# With what compilers take for granted inside it, such as memset: a library needs none of the system's.
-_LIBRARY = ("-fcompiler-rt", "-O", "ReleaseFast", "-fstrip")
 _WEB = ("-fno-entry", "--export-memory", "--export=__heap_base", "--initial-memory=2097152", "--stack", "1048576")
 
 
@@ -26,7 +27,8 @@ class NotCompiled(Exception):
 
 
 def _zig(folder: Path, kept: Path, arguments: Sequence[str]) -> None:
-    variables = {"ZIG_GLOBAL_CACHE_DIR": str(kept), "ZIG_LOCAL_CACHE_DIR": str(kept)}
+    # What is kept is what every library takes from zig, not what is made here.
+    variables = {"ZIG_GLOBAL_CACHE_DIR": str(kept), "ZIG_LOCAL_CACHE_DIR": str(folder / "cache")}
     command = [sys.executable, "-m", "ziglang", *arguments]
     ended = subprocess.run(
         command, cwd=folder, env={**os.environ, **variables}, capture_output=True, text=True, check=False
@@ -35,13 +37,35 @@ def _zig(folder: Path, kept: Path, arguments: Sequence[str]) -> None:
         raise NotCompiled(ended.stderr.strip())
 
 
+def _target(platform: Platform) -> list[str]:
+    return ["-target", platform.target, "-mcpu", platform.processor, "-O", "ReleaseFast", "-fstrip"]
+
+
+def _compiling(unit: str, platform: Platform, checked: bool) -> list[str]:
+    """What zig is to do for an object file of a unit."""
+    language = ("-std=c11",) if unit.endswith(".c") else ("-std=c++20", "-fno-exceptions", "-fno-rtti")
+    position = () if platform.is_web else ("-fPIC",)
+    checks = (("-fsanitize-c=full",), ("-DKERNELS_CHECKED",)) if checked else ((), ())
+    flags = ("-cflags", *_OPTIONS, *checks[1], *language, "--")
+    return ["build-obj", *_target(platform), *position, *checks[0], f"-femit-bin={unit}.o", *flags, unit]
+
+
+def _linking(units: Sequence[str], symbols: Sequence[str], platform: Platform, checked: bool) -> list[str]:
+    """What zig is to do for a library of object files, with what compilers take for granted, such as memset."""
+    runtime = ("-fcompiler-rt", "-fubsan-rt") if checked else ("-fcompiler-rt",)
+    linked = (*_target(platform), *runtime, f"-femit-bin={platform.file}", *(f"{unit}.o" for unit in units))
+    if platform.is_web:
+        return ["build-exe", *linked, *_WEB, *(f"--export={symbol}" for symbol in symbols)]
+    return ["build-lib", "-dynamic", *linked, *platform.options]
+
+
 def compiled(
-    texts: Mapping[str, str], symbols: Sequence[str], platform: Platform, kept: Path, defines: Sequence[str] = ()
+    texts: Mapping[str, str], symbols: Sequence[str], platform: Platform, kept: Path, checked: bool = False
 ) -> bytes:
     """The library of a platform: entries of kernels, with what calls them from Python; always the same bytes.
 
-    texts: C++ by the names of its files. symbols: of the entries. kept: a folder for what zig makes once. defines:
-    names that C++ is to know, such as KERNELS_CHECKED.
+    texts: C++ by the names of its files. symbols: of the entries. kept: a folder for what zig makes once. checked:
+    it is to end the process, and say where, at an index out of range and at what C++ leaves undefined.
 
     Raises:
         NotCompiled: with what zig says.
@@ -51,14 +75,11 @@ def compiled(
         folder = Path(name)
         for file, text in texts.items():
             (folder / file).write_text(text, encoding="utf-8")
-        (folder / "calling.c").write_bytes(_CALLING.read_bytes())
-        options = (*_OPTIONS, *(f"-D{define}" for define in defines))
-        sources = ["-cflags", *options, *_CPP, "--", *texts]
-        target = ["-target", platform.target, "-mcpu", platform.processor, *_LIBRARY, f"-femit-bin={platform.file}"]
-        if platform.suffix == "wasm":
-            exports = [f"--export={symbol}" for symbol in symbols]
-            _zig(folder, kept, ["build-exe", *target, *_WEB, *exports, *sources])
-        else:
-            sources += ["-cflags", *options, "-std=c11", "--", "calling.c"]
-            _zig(folder, kept, ["build-lib", "-dynamic", *target, *platform.options, *sources])
+        units = list(texts)
+        if not platform.is_web:
+            (folder / _CALLING.name).write_bytes(_CALLING.read_bytes())
+            units.append(_CALLING.name)
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            list(pool.map(lambda unit: _zig(folder, kept, _compiling(unit, platform, checked)), units))
+        _zig(folder, kept, _linking(units, symbols, platform, checked))
         return (folder / platform.file).read_bytes()

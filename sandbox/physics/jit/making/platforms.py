@@ -25,6 +25,11 @@ class Platform:
         """The name of its library."""
         return f"{self.name}.{self.suffix}"
 
+    @property
+    def is_web(self) -> bool:
+        """Whether it is a module for pages, not a library that Python opens."""
+        return self.suffix == "wasm"
+
 
 # The system's loader takes no library that does not name this one.
 _MACHO = ("-lc", "-install_name", "@rpath/kernels.dylib")
