@@ -23,7 +23,7 @@ from sandbox.session.session import Session
 
 def level(more=""):
     return (
-        '{"format": "spring-sandbox/level", "version": 2, "name": "Two",'
+        '{"format": "spring-sandbox/level", "version": 3, "name": "Two",'
         '"settings": {"solver": "iterative"' + more + '},'
         '"bodies": [{"type": "rope", "id": "r", "start": [0, 0], "end": [2, 0], "segments": 2, "pin": ["start"]}]}'
     ).encode()
@@ -466,7 +466,7 @@ def test_a_command_of_the_shell_is_one_file_and_its_name_in_the_table(package):
     script = """
 from sandbox.cli import main
 Path("two.json").write_bytes(level())
-Path("none.json").write_text('{"format": "spring-sandbox/level", "version": 2, "name": "Nobody"}')
+Path("none.json").write_text('{"format": "spring-sandbox/level", "version": 3, "name": "Nobody"}')
 assert main(["greet", "two.json"]) == 0 and main(["greet", "none.json"]) == 2
 """
     assert play(package, script) == "Hello, Two"

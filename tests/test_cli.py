@@ -16,7 +16,7 @@ from sandbox.level.reading.files import shipped_folder
 from tests.support.interrupts import interrupts
 
 ROPE = {
-    "format": "spring-sandbox/level", "version": 2, "name": "Short rope", "settings": {"solver": "iterative"},
+    "format": "spring-sandbox/level", "version": 3, "name": "Short rope", "settings": {"solver": "iterative"},
     "bodies": [{"type": "rope", "id": "rope", "start": [0, 0], "end": [1, 0], "segments": 4, "pin": ["start"]}],
     "checks": [{"name": "stays up", "metric": "y", "particle": "rope.4", "after": 1.0, "at_least": -1.5}],
 }  # fmt: skip
@@ -321,7 +321,7 @@ def test_twenty_bad_files_through_the_command_line(tmp_path):
         "", "nonsense", "[]", "{}", "null", good[:-5], "\0\0", '{"format": "spring-sandbox/level"}',
         good.replace('"segments": 4', '"segments": true'), good.replace('"segments": 4', '"segments": 1000000000000'),
         good.replace('"segments": 4', '"segments": -1'), good.replace("[1, 0]", "[NaN, 0]"),
-        good.replace("[1, 0]", "[1e999, 0]"), good.replace('"version": 2', '"version": 3'),
+        good.replace("[1, 0]", "[1e999, 0]"), good.replace('"version": 3', '"version": 4'),
         good.replace('"type": "rope"', '"type": "robe"'), good.replace('"id": "rope"', '"id": ""'),
         "[" * 5000 + "]" * 5000, good.replace('"name"', '"name": "a", "name"', 1),
         good.replace('"settings": {', '"settings": {"solver": "magic", "x": '), "{" * 100,

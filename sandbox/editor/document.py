@@ -20,7 +20,7 @@ from sandbox.level.kinds.bodies import AnyBody, expansion
 # Below this many definitions and listed points, 209 bytes of a file's limit each, the text of a level is not measured.
 MEASURED_SIZE = 40_000
 
-_PLACE = re.compile(r"(bodies|particles|springs|terrain|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
+_PLACE = re.compile(r"(bodies|particles|springs|terrain|zones|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
 
 
 class EditError(ValueError):
@@ -161,4 +161,5 @@ def _named(level: Level, fault: str) -> str:
 def _size(level: Level) -> int:
     listed = sum(len(getattr(body, "particles", ())) + len(body.pose or ()) + len(body.cut) for body in level.bodies)
     listed += sum(len(piece.polyline or piece.polygon or ()) for piece in level.terrain)
+    listed += sum(len(zone.polygon or ()) for zone in level.zones) + len(level.zones)
     return listed + len(level.bodies) + len(level.particles) + len(level.springs) + len(level.welds)

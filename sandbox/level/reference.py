@@ -84,6 +84,8 @@ def _sections(models: dict[str, Model], whole: Model) -> Iterator[str]:
     yield from map(table, ("Every material", "Material", "Hooke material"))
     yield "## Contacts, walls and terrain\n"
     yield from map(table, ("Contacts", "Walls", "Terrain"))
+    yield "## Zones and water\n"
+    yield from map(table, ("Zone", "Water"))
     yield from (prose.BODIES, table("Every body"))
     yield from (table(name.capitalize()) for kind, each in EXPANSIONS.items() for name in (kind, *each.alternatives))
     yield from map(table, ("Firmness", "Bending"))
@@ -92,7 +94,7 @@ def _sections(models: dict[str, Model], whole: Model) -> Iterator[str]:
     yield "## Actuators\n"
     yield from (*map(table, ("Muscle", "Hydraulic", "Motor")), prose.ACTUATORS)
     yield from (prose.CHECKS, table("Acceptance check"), table("Key that is held"), prose.METRICS)
-    yield from (prose.LOOKS, *map(table, ("Level look", "Body look", "Particle look")))
+    yield from (prose.LOOKS, *map(table, ("Level look", "Body look", "Particle look", "Zone look")))
     yield from (prose.NAMES, prose.COLLISIONS, prose.AREAS, prose.FIRMNESS, prose.LIMITS, _faults(), _index(models))
 
 

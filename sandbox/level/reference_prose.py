@@ -7,7 +7,7 @@ from sandbox.level.kinds.bodies import EXPANSIONS
 EXAMPLE = """\
 {
   "format": "spring-sandbox/level",
-  "version": 2,
+  "version": 3,
   "name": "A ball under a bridge",
   "settings": {"solver": "iterative", "iterations": 20, "substeps": 4},
   "materials": {"steel": {"stiffness": 1.0, "damping": 1.0}},
@@ -62,6 +62,7 @@ it for nothing else.
 The program opens files of older versions without a change of their motion, and saves them in this version. In version 1
 substeps of the direct solver left the motion of each spring as it was; since version 2 they leave k and c. If a file of
 version 1 has several substeps, the reader therefore changes its Cs and Cd such that each substep does what it did.
+Version 3 has `zones`; all that version 2 says, it says too.
 """
 
 TABLES = """\
@@ -86,7 +87,7 @@ NAMES = f"""\
 ## Names and references
 
 - An id has 1 to 256 characters without `.` `:` `,` and control characters, and does not begin with `+`. No two bodies,
-  loose particles or pieces of terrain have the same id.
+  loose particles, pieces of terrain or zones have the same id.
 - `deck.7` is particle 7 of the body `deck`, counted from 0 in generation order. `deck.start` and `deck.end` are the
   ends of a rope, of a bridge's top row, or of a girder's first row. `net.centre` is the middle of a web, `cart.hub` the
   hub of a wheel. The name of a loose particle is its id. Springs, welds and checks use these names.

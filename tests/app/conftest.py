@@ -30,7 +30,7 @@ def small_level(**changes):
     """A rope of 4 links of 1 m, pinned at its start, and a loose pair of another material; no gravity."""
     data = {
         "format": "spring-sandbox/level",
-        "version": 2,
+        "version": 3,
         "name": "Small",
         "settings": {"solver": "single_pass", "gravity": [0.0, 0.0]},
         "view": [-3.0, -3.0, 7.0, 4.0],

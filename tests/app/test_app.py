@@ -251,7 +251,7 @@ def test_touching_a_replay_takes_it_over(driver, documents):
 
 def test_a_bad_level_and_a_bad_replay_are_shown_as_lines_and_the_run_goes_on(driver, tmp_path):
     bad_level, bad_replay = tmp_path / "bad.json", tmp_path / "bad.jsonl"
-    bad_level.write_text('{"format": "spring-sandbox/level", "version": 2, "name": 3}')
+    bad_level.write_text('{"format": "spring-sandbox/level", "version": 3, "name": 3}')
     bad_replay.write_text('{"format": "spring-sandbox/replay", "version": 99}\n')
     before = driver.playback
     for path in (bad_level, bad_replay, tmp_path / "missing.json", tmp_path):

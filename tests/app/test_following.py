@@ -17,7 +17,7 @@ SHIFT = pygame.KMOD_SHIFT
 def flying(**look):
     """A level of two discs that fly apart, which the camera may go along with."""
     data = {
-        "format": "spring-sandbox/level", "version": 2, "name": "apart", "settings": {"gravity": [0, 0]},
+        "format": "spring-sandbox/level", "version": 3, "name": "apart", "settings": {"gravity": [0, 0]},
         "view": [-5, -3, 5, 3], "look": look,
         "particles": [
             {"id": "left", "position": [-1, 0], "velocity": [-6, 0], "radius": 0.3},

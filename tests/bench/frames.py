@@ -44,7 +44,7 @@ def mesh() -> Level:
         "pinned": [0, SIDE - 1], "material": "net",
     }  # fmt: skip
     materials = {"net": {"stiffness": 0.3, "damping": 0.4}}
-    level = {"format": "spring-sandbox/level", "version": 2, "name": "Mesh", "materials": materials, "bodies": [body]}
+    level = {"format": "spring-sandbox/level", "version": 3, "name": "Mesh", "materials": materials, "bodies": [body]}
     return parse_level(json.dumps(level).encode(), "mesh")
 
 

@@ -22,7 +22,7 @@ BAR = {"type": "mesh", "id": "bar", "particles": [[0, 0], [1, 0]], "springs": [[
 
 
 def part(**data):
-    head = {"format": "spring-sandbox/level", "version": 2, "name": "Thing"}
+    head = {"format": "spring-sandbox/level", "version": 3, "name": "Thing"}
     return parse_level(json.dumps(head | data).encode(), "part")
 
 

@@ -196,8 +196,8 @@ def test_own_parts_are_renamed_and_deleted_with_their_files(ball, tmp_path):
         (b"{", "not JSON"),
         (b"\xff\xfe", "UTF-8"),
         (b"[]", "level"),
-        (b'{"format": "spring-sandbox/level", "version": 2, "name": "Empty"}', "nothing in it"),
-        (json.dumps({"format": "spring-sandbox/level", "version": 2, "name": "x", "wheels": 4}).encode(), "wheels"),
+        (b'{"format": "spring-sandbox/level", "version": 3, "name": "Empty"}', "nothing in it"),
+        (json.dumps({"format": "spring-sandbox/level", "version": 3, "name": "x", "wheels": 4}).encode(), "wheels"),
     ],
 )
 def test_a_broken_file_is_listed_with_one_line_that_says_why(content, fault, tmp_path):

@@ -25,7 +25,7 @@ from tests.support.zoo import zoo
 
 LEVEL = {
     "format": "spring-sandbox/level",
-    "version": 2,
+    "version": 3,
     "name": "Everything",
     "materials": {"steel": {"stiffness": 1.0}, "hook": {"law": "hooke", "k": 3.0, "c": 1.0}},
     "bodies": [

@@ -93,7 +93,7 @@ def test_a_motor_that_a_wheel_is_given_later_carries_what_its_axle_is_loaded_wit
     wheel = {"type": "wheel", "id": "w", "position": [0, 0], "radius": 0.5, "thickness": 0.1, "segments": 20}
     loads = [{"id": "near", "position": [0, -0.2], "mass": 300.0}, {"id": "far", "position": [1, 0], "mass": 700.0}]
     springs = [{"a": "w.hub", "b": "near"}, {"a": "near", "b": "far"}]
-    data = {"format": "spring-sandbox/level", "version": 2, "name": "cart", "bodies": [wheel], "particles": loads}
+    data = {"format": "spring-sandbox/level", "version": 3, "name": "cart", "bodies": [wheel], "particles": loads}
     level = parse_level(json.dumps({**data, "springs": springs}).encode(), "cart")
     driven = add_object(Document(level), [Item("body", "w")], "motor").level.bodies[0].motor
     assert driven.torque >= 2.0 * 1000.0 * 9.81 * 0.5 * math.sin(math.pi / 20)

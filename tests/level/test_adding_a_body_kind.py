@@ -123,7 +123,7 @@ from sandbox.level.reference import format_reference
 from sandbox.level.document.schema import schema
 
 body = {"type": "ladder", "id": "l", "width": 0.5, "segments": 3, "pin": ["top"]}
-level = {"format": "spring-sandbox/level", "version": 2, "name": "A ladder", "bodies": [body]}
+level = {"format": "spring-sandbox/level", "version": 3, "name": "A ladder", "bodies": [body]}
 level["checks"] = [{"name": "it hangs", "metric": "y", "particle": "l.foot", "after": 1, "at_least": -3}]
 level = parse_level(json.dumps(level).encode(), "x.json")
 assert parse_level(level_text(level).encode(), "x.json") == level

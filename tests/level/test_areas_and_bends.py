@@ -20,7 +20,7 @@ from sandbox.physics.constraints import AREA, BEND
 
 
 def world_of(*bodies, **level):
-    data = {"format": "spring-sandbox/level", "version": 2, "name": "Test", "bodies": bodies, **level}
+    data = {"format": "spring-sandbox/level", "version": 3, "name": "Test", "bodies": bodies, **level}
     return build_world(parse_level(json.dumps(data).encode(), "test"))
 
 

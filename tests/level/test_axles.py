@@ -19,7 +19,7 @@ PLANK = {"type": "jelly", "id": "plank", "shape": {"box": [4.0, 0.2]}, "spacing"
 
 
 def level(**parts):
-    data = {"format": "spring-sandbox/level", "version": 2, "name": "test", "contacts": {}, **parts}
+    data = {"format": "spring-sandbox/level", "version": 3, "name": "test", "contacts": {}, **parts}
     return parse_level(json.dumps(data | {"settings": {"gravity": [0.0, 0.0]}}).encode(), "test")
 
 

@@ -20,7 +20,7 @@ ROPE = {"type": "rope", "id": "r", "start": [0, 5], "end": [4, 5], "segments": 4
 
 def text(**parts):
     """A level file with these parts."""
-    return json.dumps({"format": "spring-sandbox/level", "version": 2, "name": "Driven", **parts}).encode()
+    return json.dumps({"format": "spring-sandbox/level", "version": 3, "name": "Driven", **parts}).encode()
 
 
 def level(**parts):

@@ -62,7 +62,7 @@ def jelly(**fields):
 
 
 def parsed(*bodies, **rest):
-    data = {"format": "spring-sandbox/level", "version": 2, "name": "Test", "bodies": bodies, **rest}
+    data = {"format": "spring-sandbox/level", "version": 3, "name": "Test", "bodies": bodies, **rest}
     return parse_level(json.dumps(data).encode(), "x")
 
 

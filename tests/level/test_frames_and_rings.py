@@ -13,7 +13,7 @@ from tests.support.malformed_levels import encoded
 
 
 def world_of(body, **keys):
-    whole = {"format": "spring-sandbox/level", "version": 2, "name": "n", "bodies": [body], **keys}
+    whole = {"format": "spring-sandbox/level", "version": 3, "name": "n", "bodies": [body], **keys}
     return build_world(parse_level(encoded(whole), "x.json"))
 
 

@@ -11,7 +11,7 @@ from sandbox.level.reading.files import LevelError, parse_level
 from sandbox.physics.solvers import SOLVERS
 from tests.support.malformed_levels import GOOD, changed, encoded
 
-MINIMAL = b'{"format": "spring-sandbox/level", "version": 2, "name": "n"}'
+MINIMAL = b'{"format": "spring-sandbox/level", "version": 3, "name": "n"}'
 
 
 def parsed(level):
@@ -19,7 +19,7 @@ def parsed(level):
 
 
 def body(**keys):
-    return parsed({"format": "spring-sandbox/level", "version": 2, "name": "n", "bodies": [keys]}).bodies[0]
+    return parsed({"format": "spring-sandbox/level", "version": 3, "name": "n", "bodies": [keys]}).bodies[0]
 
 
 def test_format_version_and_name_are_a_whole_level():

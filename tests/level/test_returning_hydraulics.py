@@ -16,7 +16,7 @@ def flipper(**more):
     """A level of a hydraulic between a pin and a ball, as its data."""
     return {
         "format": "spring-sandbox/level",
-        "version": 2,
+        "version": 3,
         "name": "Flipper",
         "settings": {"gravity": [0.0, 0.0], "solver": "direct"},
         "particles": [{"id": "pin", "pinned": True}, {"id": "ball", "position": [1.0, 0.0]}],

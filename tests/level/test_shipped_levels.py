@@ -18,7 +18,7 @@ LEVELS = [path.stem for path in shipped_levels()]
 
 # The format's own example, as its description gives it.
 EXAMPLE = """
-    {"format": "spring-sandbox/level", "version": 2, "name": "Rope, bridge, jelly", "description": "...", "author": "...", "licence": "...", "tags": ["demo"],
+    {"format": "spring-sandbox/level", "version": 3, "name": "Rope, bridge, jelly", "description": "...", "author": "...", "licence": "...", "tags": ["demo"],
      "settings": {"gravity": [0.0, -9.81], "tick_rate": 60, "substeps": 1, "solver": "iterative", "iterations": 10, "warm_start": 0.5},
      "view": [-12.0, -1.0, 12.0, 12.0],
      "materials": {"steel": {"stiffness": 1.0, "damping": 1.0}, "jelly": {"stiffness": 0.02, "damping": 0.1}},

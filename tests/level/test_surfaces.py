@@ -19,7 +19,7 @@ SQUARE = [[0, 0], [4, 0], [4, -1], [0, -1]]
 
 
 def level(**parts):
-    data = {"format": "spring-sandbox/level", "version": 2, "name": "test", **parts}
+    data = {"format": "spring-sandbox/level", "version": 3, "name": "test", **parts}
     return parse_level(json.dumps(data).encode(), "test")
 
 
@@ -63,7 +63,7 @@ def test_each_fault_is_one_clear_line(parts, told):
 
 
 def test_what_is_valid_of_terrain_is_salvaged():
-    data = {"format": "spring-sandbox/level", "version": 2, "name": "test",
+    data = {"format": "spring-sandbox/level", "version": 3, "name": "test",
             "terrain": [{"id": "a"}, {"id": "b", "polygon": SQUARE}]}  # fmt: skip
     kept, told = salvage(json.dumps(data).encode(), "test")
     assert [piece.id for piece in kept.terrain] == ["b"]

@@ -26,7 +26,7 @@ BOX = {"type": "jelly", "id": "b", "shape": {"box": [1, 1]}, "position": [0, 0],
 def box(stiffness, damping, *, cells=8, **settings):
     """A world of one box that floats."""
     level = {
-        "format": "spring-sandbox/level", "version": 2, "name": "box", "settings": {"gravity": [0, 0], **settings},
+        "format": "spring-sandbox/level", "version": 3, "name": "box", "settings": {"gravity": [0, 0], **settings},
         "materials": {"m": {"stiffness": stiffness, "damping": damping}}, "bodies": [{**BOX, "spacing": 1 / cells}],
     }  # fmt: skip
     return build_world(parse_level(json.dumps(level).encode(), "box"))
@@ -90,7 +90,7 @@ def test_a_box_wobbles_as_is_said(solver, stiffness, damping, within, cells):
 def test_each_word_sags_by_what_it_says():
     for word, sag in WORDS.items():
         level = {
-            "format": "spring-sandbox/level", "version": 2, "name": "box",
+            "format": "spring-sandbox/level", "version": 3, "name": "box",
             "bodies": [{**BOX, "spacing": 0.125, "material": "default", "firmness": {"sag": sag}}],
         }  # fmt: skip
         world = build_world(parse_level(json.dumps(level).encode(), "box"))

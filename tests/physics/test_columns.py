@@ -22,7 +22,7 @@ def level_of(height, width, spacing, stiffness, damping, **more):
     }  # fmt: skip
     return parse_level(
         json.dumps({
-            "format": "spring-sandbox/level", "version": 2, "name": "column", "bodies": [body], "terrain": [GROUND],
+            "format": "spring-sandbox/level", "version": 3, "name": "column", "bodies": [body], "terrain": [GROUND],
             "materials": {"m": {"stiffness": stiffness, "damping": damping}}, "contacts": {"friction": 0.8},
         }).encode(),
         "column",

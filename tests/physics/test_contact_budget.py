@@ -43,7 +43,7 @@ def session_of(materials, **parts):
     return Session(
         parse_level(
             json.dumps({
-                "format": "spring-sandbox/level", "version": 2, "name": "budget",
+                "format": "spring-sandbox/level", "version": 3, "name": "budget",
                 "materials": {"m": {"stiffness": materials[0], "damping": materials[1]}}, "terrain": [GROUND], **parts,
             }).encode(),
             "budget",

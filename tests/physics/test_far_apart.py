@@ -76,7 +76,7 @@ def level_of(near, far, far_first, solver):
         lists = {key: [*far.get(key, []), *near.get(key, [])] for key in keys}
     return parse_level(
         json.dumps({
-            "format": "spring-sandbox/level", "version": 2, "name": "apart",
+            "format": "spring-sandbox/level", "version": 3, "name": "apart",
             "settings": {**near.get("settings", {}), "solver": solver},
             "materials": {**MATERIALS, **near.get("materials", {})}, "contacts": near.get("contacts", {}), **lists,
         }).encode(),

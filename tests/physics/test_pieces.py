@@ -36,7 +36,7 @@ JELLY = {
 def small(gravity=(0.0, 0.0), material=None, **body):
     """A level of one jelly that can touch."""
     level = {
-        "format": "spring-sandbox/level", "version": 2, "name": "one jelly", "contacts": {},
+        "format": "spring-sandbox/level", "version": 3, "name": "one jelly", "contacts": {},
         "settings": {"solver": "direct", "gravity": gravity}, "bodies": [{**JELLY, **body}],
         "materials": {"soft": {"stiffness": 0.2, "damping": 0.4, **(material or {})}},
     }  # fmt: skip

@@ -234,7 +234,7 @@ def test_no_step_of_a_shipped_level_is_slowed_down(level):
 
 
 def test_interpreted_kernels_count_the_same_ways_through_the_energy_test(tmp_path, capsys):
-    level = {"format": "spring-sandbox/level", "version": 2, "name": "cart", "materials": {"m": RIGID}}
+    level = {"format": "spring-sandbox/level", "version": 3, "name": "cart", "materials": {"m": RIGID}}
     path = tmp_path / "cart.json"
     path.write_text(json.dumps({**level, **cart(12.0, 3.0, 1.5, 80.0)[0]}))
     command = ["run", str(path), "--ticks", "60", "--json"]

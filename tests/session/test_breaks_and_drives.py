@@ -22,7 +22,7 @@ def busy_level(solver="direct", **changes):
     """A weak bridge under a weight, a wheel with a motor, a hydraulic and a muscle, in wind."""
     data = {
         "format": "spring-sandbox/level",
-        "version": 2,
+        "version": 3,
         "name": "Busy",
         "settings": {"solver": solver, "wind": [2, 0], "drag": 0.1},
         "materials": {"steel": {"stiffness": 0.8, "damping": 0.9, "tension_limit": 0.006, "yield_strain": 0.005}},
@@ -206,7 +206,7 @@ def test_a_script_drives_a_part_by_its_name(tmp_path):
 def test_a_balloon_and_a_jelly_are_pumped_up_by_commands_that_replay_and_undo(tmp_path):
     data = {
         "format": "spring-sandbox/level",
-        "version": 2,
+        "version": 3,
         "name": "Pumped",
         "settings": {"gravity": [0.0, 0.0]},
         "bodies": [

@@ -23,7 +23,7 @@ def cage(**changes):
     """A level: two jellies in a cage that is too small for both."""
     jelly = {"type": "jelly", "shape": {"box": [0.8, 0.8]}, "spacing": 0.2}
     level = {
-        "format": "spring-sandbox/level", "version": 2, "name": "cage", "contacts": {}, "settings": {"gravity": [0, 0]},
+        "format": "spring-sandbox/level", "version": 3, "name": "cage", "contacts": {}, "settings": {"gravity": [0, 0]},
         "terrain": [
             {"id": name, "polygon": [[a, b], [c, b], [c, d], [a, d]]} for name, (a, b, c, d) in BARS.items()
         ],

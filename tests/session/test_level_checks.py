@@ -17,7 +17,7 @@ from sandbox.session.sweep.grid import SweepRequest
 
 # A ball falls 4 m onto the ground in 0.9 s; a rope of two springs hangs beside it, of which the lower one is slack.
 LEVEL = {
-    "format": "spring-sandbox/level", "version": 2, "name": "Drop", "settings": {"solver": "iterative"},
+    "format": "spring-sandbox/level", "version": 3, "name": "Drop", "settings": {"solver": "iterative"},
     "contacts": {"restitution": 0.0, "friction": 0.5},
     "terrain": [{"id": "ground", "polygon": [[-9, -2], [9, -2], [9, 0], [-9, 0]]}],
     "bodies": [
@@ -143,7 +143,7 @@ def test_a_check_that_makes_no_sense_is_refused_in_a_line(words):
 
 
 CAR = {
-    "format": "spring-sandbox/level", "version": 2, "name": "Cart",
+    "format": "spring-sandbox/level", "version": 3, "name": "Cart",
     "materials": {"steel": {"stiffness": 1.0, "damping": 1.0}}, "contacts": {"friction": 1.0},
     "terrain": [{"id": "ground", "polygon": [[-9, -2], [99, -2], [99, 0], [-9, 0]]}],
     "bodies": [

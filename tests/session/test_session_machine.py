@@ -51,7 +51,7 @@ from tests.support.wholes import part_and_whole
 
 EMPTY = parse_level(
     json.dumps(
-        {"format": "spring-sandbox/level", "version": 2, "name": "Empty", "settings": {"solver": "single_pass"}}
+        {"format": "spring-sandbox/level", "version": 3, "name": "Empty", "settings": {"solver": "single_pass"}}
     ).encode(),
     "test",
 )

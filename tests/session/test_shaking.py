@@ -64,7 +64,7 @@ def test_pins_and_hands_are_of_the_frame():
 
 def test_where_nothing_moves_it_says_so_and_bad_numbers_are_refused():
     still = parse_level(
-        b'{"format": "spring-sandbox/level", "version": 2, "name": "still",'
+        b'{"format": "spring-sandbox/level", "version": 3, "name": "still",'
         b' "particles": [{"id": "nail", "position": [0, 0], "pinned": true}]}',
         "still",
     )

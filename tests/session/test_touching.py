@@ -25,7 +25,7 @@ def touching_level(**changes):
     """A jelly that falls on the floor and breaks, a ball and a balloon that meet it, and a hydraulic in wind."""
     data = {
         "format": "spring-sandbox/level",
-        "version": 2,
+        "version": 3,
         "name": "Touching",
         "settings": {"wind": [1, 0], "drag": 0.2},
         "contacts": {"friction": 0.3, "restitution": 0.2},

@@ -42,7 +42,7 @@ def cart_level(
     joined = [(hub, "load") for hub in hubs] + list(itertools.pairwise(hubs))
     data = {
         "format": "spring-sandbox/level",
-        "version": 2,
+        "version": 3,
         "name": "Cart",
         "settings": {"solver": "direct", "substeps": 1, **settings},
         "materials": {"steel": {"stiffness": 1.0, "damping": 1.0}},

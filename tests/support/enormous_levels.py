@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 MEGABYTE = 1024 * 1024
-HEAD = b'{"format": "spring-sandbox/level", "version": 2, "name": "n", '
+HEAD = b'{"format": "spring-sandbox/level", "version": 3, "name": "n", '
 # Of what a level of 8 MiB is filled with [bytes].
 SIZE = 8 * MEGABYTE - 200
 

@@ -7,7 +7,7 @@ from typing import Any
 
 GOOD: dict[str, Any] = {
     "format": "spring-sandbox/level",
-    "version": 2,
+    "version": 3,
     "name": "Good",
     "description": "Every kind of thing once.",
     "tags": ["demo"],
@@ -77,6 +77,11 @@ GOOD: dict[str, Any] = {
             "pose": [[4, 1], [5, 1], [4, 2], [3, 1], [6, 1], [4, 3], [2, 1]],
         },
     ],
+    "zones": [
+        {"id": "pool", "box": [-9, -3, 9, -1], "water": {"density": 5.0, "flow": [0.5, 0.0]}},
+        {"id": "goal", "circle": [8, 8, 1.5]},
+        {"id": "gate", "polygon": [[7, 0], [8, 0], [8, 1]]},
+    ],
     "particles": [{"id": "ball", "position": [0, 3], "mass": 100.0, "radius": 0.3, "pinned": False}],
     "springs": [{"a": "ball", "b": "deck.20", "rest_length": 0.5, "material": "steel", "group": "yard"}],
     "welds": [["cube.3", "kite.0"], ["net 2.centre", "cube.3"]],
@@ -107,6 +112,11 @@ NUMBERS = [
     "bodies.8.thickness",
     "bodies.8.hub_mass",
     "bodies.8.pose.2.1",
+    "zones.0.box.2",
+    "zones.0.water.density",
+    "zones.0.water.flow.1",
+    "zones.1.circle.2",
+    "zones.2.polygon.1.0",
     "particles.0.mass",
     "particles.0.radius",
     "springs.0.rest_length",
@@ -121,8 +131,8 @@ TEXTS = ["name", "bodies.0.id", "bodies.0.material", "springs.0.a", "tags.0", "s
 TEXTS += ["welds.1.0", "bodies.7.pin.0"]
 NO_TEXTS = [1, None, True, ["x"], "x" * 257, "\x00", "\x1b[31m"]
 LISTS = ["bodies", "particles", "springs", "checks", "tags", "settings.gravity", "bodies.0.pin", "bodies.5.springs"]
-LISTS += ["welds", "welds.0", "bodies.6.cut", "bodies.7.pinned"]
-OBJECTS = ["settings", "materials", "materials.steel", "bodies.0", "bodies.2.shape", "springs.0", "extras"]
+LISTS += ["zones", "zones.0.box", "zones.2.polygon", "welds", "welds.0", "bodies.6.cut", "bodies.7.pinned"]
+OBJECTS = ["settings", "materials", "materials.steel", "bodies.0", "bodies.2.shape", "springs.0", "zones.0", "extras"]
 REQUIRED = [
     "format",
     "version",
@@ -151,7 +161,7 @@ REQUIRED = [
 KITE: dict[str, Any] = {"type": "jelly", "id": "kite", "shape": {"polygon": [[0, 0], [2, 0], [0, 2]]}}
 FITTED = KITE | {"mesh": "fitted", "spacing": 0.25}
 OUTSIDE = [
-    ("version", 3),
+    ("version", 4),
     ("version", 0),
     ("format", "tiled/map"),
     ("name", ""),

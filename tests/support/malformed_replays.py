@@ -53,7 +53,7 @@ def _raw_cases(good: bytes) -> Iterator[tuple[str, bytes]]:
     yield "null", b"null\n"
     yield "deep nesting", b"[" * 100_000 + b"]" * 100_000 + b"\n"
     yield "deep objects", b'{"a":' * 50_000 + b"1" + b"}" * 50_000 + b"\n"
-    yield "a level", b'{"format": "spring-sandbox/level", "version": 2, "name": "x"}\n'
+    yield "a level", b'{"format": "spring-sandbox/level", "version": 3, "name": "x"}\n'
     yield "utf-16", good.decode().encode("utf-16")
     yield "byte order mark", b"\xef\xbb\xbf" + good
     yield "invalid utf-8", good[:50] + b"\xff\xfe" + good[50:]
@@ -90,7 +90,7 @@ def _forged_cases(lines: Lines) -> Iterator[tuple[str, bytes]]:
     for key, value in (
         ("version", 3), ("version", "2"), ("version", True), ("physics_version", 999), ("physics_version", None),
         ("sandbox_version", 5), ("format", "spring-sandbox/level"), ("format", None), ("level", []), ("level", None),
-        ("level", {}), ("level", {"format": "spring-sandbox/level", "version": 2}), ("surprise", 1),
+        ("level", {}), ("level", {"format": "spring-sandbox/level", "version": 3}), ("surprise", 1),
     ):  # fmt: skip
         yield f"header {key} {value!r}", changed(0, lambda line, k=key, v=value: line.__setitem__(k, v))
     yield "level refused", changed(0, lambda line: line["level"].__setitem__("settings", {"tick_rate": 0}))

@@ -110,7 +110,7 @@ def random_level(seed: int, softest: bool = False, solver: str = "direct") -> di
     }
     gravity = [0.0, float(generator.choice([0.0, -9.81]))]
     return {
-        "format": "spring-sandbox/level", "version": 2, "name": f"random {seed}", "materials": materials,
+        "format": "spring-sandbox/level", "version": 3, "name": f"random {seed}", "materials": materials,
         "contacts": contacts, "walls": {"box": list(BOX)}, "terrain": terrain, "bodies": bodies, "particles": particles,
         "settings": {"solver": solver, "substeps": (1, 2, 4)[seed % 3], "gravity": gravity},
     }  # fmt: skip

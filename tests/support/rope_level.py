@@ -11,7 +11,7 @@ def rope_level(**changes: Any) -> Level:
     """A rope of 11 links, pinned at its start, with two materials' worth of bodies; it resists bending."""
     data = {
         "format": "spring-sandbox/level",
-        "version": 2,
+        "version": 3,
         "name": "Test rope",
         "settings": {"solver": "iterative"},
         "materials": {"steel": {"stiffness": 0.8, "damping": 0.9}, "rubber": {"stiffness": 0.05, "damping": 0.1}},

@@ -16,7 +16,7 @@ RIGID = {"stiffness": 1.0, "damping": 1.0}
 def session_of(**parts: Any) -> Session:
     """A run of a level of these parts; its material is "m", rigid where none is given."""
     level = {
-        "format": "spring-sandbox/level", "version": 2, "name": "situation", "materials": {"m": RIGID}, **parts
+        "format": "spring-sandbox/level", "version": 3, "name": "situation", "materials": {"m": RIGID}, **parts
     }  # fmt: skip
     return Session(parse_level(json.dumps(level).encode(), "situation"))
 

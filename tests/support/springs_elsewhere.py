@@ -25,7 +25,7 @@ class Swing:
 def level_of_springs(stiffness: float, damping: float, solver: str = "direct", **parts: Any) -> World:
     """The world of a level with one material of that Cs and Cd, `m`."""
     level = {
-        "format": "spring-sandbox/level", "version": 2, "name": "springs", "settings": {"solver": solver},
+        "format": "spring-sandbox/level", "version": 3, "name": "springs", "settings": {"solver": solver},
         "materials": {"m": {"stiffness": stiffness, "damping": damping}}, **parts,
     }  # fmt: skip
     return build_world(parse_level(json.dumps(level).encode(), "springs"))

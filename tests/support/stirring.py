@@ -63,7 +63,7 @@ def heap(stiffness: float, damping: float, seed: int, solver: str = "direct") ->
         row, column = divmod(k, 4)
         bodies.append(_body(kind, f"j{k}", -2.1 + 1.4 * column + 0.05 * generator.random(), 0.8 + 1.3 * row))
     level = {
-        "format": "spring-sandbox/level", "version": 2, "name": "heap", "contacts": {"friction": 0.4}, "bodies": bodies,
+        "format": "spring-sandbox/level", "version": 3, "name": "heap", "contacts": {"friction": 0.4}, "bodies": bodies,
         "walls": {"box": [-3.2, 0, 3.2, 12]}, "materials": {"m": {"stiffness": stiffness, "damping": damping}},
         "settings": {"solver": solver, "substeps": "auto"},
     }  # fmt: skip

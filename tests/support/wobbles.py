@@ -21,7 +21,7 @@ BENT = 1e-5
 def firm_level(firmness: Any, settings: dict[str, Any] | None = None, floor: bool = False, **body: Any) -> bytes:
     """A level of one body, a jelly unless it says otherwise; in the air without gravity, or with a floor at 0."""
     made = {"type": "jelly", "id": "body", "firmness": firmness, **body}
-    level: dict[str, Any] = {"format": "spring-sandbox/level", "version": 2, "name": "firm", "bodies": [made]}
+    level: dict[str, Any] = {"format": "spring-sandbox/level", "version": 3, "name": "firm", "bodies": [made]}
     level["settings"] = {"solver": "direct", **({} if floor else {"gravity": [0, 0]}), **(settings or {})}
     if floor:
         level["contacts"] = {"friction": 0.5}

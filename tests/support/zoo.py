@@ -7,7 +7,7 @@ from sandbox.level.reading.parse import parse_level
 
 ZOO = {
     "format": "spring-sandbox/level",
-    "version": 2,
+    "version": 3,
     "name": "Zoo",
     "settings": {"solver": "single_pass"},
     "materials": {

@@ -237,7 +237,7 @@ def test_a_test_in_python_drags_cuts_drives_and_measures(made, pytester):
         from sandbox.commands import CommandError
 
         WHEEL = {
-            "format": "spring-sandbox/level", "version": 2, "name": "Wheel", "settings": {"solver": "iterative"},
+            "format": "spring-sandbox/level", "version": 3, "name": "Wheel", "settings": {"solver": "iterative"},
             "bodies": [
                 {"type": "wheel", "id": "wheel", "position": [0, 1], "radius": 0.5, "thickness": 0.1, "segments": 8,
                  "motor": {"speed": 5, "torque": 50}},

@@ -64,7 +64,7 @@ def lesson_level(trial: SpringTrial, is_hooke: bool) -> Level:
     names = [f"weight {number + 1}" for number in range(count)]
     ball = {"mass": trial.mass, "radius": 0.24 if count == 1 else 0.12, "look": {"ball": "steel"}}
     level = {
-        "format": "spring-sandbox/level", "version": 2, "name": "Hooke and the article",
+        "format": "spring-sandbox/level", "version": 3, "name": "Hooke and the article",
         "settings": {"solver": "single_pass", "tick_rate": trial.rate}, "view": [-2.6, -4.2, 2.6, 1.0],
         "materials": {"spring": {**material, "look": {"line": "coil"}}},
         "particles": [

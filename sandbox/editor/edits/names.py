@@ -16,7 +16,7 @@ Rewire = Callable[[str], str | None]
 
 def taken_ids(level: Level) -> set[str]:
     """Ids of a level's bodies, loose particles and terrain."""
-    return {part.id for parts in (level.bodies, level.particles, level.terrain) for part in parts}
+    return {part.id for parts in (level.bodies, level.particles, level.terrain, level.zones) for part in parts}
 
 
 def free_id(level: Level, base: str) -> str:

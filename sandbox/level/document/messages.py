@@ -46,8 +46,9 @@ def _fault(error: dict[str, Any]) -> Fault:
     parts, context = place(location), error.get("ctx", {})
     if kind == "missing":
         if isinstance(location[-1], int):
-            needed = "4 numbers" if location[0] == "view" else "2 names" if location[0] == "welds" else "2 numbers"
-            return json_path(parts[:-1]), f"needs {needed}, has {len(value)}"
+            items = next(filter(None, map(get_args, _declared(Level, location[:-1]))))
+            nouns = "names" if location[0] == "welds" else "numbers"
+            return json_path(parts[:-1]), f"needs {len(items)} {nouns}, has {len(value)}"
         return json_path(parts), "is missing; it has no default"
     if kind.startswith("union_tag") or (kind == "dict_type" and len(parts) == 2 and parts[0] == "bodies"):
         return _kind_fault(parts, kind, value)
@@ -75,22 +76,27 @@ def _kind_fault(parts: list[Any], kind: str, value: Any) -> Fault:
 
 def _models(declared: Any, location: Location) -> Iterator[type[BaseModel]]:
     """The models that a type allows at a location inside it; several if nothing chooses between them."""
+    return (each for each in _declared(declared, location) if isinstance(each, type) and issubclass(each, BaseModel))
+
+
+def _declared(declared: Any, location: Location) -> Iterator[Any]:
+    """The types that a type allows at a location inside it: models, lists, objects and others."""
     origin = get_origin(declared)
     if origin is Annotated:
-        yield from _models(get_args(declared)[0], location)
+        yield from _declared(get_args(declared)[0], location)
     elif origin in (Union, types.UnionType):
         choices = get_args(declared)
         chosen = [choice for choice in choices if location and _tag(choice) == location[0]]
         for choice in chosen or choices:
-            yield from _models(choice, location[1:] if chosen else location)
+            yield from _declared(choice, location[1:] if chosen else location)
+    elif not location:
+        yield declared
     elif isinstance(declared, type) and issubclass(declared, BaseModel):
-        if not location:
-            yield declared
-        elif location[0] in declared.model_fields:
-            yield from _models(declared.model_fields[location[0]].annotation, location[1:])
-    elif origin in (tuple, list, dict) and location:
+        if location[0] in declared.model_fields:
+            yield from _declared(declared.model_fields[location[0]].annotation, location[1:])
+    elif origin in (tuple, list, dict):
         # All items of a list or an object have the same declaration.
-        yield from _models(get_args(declared)[1 if origin is dict else 0], location[1:])
+        yield from _declared(get_args(declared)[1 if origin is dict else 0], location[1:])
 
 
 def _tag(choice: Any) -> str | None:

@@ -9,14 +9,17 @@ from sandbox.level.checks import CheckDef
 from sandbox.level.format.actuator_defs import HydraulicDef, MuscleDef
 from sandbox.level.format.limits import (
     CHECK_LIMIT,
+    CORNER_LIMIT,
     DEFAULT_MATERIAL,
     DEFAULT_SOLVER,
     MATERIAL_LIMIT,
     SUBSTEPS,
     TAG_LIMIT,
     VERSION,
+    WATER_DENSITY_LIMIT,
+    WATER_DRAG_LIMIT,
 )
-from sandbox.level.format.look import BodyLook, LevelLook, ParticleLook
+from sandbox.level.format.look import BodyLook, LevelLook, ParticleLook, ZoneLook
 from sandbox.level.format.quantities import (
     Angle,
     Coefficient,
@@ -44,6 +47,7 @@ from sandbox.level.format.quantities import (
     Restitution,
     Rolling,
     Share,
+    Size,
     Tension,
     Text,
     TurnRate,
@@ -268,6 +272,58 @@ class TerrainDef(Description):
     extras: Extras = Field(default_factory=dict)
 
 
+class WaterDef(Description):
+    """Water in a zone: it lifts what is in it and slows it down. Its surface is the top of the zone."""
+
+    density: float = Field(
+        default=10.0,
+        gt=0.0,
+        le=WATER_DENSITY_LIMIT,
+        description="Mass of the water in a square metre. What has less floats.",
+        json_schema_extra=unit("kg/m^2"),
+    )
+    fast_drag: float = Field(
+        default=1.0,
+        ge=0.0,
+        le=WATER_DRAG_LIMIT,
+        description="Drag that grows with the square of the speed: a coefficient C, for a flat plate about 1. A side "
+        "that moves at u m/s across itself takes C/4 density u^2 per metre.",
+    )
+    slow_drag: float = Field(
+        default=0.5,
+        ge=0.0,
+        le=WATER_DRAG_LIMIT,
+        description="Drag that grows with the speed: a side takes slow_drag density u per metre, whichever way it "
+        "moves. It brings to rest what floats.",
+        json_schema_extra=unit("m/s"),
+    )
+    flow: Velocity = Field(default=(0.0, 0.0), description="Velocity of the water. It acts only through drag.")
+
+
+class ZoneDef(Description):
+    """A part of the plane with a name: a box, a circle or a polygon. It is not solid."""
+
+    id: Id = Field(description="Name of the zone. No other zone, piece of terrain, body or particle has it.")
+    box: tuple[Coordinate, Coordinate, Coordinate, Coordinate] | None = Field(
+        default=None,
+        description="Left, bottom, right, top. A zone has this, `circle` or `polygon`.",
+        json_schema_extra=unit("m") | empty("none"),
+    )
+    circle: tuple[Coordinate, Coordinate, Size] | None = Field(
+        default=None, description="Place of its centre, and its radius.", json_schema_extra=unit("m") | empty("none")
+    )
+    polygon: Annotated[tuple[Point, ...], Field(min_length=3, max_length=CORNER_LIMIT)] | None = Field(
+        default=None,
+        description="Corners in order. Sides may not touch or cross.",
+        json_schema_extra=empty("none"),
+    )
+    water: WaterDef | None = Field(
+        default=None, description="Water in it; the zone is a box then.", json_schema_extra=empty("none")
+    )
+    look: ZoneLook | None = Field(default=None, description="How it looks.", json_schema_extra=empty("automatic"))
+    extras: Extras = Field(default_factory=dict)
+
+
 class Level(Description):
     """A level: who made it, how time passes, and what is in it."""
 
@@ -304,6 +360,7 @@ class Level(Description):
         default=None, description="Four walls around the level.", json_schema_extra=empty("none")
     )
     terrain: tuple[TerrainDef, ...] = Field(default=(), description="Lines and solid shapes that never move.")
+    zones: tuple[ZoneDef, ...] = Field(default=(), description="Parts of the plane with a name, some with water.")
     bodies: tuple[AnyBody, ...] = Field(default=(), description="Bodies, in the order of their particles and springs.")
     particles: tuple[ParticleDef, ...] = Field(default=(), description="Loose particles, after those of the bodies.")
     springs: tuple[SpringDef, ...] = Field(default=(), description="Loose springs, after those of the bodies.")

@@ -22,6 +22,8 @@ TITLES = {
     "ContactsDef": "Contacts",
     "WallsDef": "Walls",
     "TerrainDef": "Terrain",
+    "ZoneDef": "Zone",
+    "WaterDef": "Water",
     **{
         model.__name__: name.capitalize()
         for kind, each in EXPANSIONS.items()
@@ -39,7 +41,11 @@ TITLES = {
     "LevelLook": "Level look",
     "BodyLook": "Body look",
     "ParticleLook": "Particle look",
+    "ZoneLook": "Zone look",
 }
+
+# Of these fields a definition has one.
+_FORMS = {"TerrainDef": ("polyline", "polygon"), "ZoneDef": ("box", "circle", "polygon")}
 
 
 def described(field: dict[str, Any], null: str) -> str:
@@ -62,9 +68,12 @@ def definitions() -> dict[str, Any]:
         definition["properties"] = {
             name: definition["properties"][name] for name in file_order(definition["properties"])
         }
-    # A piece of terrain is a line or solid.
-    forms = [{"required": [form], "properties": {form: {"type": "array"}}} for form in ("polyline", "polygon")]
-    result["$defs"]["TerrainDef"]["allOf"] = [{"oneOf": forms}]
+    for name, forms in _FORMS.items():
+        of_each = [{"required": [form], "properties": {form: {"type": "array"}}} for form in forms]
+        result["$defs"][name]["allOf"] = [{"oneOf": of_each}]
+    # Water is in boxes.
+    with_water = {"required": ["water"], "properties": {"water": {"type": "object"}}}
+    result["$defs"]["ZoneDef"]["allOf"].append({"if": with_water, "then": {"required": ["box"]}})
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
     return {**head, **result, "title": "Spring Sandbox level"}
 

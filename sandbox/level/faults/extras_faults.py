@@ -12,7 +12,7 @@ from sandbox.level.format.limits import TEXT_LIMIT
 def extras_faults(level: Level) -> Iterator[Fault]:
     """Faults of the extras of a level and of everything in it."""
     yield from _kept(["extras"], level.extras)
-    for name in ("terrain", "bodies", "particles", "springs"):
+    for name in ("terrain", "zones", "bodies", "particles", "springs"):
         for index, item in enumerate(getattr(level, name)):
             if item.extras:
                 yield from _kept([name, index, "extras"], item.extras)

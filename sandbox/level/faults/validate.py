@@ -17,6 +17,7 @@ from sandbox.level.faults.reference_faults import (
 )
 from sandbox.level.faults.size_faults import size_fault
 from sandbox.level.faults.weld_faults import weld_faults
+from sandbox.level.faults.zone_faults import zone_faults
 from sandbox.level.format.level_error import Fault, LevelError, shown
 from sandbox.level.plan.plan import Plan, kept_plan
 
@@ -65,6 +66,7 @@ def _all_faults(level: Level, plan: Plan) -> Iterator[Fault]:
         if body.form_count[0]:
             yield from body.change_faults(path)
     yield from collision_faults(level)
+    yield from zone_faults(level)
     yield from spring_faults(level, layout)
     yield from actuator_faults(level)
     yield from weld_reference_faults(level, layout)

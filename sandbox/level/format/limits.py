@@ -23,6 +23,7 @@ SPRING_LIMIT = 400_000
 CORNER_LIMIT = 4_096
 POLYGON_WORK_LIMIT = 4_000_000
 TERRAIN_LIMIT = 1_000  # pieces of terrain; their corners count as those of polygons
+ZONE_LIMIT = 1_000  # zones; their corners count as those of terrain
 COLLISION_GROUP_LIMIT = 60  # groups that bodies collide by: bits of a whole number
 
 # Beyond these, doubles lose the digits that a spring's length needs.
@@ -34,6 +35,8 @@ SPACING_RANGE = (1e-6, 1e6)  # [m]
 ANGLE_LIMIT = 1e6  # [rad]
 GRAVITY_SCALE_LIMIT = 1e3  # times gravity, either way
 DRAG_LIMIT = 1e6  # [1/s]
+WATER_DENSITY_LIMIT = 1e6  # [kg/m^2]
+WATER_DRAG_LIMIT = 1e3  # coefficient of fast drag, and [m/s] of slow drag
 STRAIN_LIMIT = 1e3  # strain beyond which a material may be said to break
 YIELD_RANGE = (1e-6, 0.5)  # strain; a spring that yields at half its length keeps the rest of it
 YIELD_SHARE_LIMIT = 0.9  # of its length that a spring may yield by; it never yields to nothing
@@ -55,7 +58,7 @@ INFLATION_LIMIT = 100.0  # multiple of a ring's own area
 SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
 
 FORMAT: Final = "spring-sandbox/level"
-VERSION = 2
+VERSION = 3
 DEFAULT_MATERIAL = "default"
 BODY_RADIUS = 0.05  # [m] of the drawn disc of a body's particles
 

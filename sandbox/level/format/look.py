@@ -1,4 +1,4 @@
-"""Models of looks: of a level, a body, a material and a particle, with the names of skins, lines, balls and colours.
+"""Models of looks of levels, bodies, materials, particles and zones; names of skins, lines, balls and colours.
 
 Physics, hashes and recordings ignore looks.
 """
@@ -102,6 +102,16 @@ class ParticleLook(Description):
     ball: BallName | None = Field(
         default=None, description="What it is drawn as: a name of a ball.", json_schema_extra=empty("automatic")
     )
+    colour: ColourName | None = Field(
+        default=None,
+        description='Colour: a name of the palette, or "#RRGGBB".',
+        json_schema_extra=empty("automatic"),
+    )
+
+
+class ZoneLook(Description):
+    """How a zone looks."""
+
     colour: ColourName | None = Field(
         default=None,
         description='Colour: a name of the palette, or "#RRGGBB".',

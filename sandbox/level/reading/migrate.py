@@ -66,5 +66,6 @@ def _same_in_parts(springs: dict[str, Any], parts: int) -> dict[str, Any]:
 
 
 # From a version to the next: the plain JSON of a level, not yet looked at, in; another object out, whose version is
-# set here. A file keeps its version until it is saved. Taking a step out makes every file of its version unreadable.
-MIGRATIONS: dict[int, Migration] = {1: _springs_keep_their_constant}
+# set here. What version 2 says, version 3 says too. A file keeps its version until it is saved. Taking a step out makes
+# every file of its version unreadable.
+MIGRATIONS: dict[int, Migration] = {1: _springs_keep_their_constant, 2: dict}

@@ -31,6 +31,7 @@ from sandbox.level.format.limits import (
     SPRING_LIMIT,
     TAG_LIMIT,
     TERRAIN_LIMIT,
+    ZONE_LIMIT,
 )
 from sandbox.level.format.scan import scan
 from sandbox.level.plan.plan import keep_plan
@@ -45,6 +46,7 @@ _BODY_LISTS = ("particles", "masses", "velocities", "pinned", "pose")
 BODY_LIMITS = {"springs": SPRING_LIMIT, "cut": SPRING_LIMIT} | dict.fromkeys(_BODY_LISTS, PARTICLE_LIMIT)
 LEVEL_LIMITS = {
     "terrain": TERRAIN_LIMIT,
+    "zones": ZONE_LIMIT,
     "bodies": PARTICLE_LIMIT,
     "particles": PARTICLE_LIMIT,
     "springs": SPRING_LIMIT,

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from sandbox.level.checks import CheckDef
 from sandbox.level.document.messages import place, worded
-from sandbox.level.document.model import LEVEL_KEYS, Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.document.model import LEVEL_KEYS, Level, ParticleDef, SpringDef, TerrainDef, ZoneDef
 from sandbox.level.faults.validate import level_faults
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, VERSION
@@ -21,7 +21,7 @@ from sandbox.level.reading.parse import BODY_LIMITS, LEVEL_LIMITS
 
 _NAME = "Untitled"
 _HEAD = {"format": FORMAT, "version": VERSION, "name": _NAME}
-_LISTS = ("tags", "terrain", "bodies", "particles", "springs", "welds", "checks")
+_LISTS = ("tags", "terrain", "zones", "bodies", "particles", "springs", "welds", "checks")
 # Lists whose items are independent, so that a single one can be left out.
 _INDEPENDENT = ("springs", "pinned", "cut", "pin")
 # Number of items that are validated together while all are valid, which is many times faster.
@@ -34,6 +34,7 @@ _REQUIRED = {
     key: frozenset(name for name, field in model.model_fields.items() if field.is_required())
     for key, model in (
         ("terrain", TerrainDef),
+        ("zones", ZoneDef),
         ("particles", ParticleDef),
         ("springs", SpringDef),
         ("checks", CheckDef),

@@ -44,7 +44,7 @@ def _level(chance: random.Random, name: str) -> Part:
     bodies = [_body(chance, f"b{k}", x, y) for k, (x, y) in enumerate(cells)]
     particles = [_particle(chance, k) for k in range(chance.choice([0, 0, 2, 5]))]
     level: Part = {
-        "format": "spring-sandbox/level", "version": 2, "name": name, "settings": settings, "materials": materials,
+        "format": "spring-sandbox/level", "version": 3, "name": name, "settings": settings, "materials": materials,
         "bodies": bodies, "particles": particles, "springs": _springs(chance, bodies),
     }  # fmt: skip
     if chance.random() < 0.15:
