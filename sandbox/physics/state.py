@@ -33,6 +33,11 @@ class Family(Enum):
     CONTACT = "contact"
     HAND = "hand"
     SETTING = "number of the settings: gravity x and y, wind x and y, drag, warm start"
+    RULE = "rule"
+    COUNTER = "counter"
+    PROBE = "particle whose way a rule follows"
+    STILL = "question of a rule whether something has settled"
+    KEY = "key that a rule asks for"
 
 
 @dataclass(eq=False)
@@ -87,7 +92,7 @@ def _array(
     return cast(Any, Column(stored, family, dtype, unit, meaning, width, guarded, topology, sparse, usual))
 
 
-P, S, E, C, A, T, H, G = Family
+P, S, E, C, A, T, H, G, R, N, B, L, K = Family
 F64, I64, I32, I8, BOOL = np.float64, np.int64, np.int32, np.int8, np.bool_
 
 
@@ -176,6 +181,16 @@ class StateArrays:
     hand_force = _array("hand_force", H, F64, "N", "its force in the last substep", width=2, sparse=True)
     setting_now = _array("setting_now", G, F64, "m/s^2, m/s, 1/s or 1", "its value in the last tick, while it comes to what is set", sparse=True)
     setting_ticks = _array("setting_ticks", G, I32, "tick", "ticks until it is what is set; 0: it is", sparse=True)
+
+    rule_held = _array("rule_held", R, I32, "tick", "for how many ticks on end what it asks has held", sparse=True)
+    rule_fired = _array("rule_fired", R, I32, "", "how often it fired", sparse=True)
+    rule_first = _array("rule_first", R, I64, "tick", "the tick at whose end it fired first; -1: it has not", sparse=True, usual=-1)
+    rule_last = _array("rule_last", R, I64, "tick", "the tick at whose end it fired last; -1: it has not", sparse=True, usual=-1)
+    rule_due = _array("rule_due", R, BOOL, "", "whether it fired in the last tick: its actions come before the next one", sparse=True)
+    counter = _array("counter", N, F64, "", "its value", sparse=True)
+    probe_position = _array("probe_position", B, F64, "m", "where it was at the end of the last tick", width=2, sparse=True)
+    still_ticks = _array("still_ticks", L, I32, "tick", "for how many ticks on end it has been still", sparse=True)
+    key_down = _array("key_down", K, BOOL, "", "whether it is held", sparse=True)
     # fmt: on
 
 

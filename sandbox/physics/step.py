@@ -2,6 +2,7 @@
 
 from sandbox.physics.pipeline.block import BROKEN, CHECKED
 from sandbox.physics.pipeline.block_owner import block_of
+from sandbox.physics.pipeline.judge import judge
 from sandbox.physics.pipeline.tick import BROKE, LOST, NO_ROOM, UNSOUND, find_broken, tick
 from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.world import World
@@ -40,3 +41,5 @@ def step(world: World) -> None:
         code = BROKE if find_broken(block.pointer) else code
     if code == BROKE:
         world.break_springs(block.given.limits.broken[: block.given.progress[BROKEN]].copy())
+    if len(world.rules.term):
+        judge(block.pointer)

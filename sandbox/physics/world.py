@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
-from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.arrays import Floats, Slots, empty
 from sandbox.physics.command import KINDS, OF_HANDS, OF_TOPOLOGY, carry_out, lend
 from sandbox.physics.constraints import (
     AREA,
@@ -25,6 +25,7 @@ from sandbox.physics.keeping.equipment import Equipment, Joined
 from sandbox.physics.keeping.forms import FirmBody
 from sandbox.physics.keeping.names import Names
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_MATERIAL, LAW_NISSEN
+from sandbox.physics.rules.table import Rules
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
@@ -42,7 +43,7 @@ HAND_STRENGTH = 100.0
 # Attributes that another value of counts as a change of topology. A step's contacts are other arrays in every step, and
 # nothing is derived from them.
 _WATCHED = frozenset(
-    {"terrain", "actuators", "limits", "forms"}
+    {"terrain", "actuators", "limits", "forms", "rules"}
     | {column.name for column in COLUMNS if column.family is not Family.CONTACT}
 )
 
@@ -80,6 +81,7 @@ class World(StateArrays):
         self.area_names: tuple[str, ...] = ()  # bodies that keep areas, and the constraints of each
         self.area_constraints: tuple[range, ...] = ()
         self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
+        self.rules: Rules = empty(Rules)
         # What it was built from, for who adds more of the kind, and what joined it since.
         self.source: Any = None
         self.joined: tuple[Joined, ...] = ()

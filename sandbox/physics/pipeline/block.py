@@ -10,6 +10,7 @@ from sandbox.physics.joints.joint_set import JointSet
 from sandbox.physics.joints.limited_springs import SpringForces
 from sandbox.physics.joints.motors import DrivenWheels, MotorSides
 from sandbox.physics.pipeline.collide import Collisions
+from sandbox.physics.rules.table import Rules
 from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.system import System
 from sandbox.physics.solvers.iterative import Iteration
@@ -54,6 +55,7 @@ class WorldBlock(NamedTuple):
     wheels: DrivenWheels
     limits: MaterialLimits
     tuning: Tuning  # see elimination.py
+    rules: Rules
     start: FloatRows  # [m/s] (n, 2): velocities before anything acted in a substep
     start_length: Floats  # [m] (m,): rest lengths before drives
     shortest: Floats  # (GRAB_COUNT,): scratch

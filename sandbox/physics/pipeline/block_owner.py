@@ -86,7 +86,7 @@ class BlockOwner:
             self.given = self.given._replace(
                 drives=drives_of(world.actuators), wheels=wheels_of(world.actuators), limits=_limits_of(world)
             )
-        self.given = self.given._replace(state=state_of(world), good=good_of(world), tuning=tuning())
+        self.given = self.given._replace(state=state_of(world), good=good_of(world), tuning=tuning(), rules=world.rules)
         self.given.plan[GRAB_PARTICLE], self.given.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
         self._lay_out(world)
 

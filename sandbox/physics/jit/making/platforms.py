@@ -68,6 +68,7 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.derive.derive_topology",
     "sandbox.physics.pipeline.derive.derive_hands",
     "sandbox.physics.pipeline.derive.make_room",
+    "sandbox.physics.pipeline.judge.judge",
     "sandbox.physics.command.command",
 )
 WEB = Platform("kernels", "wasm", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES)

@@ -1,0 +1,189 @@
+"""Measuring: the value of a term at the end of a tick."""
+
+import math
+
+from sandbox.physics.arrays import FloatRows
+from sandbox.physics.geometry.segment import difference
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.rules.table import (
+    BROKEN,
+    CENTRE_X,
+    CENTRE_Y,
+    COUNTER,
+    CROSSES,
+    DISTANCE,
+    FASTEST,
+    INSIDE,
+    KEY,
+    MOTION,
+    SETTLED,
+    SPEED,
+    STRAIN,
+    TIME,
+    UNSOUND,
+    Rules,
+    Terms,
+)
+from sandbox.physics.rules.zones import depth_inside, may_be_inside, meets_zone
+from sandbox.physics.state import State
+
+# A body that is no faster [m/s] has settled.
+STILL = 0.05
+# What is at rest for so long is as still as one for longer [ticks].
+_LONGEST_STILL = 1_000_000_000
+
+
+@inner_kernel
+def measure(rules: Rules, t: int, state: State, tick: int, rate: int) -> float:
+    """The value of a term that bounds are compared with; 1 or 0 where there is none."""
+    terms = rules.terms
+    kind, other = terms.kind[t], terms.other[t]
+    if kind == TIME:
+        return tick / rate
+    if kind == COUNTER:
+        return state.counter[other]
+    if kind == KEY:
+        return 1.0 if state.key_down[other] else 0.0
+    if kind == SETTLED:
+        return _still_ticks(terms, t, state) / rate
+    if kind == CROSSES:
+        return 1.0 if _crosses(rules, t, state) else 0.0
+    if kind == INSIDE:
+        return _depth(rules, t, state)
+    if kind == DISTANCE:
+        dx, dy = difference(terms.slot[terms.first[t]], other, state.position)
+        return math.sqrt(dx * dx + dy * dy)
+    if kind == STRAIN:
+        return _largest_strain(terms, t, state)
+    if kind == BROKEN:
+        return _broken(terms, t, state)
+    if kind == UNSOUND:
+        return _unsound(terms, t, state)
+    if kind == FASTEST:
+        return math.sqrt(_fastest(terms, t, state))
+    if kind == MOTION:
+        return _motion(terms, t, state)
+    return _of_centre(terms, t, state)
+
+
+@inner_kernel
+def _of_centre(terms: Terms, t: int, state: State) -> float:
+    """x, y or speed of the centre of mass; NaN of nothing."""
+    kind = terms.kind[t]
+    rows = state.velocity if kind == SPEED else state.position
+    mass, x, y = 0.0, 0.0, 0.0
+    for at in range(terms.first[t], terms.last[t]):
+        p = terms.slot[at]
+        if state.particle_active[p]:
+            mass += state.mass[p]
+            x += state.mass[p] * rows[p, 0]
+            y += state.mass[p] * rows[p, 1]
+    if not mass > 0.0:
+        return math.nan
+    x, y = x / mass, y / mass
+    if kind == CENTRE_X:
+        return x
+    return y if kind == CENTRE_Y else math.sqrt(x * x + y * y)
+
+
+@inner_kernel
+def _depth(rules: Rules, t: int, state: State) -> float:
+    """How far inside its zone the outermost particle is; NaN of nothing."""
+    terms, zones, z = rules.terms, rules.zones, rules.terms.zone[t]
+    least, low = math.inf, terms.low[t]
+    for at in range(terms.first[t], terms.last[t]):
+        p = terms.slot[at]
+        if not state.particle_active[p]:
+            continue
+        x, y = state.position[p, 0], state.position[p, 1]
+        # One that lies too far out settles it; the value is no more than a bound then.
+        if low >= 0.0 and not may_be_inside(zones, z, x, y):
+            return -math.inf
+        least = min(least, depth_inside(zones, z, x, y))
+        if least < low:
+            return least
+    return math.nan if least == math.inf else least
+
+
+@inner_kernel
+def _crosses(rules: Rules, t: int, state: State) -> bool:
+    """Whether the way of a particle in this tick, as a straight line, meets the zone."""
+    terms, z, probe, now = rules.terms, rules.terms.zone[t], state.probe_position, state.position
+    for at in range(terms.first[t], terms.last[t]):
+        p, k = terms.slot[at], terms.other[t] + at - terms.first[t]
+        if state.particle_active[p] and meets_zone(rules.zones, z, probe[k, 0], probe[k, 1], now[p, 0], now[p, 1]):
+            return True
+    return False
+
+
+@inner_kernel
+def _fastest(terms: Terms, t: int, state: State) -> float:
+    """Square of the speed of the fastest particle [m^2/s^2]."""
+    most = 0.0
+    for at in range(terms.first[t], terms.last[t]):
+        p = terms.slot[at]
+        if state.particle_active[p]:
+            most = max(most, _squared(state.velocity, p))
+    return most
+
+
+@inner_kernel
+def _squared(rows: FloatRows, p: int) -> float:
+    return rows[p, 0] * rows[p, 0] + rows[p, 1] * rows[p, 1]
+
+
+@inner_kernel
+def _still_ticks(terms: Terms, t: int, state: State) -> int:
+    """For how many ticks on end nothing has been faster than STILL; counts this one."""
+    k = terms.other[t]
+    is_still = _fastest(terms, t, state) <= STILL * STILL
+    state.still_ticks[k] = min(state.still_ticks[k] + 1, _LONGEST_STILL) if is_still else 0
+    return state.still_ticks[k]
+
+
+@inner_kernel
+def _motion(terms: Terms, t: int, state: State) -> float:
+    """Kinetic energy [J] of what is free, and of its turning."""
+    total = 0.0
+    for at in range(terms.first[t], terms.last[t]):
+        p = terms.slot[at]
+        if state.particle_active[p] and state.inverse_mass[p] > 0.0:
+            turning = state.radius[p] * state.spin[p]
+            total += 0.5 * state.mass[p] * (_squared(state.velocity, p) + 0.5 * turning * turning)
+    return total
+
+
+@inner_kernel
+def _largest_strain(terms: Terms, t: int, state: State) -> float:
+    """The largest strain, stretched or pressed, of springs that bear a load."""
+    most = 0.0
+    for at in range(terms.first[t], terms.last[t]):
+        s = terms.slot[at]
+        a, b, rest = state.particle_a[s], state.particle_b[s], state.rest_length[s]
+        is_free = state.inverse_mass[a] > 0.0 or state.inverse_mass[b] > 0.0
+        if state.spring_active[s] and rest > 0.0 and is_free:
+            dx, dy = difference(a, b, state.position)
+            most = max(most, abs((math.sqrt(dx * dx + dy * dy) - rest) / rest))
+    return most
+
+
+@inner_kernel
+def _broken(terms: Terms, t: int, state: State) -> int:
+    """How many springs are gone."""
+    gone = 0
+    for at in range(terms.first[t], terms.last[t]):
+        if not state.spring_active[terms.slot[at]]:
+            gone += 1
+    return gone
+
+
+@inner_kernel
+def _unsound(terms: Terms, t: int, state: State) -> int:
+    """How many particles have a place or a velocity that is no number."""
+    count = 0
+    for at in range(terms.first[t], terms.last[t]):
+        p = terms.slot[at]
+        sums = _squared(state.position, p) + _squared(state.velocity, p)
+        if state.particle_active[p] and not sums < math.inf:
+            count += 1
+    return count
