@@ -20,7 +20,7 @@ from sandbox.level.kinds.bodies import AnyBody, expansion
 # Below this many definitions and listed points, 209 bytes of a file's limit each, the text of a level is not measured.
 MEASURED_SIZE = 40_000
 
-_PLACE = re.compile(r"(bodies|particles|springs|terrain|zones|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
+_PLACE = re.compile(r"(bodies|particles|springs|terrain|zones|counters|rules|checks)\.(\d+)(?:\.|: |$)(.*)", re.DOTALL)
 
 
 class EditError(ValueError):
@@ -95,12 +95,24 @@ def checked(level: Level) -> Level:
 
 def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
     """Raise EditError where one of the bodies, were it alone in the level, could not be saved."""
-    checked(replaced(level, bodies=tuple(bodies), particles=(), springs=(), welds=(), checks=(), terrain=()))
+    checked(
+        replaced(
+            level,
+            bodies=tuple(bodies),
+            particles=(),
+            springs=(),
+            welds=(),
+            counters=(),
+            rules=(),
+            checks=(),
+            terrain=(),
+        )
+    )
 
 
 def check_terrain(level: Level) -> None:
     """Raise EditError where the terrain of a level, were it alone, could not be saved."""
-    checked(replaced(level, bodies=(), particles=(), springs=(), welds=(), checks=()))
+    checked(replaced(level, bodies=(), particles=(), springs=(), welds=(), counters=(), rules=(), checks=()))
 
 
 def check_places(bodies: Iterable[AnyBody]) -> None:

@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from sandbox.level.format.quantities import Coordinate, Description, Key, Name, Seconds, empty, unit
+from sandbox.physics.rules.measuring import STILL as STILL
 
 Metric = Literal[
     "max_strain",
@@ -28,8 +29,6 @@ Metric = Literal[
 Box = tuple[Coordinate, Coordinate, Coordinate, Coordinate]
 # Keys that a check may hold.
 HOLD_LIMIT = 20
-# A body that is no faster [m/s] has settled.
-STILL = 0.05
 
 
 @dataclass(frozen=True)

@@ -225,6 +225,24 @@ ACTUATORS = """\
 - `gravity_scale` of welded particles is their mean by mass.
 """
 
+RULES = """\
+## Rules and counters
+
+A rule asks a question at the end of each tick. When that has held for `for_seconds`, its actions are done before the
+next tick, in the order of the file; it acts again once its question has ceased to hold and holds anew. What a rule
+does, other rules find at the end of the next tick, so that a chain of rules takes a tick a link. Rules follow from the
+state alone: an undo takes back a win, and a recording holds nothing of them. An action on what is gone, such as a
+spring that broke, does nothing. [How to make a level that answers](how-to-rules.md) has whole examples.
+
+```text
+{"id": "goal", "when": {"metric": "inside", "body": "ball", "zone": "basket"}, "for_seconds": 0.5,
+  "then": [{"win": "In the basket!", "stars": {"second": 20, "third": 10}}]}
+{"id": "bumper", "when": {"touches": ["ball", "bumper"]}, "then": [{"count": "score", "by": 10}, {"sound": "bell"}]}
+{"id": "lost", "when": {"crosses": "pit", "particle": "ball"}, "then": [{"fail": "The ball fell into the pit."}]}
+{"id": "gate", "when": {"all": [{"key": "g"}, {"counter": "score", "at_least": 100}]}, "then": [{"cut": "bar"}]}
+```
+"""
+
 CHECKS = """\
 ## Checks
 

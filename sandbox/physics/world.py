@@ -82,6 +82,7 @@ class World(StateArrays):
         self.area_constraints: tuple[range, ...] = ()
         self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
         self.rules: Rules = empty(Rules)
+        self.rule_keys: tuple[str, ...] = ()  # those that rules ask for
         # What it was built from, for who adds more of the kind, and what joined it since.
         self.source: Any = None
         self.joined: tuple[Joined, ...] = ()

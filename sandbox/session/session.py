@@ -11,6 +11,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
+from sandbox.session.actions import Actions
 from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
@@ -40,6 +41,7 @@ class Session:
     def __init__(self, level: Level, script: Iterable[ScriptLine] = (), start: Snapshot | None = None) -> None:
         self.level = level
         self.world = build_world(level)
+        self._actions = Actions(level)
         if start is not None:
             restore(self.world, start)
             name_added(self.world)
@@ -452,6 +454,7 @@ class Session:
     def _step(self, order: int) -> None:
         """One tick; order: of the next command to come."""
         self.world.contained.clear()
+        self._actions.act(self.world)
         step(self.world)
         if len(self.world.broken):
             self.history.breaks.add(self.tick)

@@ -13,6 +13,7 @@ from sandbox.level.plan.constraints import add_constraints
 from sandbox.level.plan.forms import add_forms
 from sandbox.level.plan.materials import coefficients, strain_limits
 from sandbox.level.plan.plan import Plan
+from sandbox.level.plan.rules import add_rules
 from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.plan.welds import Slots
 from sandbox.physics.changing.dividing import part_bodies
@@ -45,6 +46,7 @@ def build_world(level: Level) -> World:
     _part_cut_bodies(world, level, plan)
     add_forms(world, level, plan.bodies, materials, firsts)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
+    add_rules(world, level, plan, slots)
     world.source = level
     return world
 

@@ -10,7 +10,7 @@ from sandbox.level.kinds.body_def import file_order
 # A value goes on one line where it fits into this many columns; otherwise its items go one to a line.
 _WIDTH = 100
 # Parts of a level whose items always go one to a line, so that adding one changes one line.
-_LISTED = ("materials", "terrain", "zones", "bodies", "particles", "springs", "welds", "checks")
+_LISTED = ("materials", "terrain", "zones", "bodies", "particles", "springs", "welds", "counters", "rules", "checks")
 
 _encoded = json.JSONEncoder(ensure_ascii=False).encode
 

@@ -13,6 +13,7 @@ from sandbox.level.format.limits import (
     DEFAULT_MATERIAL,
     DEFAULT_SOLVER,
     MATERIAL_LIMIT,
+    RULE_LIMIT,
     SUBSTEPS,
     TAG_LIMIT,
     VERSION,
@@ -58,6 +59,7 @@ from sandbox.level.format.quantities import (
     unit,
 )
 from sandbox.level.kinds.bodies import AnyBody
+from sandbox.level.rules.rule import CounterDef, RuleDef
 from sandbox.physics.settings import AUTO, Substeps
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.state import ROLLING_RESISTANCE
@@ -368,6 +370,12 @@ class Level(Description):
         default=(),
         description="Pairs of particles that become one. Its mass is the sum, its place that of the first in "
         "generation order, and both names find it.",
+    )
+    counters: tuple[CounterDef, ...] = Field(
+        default=(), max_length=RULE_LIMIT, description="Numbers that rules change and ask for."
+    )
+    rules: tuple[RuleDef, ...] = Field(
+        default=(), max_length=RULE_LIMIT, description="What the level asks while it runs, and what it does then."
     )
     checks: tuple[CheckDef, ...] = Field(
         default=(), max_length=CHECK_LIMIT, description="What the level promises about its own run."

@@ -24,6 +24,11 @@ TITLES = {
     "TerrainDef": "Terrain",
     "ZoneDef": "Zone",
     "WaterDef": "Water",
+    "CounterDef": "Counter",
+    "RuleDef": "Rule",
+    "QuestionDef": "Question",
+    "ActionDef": "Action",
+    "StarsDef": "Stars",
     **{
         model.__name__: name.capitalize()
         for kind, each in EXPANSIONS.items()

@@ -1,7 +1,7 @@
 """Faults of references: names of materials and particles that do not exist, and incomplete checks."""
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Protocol
 
 from sandbox.level.checks import METRICS, SUBJECTS, CheckDef
 from sandbox.level.document.model import Level
@@ -72,43 +72,58 @@ def _pair_faults(path: str, layout: Layout, references: dict[str, str]) -> Itera
 
 
 def _check_faults(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]:
-    measured = METRICS[check.metric]
-    if check.at_most is None and check.at_least is None and measured.at_least is None:
-        yield path, "needs a bound: at_most, at_least or both"
-    elif check.at_most is not None and check.at_least is not None and check.at_least > check.at_most:
-        yield f"{path}.at_least", f"{shown(check.at_least)} is above at_most, {shown(check.at_most)}"
-    for field in SUBJECTS:
-        given, where = getattr(check, field), f"{path}.{field}"
-        if given is None and field in measured.needs:
-            yield where, f'is missing; "{check.metric}" is measured of a {_NOUNS[field]}'
-        elif given is not None and not measured.takes(field):
-            named = measured.needs_one or measured.needs[:1]
-            owner = " or a ".join(["", *named])[4:] if named else "the whole level"
-            yield where, f'"{check.metric}" is measured of {owner}; take the {field} out'
-        elif given is not None:
-            yield from _subject_faults(field, where, given, layout)
-    if measured.needs_one and all(getattr(check, field) is None for field in measured.needs_one):
-        where = f"{path}.{measured.needs_one[0]}"
-        yield where, f'is missing; "{check.metric}" is measured of a particle or a body, name one'
-    if check.particle is not None and check.body is not None and measured.takes("body"):
-        yield f"{path}.body", "name a particle or a body, not both"
+    box = check.box
+    yield from metric_faults(path, check, SUBJECTS, layout)
+    if box is not None and METRICS[check.metric].takes("box") and (box[0] >= box[2] or box[1] >= box[3]):
+        yield f"{path}.box", "left and bottom come first: left, bottom, right, top"
     yield from _window_faults(path, check)
 
 
-_NOUNS = {"particle": "particle", "other": "second particle", "body": "body", "box": "box"}
+class Measure(Protocol):
+    """What measures a metric: a check, or the question of a rule."""
+
+    metric: Any
+    at_most: float | None
+    at_least: float | None
 
 
-def _subject_faults(field: str, where: str, given: Any, layout: Layout) -> Iterator[Fault]:
-    """Faults of the names in a check."""
-    if field == "box":
-        if given[0] >= given[2] or given[1] >= given[3]:
-            yield where, "left and bottom come first: left, bottom, right, top"
-    elif field == "body":
+def metric_faults(path: str, asked: Measure, subjects: tuple[str, ...], layout: Layout) -> Iterator[Fault]:
+    """Faults of the bounds of a metric, and of what it is measured of: of the fields `subjects`."""
+    measured = METRICS[asked.metric]
+    if asked.at_most is None and asked.at_least is None and measured.at_least is None:
+        yield path, "needs a bound: at_most, at_least or both"
+    elif asked.at_most is not None and asked.at_least is not None and asked.at_least > asked.at_most:
+        yield f"{path}.at_least", f"{shown(asked.at_least)} is above at_most, {shown(asked.at_most)}"
+    for field in subjects:
+        given, where = getattr(asked, field), f"{path}.{field}"
+        as_in_check = "box" if field == "zone" else field
+        if given is None and as_in_check in measured.needs:
+            yield where, f'is missing; "{asked.metric}" is measured of a {_NOUNS[field]}'
+        elif given is not None and not measured.takes(as_in_check):
+            named = measured.needs_one or measured.needs[:1]
+            owner = " or a ".join(["", *named])[4:] if named else "the whole level"
+            yield where, f'"{asked.metric}" is measured of {owner}; take the {field} out'
+        elif given is not None:
+            yield from subject_faults(field, where, given, layout)
+    if measured.needs_one and all(getattr(asked, field) is None for field in measured.needs_one):
+        where = f"{path}.{measured.needs_one[0]}"
+        yield where, f'is missing; "{asked.metric}" is measured of a particle or a body, name one'
+    particle, body = (getattr(asked, field) for field in ("particle", "body"))
+    if particle is not None and body is not None and measured.takes("body"):
+        yield f"{path}.body", "name a particle or a body, not both"
+
+
+_NOUNS = {"particle": "particle", "other": "second particle", "body": "body", "box": "box", "zone": "zone"}
+
+
+def subject_faults(field: str, where: str, given: Any, layout: Layout) -> Iterator[Fault]:
+    """The fault of a name in the field `body`, or in one of a particle, that does not exist."""
+    if field == "body":
         owner = layout.owners.get(given)
         if owner is None or owner.loose:
             bodies = [name for name, each in layout.owners.items() if not each.loose]
             yield where, f"there is no body {shown(given)}" + suggestion(given, bodies)
-    else:
+    elif field in ("particle", "other"):
         try:
             layout.slot(given)
         except LookupError as error:

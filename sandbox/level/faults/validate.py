@@ -15,6 +15,7 @@ from sandbox.level.faults.reference_faults import (
     spring_faults,
     weld_reference_faults,
 )
+from sandbox.level.faults.rule_faults import cut_spring_faults, rule_faults
 from sandbox.level.faults.size_faults import size_fault
 from sandbox.level.faults.weld_faults import weld_faults
 from sandbox.level.faults.zone_faults import zone_faults
@@ -51,6 +52,7 @@ def level_faults(level: Level, plan: Plan) -> Iterator[Fault]:
     if sound:
         yield from weld_faults(level, plan)
         yield from firmness_faults(level, plan)
+        yield from cut_spring_faults(level, plan)
 
 
 def _all_faults(level: Level, plan: Plan) -> Iterator[Fault]:
@@ -70,6 +72,7 @@ def _all_faults(level: Level, plan: Plan) -> Iterator[Fault]:
     yield from spring_faults(level, layout)
     yield from actuator_faults(level)
     yield from weld_reference_faults(level, layout)
+    yield from rule_faults(level, layout)
     yield from check_faults(level, layout)
     yield from look_faults(level)
     yield from extras_faults(level)

@@ -24,6 +24,9 @@ CORNER_LIMIT = 4_096
 POLYGON_WORK_LIMIT = 4_000_000
 TERRAIN_LIMIT = 1_000  # pieces of terrain; their corners count as those of polygons
 ZONE_LIMIT = 1_000  # zones; their corners count as those of terrain
+RULE_LIMIT = 1_000  # rules, and counters
+QUESTION_LIMIT = 1_000  # questions of a rule, and of one that asks others
+ACTION_LIMIT = 100  # actions of a rule
 COLLISION_GROUP_LIMIT = 60  # groups that bodies collide by: bits of a whole number
 
 # Beyond these, doubles lose the digits that a spring's length needs.

@@ -28,6 +28,7 @@ from sandbox.level.format.limits import (
     FORMAT,
     MATERIAL_LIMIT,
     PARTICLE_LIMIT,
+    RULE_LIMIT,
     SPRING_LIMIT,
     TAG_LIMIT,
     TERRAIN_LIMIT,
@@ -52,6 +53,8 @@ LEVEL_LIMITS = {
     "springs": SPRING_LIMIT,
     "welds": PARTICLE_LIMIT,
     "tags": TAG_LIMIT,
+    "counters": RULE_LIMIT,
+    "rules": RULE_LIMIT,
     "checks": CHECK_LIMIT,
     "materials": MATERIAL_LIMIT,
 }

@@ -18,10 +18,11 @@ from sandbox.level.format.scan import scan
 from sandbox.level.plan.plan import Plan
 from sandbox.level.reading.migrate import migrated
 from sandbox.level.reading.parse import BODY_LIMITS, LEVEL_LIMITS
+from sandbox.level.rules.rule import CounterDef, RuleDef
 
 _NAME = "Untitled"
 _HEAD = {"format": FORMAT, "version": VERSION, "name": _NAME}
-_LISTS = ("tags", "terrain", "zones", "bodies", "particles", "springs", "welds", "checks")
+_LISTS = ("tags", "terrain", "zones", "bodies", "particles", "springs", "welds", "counters", "rules", "checks")
 # Lists whose items are independent, so that a single one can be left out.
 _INDEPENDENT = ("springs", "pinned", "cut", "pin")
 # Number of items that are validated together while all are valid, which is many times faster.
@@ -37,6 +38,8 @@ _REQUIRED = {
         ("zones", ZoneDef),
         ("particles", ParticleDef),
         ("springs", SpringDef),
+        ("counters", CounterDef),
+        ("rules", RuleDef),
         ("checks", CheckDef),
     )
 }

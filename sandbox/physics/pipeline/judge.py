@@ -79,7 +79,7 @@ def _find_touches(world: WorldBlock) -> None:
         one, other = _thing(things, kept.particle[c]), _thing_touched(things, kept.feature[c])
         for t in range(asking):
             a, b = terms.zone[t], terms.other[t]
-            if (a == one and (b == other or b == NOBODY)) or (a == other and (b == one or b == NOBODY)):
+            if (a == one and b in (other, NOBODY)) or (a == other and b in (one, NOBODY)):
                 terms.holds[t] = True
 
 

@@ -6,8 +6,8 @@ from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.rules.zones import Zones
 
 # What a term asks. Of those from CENTRE_X on a value lies between bounds; of the last, terms are asked.
-TOUCHES, CROSSES, CENTRE_X, CENTRE_Y, SPEED, DISTANCE, INSIDE, FASTEST, STRAIN, MOTION, BROKEN, UNSOUND, SETTLED, COUNTER, \
-    TIME, KEY, ALL, ANY, NOT = range(19)  # fmt: skip
+TOUCHES, CROSSES, CENTRE_X, CENTRE_Y, SPEED, DISTANCE, INSIDE, FASTEST, STRAIN, MOTION, BROKEN, UNSOUND = range(12)
+SETTLED, COUNTER, TIME, KEY, ALL, ANY, NOT = range(12, 19)
 # Of things, what no rule names.
 NOBODY = -1
 

@@ -17,6 +17,7 @@ from sandbox.session.commands.grabbing import Grab, MoveGrab, Release
 from sandbox.session.commands.history import Redo, Undo
 from sandbox.session.commands.inflation import SetInflation
 from sandbox.session.commands.joining import AddBody
+from sandbox.session.commands.keys import HoldKey
 from sandbox.session.commands.materials import SetCoefficients
 from sandbox.session.commands.moving import MoveBody
 from sandbox.session.commands.pinning import Pin, Unpin
@@ -35,6 +36,7 @@ __all__ = [
     "CutSprings",
     "Free",
     "Grab",
+    "HoldKey",
     "MoveBody",
     "MoveGrab",
     "Pin",

@@ -65,6 +65,10 @@ def _forms(world: World) -> Sequence[str]:
     return [body.name for body in firm_bodies(world)]
 
 
+def _keys(world: World) -> Sequence[str]:
+    return world.rule_keys
+
+
 def _materials(world: World) -> Sequence[str]:
     return world.material_names
 
@@ -79,6 +83,7 @@ SpringSlot = Annotated[_Slot, _SPRING]
 PartSlot = Annotated[_Slot, Named("driven part", _parts, _listed(_parts), "part")]
 BodySlot = Annotated[_Slot, Named("body that keeps an area", _bodies, _listed(_bodies))]
 FormSlot = Annotated[_Slot, Named("body whose form may be stiff", _forms, _listed(_forms))]
+KeySlot = Annotated[_Slot, Named("key that a rule asks for", _keys, _listed(_keys), "key")]
 MaterialSlot = Annotated[_Slot, Named("material", _materials, _listed(_materials), "material")]
 
 

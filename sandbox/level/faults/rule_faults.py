@@ -1,0 +1,189 @@
+"""Faults of rules and counters: names that do not exist, and questions and actions that say too much or too little."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from sandbox.level.checks import SUBJECTS
+from sandbox.level.document.model import Level
+from sandbox.level.faults.reference_faults import metric_faults, subject_faults
+from sandbox.level.format.level_error import Fault, shown, suggestion
+from sandbox.level.format.limits import QUESTION_LIMIT
+from sandbox.level.plan.actuators import actuators
+from sandbox.level.plan.layout import Layout
+from sandbox.level.plan.plan import Plan
+from sandbox.level.rules.action import BELONGS, DOES, ActionDef
+from sandbox.level.rules.question import ASKS, GROUPS, UNASKED, WALLS, QuestionDef
+
+# The fields of a question beside those that say what it asks, by these.
+_BOUNDS = ("at_most", "at_least")
+_SUBJECTS = tuple("zone" if name == "box" else name for name in SUBJECTS)
+_TAKES = {"metric": (*_SUBJECTS, *_BOUNDS), "crosses": ("particle", "body"), "counter": _BOUNDS}
+
+
+@dataclass(frozen=True)
+class _Names:
+    """What rules name, by kind."""
+
+    layout: Layout
+    zones: tuple[str, ...]
+    things: tuple[str, ...]
+    counters: tuple[str, ...]
+    parts: tuple[str, ...]
+    loose_springs: int
+
+    def find(self, kind: str, where: str, name: str) -> Iterator[Fault]:
+        """The fault of a name that nothing of the kind has."""
+        known = {"zone": self.zones, "counter": self.counters, "driven part": self.parts}[kind]
+        if name not in known:
+            yield where, f"there is no {kind} {shown(name)}" + suggestion(name, known)
+
+
+def rule_faults(level: Level, layout: Layout) -> Iterator[Fault]:
+    """Faults of the counters and rules of a level."""
+    if not level.counters and not level.rules:
+        return
+    things = [*layout.owners, *(piece.id for piece in level.terrain), *([WALLS] if level.walls else [])]
+    names = _Names(
+        layout,
+        tuple(zone.id for zone in level.zones),
+        tuple(things),
+        tuple(counter.id for counter in level.counters),
+        tuple(part.name for part in actuators(level)),
+        len(level.springs),
+    )
+    yield from _repeated("counters", "counter", names.counters)
+    yield from _repeated("rules", "rule", [rule.id for rule in level.rules])
+    for index, rule in enumerate(level.rules):
+        path = f"rules.{index}"
+        if _size(rule.when) > QUESTION_LIMIT:
+            yield f"{path}.when", f"asks more than {QUESTION_LIMIT:,} questions; use fewer"
+        else:
+            yield from _question_faults(f"{path}.when", rule.when, names)
+        for number, action in enumerate(rule.then):
+            yield from _action_faults(f"{path}.then.{number}", action, names)
+
+
+def cut_spring_faults(level: Level, plan: Plan) -> Iterator[Fault]:
+    """Faults of springs of bodies that rules cut and that do not exist; of a level that is sound otherwise."""
+    numbers = {body.id: made.numbers for body, made in zip(level.bodies, plan.bodies, strict=True)}
+    for index, rule in enumerate(level.rules):
+        for at, action in enumerate(rule.then):
+            body, colon, number = (action.cut or "").partition(":")
+            if colon and body and int(number) not in numbers[body]:
+                yield f"rules.{index}.then.{at}.cut", f"there is no spring {shown(action.cut)}"
+
+
+def _repeated(key: str, noun: str, ids: Iterable[str]) -> Iterator[Fault]:
+    taken: set[str] = set()
+    for index, name in enumerate(ids):
+        if name in taken:
+            yield f"{key}.{index}.id", f"{shown(name)} is taken; every {noun} needs an id of its own"
+        taken.add(name)
+
+
+def _size(question: QuestionDef) -> int:
+    return 1 + sum(map(_size, question.members))
+
+
+def _question_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+    if len(question.asked) != 1:
+        said = f"not {' and '.join(question.asked)}" if question.asked else "this has none"
+        yield path, f"asks one of {', '.join(ASKS)}; {said}"
+        return
+    asks = question.asked[0]
+    for field in (*_SUBJECTS, *_BOUNDS):
+        if getattr(question, field) is not None and field not in _TAKES.get(asks, ()):
+            yield f"{path}.{field}", f"belongs to another question than {asks}; take it out"
+    if asks in GROUPS:
+        for index, member in enumerate(question.members):
+            yield from _question_faults(f"{path}.{asks}.{index}", member, names)
+    elif asks in _ASKED:
+        yield from _ASKED[asks](path, question, names)
+
+
+def _metric_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+    if question.metric in UNASKED:
+        yield f"{path}.metric", f'a rule does not ask for "{question.metric}"; a check does'
+        return
+    yield from metric_faults(path, question, _SUBJECTS, names.layout)
+    if question.zone is not None and question.metric == "inside":
+        yield from names.find("zone", f"{path}.zone", question.zone)
+
+
+def _touches_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+    touching = question.touches or ()
+    for index, name in enumerate(touching):
+        if name not in names.things:
+            fault = f"there is no body, loose particle or piece of terrain {shown(name)}"
+            yield f"{path}.touches.{index}", fault + suggestion(name, names.things)
+    if len(touching) == 2 and touching[0] == touching[1]:
+        yield f"{path}.touches", f"{shown(touching[0])} does not touch itself; name two things"
+
+
+def _crosses_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+    yield from names.find("zone", f"{path}.crosses", question.crosses or "")
+    given = [field for field in ("particle", "body") if getattr(question, field) is not None]
+    if len(given) != 1:
+        yield path, "name the particle or the body that crosses" + (", not both" if given else "")
+    for field in given:
+        yield from subject_faults(field, f"{path}.{field}", getattr(question, field), names.layout)
+
+
+def _breaks_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+    yield from subject_faults("body", f"{path}.breaks", question.breaks, names.layout)
+
+
+def _counter_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+    yield from names.find("counter", f"{path}.counter", question.counter or "")
+    if question.at_most is None and question.at_least is None:
+        yield path, "needs a bound: at_most, at_least or both"
+    elif question.at_most is not None and question.at_least is not None and question.at_least > question.at_most:
+        yield f"{path}.at_least", f"{shown(question.at_least)} is above at_most, {shown(question.at_most)}"
+
+
+_ASKED: dict[str, Callable[[str, QuestionDef, _Names], Iterator[Fault]]] = {
+    "metric": _metric_faults,
+    "touches": _touches_faults,
+    "crosses": _crosses_faults,
+    "breaks": _breaks_faults,
+    "counter": _counter_faults,
+}
+
+
+def _action_faults(path: str, action: ActionDef, names: _Names) -> Iterator[Fault]:
+    if len(action.done) != 1:
+        said = f"not {' and '.join(action.done)}" if action.done else "this has none"
+        yield path, f"does one of {', '.join(DOES)}; {said}"
+        return
+    does = action.done[0]
+    for field, owners in BELONGS.items():
+        if field in action.model_fields_set and does not in owners:
+            yield f"{path}.{field}", f"belongs to {' or '.join(owners)}, not to {does}; take it out"
+    where = f"{path}.{does}"
+    if action.count is not None:
+        yield from names.find("counter", where, action.count)
+    elif action.drive is not None:
+        yield from names.find("driven part", where, action.drive)
+    elif action.sag is not None:
+        if action.body is None:
+            yield f"{path}.body", "is missing; sag is of a body"
+        else:
+            yield from subject_faults("body", f"{path}.body", action.body, names.layout)
+    elif action.stars is not None and action.stars.counter is not None:
+        yield from names.find("counter", f"{path}.stars.counter", action.stars.counter)
+    elif action.cut is not None:
+        yield from _cut_faults(where, action.cut, names)
+    elif action.pin is not None or action.unpin is not None:
+        yield from subject_faults("particle", where, action.pin or action.unpin, names.layout)
+
+
+def _cut_faults(where: str, name: str, names: _Names) -> Iterator[Fault]:
+    """The fault of a body, or of a spring by name, that does not exist."""
+    body, colon, number = name.partition(":")
+    if colon and not number.isdecimal():
+        yield where, f"a spring is named by its body and number, such as rope:3, not {shown(name)}"
+    elif colon and not body:
+        if int(number) >= names.loose_springs:
+            yield where, f"there is no spring {shown(name)}"
+    else:
+        yield from subject_faults("body", where, body, names.layout)

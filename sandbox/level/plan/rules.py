@@ -1,0 +1,225 @@
+"""Rules of a level as the table that kernels read, and the rows of a world's state that they need."""
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sandbox.level.checks import METRICS
+from sandbox.level.document.model import Level, ZoneDef
+from sandbox.level.format.quantities import Point
+from sandbox.level.plan.plan import Plan
+from sandbox.level.plan.welds import Slots
+from sandbox.level.rules.question import WALLS, QuestionDef
+from sandbox.physics.rules import table
+from sandbox.physics.rules.table import NOBODY, Rules, Terms, Things
+from sandbox.physics.rules.zones import BOX, CIRCLE, POLYGON, Zones
+from sandbox.physics.state import Family
+from sandbox.physics.world import World
+
+_KINDS = {
+    "x": table.CENTRE_X, "y": table.CENTRE_Y, "speed": table.SPEED, "distance": table.DISTANCE,
+    "inside": table.INSIDE, "max_speed": table.FASTEST, "strain": table.STRAIN, "kinetic_energy": table.MOTION,
+    "broken_springs": table.BROKEN, "non_finite": table.UNSOUND, "settled": table.SETTLED,
+    "all": table.ALL, "any": table.ANY, "none": table.NOT,
+}  # fmt: skip
+_OF_SPRINGS = ("strain", "broken_springs")
+
+
+class _Term(NamedTuple):
+    """A row of Terms; about: slots, or the terms that it asks."""
+
+    kind: int
+    about: Sequence[int] = ()
+    zone: int = 0
+    other: int = 0
+    low: float = -math.inf
+    high: float = math.inf
+
+
+def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
+    """Give a world a level's rules and counters; slots: the slot of each particle before welds."""
+    if not level.rules and not level.counters:
+        return
+    maker = _Maker(world, level, plan, slots)
+    roots = [maker.term(rule.when) for rule in level.rules]
+    rate = level.settings.tick_rate
+    world.rules = maker.rules(
+        roots, [round(rule.for_seconds * rate) for rule in level.rules], [rule.once for rule in level.rules]
+    )
+    world.append(Family.RULE, len(level.rules))
+    world.append(Family.COUNTER, len(level.counters), counter=[counter.start + 0.0 for counter in level.counters])
+    world.append(Family.PROBE, len(maker.probes), probe_position=world.position[maker.probes].reshape(-1, 2))
+    world.append(Family.STILL, maker.settled)
+    world.rule_keys = maker.keys
+    world.append(Family.KEY, len(maker.keys))
+
+
+def rule_keys(level: Level) -> tuple[str, ...]:
+    """The keys that rules ask for, in the order of the file: of each row of the family KEY."""
+
+    def keys(question: QuestionDef) -> Iterable[str]:
+        yield from [question.key] if question.key is not None else ()
+        yield from itertools.chain.from_iterable(map(keys, question.members))
+
+    return tuple(dict.fromkeys(key for rule in level.rules for key in keys(rule.when)))
+
+
+class _Maker:
+    """Makes the terms of questions, each behind those that it asks."""
+
+    def __init__(self, world: World, level: Level, plan: Plan, slots: Slots) -> None:
+        self._world, self._level, self._plan, self._slots = world, level, plan, slots
+        self._zones = [zone.id for zone in level.zones]
+        self._counters = [counter.id for counter in level.counters]
+        self.keys = rule_keys(level)
+        self._things = _things(level, plan)
+        self._terms: list[_Term] = []
+        self.probes: list[int] = []
+        self.settled = 0
+
+    def term(self, asked: QuestionDef) -> int:
+        """The number of a new term that asks this."""
+        if asked.members:
+            made = _Term(_KINDS[asked.asked[0]], [self.term(member) for member in asked.members])
+        else:
+            made = self._made(asked)
+        self._terms.append(made)
+        return len(self._terms) - 1
+
+    def _made(self, asked: QuestionDef) -> _Term:
+        low = -math.inf if asked.at_least is None else asked.at_least + 0.0
+        high = math.inf if asked.at_most is None else asked.at_most + 0.0
+        if asked.touches is not None:
+            one, *others = (self._things[name] for name in asked.touches)
+            return _Term(table.TOUCHES, (), one, others[0] if others else NOBODY)
+        if asked.crosses is not None:
+            about = self._particles(asked)
+            first = len(self.probes)
+            self.probes += about
+            return _Term(table.CROSSES, about, self._zones.index(asked.crosses), first, 1.0, 1.0)
+        if asked.breaks is not None:
+            return _Term(table.BROKEN, self._springs(asked.breaks), low=1.0)
+        if asked.counter is not None:
+            return _Term(table.COUNTER, (), 0, self._counters.index(asked.counter), low, high)
+        if asked.key is not None:
+            return _Term(table.KEY, (), 0, self.keys.index(asked.key), 1.0, 1.0)
+        if asked.time is not None:
+            return _Term(table.TIME, low=asked.time)
+        return self._of_metric(asked, low, high)
+
+    def _of_metric(self, asked: QuestionDef, low: float, high: float) -> _Term:
+        metric = str(asked.metric)
+        usual, kind = METRICS[metric].at_least, _KINDS[metric]
+        if asked.at_least is None and asked.at_most is None and usual is not None:
+            low = usual
+        if metric in _OF_SPRINGS:
+            return _Term(kind, self._springs(asked.body), low=low, high=high)
+        other = 0
+        if kind == table.SETTLED:
+            other, self.settled = self.settled, self.settled + 1
+        elif kind == table.DISTANCE:
+            other = self._slot(str(asked.other))
+        zone = self._zones.index(str(asked.zone)) if kind == table.INSIDE else 0
+        return _Term(kind, self._particles(asked), zone, other, low, high)
+
+    def _slot(self, name: str) -> int:
+        return int(self._slots[self._plan.layout.slot(name)])
+
+    def _particles(self, asked: QuestionDef) -> list[int]:
+        """Slots of a particle, a body, or all."""
+        if asked.particle is not None:
+            return [self._slot(asked.particle)]
+        if asked.body is not None:
+            owner = self._plan.layout.owners[asked.body]
+            return list(dict.fromkeys(self._slots[owner.first : owner.first + owner.size].tolist()))
+        return [slot for slot in range(self._world.particle_count) if not self._world.is_grab_particle(slot)]
+
+    def _springs(self, body: str | None) -> list[int]:
+        """Slots of the springs of a body, or of all but those of hands."""
+        names = self._world.spring_names
+        mine = [body is None or name.startswith(f"{body}:") for name in names]
+        return [slot for slot, is_mine in enumerate(mine) if is_mine and not self._world.is_grab_spring(slot)]
+
+    def rules(self, roots: Sequence[int], delays: Sequence[int], once: Sequence[bool]) -> Rules:
+        """The whole table; roots: the terms of the rules."""
+        # Those of TOUCHES come first, all others stay behind what they ask.
+        order = sorted(range(len(self._terms)), key=lambda t: self._terms[t].kind != table.TOUCHES)
+        place = {t: at for at, t in enumerate(order)}
+        terms = [self._terms[t] for t in order]
+        is_group = [term.kind in (table.ALL, table.ANY, table.NOT) for term in terms]
+        slots: list[int] = []
+        members: list[int] = []
+        spans = []
+        for term, grouped in zip(terms, is_group, strict=True):
+            found = members if grouped else slots
+            first = len(found)
+            found += [place[t] for t in term.about] if grouped else term.about
+            spans.append((first, len(found)))
+        return Rules(
+            zones_of(self._level.zones),
+            Terms(
+                _slots([term.kind for term in terms]),
+                _slots([first for first, _ in spans]),
+                _slots([last for _, last in spans]),
+                _slots([term.zone for term in terms]),
+                _slots([term.other for term in terms]),
+                np.array([term.low for term in terms], np.float64),
+                np.array([term.high for term in terms], np.float64),
+                _slots(slots),
+                _slots(members),
+                np.zeros(len(terms)),
+                np.zeros(len(terms), np.bool_),
+            ),
+            self._numbered_things(),
+            _slots([place[t] for t in roots]),
+            _slots(delays),
+            np.array(once, np.bool_),
+            _slots(self.probes),
+        )
+
+    def _numbered_things(self) -> Things:
+        """The things that particles, springs and edges of terrain belong to."""
+        world, layout = self._world, self._plan.layout
+        of_particle = np.full(world.particle_count, NOBODY)
+        for name, owner in layout.owners.items():
+            of_particle[self._slots[owner.first : owner.first + owner.size]] = self._things[name]
+        of_spring = [self._things.get(name.partition(":")[0], NOBODY) for name in world.spring_names]
+        first = len(layout.owners)
+        return Things(of_particle, _slots(of_spring), world.terrain.chain + first)
+
+
+def _things(level: Level, plan: Plan) -> dict[str, int]:
+    """A number for each body, loose particle, piece of terrain, and the walls, which come behind it."""
+    names = [*plan.layout.owners, *(piece.id for piece in level.terrain)]
+    return {WALLS: len(names)} | {name: number for number, name in enumerate(names)}
+
+
+def zones_of(zones: Sequence[ZoneDef]) -> Zones:
+    """Zones as kernels read them."""
+    kinds, shapes, firsts = [], [], [0]
+    corners: list[Point] = []
+    for zone in zones:
+        if zone.box is not None:
+            kinds.append(BOX)
+            shapes.append(zone.box)
+        elif zone.circle is not None:
+            kinds.append(CIRCLE)
+            shapes.append((*zone.circle, 0.0))
+        else:
+            polygon = zone.polygon or ()
+            kinds.append(POLYGON)
+            across, up = zip(*polygon, strict=True)
+            shapes.append((min(across), min(up), max(across), max(up)))
+            corners += polygon
+        firsts.append(len(corners))
+    return Zones(
+        _slots(kinds), np.array(shapes, np.float64).reshape(-1, 4) + 0.0, _slots(firsts),
+        np.array(corners, np.float64).reshape(-1, 2) + 0.0,
+    )  # fmt: skip
+
+
+def _slots(values: Sequence[int]) -> Slots:
+    return np.array(values, np.int64)

@@ -1,0 +1,67 @@
+"""What rules do: their actions, carried out before the tick after the one in which they fired.
+
+They are no commands of a person: no history or recording holds them, as they follow from the state.
+"""
+
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from sandbox.level.document.model import Level
+from sandbox.level.rules.action import ActionDef
+from sandbox.physics.world import World
+from sandbox.session.commands import CommandError, apply
+from sandbox.session.commands.records import from_record
+from sandbox.session.outcome import stars_of
+
+
+class Actions:
+    """The actions of a level's rules."""
+
+    def __init__(self, level: Level) -> None:
+        self._level = level
+        self._counters = [counter.id for counter in level.counters]
+
+    def act(self, world: World) -> None:
+        """Do what is due: rule by rule in the order of the file, of each its actions in order.
+
+        One that cannot be done, as what it names is gone, does nothing.
+        """
+        for rule in np.flatnonzero(world.rule_due).tolist():
+            world.rule_due[rule] = False
+            for action in self._level.rules[rule].then:
+                if action.win is not None and not world.rule_stars[rule]:
+                    world.rule_stars[rule] = stars_of(action.stars, self._level, world, int(world.rule_first[rule]))
+                if action.count is not None:
+                    world.counter[self._counters.index(action.count)] += action.by
+                    continue
+                record = record_of(action, world, self._level.settings.tick_rate)
+                with suppress(CommandError):
+                    if record is not None:
+                        apply(world, from_record(record, world))
+
+
+def record_of(action: ActionDef, world: World, rate: int) -> dict[str, Any] | None:
+    """The command of an action as recordings have it; None where it is none, or where all it names is gone.
+
+    rate: ticks in a second.
+    """
+    during = round(action.during * rate)
+    if action.cut is not None:
+        names = [name for name in world.spring_names if name == action.cut or name.startswith(f"{action.cut}:")]
+        springs = [name for name in names if world.spring_active[world.spring_slot(name)]]
+        return {"type": "cut_springs", "springs": springs} if springs else None
+    if action.pin is not None:
+        return {"type": "pin", "particle": action.pin}
+    if action.unpin is not None:
+        return {"type": "unpin", "particle": action.unpin}
+    if action.drive is not None:
+        return {"type": "set_drive", "part": action.drive, "value": action.value}
+    if action.sag is not None:
+        return {"type": "set_firmness", "body": action.body, "sag": action.sag, "duration": during}
+    if action.gravity is not None:
+        return {"type": "set_gravity", "gravity": list(action.gravity), "duration": during}
+    if action.wind is not None:
+        return {"type": "set_air", "wind": list(action.wind), "duration": during}
+    return None

@@ -1,0 +1,55 @@
+"""The outcome of a run: whether its level is won or lost, which follows from the state alone."""
+
+from dataclasses import dataclass
+
+from sandbox.level.document.model import Level
+from sandbox.level.rules.action import ActionDef, StarsDef
+from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.world import World
+
+MOST_STARS = 3
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended for its player: won with stars, 1 to 3, or lost with none; at the end of a tick, by a rule."""
+
+    is_won: bool
+    text: str
+    stars: int
+    tick: int
+    rule: int
+
+
+def outcome(level: Level, state: World | Snapshot) -> Outcome | None:
+    """The outcome of a level's run; None while it is neither won nor lost.
+
+    The rule that won or lost first counts; of two in one tick, the one that stands first in the file.
+    """
+    first = state.rule_first.tolist()
+    ended = [(tick, rule) for rule, tick in enumerate(first) if tick >= 0 and _ending(level, rule) is not None]
+    if not ended:
+        return None
+    tick, rule = min(ended)
+    action = _ending(level, rule)
+    assert action is not None
+    if action.win is None:
+        return Outcome(False, action.fail or "", 0, tick, rule)
+    kept = int(state.rule_stars[rule])
+    return Outcome(True, action.win, kept or stars_of(action.stars, level, state, tick), tick, rule)
+
+
+def _ending(level: Level, rule: int) -> ActionDef | None:
+    """The first action of a rule that wins or loses."""
+    return next((one for one in level.rules[rule].then if one.win is not None or one.fail is not None), None)
+
+
+def stars_of(stars: StarsDef | None, level: Level, state: World | Snapshot, tick: int) -> int:
+    """How many stars a win at the end of a tick earns, with the counters as they are in this state."""
+    if stars is None:
+        return MOST_STARS
+    value = tick / level.settings.tick_rate
+    if stars.counter is not None:
+        value = float(state.counter[[counter.id for counter in level.counters].index(stars.counter)])
+    is_least = stars.third > stars.second
+    return 1 + sum(value >= bound if is_least else value <= bound for bound in (stars.second, stars.third))
