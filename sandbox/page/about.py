@@ -1,7 +1,11 @@
 """About: what a page must know of a world beside its memory: places, names, codes and the table of state arrays."""
 
+from collections.abc import Sequence
 from typing import Any
 
+from sandbox.level.document.model import Level
+from sandbox.level.rules.action import ActionDef
+from sandbox.level.rules.rule import RuleDef
 from sandbox.physics import command
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
@@ -12,8 +16,10 @@ from sandbox.physics.sanitise import ABSURD
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Column, Family
 from sandbox.physics.world import World
+from sandbox.session.actions import record_of
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.for_pages import table_of
+from sandbox.session.commands.records import from_record
 
 # Kernels that a page calls.
 KERNELS = {path.rpartition(".")[2]: path for path in WEB.entries}
@@ -53,9 +59,32 @@ def about(world: World, words: int) -> dict[str, Any]:
             "spring": world.spring_names,
             "material": world.material_names,
             "part": world.actuators.names,
+            "key": world.rule_keys,
         },
+        "rules": [[_action(action, world) for action in rule.then] for rule in _rules(world)],
         "second": {"particle": dict(world.particle_naming.second), "spring": dict(world.spring_naming.second)},
     }
+
+
+def _rules(world: World) -> Sequence[RuleDef]:
+    return world.source.rules if isinstance(world.source, Level) else ()
+
+
+def _action(action: ActionDef, world: World) -> dict[str, Any]:
+    """An action as a page does it: what it says, and a counter or a command with slots in place of names."""
+    level, rate = world.source, world.settings.tick_rate
+    counters = [counter.id for counter in level.counters]
+    made: dict[str, Any] = action.model_dump(include={"win", "fail", "say", "sound"}, exclude_none=True)
+    if action.stars is not None:
+        stars = action.stars
+        place = None if stars.counter is None else counters.index(stars.counter)
+        made["stars"] = {"counter": place, "second": stars.second, "third": stars.third}
+    if action.count is not None:
+        made |= {"count": counters.index(action.count), "by": action.by}
+    record = record_of(action, world, rate)
+    if record is not None and is_done_by_pages(record["type"]):
+        made["command"] = {"type": record["type"], **vars(from_record(record, world))}
+    return made | ({"isCheckpoint": True} if action.checkpoint else {})
 
 
 def array_path(column: Column) -> str:

@@ -57,6 +57,8 @@ def _commands() -> Iterator[str]:
 
 
 def _type_of(schema: dict[str, Any]) -> str:
+    if schema["type"] == "boolean":
+        return "boolean"
     if "prefixItems" in schema:
         found = f"[{', '.join(map(_type_of, schema['prefixItems']))}]"
     elif "items" in schema:

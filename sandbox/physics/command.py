@@ -11,7 +11,7 @@ from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.pieces import new_piece_scratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
-from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
+from sandbox.physics.keeping.arguments import FARTHEST, HANDS, KEYS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
 from sandbox.physics.ramps import set_constraint, set_number, set_spring
 from sandbox.physics.settings import DRAG, GRAVITY_X, WIND_X
@@ -19,7 +19,7 @@ from sandbox.physics.state import GoodValues, State, StateArrays
 from sandbox.physics.topology.sorting import list_ends
 
 GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(13)
-SET_GRAVITY, SET_AIR = 13, 14
+SET_GRAVITY, SET_AIR, HOLD_KEY = 13, 14, 15
 # In place of a result: the arena is full, and nothing was changed; the k-th of slots and numbers, counted through, is
 # BAD_SLOT - k: a slot that is not there, or a number that is not finite, and nothing was changed.
 NO_ARENA, BAD_SLOT = -1, -2
@@ -62,6 +62,7 @@ KINDS = {
     # What may be left out and is a pair comes last.
     "set_air": KernelCommand(SET_AIR, ("?wind", "?drag", "duration"), ("drag", "wind")),
     "set_drive": KernelCommand(DRIVE, ("part",), ("value",)),
+    "hold_key": KernelCommand(HOLD_KEY, ("key", "down")),
     "push": KernelCommand(PUSH, ("first_cursor",), ("position", "impulse", "outward", "radius")),
     "shake": KernelCommand(SHAKE, ("first_cursor",), ("acceleration", "tick_rate")),
 }
@@ -108,6 +109,8 @@ def command(pointer: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, n
         _set_air(state, world.numbers, slots, numbers)
     elif kind == DRIVE:
         state.actuator_value[slots[0]] = numbers[0]
+    elif kind == HOLD_KEY:
+        state.key_down[slots[0]] = slots[1] != 0
     elif kind == PUSH:
         return _push(state, world.good, slots[0], numbers)
     elif kind == SHAKE:
@@ -132,6 +135,8 @@ def _first_bad(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
             if not 0 <= slots[k] < springs or not state.spring_active[slots[k]] or state.material[slots[k]] < 0:
                 return k
     if kind == DRIVE and not 0 <= slots[0] < state.actuator_value.shape[0]:
+        return 0
+    if kind == HOLD_KEY and not 0 <= slots[0] < state.key_down.shape[0]:
         return 0
     for k in range(numbers.shape[0]):
         if not -math.inf < numbers[k] < math.inf:
@@ -372,6 +377,7 @@ def _fault(kind: KernelCommand, place: int, given: Mapping[str, Any], numbers: F
         "particle": (PARTICLES, len(state.owner)),
         "springs": (SPRINGS, len(state.law)),
         "part": (PARTS, len(state.actuator_value)),
+        "key": (KEYS, len(state.key_down)),
     }[name]
     if 0 <= value < count:
         return IndexError(f"{name} {value}: it is not in use, or a hand's")

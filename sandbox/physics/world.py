@@ -451,6 +451,10 @@ class World(StateArrays):
         drag = None if drag is None else arguments.number("drag", drag, 0.0)
         self._command("set_air", wind=wind, drag=drag, duration=duration)
 
+    def hold_key(self, key: int, is_down: bool) -> None:
+        """Press a key that rules ask for, by its place in `rule_keys`, or let it go."""
+        self._command("hold_key", key=key, down=int(is_down))
+
     def reserve_grabs(self) -> None:
         """Reserve the slots of all grabs, inactive; done once, when the world is built."""
         if self.grab_particle >= 0 or self.particle_count == 0:

@@ -65,9 +65,7 @@ class QuestionDef(Description):
     time: Seconds | None = Field(
         default=None, description="Time of the run that is over.", json_schema_extra=empty("none")
     )
-    all: _Members | None = Field(
-        default=None, description="Questions of which each holds.", json_schema_extra=empty("none")
-    )
+    all: _Members | None = Field(default=None, description="Questions that each hold.", json_schema_extra=empty("none"))
     any: _Members | None = Field(
         default=None, description="Questions of which one holds at least.", json_schema_extra=empty("none")
     )

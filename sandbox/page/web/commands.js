@@ -118,6 +118,7 @@ export class Commands {
   #fault(value, schema, parts) {
     const { messages } = this.#about;
     if (schema.type === 'array') return this.#faultOfList(value, schema, parts);
+    if (schema.type === 'boolean') return typeof value === 'boolean' ? null : [parts, messages.boolean];
     const isWhole = typeof value === 'number' && Number.isInteger(value) && Math.abs(value) < WHOLE;
     if (schema.type === 'integer' && !isWhole) {
       return [parts, schema.names ? messages.name : messages.integer];
@@ -169,7 +170,7 @@ export class Commands {
     /** @type {(name: string) => number | number[]} */
     const value = (name) => /** @type {number | number[]} */ (name.startsWith('?') ? Number(own[name.slice(1)] != null)
       : given[name] ?? own[name] ?? fields?.[name]?.default ?? 0);
-    const slots = kind.slots.flatMap((name) => [...new Set([value(name)].flat())]);
+    const slots = kind.slots.flatMap((name) => [...new Set([value(name)].flat())].map(Number));
     return { ...kind, slots, numbers: kind.numbers.flatMap((name) => value(name)) };
   }
 

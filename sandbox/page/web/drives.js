@@ -1,4 +1,4 @@
-// Drives: motors and hydraulics, driven while their keys are held.
+// Drives: motors and hydraulics, driven while their keys are held, and keys that rules ask for.
 /** @import { Run } from './run.js' */
 /** @import { Level } from './types.js' */
 
@@ -13,11 +13,14 @@ export class Drives {
    * @type {Map<string, string>} */
   #typed = new Map();
 
-  /** keys: parts and values by the name of a key; told: called with a key's name and whether it is held now.
-   * @param {Run} run @param {Level['keys']} keys @param {(name: string, isHeld: boolean) => void} [told] */
-  constructor(run, keys, told = () => {}) {
+  /** keys: parts and values by the name of a key; ruleKeys: those that rules ask for; told: called with a key's name
+   * and whether it is held now.
+   * @param {Run} run @param {Level['keys']} keys @param {string[]} [ruleKeys]
+   * @param {(name: string, isHeld: boolean) => void} [told] */
+  constructor(run, keys, ruleKeys = [], told = () => {}) {
     this.run = run;
-    this.keys = keys;
+    this.keys = { ...Object.fromEntries(ruleKeys.map((name) => [name, []])), ...keys };
+    this.ruleKeys = ruleKeys;
     this.told = told;
   }
 
@@ -49,6 +52,7 @@ export class Drives {
     const gesture = this.run.newGesture();
     this.#held.set(name, gesture);
     for (const [part, value] of this.keys[name]) this.run.submit({ type: 'set_drive', part, value }, gesture);
+    this.#tellRules(name, true, gesture);
     this.told(name, true);
   }
 
@@ -63,7 +67,15 @@ export class Drives {
       const value = others.findLast(([other]) => other === part)?.[1] ?? 0;
       this.run.submit({ type: 'set_drive', part, value }, gesture);
     }
+    this.#tellRules(name, false, gesture);
     this.told(name, false);
+  }
+
+  /** Tell rules that ask for a key whether it is held.
+   * @type {(name: string, down: boolean, gesture: number) => void} */
+  #tellRules(name, down, gesture) {
+    const key = this.ruleKeys.indexOf(name);
+    if (key >= 0) this.run.submit({ type: 'hold_key', key, down }, gesture);
   }
 
   // Let go the keys that a keyboard holds, as it types elsewhere now.

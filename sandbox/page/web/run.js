@@ -1,7 +1,7 @@
 // Run: what was done to a world and when, so that time can go back; the commands of a run make it again, bit for bit.
 import { Refusal } from './commands.js';
 /** @import { Command, Done } from './types.js' */
-/** @import { World } from './world.js' */
+/** @import { Ending, World } from './world.js' */
 
 // Ticks from one kept state to the next at first, and how many are kept before every second one is dropped.
 const KEEP_EVERY = 60, KEPT = 120;
@@ -75,11 +75,12 @@ export class Run {
    * @type {(gesture?: number | null) => void} */
   #endAll(gesture = null) {
     this.#isTold = false;
-    /** @type {Map<string, [Extract<Command, { type: 'release' | 'set_drive' }>, number]>} */
+    /** @type {Map<string, [Ending, number]>} */
     const going = new Map();
     for (const { record, changes, gesture: begun } of this.commands) {
       if (changes) continue;
       if (record.type === 'grab') going.set(`hand ${record.grab}`, [{ type: 'release', grab: record.grab }, begun]);
+      else if (record.type === 'hold_key') going.set(`key ${record.key}`, [{ ...record, down: false }, begun]);
       else if (record.type === 'set_drive') going.set(`part ${record.part}`, [{ ...record, value: 0 }, begun]);
     }
     for (const [ending, begun] of going.values()) if (this.world.isGoing(ending)) this.submit(ending, gesture ?? begun);

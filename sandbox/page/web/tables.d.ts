@@ -70,6 +70,16 @@ export interface StateArrays {
   hand_force: Float64Array;
   setting_now: Float64Array;
   setting_ticks: Int32Array;
+  rule_held: Int32Array;
+  rule_fired: Int32Array;
+  rule_first: BigInt64Array;
+  rule_last: BigInt64Array;
+  rule_due: Uint8Array;
+  rule_stars: Int8Array;
+  counter: Float64Array;
+  probe_position: Float64Array;
+  still_ticks: Int32Array;
+  key_down: Uint8Array;
 }
 
 export interface Commands {
@@ -136,6 +146,11 @@ export interface Commands {
     type: 'set_drive';
     part: number;
     value: number;
+  };
+  hold_key: {
+    type: 'hold_key';
+    key: number;
+    down: boolean;
   };
   push: {
     type: 'push';

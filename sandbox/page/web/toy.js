@@ -18,8 +18,8 @@ const light = matchMedia('(prefers-color-scheme: light)');
 
 /** @typedef {'dark' | 'light'} ThemeName */
 
-// It tells what happens as events: tick, break { springs }, check { name, holds, value }, say { text, kind }, pause,
-// pace { isBehind }, jump, theme and draw.
+// It tells what happens as events: tick, break { springs }, check { name, holds, value }, rules { actions },
+// outcome { isWon, text, stars, tick }, say { text, kind }, pause, pace { isBehind }, jump, theme and draw.
 export class Toy extends EventTarget {
   #pace = new Pace();
   #isDirty = true;
@@ -60,7 +60,7 @@ export class Toy extends EventTarget {
     this.hands = new Hands(canvas, this.run, this.camera, {
       changed: () => { this.#isMoved = this.#isDirty = true; }, fit: () => this.fit(), say: (text) => this.say(text),
     });
-    this.drives = new Drives(this.run, level.keys);
+    this.drives = new Drives(this.run, level.keys, level.about.names.key);
     this.sound = new Sound(this.world, level.sounds);
     this.#checks = new Checks(level, this.world);
     this.#previous = this.world.view('state.position').slice();
@@ -234,8 +234,23 @@ export class Toy extends EventTarget {
     const { spring: names } = this.level.about.names;
     if (world.broken.length) this.#tell('break', { springs: world.broken.map((spring) => names[spring]) });
     for (const result of this.#checks.look()) this.#tell('check', result);
+    this.#tellRules();
     if (wasFollowing && !this.run.isFollowing) this.pause();
     this.refresh();
+  }
+
+  // What rules that fired in this tick say, and whether one of them won or lost the level.
+  #tellRules() {
+    const { world } = this, fired = world.fired();
+    for (const { say } of fired) if (say !== undefined) this.say(say);
+    if (fired.length) this.#tell('rules', { actions: fired });
+    const outcome = fired.length ? world.outcome() : null;
+    if (outcome?.tick === world.time) this.#tell('outcome', outcome);
+  }
+
+  // Whether the level is won or lost, here in time; null: neither yet.
+  get outcome() {
+    return this.world.outcome();
   }
 
   // Ticks in a second, and how much time has passed [s].

@@ -11,10 +11,11 @@ export type AnyArray = Float64Array | Float32Array | BigInt64Array | Uint32Array
 
 // ---- A world: about.py and start.py
 
-export type Family = 'particle' | 'spring' | 'constraint' | 'corner' | 'actuator' | 'hand' | 'setting';
+export type Family = 'particle' | 'spring' | 'constraint' | 'corner' | 'actuator' | 'hand' | 'setting' | 'rule' | 'counter'
+  | 'probe' | 'still' | 'key';
 // Rows in use.
 export type Counts = Record<Family | 'material', number>;
-export type NameKind = 'particle' | 'spring' | 'material' | 'part';
+export type NameKind = 'particle' | 'spring' | 'material' | 'part' | 'key';
 
 // A line of the table of state arrays.
 export interface Column {
@@ -77,11 +78,34 @@ export interface About {
   topology: string[];
   kept: string[];
   names: Record<NameKind, string[]>;
+  // What each rule of the level does, in order.
+  rules: Action[][];
   second: Partial<Record<NameKind, Record<string, number>>>;
   // By path: the type of its numbers, and how many dimensions it has.
   table: Record<string, ['f8' | 'f4' | 'i8' | 'u4' | 'i4' | 'i1' | 'b1', number]>;
   copies: [to: number, from: number, size: number][];
   counts: Counts;
+}
+
+// What a rule does: a text or a sound of it, a counter that changes, or a command with slots in place of names.
+export interface Action {
+  win?: string;
+  fail?: string;
+  say?: string;
+  sound?: string;
+  stars?: { counter: number | null; second: number; third: number };
+  count?: number;
+  by?: number;
+  command?: Command;
+  isCheckpoint?: boolean;
+}
+
+// How a run ended for who plays it: won with 1 to 3 stars, or lost with none, at the end of a tick.
+export interface Outcome {
+  isWon: boolean;
+  text: string;
+  stars: number;
+  tick: number;
 }
 
 // What the module of kernels exports.
@@ -459,6 +483,8 @@ export interface ToyEvents {
   tick: undefined;
   break: { springs: string[] };
   check: CheckResult;
+  rules: { actions: Action[] };
+  outcome: Outcome;
   say: { text: string; kind: '' | 'good' | 'bad' };
   pause: { isPaused: boolean };
   pace: { isBehind: boolean };

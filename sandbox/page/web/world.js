@@ -2,8 +2,8 @@
 import { Commands } from './commands.js';
 import { blake2b, hexOf } from './hash.js';
 /**
- * @import { About, AnyArray, Column, Command, Counts, Done, Kernels, NameKind, Runs, SavedState, Settings, StateHash,
- *   View } from './types.js'
+ * @import { About, Action, AnyArray, Column, Command, Counts, Done, Kernels, NameKind, Outcome, Runs, SavedState,
+ *   Settings, StateHash, View } from './types.js'
  */
 
 const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
@@ -21,10 +21,12 @@ const MOTION = /** @type {const} */ (['position', 'velocity', 'angle', 'spin']);
 const IMPULSES = /** @type {const} */ (['collisions.kept.impulse', 'collisions.kept.impact']);
 // Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
 const ARGUMENTS = 64, RECORD = 16, NONE = new Float64Array();
+const MOST_STARS = 3;
 /** @type {(size: number) => number} */
 const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 
 /** @typedef {[address: number, count: number, size: number]} Span */
+/** @typedef {Extract<Command, { type: 'release' | 'set_drive' | 'hold_key' }>} Ending */
 
 export class World {
   /** @type {Kernels} */
@@ -144,6 +146,7 @@ export class World {
   }
 
   tick() {
+    this.#act();
     const progress = this.view('progress'), { TICK, MAY_FLY, COUNT, CHECKED } = this.#about.progress;
     const { NO_ROOM, UNSOUND, LOST, BROKE } = this.#about.codes;
     progress[TICK] = BigInt(this.time);
@@ -167,6 +170,64 @@ export class World {
     this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number)
       : [];
     if (this.broken.length) this.command({ type: 'break_springs', springs: this.broken });
+    if (this.#about.rules.length) this.#call('judge', this.#block);
+  }
+
+  // What rules that fired in the last tick do, as session/actions.py has it; what cannot be done is left out.
+  #act() {
+    this.#about.rules.forEach((actions, rule) => {
+      if (!this.view('state.rule_due')[rule]) return;
+      this.view('state.rule_due')[rule] = 0;
+      for (const action of actions) {
+        const stars = this.view('state.rule_stars'), { count, by = 1, command } = action;
+        if (action.win !== undefined && !stars[rule]) {
+          stars[rule] = this.#stars(action, Number(this.view('state.rule_first')[rule]));
+        }
+        if (count !== undefined) this.view('state.counter')[count] += by;
+        if (command) this.#actBy(command);
+      }
+    });
+  }
+
+  /** @type {(command: Command) => void} */
+  #actBy(command) {
+    const record = command.type === 'cut_springs' ? { ...command,
+      springs: command.springs.filter((spring) => this.isInUse('spring', spring)) } : command;
+    if (record.type === 'cut_springs' && !record.springs.length) return;
+    if (this.commands.faultIn(this, record) === null) this.command(record);
+  }
+
+  /** How many stars a win at the end of a tick earns, as session/outcome.py has it.
+   * @type {(action: Action, tick: number) => number} */
+  #stars({ stars }, tick) {
+    if (!stars) return MOST_STARS;
+    const { counter, second, third } = stars;
+    const value = counter === null ? tick / this.settings().tick_rate : this.view('state.counter')[counter];
+    return 1 + [second, third].filter((bound) => (third > second ? value >= bound : value <= bound)).length;
+  }
+
+  /** The actions of the rules that fired in the last tick.
+   * @type {() => Action[]} */
+  fired() {
+    return this.#about.rules.flatMap((actions, rule) =>
+      Number(this.view('state.rule_last')[rule]) === this.time ? actions : []);
+  }
+
+  /** Whether the level is won or lost; null: neither yet. The rule that fired first counts, of two in one tick the one
+   * that stands first in the file.
+   * @type {() => Outcome | null} */
+  outcome() {
+    const first = this.view('state.rule_first'), stars = this.view('state.rule_stars');
+    /** @type {Outcome | null} */
+    let found = null;
+    this.#about.rules.forEach((actions, rule) => {
+      const tick = Number(first[rule]), action = actions.find((each) => each.win !== undefined || each.fail !== undefined);
+      if (tick < 0 || !action || (found && found.tick <= tick)) return;
+      const isWon = action.win !== undefined;
+      found = { isWon, text: action.win ?? action.fail ?? '', stars: isWon ? stars[rule] || this.#stars(action, tick) : 0,
+        tick };
+    });
+    return found;
   }
 
   // Quarantine, as sanitise.py has it: impulses that no physics gives are begun again, and a particle whose motion is
@@ -226,9 +287,10 @@ export class World {
     if (changes) this.#derive(changes === 'hands' ? HANDS : DERIVATIONS);
   }
 
-  /** Whether what a command would end goes on: a hand holds something, or a part is driven.
-   * @type {(ending: Extract<Command, { type: 'release' | 'set_drive' }>) => boolean} */
+  /** Whether what a command would end goes on: a hand holds something, a part is driven, or a key is held.
+   * @type {(ending: Ending) => boolean} */
   isGoing(ending) {
+    if (ending.type === 'hold_key') return this.view('state.key_down')[ending.key] !== 0;
     if (ending.type === 'release') return this.isHeld(ending.grab);
     return this.view('state.actuator_value')[ending.part] !== 0;
   }

@@ -15,7 +15,8 @@ from sandbox.physics.marks import LONGEST_RAMP
 from sandbox.physics.state import FAMILIES, Column, Family, StateArrays
 
 # Words for the rows of families, where a slot of one is asked for.
-PARTICLES, SPRINGS, CONSTRAINTS, HANDS, PARTS = "particles", "springs", "constraints", "hands", "driven parts"
+PARTICLES, SPRINGS, CONSTRAINTS = "particles", "springs", "constraints"
+HANDS, PARTS, KEYS = "hands", "driven parts", "keys that rules ask for"
 # Types of what is given; a tuple is asked in a quarter of a union's time.
 _WHOLE, _NUMBERS, _LISTS = (int, np.integer), (float, int, np.integer, np.floating), (tuple, list, np.ndarray, Sequence)
 # Slots beyond this are beyond any array; kernels take no more digits.

@@ -17,7 +17,7 @@ class HoldKey(Command):
     down: bool
 
     def carry_out(self, world: World) -> None:
-        world.change("key_down", self.down, self.key)
+        world.hold_key(self.key, self.down)
 
     def begins(self) -> Hashable:
         return "key", self.key
