@@ -11,7 +11,17 @@ from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.pieces import new_piece_scratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
-from sandbox.physics.keeping.arguments import FARTHEST, HANDS, KEYS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
+from sandbox.physics.keeping.arguments import (
+    FARTHEST,
+    HANDS,
+    KEYS,
+    PARTICLES,
+    PARTS,
+    SPRINGS,
+    no_slot,
+    whole,
+    whole_numbers,
+)
 from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
 from sandbox.physics.ramps import set_constraint, set_number, set_spring
 from sandbox.physics.settings import DRAG, GRAVITY_X, WIND_X

@@ -5,15 +5,20 @@ import os
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from sandbox import load_level
 from sandbox.app.share.playing import playable
 from sandbox.page.page import KERNELS
+from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
 from sandbox.session.check_run import run_checks
+from sandbox.session.outcome import outcome
+from sandbox.session.session import Session
 from tests.determinism.golden import golden_path
+from tests.support import rules_level
 from tests.support.wants import needs
 
 NODE = shutil.which("node")
@@ -38,9 +43,24 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         name: {each.check.name: {"passed": each.passed, "value": each.value} for each in run_checks(load_level(name))}
         for name in CHECKED
     }
-    given = {"goldens": [f"{name}-golden" for name in GOLDENS], "checks": checks}
+    given = {"goldens": [f"{name}-golden" for name in GOLDENS], "checks": checks, "rules": _rules(made)}
     (made / "given.json").write_text(json.dumps(given), encoding="utf-8")
     return made
+
+
+def _rules(folder: Path) -> dict[str, Any]:
+    """A level with rules as a toy, what is done in a run of it, and what that comes to here at each tick."""
+    level = rules_level.answering()
+    (folder / "rules").write_bytes(playable(level).content)
+    session = Session(level)
+    hashes, won = [], []
+    for tick in range(1, rules_level.TICKS + 1):
+        rules_level.run(session, tick)
+        found = outcome(level, session.world)
+        hashes.append(state_hash(session.world))
+        won.append(None if found is None else [found.is_won, found.text, found.stars, found.tick])
+    keys = {tick: [command.down for command in rules_level.hands(tick)] for tick in range(rules_level.TICKS)}
+    return {"hashes": hashes, "outcomes": won, "keys": {tick: downs for tick, downs in keys.items() if downs}}
 
 
 def run_in_node(name: str, folder: Path) -> None:
