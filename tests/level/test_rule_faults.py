@@ -33,7 +33,8 @@ QUESTIONS = {
             "all, any, none; not key and time"),
     "no zone of that name": (INSIDE | {"zone": "baskte"}, 'rules.0.when.zone: there is no zone "baskte"; did you mean '
                              '"basket"?'),
-    "no zone": ({"metric": "inside", "particle": "ball"}, 'rules.0.when.zone: is missing; "inside" is measured of a zone'),
+    "no zone": ({"metric": "inside", "particle": "ball"}, 'rules.0.when.zone: is missing; "inside" is measured of a '
+                "zone"),
     "no bound": ({"metric": "x", "particle": "ball"}, "rules.0.when: needs a bound: at_most, at_least or both"),
     "bounds the wrong way": ({"counter": "score", "at_least": 3, "at_most": 2}, "rules.0.when.at_least: 3.0 is above "
                              "at_most, 2.0"),
@@ -41,8 +42,8 @@ QUESTIONS = {
                            "a check does"),
     "a thing that is not there": ({"touches": ["ball", "flor"]}, "rules.0.when.touches.1: there is no body, loose "
                                   'particle or piece of terrain "flor"'),
-    "a thing and itself": ({"touches": ["ball", "ball"]}, 'rules.0.when.touches: "ball" does not touch itself; name two '
-                           "things"),
+    "a thing and itself": ({"touches": ["ball", "ball"]}, 'rules.0.when.touches: "ball" does not touch itself; name '
+                           "two things"),
     "nothing that crosses": ({"crosses": "basket"}, "rules.0.when: name the particle or the body that crosses"),
     "a counter that is not there": ({"counter": "scor", "at_least": 1}, 'rules.0.when.counter: there is no counter '
                                     '"scor"; did you mean "score"?'),
@@ -61,11 +62,12 @@ def test_a_question_that_says_too_much_or_too_little_is_refused(case):
 
 
 ACTIONS = {
-    "nothing": ({}, "rules.0.then.0: does one of win, fail, say, sound, count, checkpoint, cut, pin, unpin, drive, sag, "
-                "gravity, wind; this has none"),
-    "two": ({"win": "a", "fail": "b"}, "rules.0.then.0: does one of win, fail, say, sound, count, checkpoint, cut, pin, "
-            "unpin, drive, sag, gravity, wind; not win and fail"),
-    "a field of another action": ({"say": "a", "by": 2}, "rules.0.then.0.by: belongs to count, not to say; take it out"),
+    "nothing": ({}, "rules.0.then.0: does one of win, fail, say, sound, count, checkpoint, cut, pin, unpin, drive, "
+                "sag, gravity, wind; this has none"),
+    "two": ({"win": "a", "fail": "b"}, "rules.0.then.0: does one of win, fail, say, sound, count, checkpoint, cut, "
+            "pin, unpin, drive, sag, gravity, wind; not win and fail"),
+    "a field of another action": ({"say": "a", "by": 2}, "rules.0.then.0.by: belongs to count, not to say; take it "
+                                  "out"),
     "no spring of that number": ({"cut": "rope:3"}, 'rules.0.then.0.cut: there is no spring "rope:3"'),
     "no such spring": ({"cut": ":0"}, 'rules.0.then.0.cut: there is no spring ":0"'),
     "no such body": ({"cut": "rop"}, 'rules.0.then.0.cut: there is no body "rop"; did you mean "rope"?'),
