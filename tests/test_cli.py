@@ -41,7 +41,7 @@ def test_run_prints_every_figure_as_json(rope, capsys):
         "level", "ticks", "simulated_seconds", "particles", "springs", "solver", "substeps", "max_strain", "rms_strain",
         "kinetic_energy", "potential_energy", "spring_energy", "gravity_energy", "dissipated_energy",
         "energy_tests", "steps_by_mass", "max_speed", "non_finite", "broken_springs", "hash",
-        "milliseconds_per_tick",
+        "outcome", "milliseconds_per_tick",
     ]  # fmt: skip
     assert (figures["ticks"], figures["particles"], figures["springs"]) == (120, 5, 4)
     assert figures["max_strain"] >= figures["rms_strain"] > 0.0

@@ -1,6 +1,7 @@
 """`sandbox replay`."""
 
 import json
+from collections import deque
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ from sandbox.terminal import Progress, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
+    from sandbox.physics.world import World
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,20 +47,28 @@ def verify_files(options: ReplayOptions) -> int:
 
 
 def _verify(name: str, partial: bool, level: "Level | None", report: Path | None) -> tuple[int, dict[str, Any]]:
+    from sandbox.session.outcome import outcome, outcome_data, outcome_text
     from sandbox.session.probe import finite
     from sandbox.session.replay.recording import ReplayError
     from sandbox.session.replay.verify import compare
 
     try:
         replay = recording_of(name, partial)
+        worlds: deque[World] = deque(maxlen=1)
         with Progress(replay.ticks) as bar:
-            found = compare(replay, level=level, progress=lambda done, total: bar.update(done - bar.done))
+            found = compare(
+                replay, level=level, on_tick=worlds.append, progress=lambda done, total: bar.update(done - bar.done)
+            )
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
     if found is None:
         cut = " (cut off: verified as far as it goes)" if replay.end_hash is None else ""
-        text = f"equal, {replay.ticks} ticks{cut}"
-        return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text}
+        played = level or replay.level
+        ended, rate = outcome(played, worlds[0]) if worlds else None, played.settings.tick_rate
+        said = "" if ended is None else f", {outcome_text(ended, rate)}"
+        data = {"outcome": outcome_data(ended, rate)} if played.rules else {}
+        text = f"equal, {replay.ticks} ticks{cut}{said}"
+        return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text, **data}
     if report is not None:
         write_report(found, report)
     details = finite({**asdict(found.divergence), "text": f"diverged at {found.divergence}"})

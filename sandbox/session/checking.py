@@ -2,14 +2,17 @@
 
 from collections.abc import Generator, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import CheckResult
-from sandbox.level.reading.files import LevelError, load_level
+from sandbox.level.reading.files import LevelError, level_path, read_level
 from sandbox.physics.analysis.stability import report
 from sandbox.session.check_run import run_checks
+from sandbox.session.outcome import outcome_data
 from sandbox.session.probe import finite
+from sandbox.session.solution import try_goal
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
 
@@ -29,23 +32,28 @@ class LevelReport:
 def check_level(name: str) -> LevelReport:
     """Validate a level file or a shipped level of that name, report its stability and run its checks."""
     try:
-        level = load_level(name)
+        path = level_path(name)
+        level = read_level(path)
     except LevelError as error:
         return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
     stability = report(build_world(level))
-    results = run_checks(level)
+    results, goal = run_checks(level), try_goal(level, Path(path))
     lines = (
         f"{name}: valid: {level.name}",
         f"  stability  {stability.text}",
         f"  in a single pass Cs = Cd would be stable up to {stability.proven_limit:.3g} proven, "
         f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)",
         *(f"  check      {result.text}" for result in results),
+        *([f"  goal       {goal.text}"] if goal else []),
     )
-    passed = all(result.passed for result in results)
+    passed = all(result.passed for result in results) and (goal is None or goal.passed)
     data: dict[str, Any] = {
         "file": name, "result": "passed" if passed else "failed", "level": level.name, "stability": asdict(stability),
         "checks": [_told(result) for result in results],
     }  # fmt: skip
+    if goal is not None:
+        won = outcome_data(goal.outcome, level.settings.tick_rate)
+        data["goal"] = {"passed": goal.passed, "outcome": won, "text": goal.text}
     return LevelReport(finite(data), lines, passed=passed)
 
 

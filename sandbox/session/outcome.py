@@ -1,6 +1,7 @@
 """The outcome of a run: whether its level is won or lost, which follows from the state alone."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef, StarsDef
@@ -37,6 +38,19 @@ def outcome(level: Level, state: World | Snapshot) -> Outcome | None:
         return Outcome(False, action.fail or "", 0, tick, rule)
     kept = int(state.rule_stars[rule])
     return Outcome(True, action.win, kept or stars_of(action.stars, level, state, tick), tick, rule)
+
+
+def outcome_text(found: Outcome, rate: int) -> str:
+    """An outcome in words: "won at 12.40 s with 3 stars"; rate: ticks in a second."""
+    seconds = found.tick / rate
+    if not found.is_won:
+        return f"lost at {seconds:.2f} s"
+    return f"won at {seconds:.2f} s with {found.stars} star{'s' * (found.stars > 1)}"
+
+
+def outcome_data(found: Outcome | None, rate: int) -> dict[str, Any] | None:
+    """An outcome for programs, ready for JSON; rate: ticks in a second."""
+    return None if found is None else {**asdict(found), "seconds": found.tick / rate}
 
 
 def _ending(level: Level, rule: int) -> ActionDef | None:

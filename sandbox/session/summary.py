@@ -13,6 +13,7 @@ from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_
 from sandbox.physics.settings import Substeps
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.world import World
+from sandbox.session.outcome import outcome, outcome_text
 from sandbox.session.session import Session
 
 # Strain is measured over this last part of a run [s].
@@ -26,7 +27,8 @@ class Summary:
     Energies [J], gravity's zero at y = 0: potential is springs and gravity, dissipated is what Dissipation says;
     energy_tests: those of this run; steps_by_mass: of bodies on too many contacts to answer exactly (docs/physics.md,
     section 10); max_speed [m/s] of any particle; non_finite: particles without a finite position and velocity;
-    milliseconds_per_tick: median wall time of the step alone.
+    outcome: of a level with a goal, "won at 12.40 s with 3 stars"; milliseconds_per_tick: median wall time of the step
+    alone.
     """
 
     ticks: int
@@ -48,6 +50,7 @@ class Summary:
     non_finite: int
     broken_springs: int
     hash: str
+    outcome: str | None
     milliseconds_per_tick: float
 
     def text(self, name: str) -> str:
@@ -63,7 +66,8 @@ class Summary:
             f"  fastest       {self.max_speed:.6g} m/s\n"
             f"  non-finite    {self.non_finite} particles, broken {self.broken_springs} springs\n"
             f"  a tick took   {self.milliseconds_per_tick:.4f} ms\n"
-            f"  hash          {self.hash}"
+            + (f"  outcome       {self.outcome}\n" if self.outcome else "")
+            + f"  hash          {self.hash}"
         )
 
 
@@ -88,7 +92,9 @@ def run(session: Session, ticks: int, on_tick: Callable[[World], None] | None = 
             if on_tick is not None:
                 on_tick(world)
         session.apply_pending()
-        return _summary(world, ticks, window, times, dissipation.energy)
+        ended, rate = outcome(session.level, world), session.level.settings.tick_rate
+        said = None if ended is None else outcome_text(ended, rate)
+        return _summary(world, ticks, window, times, dissipation.energy, said)
 
 
 def strain_sample(world: World) -> tuple[float, float, int]:
@@ -98,7 +104,12 @@ def strain_sample(world: World) -> tuple[float, float, int]:
 
 
 def _summary(
-    world: World, ticks: int, window: list[tuple[float, float, int]], times: list[float], dissipated: float
+    world: World,
+    ticks: int,
+    window: list[tuple[float, float, int]],
+    times: list[float],
+    dissipated: float,
+    outcome: str | None,
 ) -> Summary:
     shown = shown_particles(world)
     speed = np.sqrt(np.sum(world.velocity[shown] ** 2, axis=1))
@@ -127,6 +138,7 @@ def _summary(
         non_finite=int(np.count_nonzero(~finite)),
         broken_springs=real - active,
         hash=state_hash(world),
+        outcome=outcome,
         milliseconds_per_tick=1e3 * median(times) if times else 0.0,
     )
 

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 RECORDINGS = (".replay.jsonl", ".replay.gz", ".replay.jsonl.gz")
+# What follows the name of a level in that of a recording that solves it.
+SOLUTION = ".solution.replay.gz"
 LEVEL_FORMAT = "spring-sandbox/level"
 # A level file is no longer [bytes], see docs/level-format.md.
 LONGEST = 8 * 2**20
@@ -45,6 +47,11 @@ def names_a_level(path: Path) -> bool:
     except (ValueError, RecursionError):
         return True
     return isinstance(values, dict) and values.get("format") == LEVEL_FORMAT
+
+
+def has_solution(path: Path) -> bool:
+    """Whether a recording that solves a level lies beside its file."""
+    return path.with_name(f"{path.name.removesuffix('.json')}{SOLUTION}").exists()
 
 
 def check_names(path: Path) -> list[str]:

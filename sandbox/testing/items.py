@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from sandbox.testing.failed import Failed
-from sandbox.testing.files import check_names
+from sandbox.testing.files import check_names, has_solution
 
 if TYPE_CHECKING:
     from sandbox.level.checks import CheckResult
@@ -59,6 +59,9 @@ class LevelTests(pytest.File):
         for number, name in enumerate(check_names(self.path)):
             yield CheckItem.from_parent(self, name=name, number=number)
 
+        if has_solution(self.path):
+            yield GoalItem.from_parent(self, name="goal")
+
     def result(self, number: int) -> "CheckResult":
         """What came of a check; all of the file are measured in the same run. Raises Failed."""
         if self._results is None:
@@ -100,3 +103,18 @@ class CheckItem(_Told):
         result = self.parent.result(self.number)
         if not result.passed:
             raise Failed(result.text)
+
+
+class GoalItem(_Told):
+    """The solution beside a level wins it."""
+
+    def runtest(self) -> None:
+        """Run it. Raises Failed."""
+        from sandbox.session.solution import try_goal
+
+        assert isinstance(self.parent, LevelTests)
+        result = try_goal(self.parent.level(), self.path)
+        if result is None:
+            raise Failed("no rule of the level wins, but a solution lies beside it")
+        if not result.passed:
+            raise Failed(f"goal {result.text}")

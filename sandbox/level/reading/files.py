@@ -16,6 +16,7 @@ from sandbox.level.reading.parse import parse_level
 __all__ = [
     "LevelError",
     "level_data",
+    "level_path",
     "load_level",
     "parse_level",
     "read_bytes",
@@ -51,13 +52,18 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 
 def load_level(name: str | os.PathLike[str]) -> Level:
     """Read a level file, or a shipped level by its name (`rope`). Raises LevelError."""
+    return read_level(level_path(name))
+
+
+def level_path(name: str | os.PathLike[str]) -> str | Path:
+    """A level file as it is named, or that of a shipped level by its name (`rope`). Raises LevelError."""
     text = os.fspath(name)
     if "\0" in text or Path(text).name != text or os.path.isfile(text):
-        return read_level(text)
+        return text
     shipped = {path.stem: path for path in shipped_levels()}
     found = shipped.get(text) or shipped.get(text.removesuffix(".json"))
     if found is not None or os.path.lexists(text):
-        return read_level(found or text)
+        return found or text
     hint = suggestion(text, shipped) or "; shipped are " + ", ".join(shipped)
     raise LevelError(text, [("", "there is no such file and no shipped level of that name" + hint)])
 
