@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from sandbox.physics.jit.making import platforms
+from sandbox.physics.pipeline import tick
 from tests import test_architecture
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -71,7 +73,7 @@ def test_the_map_lists_every_module_of_a_page_behind_those_that_it_imports():
         assert imported <= set(listed[:place]), name
 
 
-WALKS = ("A drag, from the mouse to the recording", "A level, from its file to a world", "A tick")
+WALKS = ("A click, from the mouse to a button", "A drag, from the mouse to the recording", "A level, from its file to a world", "A tick")
 STOPS = [
     (quoted(file)[0], name) for walk in WALKS for file, names, _ in rows(ARCHITECTURE, walk) for name in quoted(names)
 ]
@@ -127,3 +129,33 @@ def test_every_target_of_make_that_is_named_exists():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     named = set(re.findall(r"make ([\w-]+)", CONTRIBUTING.read_text(encoding="utf-8")))
     assert {name for name in named if not re.search(rf"^{name}:", makefile, re.MULTILINE)} == set()
+
+
+DRAWING = ARCHITECTURE.read_text(encoding="utf-8").split("## A kernel, from its source to the library", 1)[1]
+DRAWING = DRAWING.split("```text\n", 1)[1].split("```", 1)[0]
+
+
+def test_the_drawing_of_a_kernel_names_files_and_what_is_in_them():
+    stops = re.findall(r"^((?:[a-z_]+/)+[a-z_]+\.(?:py|js)) *(\w*)", DRAWING, re.MULTILINE)
+    found = {path: next(ROOT.glob(f"sandbox/**/{path.removeprefix('sandbox/')}"), None) for path, _ in stops}
+    assert len(stops) == 6 and None not in found.values(), found
+    known = {path: defined(found[path].relative_to(ROOT)) for path, _ in stops}
+    assert [name for path, name in stops if name not in known[path] | {"the", "a", ""}] == []
+    folders = re.findall(r"^(jit/\w+)", DRAWING, re.MULTILINE)
+    assert folders == ["jit/translate"] and (ROOT / "sandbox/physics" / folders[0]).is_dir()
+
+
+def test_the_drawing_of_a_kernel_names_the_platforms_and_how_many_entries_pages_call():
+    systems = {each.name.partition("-")[0] for each in platforms.LIBRARIES}
+    processors = {each.name.partition("-")[2].replace("_", "-") for each in platforms.LIBRARIES}
+    line, below = re.search(r"make libraries --> (.*) -+\+.*\n *\|? *(.*)", DRAWING).groups()
+    assert set(line.split(", ")) == systems and set(below.split(", ")) == processors
+    assert f"kernels.wasm: the {len(platforms.WEB.entries)} entries that pages call" in DRAWING
+
+
+def test_the_drawing_of_a_kernel_names_what_a_tick_says_and_what_python_and_pages_call():
+    said = re.search(r"tick\(pointer\) --> (.*) \.\.\.", DRAWING).group(1).split(", ")
+    assert set(said) <= set(vars(tick))
+    derived = re.search(r"(derive_topology)\(pointer, arena\), (.*)", DRAWING)
+    names = [derived.group(1), *derived.group(2).split(", ")]
+    assert set(names) <= {name.rpartition(".")[2] for name in platforms.WEB.entries}
