@@ -16,7 +16,7 @@ from sandbox.session.commands.records import from_record
 from sandbox.session.outcome import stars_of
 
 
-class Actions:
+class RuleActions:
     """The actions of a level's rules."""
 
     def __init__(self, level: Level) -> None:

@@ -11,7 +11,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
 from sandbox.physics.step import step
-from sandbox.session.actions import Actions
+from sandbox.session.actions import RuleActions
 from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
@@ -41,7 +41,7 @@ class Session:
     def __init__(self, level: Level, script: Iterable[ScriptLine] = (), start: Snapshot | None = None) -> None:
         self.level = level
         self.world = build_world(level)
-        self._actions = Actions(level)
+        self._actions = RuleActions(level)
         if start is not None:
             restore(self.world, start)
             name_added(self.world)

@@ -79,7 +79,7 @@ def _check_faults(path: str, check: CheckDef, layout: Layout) -> Iterator[Fault]
     yield from _window_faults(path, check)
 
 
-class Measure(Protocol):
+class MetricAsked(Protocol):
     """What measures a metric: a check, or the question of a rule."""
 
     metric: Any
@@ -87,7 +87,7 @@ class Measure(Protocol):
     at_least: float | None
 
 
-def metric_faults(path: str, asked: Measure, subjects: tuple[str, ...], layout: Layout) -> Iterator[Fault]:
+def metric_faults(path: str, asked: MetricAsked, subjects: tuple[str, ...], layout: Layout) -> Iterator[Fault]:
     """Faults of the bounds of a metric, and of what it is measured of: of the fields `subjects`."""
     measured = METRICS[asked.metric]
     if asked.at_most is None and asked.at_least is None and measured.at_least is None:

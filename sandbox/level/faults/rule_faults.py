@@ -21,7 +21,7 @@ _TAKES = {"metric": (*_SUBJECTS, *_BOUNDS), "crosses": ("particle", "body"), "co
 
 
 @dataclass(frozen=True)
-class _Names:
+class _RuleNames:
     """What rules name, by kind."""
 
     layout: Layout
@@ -43,7 +43,7 @@ def rule_faults(level: Level, layout: Layout) -> Iterator[Fault]:
     if not level.counters and not level.rules:
         return
     things = [*layout.owners, *(piece.id for piece in level.terrain), *([WALLS] if level.walls else [])]
-    names = _Names(
+    names = _RuleNames(
         layout,
         tuple(zone.id for zone in level.zones),
         tuple(things),
@@ -85,7 +85,7 @@ def _size(question: QuestionDef) -> int:
     return 1 + sum(map(_size, question.members))
 
 
-def _question_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+def _question_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     if len(question.asked) != 1:
         said = f"not {' and '.join(question.asked)}" if question.asked else "this has none"
         yield path, f"asks one of {', '.join(ASKS)}; {said}"
@@ -101,7 +101,7 @@ def _question_faults(path: str, question: QuestionDef, names: _Names) -> Iterato
         yield from _ASKED[asks](path, question, names)
 
 
-def _metric_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+def _metric_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     if question.metric in UNASKED:
         yield f"{path}.metric", f'a rule does not ask for "{question.metric}"; a check does'
         return
@@ -110,7 +110,7 @@ def _metric_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[
         yield from names.find("zone", f"{path}.zone", question.zone)
 
 
-def _touches_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+def _touches_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     touching = question.touches or ()
     for index, name in enumerate(touching):
         if name not in names.things:
@@ -120,7 +120,7 @@ def _touches_faults(path: str, question: QuestionDef, names: _Names) -> Iterator
         yield f"{path}.touches", f"{shown(touching[0])} does not touch itself; name two things"
 
 
-def _crosses_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+def _crosses_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     yield from names.find("zone", f"{path}.crosses", question.crosses or "")
     given = [field for field in ("particle", "body") if getattr(question, field) is not None]
     if len(given) != 1:
@@ -129,11 +129,11 @@ def _crosses_faults(path: str, question: QuestionDef, names: _Names) -> Iterator
         yield from subject_faults(field, f"{path}.{field}", getattr(question, field), names.layout)
 
 
-def _breaks_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+def _breaks_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     yield from subject_faults("body", f"{path}.breaks", question.breaks, names.layout)
 
 
-def _counter_faults(path: str, question: QuestionDef, names: _Names) -> Iterator[Fault]:
+def _counter_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
     yield from names.find("counter", f"{path}.counter", question.counter or "")
     if question.at_most is None and question.at_least is None:
         yield path, "needs a bound: at_most, at_least or both"
@@ -141,7 +141,7 @@ def _counter_faults(path: str, question: QuestionDef, names: _Names) -> Iterator
         yield f"{path}.at_least", f"{shown(question.at_least)} is above at_most, {shown(question.at_most)}"
 
 
-_ASKED: dict[str, Callable[[str, QuestionDef, _Names], Iterator[Fault]]] = {
+_ASKED: dict[str, Callable[[str, QuestionDef, _RuleNames], Iterator[Fault]]] = {
     "metric": _metric_faults,
     "touches": _touches_faults,
     "crosses": _crosses_faults,
@@ -150,7 +150,7 @@ _ASKED: dict[str, Callable[[str, QuestionDef, _Names], Iterator[Fault]]] = {
 }
 
 
-def _action_faults(path: str, action: ActionDef, names: _Names) -> Iterator[Fault]:
+def _action_faults(path: str, action: ActionDef, names: _RuleNames) -> Iterator[Fault]:
     if len(action.done) != 1:
         said = f"not {' and '.join(action.done)}" if action.done else "this has none"
         yield path, f"does one of {', '.join(DOES)}; {said}"
@@ -177,7 +177,7 @@ def _action_faults(path: str, action: ActionDef, names: _Names) -> Iterator[Faul
         yield from subject_faults("particle", where, action.pin or action.unpin, names.layout)
 
 
-def _cut_faults(where: str, name: str, names: _Names) -> Iterator[Fault]:
+def _cut_faults(where: str, name: str, names: _RuleNames) -> Iterator[Fault]:
     """The fault of a body, or of a spring by name, that does not exist."""
     body, colon, number = name.partition(":")
     if colon and not number.isdecimal():
