@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from sandbox.app.base.shortcuts import shortcuts
-from sandbox.level.reading.files import load_level, parse_level, shipped_levels
+from sandbox.level.reading.files import load_level, parse_level, read_level, shipped_levels
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy, spring_lengths
 from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.query import shown_particles
@@ -25,6 +25,7 @@ from sandbox.physics.substeps import turned
 from sandbox.physics.world import World
 from sandbox.session.check_run import run_checks
 from sandbox.session.commands import COMMAND_TYPES
+from sandbox.session.outcome import outcome
 from sandbox.session.replay.script import read_script
 from sandbox.session.session import Session
 from tests.pictures import gallery, readme
@@ -58,8 +59,8 @@ def test_the_program_that_uses_the_package_prints_that_every_tick_is_equal(tmp_p
 
 
 def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_carried_out(tmp_path):
-    lines, driving, pumping, firming, joining = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
-    shown = (lines + driving + pumping + firming + joining).splitlines()
+    lines, driving, pressing, pumping, firming, joining = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
+    shown = (lines + driving + pressing + pumping + firming + joining).splitlines()
     assert {json.loads(line)["command"]["type"] for line in shown} == set(COMMAND_TYPES)
     table = COMMANDS.split("|---|---|---|")[1]
     named = {
@@ -86,6 +87,12 @@ def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_ca
     for _ in range(180):
         session.advance()
     assert len(session.messages) == 1 and session.messages[0].endswith(" broke")
+    (tmp_path / "press.jsonl").write_text(pressing)
+    level = read_level(ROOT / "docs" / "rules" / "chain.json")
+    session = Session(level, read_script(tmp_path / "press.jsonl"))
+    for _ in range(180):
+        session.advance()
+    assert not session.messages and outcome(level, session.world).text == "All down"
     (tmp_path / "pump.jsonl").write_text(pumping)
     session = Session(load_level("balloons"), read_script(tmp_path / "pump.jsonl"))
     wanted = session.world.constraint_rest.copy()

@@ -229,7 +229,7 @@ RULES = """\
 ## Rules and counters
 
 A rule asks a question at the end of each tick. When that has held for `for_seconds`, its actions are done before the
-next tick, in the order of the file; it acts again once its question has ceased to hold and holds anew. What a rule
+next tick, in the order of the file; it acts again once its question has ceased to hold and holds again. What a rule
 does, other rules find at the end of the next tick, so that a chain of rules takes a tick a link. Rules follow from the
 state alone: an undo takes back a win, and a recording holds nothing of them. An action on what is gone, such as a
 spring that broke, does nothing. [How to make a level that answers](how-to-rules.md) has whole examples.

@@ -1,5 +1,7 @@
 """Judging: rules are evaluated at the end of a tick, once springs that break have left the world."""
 
+import math
+
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.pipeline.block import TICK, WorldBlock
@@ -28,7 +30,8 @@ def judge(pointer: Bundle[WorldBlock]) -> int:
             terms.holds[t] = _holds_of_members(terms, t)
         elif kind != TOUCHES:
             terms.value[t] = measure(rules, t, state, tick, world.choices[TICK_RATE])
-            terms.holds[t] = terms.low[t] <= terms.value[t] <= terms.high[t]
+            # Of nothing nothing holds.
+            terms.holds[t] = terms.low[t] <= terms.value[t] <= terms.high[t] and terms.value[t] < math.inf
     fired = _fire(rules, state, tick)
     for k in range(rules.probe.shape[0]):
         for axis in range(2):

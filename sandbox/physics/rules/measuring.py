@@ -35,7 +35,7 @@ _LONGEST_STILL = 1_000_000_000
 
 @inner_kernel
 def measure(rules: Rules, t: int, state: State, tick: int, rate: int) -> float:
-    """The value of a term that bounds are compared with; 1 or 0 where there is none."""
+    """The value of a term that bounds are compared with: 1 or 0 where there is none, infinite of nothing."""
     terms = rules.terms
     kind, other = terms.kind[t], terms.other[t]
     if kind == TIME:
@@ -68,7 +68,7 @@ def measure(rules: Rules, t: int, state: State, tick: int, rate: int) -> float:
 
 @inner_kernel
 def _of_centre(terms: Terms, t: int, state: State) -> float:
-    """x, y or speed of the centre of mass; NaN of nothing."""
+    """x, y or speed of the centre of mass; infinite of nothing."""
     kind = terms.kind[t]
     rows = state.velocity if kind == SPEED else state.position
     mass, x, y = 0.0, 0.0, 0.0
@@ -79,7 +79,7 @@ def _of_centre(terms: Terms, t: int, state: State) -> float:
             x += state.mass[p] * rows[p, 0]
             y += state.mass[p] * rows[p, 1]
     if not mass > 0.0:
-        return math.nan
+        return math.inf
     x, y = x / mass, y / mass
     if kind == CENTRE_X:
         return x
@@ -88,7 +88,7 @@ def _of_centre(terms: Terms, t: int, state: State) -> float:
 
 @inner_kernel
 def _depth(rules: Rules, t: int, state: State) -> float:
-    """How far inside its zone the outermost particle is; NaN of nothing."""
+    """How far inside its zone the outermost particle is; infinite of nothing."""
     terms, zones, z = rules.terms, rules.zones, rules.terms.zone[t]
     least, low = math.inf, terms.low[t]
     for at in range(terms.first[t], terms.last[t]):
@@ -102,7 +102,7 @@ def _depth(rules: Rules, t: int, state: State) -> float:
         least = min(least, depth_inside(zones, z, x, y))
         if least < low:
             return least
-    return math.nan if least == math.inf else least
+    return least
 
 
 @inner_kernel
