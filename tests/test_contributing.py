@@ -73,7 +73,12 @@ def test_the_map_lists_every_module_of_a_page_behind_those_that_it_imports():
         assert imported <= set(listed[:place]), name
 
 
-WALKS = ("A click, from the mouse to a button", "A drag, from the mouse to the recording", "A level, from its file to a world", "A tick")
+WALKS = (
+    "A click, from the mouse to a button",
+    "A drag, from the mouse to the recording",
+    "A level, from its file to a world",
+    "A tick",
+)
 STOPS = [
     (quoted(file)[0], name) for walk in WALKS for file, names, _ in rows(ARCHITECTURE, walk) for name in quoted(names)
 ]
