@@ -13,7 +13,7 @@ from sandbox.level.reading.files import level_data, parse_level
 # What a place holds that is not there.
 ABSENT = object()
 # Fields that say nothing about a run.
-SILENT = ("name", "description", "author", "licence", "tags", "view", "look", "extras", "checks")
+SILENT = ("name", "description", "goal", "author", "licence", "tags", "view", "look", "extras", "checks")
 
 
 @dataclass(frozen=True)

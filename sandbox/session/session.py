@@ -154,6 +154,10 @@ class Session:
         with self._all_or_nothing(changes_history=False):
             self._rewind(tick, sought=True)
 
+    def forget_future(self) -> None:
+        """Make the present tick the end of the run; what followed is kept as a branch."""
+        self.history.drop_future(self.tick)
+
     def kept_before(self, tick: int) -> int:
         """The last tick up to a tick whose state is kept: from there `seek` steps again."""
         return self.history.keyframes.before(tick).tick

@@ -564,6 +564,7 @@ def test_results_go_with_every_part_of_the_level_that_runs():
         "version",
         "name",
         "description",
+        "goal",
         "author",
         "licence",
         "tags",

@@ -1,10 +1,10 @@
-"""DriveKeys: keys that a level gives to its motors and hydraulics, held down while the run is played."""
+"""DriveKeys: keys that a level gives to its motors, hydraulics and rules, held down while the run is played."""
 
 import pygame
 
 from sandbox.app.run.playback import Playback
 from sandbox.level.plan.actuators import driving_keys
-from sandbox.session.commands import SetDrive
+from sandbox.session.commands import HoldKey, SetDrive
 
 ARROWS = {"left": pygame.K_LEFT, "right": pygame.K_RIGHT, "up": pygame.K_UP, "down": pygame.K_DOWN}
 
@@ -15,24 +15,31 @@ def code_of(key: str) -> int:
 
 
 class DriveKeys:
-    """Drives parts of one run while their keys are held; a press and its release are one gesture."""
+    """Drives parts of one run, and answers its rules, while keys are held; a press and its release are one gesture."""
 
     def __init__(self, playback: Playback) -> None:
         self.playback = playback
         self._joined: object = None
         self._all: dict[int, list[tuple[int, float]]] = {}
-        self._names: dict[int, str] = {}
+        asked = playback.session.world.rule_keys
+        self._names: dict[int, str] = {code_of(key): key for key in asked}
+        # The place of each key that rules ask for among them.
+        self._asked = {code_of(key): slot for slot, key in enumerate(asked)}
         # The gesture of each key that is held, in the order of pressing.
         self._held: dict[int, int] = {}
 
     @property
     def has_arrows(self) -> bool:
-        """Whether arrow keys drive something."""
-        return any(code in self._keys for code in ARROWS.values())
+        """Whether arrow keys drive something, or answer a rule."""
+        return any(code in self._codes for code in ARROWS.values())
 
     def shown(self) -> list[tuple[str, bool]]:
-        """The keys that drive something, by name, each with whether it is held."""
-        return [(self._names[code], code in self._held) for code in sorted(self._keys)]
+        """The keys that have a meaning in the level, by name, each with whether it is held."""
+        return [(self._names[code], code in self._held) for code in sorted(self._codes)]
+
+    @property
+    def _codes(self) -> set[int]:
+        return {*self._keys, *self._asked}
 
     @property
     def _keys(self) -> dict[int, list[tuple[int, float]]]:
@@ -47,16 +54,18 @@ class DriveKeys:
         return self._all
 
     def press(self, key: int, modifiers: int) -> bool:
-        """Drive what the key drives; whether it drives anything."""
-        if key not in self._keys or modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT):
+        """Drive what the key drives, and answer the rules that ask for it; whether it has a meaning."""
+        if key not in self._codes or modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META | pygame.KMOD_ALT):
             return False
         if modifiers & pygame.KMOD_SHIFT and key in ARROWS.values():
             # With Shift they move the marked particle, as they do elsewhere.
             return False
         if key not in self._held:
             self._held[key] = self.playback.session.new_gesture()
-            for part, value in self._keys[key]:
+            for part, value in self._keys.get(key, []):
                 self.playback.submit(SetDrive(part, value), self._held[key])
+            if key in self._asked:
+                self.playback.submit(HoldKey(self._asked[key], True), self._held[key])
         return True
 
     def release(self, key: int) -> None:
@@ -67,3 +76,5 @@ class DriveKeys:
         for part, _ in self._keys.get(key, []):
             still = [value for held in self._held for other, value in self._keys.get(held, []) if other == part]
             self.playback.submit(SetDrive(part, still[-1] if still else 0.0), gesture)
+        if key in self._asked:
+            self.playback.submit(HoldKey(self._asked[key], False), gesture)

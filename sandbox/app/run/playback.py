@@ -11,6 +11,7 @@ import numpy as np
 
 from sandbox.app.base.loop import TickClock
 from sandbox.app.run.breaks import Breaks
+from sandbox.app.run.fired import Fired
 from sandbox.app.run.liveliness import Liveliness
 from sandbox.app.run.stopped import Stopped
 from sandbox.app.run.travel import Travel
@@ -87,6 +88,9 @@ class Playback:
         self.dissipation = Dissipation()
         self.breaks = Breaks(level)
         self.stopped = Stopped()
+        self.fired = Fired(level)
+        # Whether it pauses where it is won or lost.
+        self.pauses_at_end = False
         self.liveliness = Liveliness()
         self.behind = False
         self.verdict = ""
@@ -271,6 +275,19 @@ class Playback:
             self.session.adopt(self.replay.state(stored))
             self._passed_over = self._passed_over or ahead
 
+    def begin_again_from(self, tick: int) -> bool:
+        """Go back to a tick and on from there, whatever followed, which is kept as a branch; whether it went there."""
+        if self.session.recording is not None:
+            self.messages.append("Stop the recording before you go back in time.")
+            return False
+        self._tell_cut()
+        self.seek(tick)
+        if self.session.tick != tick:
+            return False
+        self._end_what_goes_on(self.session.new_gesture())
+        self.session.forget_future()
+        return True
+
     def return_to(self, branch: Branch) -> None:
         """Go back to where a branch begins, with it as what follows."""
         if self.session.recording is not None:
@@ -349,6 +366,10 @@ class Playback:
             if not self._tick():
                 break
             done += 1
+            if self.pauses_at_end and self.fired.ended and not self.watching:
+                self.clock.paused, self.clock.accumulator = True, 0.0
+                self.previous = self.session.snapshot()
+                break
             if done < due and time.perf_counter() - started > TICK_BUDGET:
                 self.behind = True
                 self.clock.accumulator = 0.0
@@ -418,6 +439,8 @@ class Playback:
         messages[:] = [line for line in messages if line not in said]
         self.breaks.note(world)
         self.stopped.note(world)
+        if self.travel.target is None:
+            self.fired.note(world)
 
     def _compare(self) -> None:
         assert self.replay is not None

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.sound import waves
+from sandbox.app.sound import signals, waves
 from sandbox.app.sound.waves import RATE, STEPS, Wave
 
 # From one number of `Sample.left` to the next [s].
@@ -30,9 +30,18 @@ MAKERS: dict[str, Callable[[Note], Wave]] = {
     "snap": lambda note: waves.snap(note.step),
     "squeak": lambda note: waves.squeak(note.step),
     "motor": lambda note: waves.motor(note.step),
+    "bell": lambda _: signals.bell(),
+    "coin": lambda _: signals.coin(),
+    "drum": lambda _: signals.drum(),
+    "buzzer": lambda _: signals.buzzer(),
+    "won": lambda _: signals.won(),
+    "lost": lambda _: signals.lost(),
+    "star": lambda note: signals.star(note.step),
 }
 # How loud each kind is beside the others: what lasts, and what is sharp to the ear, is softer.
 LEVELS = {"thud": 0.8, "pluck": 0.45, "snap": 0.85, "squeak": 0.16, "motor": 0.22}
+# And the signals of rules and of the end of a run.
+SIGNAL_LEVELS = {"bell": 0.5, "coin": 0.4, "drum": 0.8, "buzzer": 0.28, "won": 0.5, "lost": 0.5, "star": 0.35}
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +71,11 @@ class Bank:
 def note(kind: str, pitch: float, stuff: str = "") -> Note:
     """The note of a kind that is nearest to a pitch [Hz]."""
     return Note(kind, min(max(waves.step_of(pitch), 0), STEPS - 1), stuff)
+
+
+def level_of(kind: str) -> float:
+    """How loud a kind of sound is beside the others, 0..1."""
+    return LEVELS[kind] if kind in LEVELS else SIGNAL_LEVELS[kind]
 
 
 @cache

@@ -12,6 +12,8 @@ from sandbox.app.sound.voices import Cue, Voices
 
 # What is outside the view is quieter by this factor for each width of the view that it is away.
 FAR = 0.25
+# Signals are from no thing in the world.
+SIGNALS_FROM = -2
 
 
 class SoundChoices(Protocol):
@@ -46,6 +48,8 @@ class Sounds:
         self.voices = Voices(self.device, self.bank)
         self._ear = SoundEvents()
         self._playback: Playback | None = None
+        # Signals that are wanted, each with how soon [s].
+        self._signals: list[tuple[float, Note]] = []
         # What this run is likely to need, made a piece a frame, so that no frame waits for it.
         self._ahead: list[Note] = []
 
@@ -58,6 +62,7 @@ class Sounds:
         playback = None if run is None or not is_heard or self._chosen["sound"] == "off" else run.playback
         if playback is not self._playback:
             self._attend(playback, now)
+        self._play_signals(now)
         if run is None or playback is None:
             return
         self.device.open()
@@ -72,6 +77,20 @@ class Sounds:
                 self.bank.make(self._ahead.pop())
             self.voices.play([cue_of(each, camera) for each in heard], now)
             self.voices.hum([cue_of(each, camera) for each in self._ear.motors(world)], now)
+
+    def signal(self, kind: str, step: int = 0, after: float = 0.0) -> None:
+        """Let a signal be heard, in the middle and as loud as it is, so long [s] after this frame; see `signals`."""
+        self._signals.append((self._clock() + after, Note(kind, step)))
+
+    def _play_signals(self, now: float) -> None:
+        due = [note for at, note in self._signals if at <= now]
+        self._signals = [(at, note) for at, note in self._signals if at > now]
+        if not due or self._chosen["sound"] == "off":
+            return
+        self.device.open()
+        self.voices.volume = self._chosen["volume"]
+        if self.device.is_open:
+            self.voices.play([Cue(note, 1.0, 0.0, SIGNALS_FROM) for note in due], now)
 
     def _attend(self, playback: Playback | None, now: float) -> None:
         """Listen to another run, or to none."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from sandbox.app.sound.bank import LEVELS, Bank, Note, Sample
+from sandbox.app.sound.bank import Bank, Note, Sample, level_of
 
 # Sounds that play at once, at most; and this many of them motors.
 VOICES, MOTORS = 12, 3
@@ -100,12 +100,12 @@ class Voices:
         """Begin what is wanted in a frame, the loudest first; now [s]. How many sounds began."""
         self._sweep(now)
         began, share = 0, self.volume
-        for each in sorted(wanted, key=lambda one: -one.loudness * LEVELS[one.note.kind]):
+        for each in sorted(wanted, key=lambda one: -one.loudness * level_of(one.note.kind)):
             if began == NEW_PER_FRAME:
                 break
             if self._is_too_soon(each, now):
                 continue
-            gain = min(share * each.loudness * LEVELS[each.note.kind], self._room(now))
+            gain = min(share * each.loudness * level_of(each.note.kind), self._room(now))
             if gain < SOFTEST_VOICE:
                 continue
             channel = self._free_channel(now)
@@ -130,7 +130,7 @@ class Voices:
             if hum is not None and hum.note != each.note and now - hum.began > MOTOR_HOLD:
                 self._let_go(self._hums.pop(source), now)
                 hum = None
-            goal = self.volume * each.loudness * LEVELS["motor"]
+            goal = self.volume * each.loudness * level_of("motor")
             if hum is None:
                 channel = self._free_channel(now)
                 gain = min(goal, self._room(now))

@@ -61,27 +61,28 @@ def step_of(frequency: float) -> int:
     return int(np.argmin(np.abs(np.log(pitches / max(frequency, 1e-9)))))
 
 
-def _seconds(length: float) -> Wave:
+def seconds(length: float) -> Wave:
+    """Times [s] of the samples of so long a wave."""
     return np.arange(int(length * RATE)) / RATE
 
 
-def _noise(count: int, low: float, high: float, seed: int) -> Wave:
+def noise(count: int, low: float, high: float, seed: int) -> Wave:
     """Noise between two frequencies [Hz], the same each time; its peak is 1."""
     # A length that is transformed fast.
     length = 1 << (count - 1).bit_length()
     spectrum = np.fft.rfft(np.random.default_rng(seed).standard_normal(length))
     frequency = np.fft.rfftfreq(length, 1.0 / RATE)
     shape = frequency**4 / (frequency**4 + low**4) / (1.0 + (frequency / high) ** 4)
-    noise = np.fft.irfft(spectrum * shape, length)[:count]
-    return np.asarray(noise / np.abs(noise).max())
+    made = np.fft.irfft(spectrum * shape, length)[:count]
+    return np.asarray(made / np.abs(made).max())
 
 
-def _turns(frequency: Wave) -> Wave:
+def turns(frequency: Wave) -> Wave:
     """Angle [rad] of a sine whose frequency [Hz] changes."""
     return np.asarray(2.0 * np.pi * np.cumsum(frequency) / RATE)
 
 
-def _finished(wave: Wave, attack: float) -> Wave:
+def finished(wave: Wave, attack: float) -> Wave:
     """A wave with its peak at 1, that rises in `attack` [s] and is cut where it is too quiet to be missed."""
     loud = np.flatnonzero(np.abs(wave) > QUIET * np.abs(wave).max())
     wave = wave[: min(len(wave), int(loud[-1]) + int(FADE * RATE))].copy()
@@ -95,16 +96,16 @@ def thud(step: int, stuff: str) -> Wave:
     """A thing of one of STUFFS that is struck."""
     made, pitch = STUFFS[stuff], pitch_of(step)
     longest = max(decay for _, decay, _ in made.modes)
-    t = _seconds(5.6 * longest + 0.05)
+    t = seconds(5.6 * longest + 0.05)
     bend = 1.0 + (made.glide - 1.0) * np.exp(-t / 0.03)
     wave = np.zeros_like(t)
     for ratio, decay, strength in made.modes:
         if pitch * ratio < 0.4 * RATE:
             part = slice(0, int((5.6 * decay + 0.05) * RATE))
-            wave[part] += strength * np.exp(-t[part] / decay) * np.sin(_turns(pitch * ratio * bend[part]))
+            wave[part] += strength * np.exp(-t[part] / decay) * np.sin(turns(pitch * ratio * bend[part]))
     blow = t[: int(7.0 * made.blow * RATE)]
-    wave[: len(blow)] += made.noise * _noise(len(blow), 30.0, made.cut, step) * np.exp(-blow / made.blow)
-    return _finished(wave, 0.0012 if stuff in ("glass", "metal", "wood", "stone") else 0.003)
+    wave[: len(blow)] += made.noise * noise(len(blow), 30.0, made.cut, step) * np.exp(-blow / made.blow)
+    return finished(wave, 0.0012 if stuff in ("glass", "metal", "wood", "stone") else 0.003)
 
 
 def pluck(step: int) -> Wave:
@@ -112,7 +113,7 @@ def pluck(step: int) -> Wave:
     pitch = pitch_of(step)
     period = max(round(RATE / pitch), 2)
     # A string that is plucked by a soft finger: little above the first overtones.
-    block = _noise(period, 1.0, 9.0 * pitch, step)
+    block = noise(period, 1.0, 9.0 * pitch, step)
     block -= np.linspace(block[0], block[-1], period)
     block -= block.mean()
     before, blocks = block[-1], []
@@ -124,31 +125,31 @@ def pluck(step: int) -> Wave:
         delayed = np.concatenate([[before], block[:-1]])
         before, block = block[-1], loss * (block + delayed)
     wave = np.concatenate(blocks)
-    return _finished(wave - wave.mean(), 0.002)
+    return finished(wave - wave.mean(), 0.002)
 
 
 def snap(step: int) -> Wave:
     """Something that breaks: three cracks close to each other, and a short tone that falls."""
-    t, pitch = _seconds(0.2), pitch_of(step)
+    t, pitch = seconds(0.2), pitch_of(step)
     rng = np.random.default_rng(step)
-    wave = 0.5 * np.exp(-t / 0.018) * np.sin(_turns(pitch * (1.0 + 1.5 * np.exp(-t / 0.012))))
-    noise = _noise(len(t), 700.0, min(5.0 * pitch + 2000.0, 9000.0), step)
+    wave = 0.5 * np.exp(-t / 0.018) * np.sin(turns(pitch * (1.0 + 1.5 * np.exp(-t / 0.012))))
+    hiss = noise(len(t), 700.0, min(5.0 * pitch + 2000.0, 9000.0), step)
     for at, strength in zip((0.0, *rng.uniform(0.008, 0.05, 2)), (1.0, 0.6, 0.35), strict=True):
         after = np.maximum(t - at, 0.0)
-        wave += strength * noise * np.where(t >= at, np.exp(-after / 0.009) * np.minimum(after / 0.0006, 1.0), 0.0)
-    return _finished(wave, 0.0008)
+        wave += strength * hiss * np.where(t >= at, np.exp(-after / 0.009) * np.minimum(after / 0.0006, 1.0), 0.0)
+    return finished(wave, 0.0008)
 
 
 def squeak(step: int) -> Wave:
     """Something that rubs: a reedy tone that slides upward and trembles."""
-    t, pitch = _seconds(0.2), pitch_of(step)
+    t, pitch = seconds(0.2), pitch_of(step)
     slide = pitch * (1.0 + 0.22 * np.sin(np.pi * t / 0.2) + 0.02 * np.sin(2.0 * np.pi * 38.0 * t))
-    angle = _turns(slide)
+    angle = turns(slide)
     wave = np.zeros_like(t)
     for number, strength in enumerate((1.0, 0.45, 0.3, 0.12, 0.08), 1):
         wave += strength * np.sin(number * angle)
-    wave += 0.1 * _noise(len(t), pitch, 6.0 * pitch, step)
-    return _finished(wave * np.sin(np.pi * t / 0.2) ** 1.5, 0.004)
+    wave += 0.1 * noise(len(t), pitch, 6.0 * pitch, step)
+    return finished(wave * np.sin(np.pi * t / 0.2) ** 1.5, 0.004)
 
 
 def motor(step: int) -> Wave:

@@ -21,7 +21,7 @@ from sandbox.level.format.quantities import replaced
 FIRST_ROOM = (-6.0, 0.0, 6.0, 6.0)
 ROOM_SHARE, SMALLEST_ROOM = 0.25, 1.0
 ROOM_DECIMALS = 2
-_LEVEL_FIELDS = ("name", "description", "author", "licence", "tags", "view")
+_LEVEL_FIELDS = ("name", "description", "goal", "author", "licence", "tags", "view")
 
 
 def level_properties(document: Document) -> tuple[Section, ...]:

@@ -343,6 +343,7 @@ class Level(Description):
     version: int = Field(description="Version of the format.", json_schema_extra={"const": VERSION})
     name: Name = Field(description="Title that the gallery shows.")
     description: Text = Field(default="", description="What it shows and what to try.")
+    goal: Line = Field(default="", description='What wins it, in one line for players: "Bring the ball home".')
     author: Line = Field(default="", description="Who made it.")
     licence: Line = Field(default="", description='Licence, by its SPDX name: "CC0-1.0".')
     tags: tuple[Line, ...] = Field(default=(), max_length=TAG_LIMIT, description="Words to find it by.")
