@@ -17,6 +17,7 @@ from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import GRAVITY_LIMIT
 from sandbox.level.plan.actuators import driving_keys
+from sandbox.level.rules.rule import has_clock
 from sandbox.page.page import page_text, toy_content
 from sandbox.page.room import make_room, row_counts
 from sandbox.page.start import start_of
@@ -77,6 +78,7 @@ def playable_in_slices(
         "gravity_limit": GRAVITY_LIMIT,
         "ramp_ticks": round(RAMP_TIME * world.settings.tick_rate),
         "checks": _checks(level, world),
+        "goals": _goals(level),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
         "recording": None if played is None else {"commands": played.commands, "hashes": played.hashes},
@@ -90,6 +92,12 @@ def _checks(level: Level, world: World) -> list[dict[str, Any]]:
     """Checks of a level that a page can follow while somebody plays: those that hold no key, without energies."""
     measured = [check for check in level.checks if not check.hold and check.metric not in NOT_MEASURED]
     return [_check(check, world) for check in measured]
+
+
+def _goals(level: Level) -> dict[str, Any]:
+    """What a page shows of the goal of a level, and of its counters."""
+    counters = [[place, counter.text] for place, counter in enumerate(level.counters) if counter.text]
+    return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules)}
 
 
 def _check(check: CheckDef, world: World) -> dict[str, Any]:

@@ -31,3 +31,13 @@ class RuleDef(Description):
         description="What it does, in this order, before the next tick."
     )
     extras: Extras = Field(default_factory=dict)
+
+
+def has_clock(rules: tuple[RuleDef, ...]) -> bool:
+    """Whether time counts for players: a rule asks for it, or stars are earned by it."""
+    stars = [action.stars for rule in rules for action in rule.then if action.stars is not None]
+    return any(each.counter is None for each in stars) or any(_asks_time(rule.when) for rule in rules)
+
+
+def _asks_time(question: QuestionDef) -> bool:
+    return question.time is not None or any(map(_asks_time, question.members))

@@ -1,6 +1,7 @@
 // Main: the page around a toy: its bars, panel, timeline and keys, and what it says.
 import { Refusal } from './commands.js';
 import { read } from './files.js';
+import { Goals } from './goals.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
 import { Toy } from './toy.js';
@@ -31,6 +32,8 @@ class Page {
   constructor(level, fresh) {
     this.toy = new Toy(byId('picture'), level, fresh, window);
     this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level);
+    this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
+      again: byId('end-again'), on: byId('end-on') });
     this.#bind();
     this.#listen();
     this.#addDriveKeys();
@@ -148,7 +151,7 @@ class Page {
     byId('clock').textContent = text;
   }
 
-  // A button for each key that drives something.
+  // A button for each key that drives something, or that a rule asks for.
   #addDriveKeys() {
     const { drives } = this.toy;
     /** @type {Map<string, HTMLButtonElement>} */
@@ -157,7 +160,7 @@ class Page {
     for (const name of Object.keys(drives.keys)) {
       const button = element('button', { type: 'button', textContent: ARROWS[name] ?? name.toUpperCase(),
         className: 'key' });
-      button.setAttribute('aria-label', `Drive with key ${name}`);
+      button.setAttribute('aria-label', `Key ${name}`);
       button.addEventListener('pointerdown', (event) => {
         if (event.button !== 0) return;
         button.setPointerCapture(event.pointerId);

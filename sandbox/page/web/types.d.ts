@@ -243,11 +243,19 @@ export interface Level {
   gravity_limit: number;
   ramp_ticks: number;
   checks: Check[];
+  goals: Goals;
   keys: Record<string, [part: number, value: number][]>;
   header: string;
   recording: Recording | null;
   begin: number;
   about: About;
+}
+
+// What a level asks, in a line; counters that are shown: place and name; whether time counts.
+export interface Goals {
+  goal: string;
+  counters: [place: number, text: string][];
+  hasClock: boolean;
 }
 
 // Gives a world of its own before the first tick.

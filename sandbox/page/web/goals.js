@@ -1,0 +1,90 @@
+// Goals: what a level asks of who plays it, its counters and clock, and a card where it is won or lost.
+import { element } from './panel.js';
+/** @import { Toy } from './toy.js' */
+/** @import { Goals as Told } from './types.js' */
+
+const STARS = 3, POINTS = 5;
+/** A star as a path: its outer and inner points on circles about (12, 12).
+ * @type {() => string} */
+const starPath = () => `M${Array.from({ length: 2 * POINTS }, (_, k) => {
+  const radius = k % 2 ? 4.2 : 10, turn = (Math.PI * k) / POINTS;
+  return `${(12 + radius * Math.sin(turn)).toFixed(2)} ${(12 - radius * Math.cos(turn)).toFixed(2)}`;
+}).join('L')}z`;
+const number = new Intl.NumberFormat('en', { maximumFractionDigits: 2 });
+
+/** Elements that it fills: the line of the goal, that of counters and clock, and the card with its parts.
+ * @typedef {{ goal: HTMLElement, score: HTMLElement, end: HTMLElement, again: HTMLElement, on: HTMLElement }} Places */
+
+export class Goals {
+  #shown = '';
+
+  /** told: what there is to show, see playing.py; nothing of it is shown where a level asks nothing.
+   * @param {Toy} toy @param {Told} told @param {Places} places */
+  constructor(toy, told, places) {
+    this.toy = toy;
+    this.told = told;
+    this.places = places;
+    places.goal.textContent = told.goal;
+    places.goal.hidden = !told.goal;
+    places.again.addEventListener('click', () => {
+      this.#close();
+      toy.restart();
+    });
+    places.on.addEventListener('click', () => {
+      this.#close();
+      toy.play();
+    });
+    toy.addEventListener('outcome', () => this.#open());
+    toy.addEventListener('jump', () => {
+      if (toy.outcome?.tick !== toy.run.time) this.#close();
+    });
+    toy.addEventListener('draw', () => this.#follow());
+  }
+
+  // Counters and clock, as they are here in time.
+  #follow() {
+    const { toy, told: { counters, hasClock } } = this, values = toy.world.view('state.counter');
+    const said = counters.map(([place, text]) => `${text} ${number.format(values[place])}`);
+    // The clock of a run that is over stands.
+    if (hasClock) said.push(`${((toy.outcome?.tick ?? toy.run.time) / toy.rate).toFixed(1)} s`);
+    const text = said.join('   ');
+    if (text === this.#shown) return;
+    this.#shown = this.places.score.textContent = text;
+    this.places.score.hidden = !text;
+  }
+
+  #open() {
+    const { toy, places: { end } } = this, { outcome } = toy;
+    if (!outcome) return;
+    toy.pause();
+    end.querySelector('h2')?.replaceChildren(outcome.isWon ? 'Won' : 'Lost');
+    const seconds = `${(outcome.tick / toy.rate).toFixed(2)} s`;
+    end.querySelector('p')?.replaceChildren(outcome.text, outcome.text ? element('br') : '', seconds);
+    end.querySelector('div')?.replaceChildren(...(outcome.isWon ? stars(outcome.stars) : []));
+    end.classList.toggle('lost', !outcome.isWon);
+    end.hidden = false;
+    this.places.again.focus({ preventScroll: true });
+  }
+
+  #close() {
+    const { end } = this.places;
+    if (end.hidden) return;
+    end.hidden = true;
+    this.toy.canvas.focus({ preventScroll: true });
+  }
+}
+
+/** @type {(earned: number) => Element[]} */
+function stars(earned) {
+  const text = `${earned} of ${STARS} stars`;
+  return Array.from({ length: STARS }, (_, k) => {
+    const drawn = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+    const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+    drawn.setAttribute('viewBox', '0 0 24 24');
+    if (k === 0) drawn.setAttribute('aria-label', text);
+    drawn.setAttribute('class', k < earned ? 'star earned' : 'star');
+    path.setAttribute('d', starPath());
+    drawn.append(path);
+    return drawn;
+  });
+}

@@ -1,0 +1,57 @@
+"""Goals in pages: what a level asks is shown, a win comes up as a card, and time gone back takes it away."""
+
+from pathlib import Path
+
+from sandbox.app.share.playing import page_of
+from sandbox.level.reading.files import read_level
+from tests.page.browser import Browser, Tab
+from tests.page.levels import level_page
+from tests.page.opened import opened
+from tests.support.rules_level import answering
+from tests.test_documentation import ROOT
+
+SHOWN = "[...document.querySelectorAll('#goal, #score, #end-card')].filter((each) => !each.hidden).map((each) => each.id)"
+UNTIL_END = """new Promise((resolve) => page.toy.addEventListener('outcome', () => setTimeout(() => resolve(true), 100)))"""
+
+
+def text_of(tab: Tab, chosen: str) -> str:
+    found = tab.evaluate(f"document.querySelector('{chosen}').innerText")
+    assert isinstance(found, str)
+    return found
+
+
+def test_a_level_without_rules_shows_nothing_of_goals(browser: Browser, tmp_path: Path) -> None:
+    tab = opened(browser, tmp_path, level_page("rope"))
+    tab.evaluate("page.toy.step()")
+    assert tab.evaluate(SHOWN) == []
+
+
+def test_a_win_comes_up_as_a_card_with_its_stars_and_undoing_time_takes_it_away(browser: Browser, tmp_path: Path) -> None:
+    tab = opened(browser, tmp_path, page_of(answering(goal="Bring the ball into the basket")))
+    assert text_of(tab, "#goal") == "Bring the ball into the basket"
+    assert tab.evaluate(UNTIL_END)
+    assert tab.evaluate(SHOWN) == ["goal", "score", "end-card"]
+    assert text_of(tab, "#end-card h2") == "Won" and text_of(tab, "#end-card p") == "In!\n1.28 s"
+    assert tab.evaluate("document.querySelectorAll('.star.earned').length") == 2
+    assert tab.evaluate("[page.toy.isPaused, document.activeElement.id]") == [True, "end-again"]
+    assert text_of(tab, "#score").split() == ["Score", "6", "1.3", "s"]
+    tab.evaluate("page.toy.seek(20)")
+    assert tab.evaluate("document.getElementById('end-card').hidden") is True
+    assert tab.evaluate("page.toy.outcome") is None
+
+
+def test_a_level_that_is_lost_can_be_begun_again(browser: Browser, tmp_path: Path) -> None:
+    tab = opened(browser, tmp_path, page_of(read_level(ROOT / "docs" / "rules" / "bumpers.json")))
+    assert tab.evaluate(UNTIL_END)
+    assert text_of(tab, "#end-card h2") == "Lost" and text_of(tab, "#end-card p").startswith("The ball is gone.")
+    tab.evaluate("document.getElementById('end-again').click()")
+    found = tab.evaluate("[document.getElementById('end-card').hidden, page.toy.isPaused, page.toy.run.time < 30]")
+    assert found == [True, False, True]
+
+
+def test_a_button_holds_a_key_that_a_rule_asks_for(browser: Browser, tmp_path: Path) -> None:
+    tab = opened(browser, tmp_path, page_of(read_level(ROOT / "docs" / "rules" / "chain.json")))
+    assert tab.evaluate("document.querySelector('#keys button').getAttribute('aria-label')") == "Key g"
+    tab.evaluate("page.toy.drives.press('g')")
+    assert tab.evaluate(UNTIL_END)
+    assert text_of(tab, "#end-card p").startswith("All down")
