@@ -23,7 +23,7 @@ from sandbox.physics.pipeline.block import (
     TICK,
     WorldBlock,
 )
-from sandbox.physics.pipeline.collide import COUPLED, KEPT, Collisions
+from sandbox.physics.pipeline.collide import COUNTED, KEPT, Collisions
 from sandbox.physics.pipeline.derive import WANTED, derive_hands, derive_topology, make_room
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers.direct.energy_bank import WAYS
@@ -57,7 +57,7 @@ class BlockOwner:
             plan=np.zeros(PLANNED, np.int64),
             progress=np.zeros(PROGRESS, np.int64),
             wanted=np.zeros(WANTED, np.int64),
-            collisions=with_empty(Collisions, counts=np.zeros(COUPLED + 1, np.int64)),
+            collisions=with_empty(Collisions, counts=np.zeros(COUNTED, np.int64)),
             workspace=with_empty(IslandWorkspace, ways=np.zeros(WAYS, np.int64)),
         )
         self._constant: tuple[Any, ...] = ()

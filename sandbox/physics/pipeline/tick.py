@@ -26,13 +26,13 @@ from sandbox.physics.pipeline.collide import (
     COUPLED,
     KEPT,
     clamp,
-    copy_coupled,
     coupled_contacts,
     detect,
     mark_pushed,
     prepare_contacts,
     separate_overlaps,
     solve_free,
+    sort_by_solver,
     store_impulses,
 )
 from sandbox.physics.ramps import begin_ramps, end_ramps
@@ -214,7 +214,7 @@ def _find_contacts(world: WorldBlock, touches: bool, has_joints: bool, h: float)
         order_by_label(source, collisions.islands.contact_label, workspace.order, collisions.islands.at)
     elif has_joints or collisions.counts[COUPLED] > 0:
         has_room = find_body_islands(collisions.contacts, source, state.inverse_mass, world.system, workspace)
-    copy_coupled(collisions)
+    sort_by_solver(collisions)
     return has_room
 
 
