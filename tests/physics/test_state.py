@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.constraints import AREA
+from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.snapshot import hash_by_array, restore, state_hash, take
 from sandbox.physics.state import BY_NAME, BY_STORED, COLUMNS, reference
 from sandbox.physics.step import step

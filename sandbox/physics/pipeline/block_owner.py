@@ -8,6 +8,7 @@ import numpy as np
 from sandbox.physics.arena import FIRST_ARENA, lay_out
 from sandbox.physics.arrays import empty, with_empty
 from sandbox.physics.breaking import MaterialLimits
+from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import KeptContacts
 from sandbox.physics.driving import drives_of
 from sandbox.physics.jit import bundle, items_of
@@ -164,6 +165,12 @@ def block_of(world: World) -> BlockOwner:
     block = world.lasting(BlockOwner)
     block.follow(world)
     return block
+
+
+def outline_of(world: World) -> Outline:
+    """The outline of a world's bodies, whether anything can touch or not; it holds until topology changes."""
+    outline: Outline = block_of(world).arrays.collisions.outline
+    return outline
 
 
 def _contacts_of(world: World) -> KeptContacts:

@@ -81,9 +81,8 @@ def derive_topology(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     set_field(world, "sides", new_motor_sides(state, world.wheels, arena))
     _lay_out_labels(world, arena)
     lay_out_world_triangles(state, arena, world.triangles)
-    if world.plan[HAS_CONTACTS] != 0:
-        set_field(world.collisions, "outline", new_outline(state, arena))
-        set_field(world.collisions, "triangles", world.triangles.of_world)
+    set_field(world.collisions, "outline", new_outline(state, arena))
+    set_field(world.collisions, "triangles", world.triangles.of_world)
     if not is_full(arena):
         _lay_out_solver(world, arena)
 
