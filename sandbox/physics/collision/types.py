@@ -80,6 +80,7 @@ class Contacts(NamedTuple):
     partner: SlotRows  # (k, 2): which particles the couple is taken from, -1: none
     couple: FloatRows  # (k, 4): of the particle and of end_a, by a unit impulse
     impact: Floats  # [N s]: what impacts of this tick gave along the normal; not in impulse, and starts no sweep
+    belt: Floats  # [m/s]: of both surfaces together, each to the right of who stands on it
     ahead: Flags  # with an edge of a hollow that a disc comes to from others, on which it lies (seams.py)
 
 
@@ -137,7 +138,8 @@ def contacts_between(contacts: Contacts, first: int, last: int) -> Contacts:
         b.particle[first:last], b.feature[first:last], b.end_a[first:last], b.end_b[first:last], b.share[first:last],
         b.normal[first:last], b.gap[first:last], b.friction[first:last], b.restitution[first:last],
         b.bounce[first:last], b.impulse[first:last], b.turning[first:last], b.arm[first:last], b.ratio[first:last],
-        b.rolling[first:last], b.partner[first:last], b.couple[first:last], b.impact[first:last], b.ahead[first:last],
+        b.rolling[first:last], b.partner[first:last], b.couple[first:last], b.impact[first:last], b.belt[first:last],
+        b.ahead[first:last],
     )  # fmt: skip
 
 
@@ -195,7 +197,7 @@ def new_contacts(arena: Arena, most: int) -> Contacts:
         new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, count, 2),
         new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
         new_floats(arena, count), new_slot_rows(arena, count, 2), new_float_rows(arena, count, 4),
-        new_floats(arena, count), new_flags(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_flags(arena, count),
     )  # fmt: skip
 
 

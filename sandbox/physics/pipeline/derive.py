@@ -15,6 +15,7 @@ from sandbox.physics.arena import (
     new_floats,
     new_slots,
 )
+from sandbox.physics.collision.belts import has_belts
 from sandbox.physics.collision.broad_phase import Candidates, new_boxes, new_grid, new_pairs
 from sandbox.physics.collision.outline import new_colliders, new_outline
 from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
@@ -30,6 +31,7 @@ from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
 from sandbox.physics.pipeline.block import (
     GRAB_PARTICLE,
     GRAB_SPRING,
+    HAS_BELTS,
     HAS_CONTACTS,
     HAS_HOOKE,
     HAS_RINGS,
@@ -157,6 +159,7 @@ def _room(world: WorldBlock, k: int) -> int:
 def _find_plan(world: WorldBlock) -> None:
     state, plan = world.state, world.plan
     plan[HAS_CONTACTS] = plan[HAS_HOOKE] = plan[HAS_RINGS] = 0
+    plan[HAS_BELTS] = 1 if has_belts(state) else 0
     for p in range(state.collides.shape[0]):
         if state.collides[p] != 0:
             plan[HAS_CONTACTS] = 1

@@ -122,7 +122,8 @@ def _place_of(
 def _place_of_edge(
     contacts: Contacts, c: int, start: FloatRows, work: FreeContactScratch, count: int
 ) -> tuple[int, int]:
-    # The place of an edge that cannot move, be it of terrain or of a body, and the number of places then.
+    # The place of an edge that cannot move, be it of terrain or of a body, with the velocity of its surface; and the
+    # number of places then.
     a = contacts.end_a[c]
     b = contacts.end_b[c]
     share = contacts.share[c]
@@ -140,6 +141,8 @@ def _place_of_edge(
         if b >= 0:
             work.motion[count, VX + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
         work.gain[count, axis] = 0.0
+    work.motion[count, VX] += contacts.belt[c] * contacts.normal[c, 1]
+    work.motion[count, VY] -= contacts.belt[c] * contacts.normal[c, 0]
     return count, count + 1
 
 
