@@ -1,15 +1,17 @@
 """Treads of belts: chevrons run along them as fast as what they carry, to the same side."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pygame
 import pytest
 
 from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.renderer import Renderer
 from sandbox.app.draw.themes import THEMES
-from sandbox.app.draw.things.treads import APART, MOST_PASSING, body_treads, ground_treads
+from sandbox.app.draw.things.treads import APART, MOST_PASSING, body_treads, ground_treads, mark_treads
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.snapshot import take
@@ -31,22 +33,29 @@ def state_of(**parts):
     return take(build_world(level_of(**parts)))
 
 
-def ways(tread, vertex, seconds):
-    """Where chevrons are, and where they are 10 ms later."""
-    places = [tread.places(ZOOM, 1.0, at) for at in (seconds, seconds + 0.01)]
-    return [
-        np.stack([np.interp(each, tread.arc, np.append(vertex[tread.ends[:, 0], axis], vertex[tread.ends[-1, 1], axis]))
-                  for axis in (0, 1)], axis=1)
-        for each in places
-    ]  # fmt: skip
+WHOLE = np.array([[0.0, 1.0]])
+
+
+def places(tread, seconds):
+    """Where chevrons are along the way of a tread [m]."""
+    edge, share = tread.chevrons(ZOOM, 1.0, seconds, np.repeat(WHOLE, len(tread.ends), axis=0))
+    return tread.arc[edge] + share * (tread.arc[edge + 1] - tread.arc[edge])
+
+
+def on_top(tread, vertex, seconds):
+    """How far to the right [m] chevrons are that are on top of the ground."""
+    edge, share = tread.chevrons(ZOOM, 1.0, seconds, np.repeat(WHOLE, len(tread.ends), axis=0))
+    a, b = vertex[tread.ends[edge]].transpose(1, 0, 2)
+    at = a + share[:, None] * (b - a)
+    return np.sort(at[np.abs(at[:, 1]) < 1e-9, 0])
 
 
 def test_chevrons_on_top_of_the_ground_run_to_the_right_at_the_speed_of_the_belt():
     terrain = state_of(terrain=[GROUND]).terrain
     (tread,) = ground_treads(terrain)
-    before, after = (places[np.abs(places[:, 1]) < 1e-9] for places in ways(tread, terrain.vertex, 0.3))
-    moved = np.sort(after[:, 0])[1:-1, None] - np.sort(before[:, 0])[None]
-    assert np.abs(moved - 0.015).min(axis=1).max() < 1e-9
+    before, after = (on_top(tread, terrain.vertex, at) for at in (0.3, 0.31))
+    moved = after[1:-1, None] - before[None]
+    assert len(before) > 10 and np.abs(moved - 0.015).min(axis=1).max() < 1e-9
 
 
 def test_a_line_has_chevrons_on_both_sides_that_run_apart():
@@ -68,10 +77,30 @@ def test_the_tread_of_a_jelly_is_one_way_round_all_of_its_outline():
 @pytest.mark.parametrize("speed", [0.01, 1.0, 30.0, 1000.0])
 def test_chevrons_are_never_so_near_that_they_seem_to_run_back(speed):
     (tread,) = ground_treads(state_of(terrain=[{**GROUND, "belt": speed}]).terrain)
-    places = tread.places(ZOOM, 1.0, 12.34)
-    apart = np.diff(places).min() if len(places) > 1 else tread.arc[-1]
+    found = places(tread, 12.34)
+    apart = np.diff(found).min() if len(found) > 1 else tread.arc[-1]
     assert apart >= min(0.7 * max(APART / ZOOM, speed / MOST_PASSING), tread.arc[-1])
-    assert len(places) >= 1 and places.min() >= 0.0 and places.max() < tread.arc[-1]
+    assert len(found) >= 1 and found.min() >= 0.0 and found.max() < tread.arc[-1]
+
+
+def test_of_a_belt_as_long_as_a_level_may_be_no_more_is_drawn_than_is_seen():
+    level = level_of(terrain=[{**GROUND, "polygon": [[-1e6, -1], [1e6, -1], [1e6, 0], [-1e6, 0]]}])
+    state, layer = take(build_world(level)), MarkList()
+    camera = Camera((5e5, 0.0), 2000.0, (0, 0, 640, 360))
+    at, none = camera.project(state.terrain.vertex), np.zeros(0, dtype=np.bool_)
+    mark_treads(layer, ground_treads(state.terrain), at, none, camera, 1.0, 0.5, THEMES["dark"])
+    drawn = layer.arrays()
+    assert drawn is not None and 8 < len(drawn.ends) < 200
+    assert np.abs(drawn.ends).max() < 1000.0
+
+
+def test_what_is_nowhere_or_has_no_length_has_no_tread():
+    state = state_of(terrain=[GROUND])
+    (tread,) = ground_treads(state.terrain)
+    layer, camera, none = MarkList(), Camera((0.0, 0.0), ZOOM, (0, 0, 640, 360)), np.zeros(0, dtype=np.bool_)
+    flat = replace(tread, arc=np.zeros_like(tread.arc))
+    mark_treads(layer, [tread, flat], np.full((4, 2), np.nan), none, camera, 1.0, 0.5, THEMES["dark"])
+    assert layer.arrays() is None
 
 
 def bright(surface):

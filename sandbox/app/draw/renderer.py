@@ -178,12 +178,12 @@ class Renderer:
                         painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
                     )  # fmt: skip
                     at = camera.project(current.terrain.vertex)
-                    self._draw_treads(self._ground_treads, at, frame, springs)
+                    self._draw_treads(self._ground_treads, at, frame, camera, springs)
             with profile.part("things"):
                 if self.level is not None:
                     drawables = self._drawables_of(frame, current, particles, springs)
                     self._draw_things(drawables, frame, camera)
-                self._draw_treads(self._body_treads, pixels, frame, springs)
+                self._draw_treads(self._body_treads, pixels, frame, camera, springs)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
                     self._draw_lattice(frame, current, particles, springs)
@@ -241,11 +241,11 @@ class Renderer:
         drawables.draw(painter, frame, self.lattice)
 
     def _draw_treads(
-        self, treads: list[Tread], at: NDArray[np.float64], frame: Frame, springs: NDArray[np.bool_]
+        self, treads: list[Tread], at: NDArray[np.float64], frame: Frame, camera: Camera, springs: NDArray[np.bool_]
     ) -> None:
         if treads:
             layer = MarkList()
-            mark_treads(layer, treads, at, springs, frame.zoom, self.scale, frame.seconds, self.theme)
+            mark_treads(layer, treads, at, springs, camera, self.scale, frame.seconds, self.theme)
             self._painter.marks(layer, frame.tiles.array)
 
     def _slots_now(self, level: Level, joined: tuple[Joined, ...]) -> LevelSlots:

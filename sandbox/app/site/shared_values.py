@@ -55,7 +55,9 @@ def shared_values() -> dict[str, dict[str, Any]]:
         | {"PLANKS": members.PLANKS_A_CELL, "BOLTS_FROM": members.BOLTS_FROM, "CYLINDER": _hex(springs.CYLINDER)},
         "SHAPES": _of(soft, "LEAST_ROUNDING", "MOST_ROUNDING", "MOST_GROWN", "LINE_HALF")
         | _of(sheets, "CLOTH_TEXELS", "LAID_TEXELS", "HEM_HALF"),
-        "TREADS": _of(treads, "STRAP_HALF", "CHEVRON", "CHEVRON_HALF", "SIDE", "APART", "MOST_PASSING")
+        "TREADS": _of(
+            treads, "STRAP_HALF", "CHEVRON", "CHEVRON_HALF", "SIDE", "APART", "MOST_PASSING", "LEAST_APART", "BESIDE"
+        )
         | {"COLOUR": _hex(treads.CHEVRON_COLOUR)},
         "WHEELS": _of(wheels, "RIM_FROM", "LUGS_FROM", "LUG"),
         "FACES": _of(faces, "LARGEST", "SMALLEST", "SQUEEZED", "FAST", "BLINK", "BLINK_EVERY", "MOST_COMPARED")

@@ -342,7 +342,8 @@ export class Picture {
     for (const tread of this.#scene.treads.filter(({ points }) => !points !== ofGround)) {
       const way = tread.points?.map(([x, y]) => camera.toPixels(x, y))
         ?? (tread.slots ?? []).map((slot) => /** @type {Point} */ ([this.at[2 * slot], this.at[2 * slot + 1]]));
-      drawTread(this.#context, tread, way, (spring) => !!active[spring], theme.tyre, camera.zoom, scale, seconds);
+      drawTread(this.#context, tread, way, (spring) => !!active[spring], theme.tyre,
+        [camera.width, camera.height], camera.zoom, scale, seconds);
     }
   }
 

@@ -93,6 +93,8 @@ export const TREADS = {
   SIDE: 0.5,
   APART: 20,
   MOST_PASSING: 24,
+  LEAST_APART: 0.001,
+  BESIDE: 40,
   COLOUR: '#ffcf4d',
 };
 export const WHEELS = {

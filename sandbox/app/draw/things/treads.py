@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import Theme
@@ -25,6 +26,10 @@ CHEVRON_COLOUR = 0xFFCF4D
 # Chevrons are so far apart [pixels at scale 1], at least: by a power of two of metres, so that they stay where they are
 # while somebody zooms a little; and so far that each goes on [1/s] by less than half of that in a picture.
 APART, MOST_PASSING = 20.0, 24.0
+# Nor are they nearer than this [m], however short their way is.
+LEAST_APART = 1e-3
+# So far beside a view [pixels] nothing of a tread reaches into it.
+BESIDE = 40.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,15 +49,21 @@ class Tread:
     side: int
     radius: float
 
-    def places(self, zoom: float, scale: float, seconds: float) -> Floats:
-        """Where along the way chevrons are [m]."""
-        length = float(self.arc[-1])
-        least = max(APART * scale / zoom, abs(self.speed) / MOST_PASSING)
-        apart = 2.0 ** math.ceil(math.log2(least))
+    def chevrons(self, zoom: float, scale: float, seconds: float, seen: Floats) -> tuple[Slots, Floats]:
+        """The edge and the place on it, as a share, of each chevron; seen (k, 2): from which share of an edge to which
+        any is looked for.
+        """
+        rest, length = np.diff(self.arc), float(self.arc[-1])
+        apart = 2.0 ** math.ceil(math.log2(max(APART * scale / zoom, abs(self.speed) / MOST_PASSING)))
         if self.closed:
             # No seam where it comes back to its beginning.
-            apart = length / max(1, round(length / apart))
-        return np.arange(self.speed * seconds % apart, length, apart)
+            apart = max(length / max(1, round(length / apart)), LEAST_APART)
+        first = self.speed * seconds % apart
+        low, high = np.ceil((self.arc[:-1, None] + seen * rest[:, None] - first) / apart).T
+        counts = np.maximum(high - low, 0.0).astype(np.int64)
+        edge = np.repeat(np.arange(len(rest)), counts)
+        number = np.arange(len(edge)) + np.repeat(low - np.cumsum(counts) + counts, counts)
+        return edge, (first + apart * number - self.arc[edge]) / rest[edge]
 
 
 def ground_treads(terrain: Terrain) -> list[Tread]:
@@ -111,29 +122,41 @@ def _ways(ends: Sequence[Sequence[int]]) -> Iterable[list[int]]:
             yield way
 
 
+def _seen(begin: Floats, way: Floats, view: tuple[int, int, int, int]) -> Floats:
+    """The shares (k, 2) from which to which edges lie in a view, or close by; the same twice of what does not."""
+    low, high = np.zeros(len(begin)), np.ones(len(begin))
+    for axis in range(2):
+        step = np.where(np.abs(way[:, axis]) > 1e-9, way[:, axis], 1e-9)
+        ends = (np.array([-BESIDE, view[2 + axis] + BESIDE]) + view[axis] - begin[:, axis, None]) / step[:, None]
+        low, high = np.maximum(low, ends.min(axis=1)), np.minimum(high, ends.max(axis=1))
+    # What is nowhere is not seen.
+    shares = np.stack([low, high], axis=1)
+    return np.where((low < high)[:, None] & np.isfinite(shares), shares, 0.0)
+
+
 def mark_treads(
-    layer: MarkList, treads: Sequence[Tread], at: Floats, active: NDArray[np.bool_], zoom: float, scale: float,
+    layer: MarkList, treads: Sequence[Tread], at: Floats, active: NDArray[np.bool_], camera: Camera, scale: float,
     seconds: float, theme: Theme,
 ) -> None:  # fmt: skip
     """Mark belts whose ends are at (n, 2) [pixels]; active (m,): which springs are there."""
     for tread in treads:
-        there = np.array([spring < 0 or bool(active[spring]) for spring in tread.springs.tolist()])
         begin, way = at[tread.ends[:, 0]], at[tread.ends[:, 1]] - at[tread.ends[:, 0]]
         length = np.sqrt(np.sum(way * way, axis=1))[:, None]
         along = way / np.maximum(length, 1e-9)
         # Pixels count downwards.
         left = np.stack([along[:, 1], -along[:, 0]], axis=1)
         size = scale * (SIDE if tread.side else 1.0)
-        inset = tread.side * STRAP_HALF * size if tread.side else STRAP_HALF * size - tread.radius * zoom
+        inset = tread.side * STRAP_HALF * size if tread.side else STRAP_HALF * size - tread.radius * camera.zoom
         begin = begin + inset * left
-        # Round at its ends, it goes to the corners of what is solid and no farther.
-        trim = np.minimum(max(0.0, inset), 0.5 * length) * (along if tread.side == 0 else 0.0)
-        strap = np.concatenate([begin + trim, begin + way - trim], axis=1)
-        layer.strokes(strap[there], STRAP_HALF * size, packed(theme.tyre))
-        places = tread.places(zoom, scale, seconds)
-        edge = np.searchsorted(tread.arc[1:-1], places, side="right")
-        places, edge = places[there[edge]], edge[there[edge]]
-        share = (places - tread.arc[edge]) / np.maximum(tread.arc[edge + 1] - tread.arc[edge], 1e-9)
+        seen = _seen(begin, way, camera.viewport)
+        seen[[spring >= 0 and not active[spring] for spring in tread.springs.tolist()]] = 0.0
+        drawn = seen[:, 1] > seen[:, 0]
+        # Round at its ends, a strap goes to the corners of what is solid and no farther.
+        trim = np.minimum(max(0.0, inset), 0.5 * length) * (0.0 if tread.side else 1.0) / np.maximum(length, 1e-9)
+        shares = np.clip(seen, trim, 1.0 - trim)[drawn]
+        strap = [begin[drawn] + shares[:, k, None] * way[drawn] for k in range(2)]
+        layer.strokes(np.concatenate(strap, axis=1), STRAP_HALF * size, packed(theme.tyre))
+        edge, share = tread.chevrons(camera.zoom, scale, seconds, seen)
         ahead = math.copysign(CHEVRON * size, tread.speed) * along[edge]
         tip = begin[edge] + share[:, None] * way[edge] + 0.5 * ahead
         for across in (-CHEVRON * size, CHEVRON * size):
