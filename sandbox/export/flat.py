@@ -188,7 +188,9 @@ def _terrain(level: Level) -> Iterable[FlatTerrain]:
     for piece in level.terrain:
         kind: Literal["line", "solid"] = "line" if piece.polyline is not None else "solid"
         places = tuple(_pair(corner) for corner in piece.polyline or piece.polygon or ())
-        yield FlatTerrain(id=piece.id, kind=kind, corners=places, **surface(piece), extras=piece.extras)
+        yield FlatTerrain(
+            id=piece.id, kind=kind, corners=places, **surface(piece), belt=piece.belt + 0.0, extras=piece.extras
+        )
     if level.walls is not None:
         left, bottom, right, top = level.walls.box
         corners = ((left, bottom), (right, bottom), (right, top), (left, top))

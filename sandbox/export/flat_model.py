@@ -13,6 +13,7 @@ from sandbox.level.format.quantities import Description, unit
 Place = tuple[float, float]
 Indices = tuple[int, ...]
 METRES, NUMBER = unit("m"), unit("1")
+BELT = "How fast its surface runs, to the right of who stands on it."
 
 
 class FlatParticle(Description):
@@ -54,6 +55,7 @@ class FlatSpring(Description):
     c: float = Field(description="Damping constant, at `rate * steps`.", json_schema_extra=unit("N s/m"))
     rod: bool = Field(default=False, description="Whether it is too stiff to be added as a force: take a rigid joint.")
     edge: bool = Field(default=False, description="Whether it is a line that particles of others touch.")
+    belt: float = Field(default=0.0, description=BELT, json_schema_extra=unit("m/s"))
     material: str = Field(description="Name of its material.")
     extras: dict[str, Any] = Field(default={}, description="Data of other tools.")
 
@@ -87,6 +89,7 @@ class FlatTerrain(Description):
     corners: tuple[Place, ...] = Field(description="In order; polygons are closed.", json_schema_extra=METRES)
     friction: float = Field(description="Friction.", json_schema_extra=NUMBER)
     restitution: float = Field(description="Restitution.", json_schema_extra=NUMBER)
+    belt: float = Field(default=0.0, description=BELT, json_schema_extra=unit("m/s"))
     extras: dict[str, Any] = Field(default={}, description="Data of other tools.")
 
 

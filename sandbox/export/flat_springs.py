@@ -46,6 +46,7 @@ def flat_springs(world: World, level: Level) -> tuple[int, tuple[FlatSpring, ...
             c=_rounded(c[slot]),
             rod=bool(rods[slot]),
             edge=bool(edges[slot]),
+            belt=float(world.belt[slot]),
             material=world.material_names[world.material[slot]],
             extras=loose.get(name, {}),
         )

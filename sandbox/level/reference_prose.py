@@ -117,6 +117,9 @@ COLLISIONS = """\
   hub, directly or through other bodies, other wheels too. It takes up one of the 60 collision groups.
 - The friction between two surfaces is the geometric mean of the two values; the restitution is the larger one. Below
   0.5 m/s nothing bounces.
+- A `belt` is the speed of a surface that runs, to the right of who stands on it: a polygon's all round it, a line's to
+  the right above and to the left below. Friction brings to that speed what it carries, up to the slope that friction
+  holds. A disc that rolls comes to a third of it, since it begins to turn: use boxes, or discs with `"rolls": false`.
 - A loose disc of restitution 0.8 that falls 1 m rises to 0.64 m. A body of springs bounces less: restitution turns back
   what touches, springs pass that on from cell to cell, and each damps its part. A box of 4 cells across with
   restitution 1 that falls flat rises to all of its height if Cs and Cd are 1, to 0.76 of it if they are 0.9 and 0.99,

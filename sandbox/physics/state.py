@@ -147,6 +147,7 @@ class StateArrays:
     damping_now = _array("damping_now", S, F64, "1", "Cd of the last tick, while it comes to what is set", sparse=True)
     lowest_mode_now = _array("lowest_mode_now", S, F64, "1", "lowest_mode of the last tick, while Cs and Cd come to what is set", sparse=True)
     ramp_ticks = _array("ramp_ticks", S, I32, "tick", "ticks until Cs and Cd are what is set; 0: they are", sparse=True)
+    belt = _array("belt", S, F64, "m/s", "how fast its surface runs as an edge, to the right of who stands on it", topology=True, sparse=True)
 
     constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
     constraint_first = _array("element_first", E, I32, "corner", "index of its first corner", topology=True)

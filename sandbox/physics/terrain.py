@@ -30,6 +30,7 @@ FLAT = 1e-6
 class Chain:
     """Corners [m] (k, 2) of a piece of terrain, and what its surface is like.
 
+    belt [m/s]: how fast the surface runs, to the right of who stands on it.
     kind: "line" has two sides; "solid" is a polygon that is solid inside, "hollow" one that is solid outside.
     """
 
@@ -37,6 +38,7 @@ class Chain:
     kind: Literal["line", "solid", "hollow"] = "line"
     friction: float = 0.5
     restitution: float = 0.0
+    belt: float = 0.0
 
 
 class Terrain(NamedTuple):
@@ -49,6 +51,7 @@ class Terrain(NamedTuple):
     chain: Slots
     friction: Floats
     restitution: Floats
+    belt: Floats  # [m/s]: see Chain
     corner: Floats  # [m] (2,): of the grid
     cell: Floats  # [m] (1,)
     size: Slots  # (2,): columns, rows
@@ -85,15 +88,15 @@ def make_terrain(chains: Sequence[Chain], tips: bool = True) -> Terrain:
         pairs = np.stack([index, following], axis=1)[: len(corners) - (chain.kind == "line")]
         vertices.append(corners)
         ends.append(pairs)
-        rows += [(number, chain.kind != "line", chain.friction, chain.restitution)] * len(pairs)
+        rows += [(number, chain.kind != "line", chain.friction, chain.restitution, chain.belt)] * len(pairs)
         first += len(corners)
     vertex, pairs = np.concatenate(vertices), np.concatenate(ends)
-    table = np.array(rows, dtype=np.float64).reshape(-1, 4)
+    table = np.array(rows, dtype=np.float64).reshape(-1, 5)
     none, of_surface = np.zeros(0, np.int64), np.ascontiguousarray(table.T)
     edges = _with_grid(Terrain(
         vertex, np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), of_surface[1].astype(np.int64),
-        of_surface[0].astype(np.int64), of_surface[2].copy(), of_surface[3].copy(), np.zeros(2), np.ones(1),
-        np.zeros(2, np.int64), np.zeros(1, np.int64), none, none, none, np.zeros((0, 2)), none, none,
+        of_surface[0].astype(np.int64), of_surface[2].copy(), of_surface[3].copy(), of_surface[4].copy(), np.zeros(2),
+        np.ones(1), np.zeros(2, np.int64), np.zeros(1, np.int64), none, none, none, np.zeros((0, 2)), none, none,
     ))  # fmt: skip
     tip, way_start, way, tip_start, cell_tip = _tips(vertex if tips else vertex[:0], pairs, edges)
     return edges._replace(tip=tip, way_start=way_start, way=way, tip_start=tip_start, cell_tip=cell_tip)

@@ -343,6 +343,7 @@ class World(StateArrays):
         hooke_damping: ArrayLike = 0.0,
         material: ArrayLike = 0,
         edge: ArrayLike = 0,
+        belt: ArrayLike = 0.0,
     ) -> int:
         """Append springs, one per name, and return the first slot.
 
@@ -363,7 +364,7 @@ class World(StateArrays):
         given: dict[str, ArrayLike] = dict(
             particle_a=a, particle_b=b, rest_length=rest, natural_length=rest, stiffness=stiffness, damping=damping,
             law=law, hooke_stiffness=hooke_stiffness, hooke_damping=hooke_damping, material=material,
-            spring_active=True, edge=edge,
+            spring_active=True, edge=edge, belt=belt,
         )  # fmt: skip
         rows = arguments.rows_of(Family.SPRING, count, given)
         arguments.check_materials(rows["material"], len(self.material_names))

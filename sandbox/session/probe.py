@@ -8,7 +8,7 @@ from typing import Any
 
 from sandbox.physics.analysis.motor_readings import MotorReading, motor_readings
 from sandbox.physics.analysis.query import shown_particles
-from sandbox.physics.collision.outline import outline_of
+from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.world import World
 
 # How names begin of what commands add.

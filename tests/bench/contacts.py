@@ -19,7 +19,7 @@ import pymunk
 
 from sandbox.physics import jit
 from sandbox.physics.analysis.energy import kinetic_energy
-from sandbox.physics.collision.outline import outline_of
+from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World

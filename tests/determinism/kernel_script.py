@@ -71,7 +71,7 @@ def busy_world(solver: str, substeps: int):
 def touching_world(solver: str, substeps: int):
     """Discs that fall on a mesh whose springs are edges, between terrain and walls; jellies that are in each other.
 
-    The discs turn, but for one; two of them are shot at each other.
+    The discs turn, but for one; two of them are shot at each other. Some of the edges and of the terrain are belts.
     """
     from sandbox.physics.collision.filter import ALL_GROUPS, LINE
     from sandbox.physics.terrain import Chain, make_terrain
@@ -94,8 +94,9 @@ def touching_world(solver: str, substeps: int):
     )  # fmt: skip
     for place in ((3.0, 5.0), (3.12, 5.05), (1.0, 1.0)):
         add_jelly(world, place, size=(0.2, 0.2), angle=0.3, stiffness=0.2, damping=0.4)
-    bowl = Chain([(-1.0, -0.6), (3.5, -1.5), (3.5, -0.2), (1.2, -0.9)], "solid")
-    line = Chain([(-0.5, 2.0), (-0.6, 0.5)], restitution=1.0)
+    world.change("belt", 0.8, slice(10))
+    bowl = Chain([(-1.0, -0.6), (3.5, -1.5), (3.5, -0.2), (1.2, -0.9)], "solid", belt=2.0)
+    line = Chain([(-0.5, 2.0), (-0.6, 0.5)], restitution=1.0, belt=-1.0)
     world.terrain = make_terrain([bowl, line, Chain([(-2.0, -2.0), (5.0, -2.0), (5.0, 9.0), (-2.0, 9.0)], "hollow")])
     return world
 

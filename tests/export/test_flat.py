@@ -119,11 +119,11 @@ def test_extras_looks_terrain_walls_and_hydraulics_come_along():
         "format": "spring-sandbox/level", "version": 3, "name": "all", "settings": {"solver": "direct"},
         "contacts": {"friction": 0.3, "restitution": 0.1}, "walls": {"box": [-5, -5, 5, 5]}, "extras": {"by": "me"},
         "terrain": [
-            {"id": "hill", "polygon": [[0, 0], [1, 0], [0, 1]], "friction": 0.7, "extras": {"soil": 1}},
+            {"id": "hill", "polygon": [[0, 0], [1, 0], [0, 1]], "friction": 0.7, "belt": 2, "extras": {"soil": 1}},
             {"id": "path", "polyline": [[2, 0], [3, 0]]},
         ],
         "bodies": [{"type": "rope", "id": "r", "start": [0, 4], "end": [1, 4], "segments": 2, "extras": {"a": [1]},
-                    "collides": ["terrain"]}],
+                    "collides": ["terrain"], "belt": -1}],
         "particles": [{"id": "p", "position": [0, 2], "look": {"colour": "lemon"}, "extras": {"b": 2}}],
         "springs": [{"a": "p", "b": "r.end", "extras": {"c": 3},
                      "hydraulic": {"shortest": 1, "longest": 2, "rate": 0.5, "key": "h"}}],
@@ -131,6 +131,9 @@ def test_extras_looks_terrain_walls_and_hydraulics_come_along():
     made = flat(parse_level(json.dumps(level).encode(), "all"))
     hill, path, walls = made.terrain
     assert (hill.kind, hill.friction, hill.restitution, hill.extras) == ("solid", 0.7, 0.1, {"soil": 1})
+    assert (hill.belt, path.belt, {(spring.edge, spring.belt) for spring in made.springs}) == (
+        2.0, 0.0, {(True, -1.0), (False, 0.0)}
+    )  # fmt: skip
     assert (path.kind, path.friction, walls.kind, walls.id) == ("line", 0.3, "hollow", "walls")
     assert (made.extras, made.bodies[0].extras) == ({"by": "me"}, {"a": [1]})
     (loose,) = [part for part in made.particles if part.body is None]

@@ -20,6 +20,7 @@ from tests.page.levels import level_page
 from tests.page.opened import opened
 
 TICKS, SIZE, BLOCK = 90, (1280, 720), 16
+BELTS = str(Path(__file__).parents[2] / "docs" / "cookbook" / "belts.json")
 # Blocks of pixels differ by so little on average, and no more than one in a hundred by so much, of 255 a channel.
 USUAL, MOST = 2.5, 25.0
 DRAW = """(() => {{
@@ -45,7 +46,7 @@ def _blocks(picture: pygame.Surface) -> NDArray[np.float64]:
     return np.asarray(pixels.reshape(wide, BLOCK, high, BLOCK, 3).mean(axis=(1, 3)))
 
 
-@pytest.mark.parametrize("name", ["jelly_wheel", "curtain", "walker", "pinball", "suspension_car"])
+@pytest.mark.parametrize("name", ["jelly_wheel", "curtain", "walker", "pinball", "suspension_car", BELTS])
 def test_a_page_looks_as_the_desktop_does(browser: Browser, tmp_path: Path, name: str) -> None:
     level = load_level(name)
     session = Session(level)
@@ -66,6 +67,30 @@ def test_a_page_looks_as_the_desktop_does(browser: Browser, tmp_path: Path, name
         assert apart.mean() < USUAL, theme
         assert np.quantile(apart, 0.99) < MOST, theme
     assert tab.faults == []
+
+
+def _bright(picture: pygame.Surface) -> NDArray[np.bool_]:
+    red, green, blue = np.moveaxis(pygame.surfarray.array3d(picture).astype(int), -1, 0)
+    return np.asarray((red > 200) & (green > 150) & (blue < red - 100))
+
+
+def test_chevrons_of_belts_are_where_the_desktop_has_them(browser: Browser, tmp_path: Path) -> None:
+    level, tab = load_level(BELTS), _ran(browser, tmp_path, BELTS)
+    session = Session(level)
+    for _ in range(TICKS):
+        session.advance()
+    snapshot, camera = session.snapshot(), Camera((0.0, 2.5), 80.0, (0, 0, *SIZE))
+    surface, renderer = pygame.Surface(SIZE, 0, 32), Renderer(1.0, level)
+    renderer.theme = THEMES["dark"]
+    renderer.draw(surface, camera, snapshot, snapshot, 1.0)
+    drawn = tab.evaluate(DRAW.format(*SIZE, 0.0, 2.5, 80.0, "dark", (TICKS + 1.0) / level.settings.tick_rate))
+    page = _bright(pygame.image.load(io.BytesIO(base64.b64decode(drawn)), "page.png"))
+    desktop, near = _bright(surface), np.zeros_like(page)
+    for x in range(-2, 3):
+        for y in range(-2, 3):
+            near |= np.roll(page, (x, y), axis=(0, 1))
+    assert desktop.sum() > 1000
+    assert (desktop & near).sum() > 0.97 * desktop.sum()
 
 
 def test_what_is_nowhere_is_not_drawn(browser: Browser, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ import copy
 import numpy as np
 import pytest
 
+from sandbox.physics.collision.types import new_contacts, sort_contacts
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
@@ -14,6 +15,7 @@ from tests.bench import scenes
 from tests.support.calls import counted_calls
 from tests.support.contact_scenes import add_discs, add_jelly, world
 from tests.support.contacts import NO_CONTACTS, last_contacts
+from tests.support.laid_out import laid_out
 from tests.support.physics_scenes import run, scaled
 
 PIT = Chain([(-0.9, 6.0), (-0.9, 0.0), (0.9, 0.0), (0.9, 6.0)])
@@ -132,3 +134,19 @@ def test_the_contacts_of_the_last_step_are_those_of_the_state():
     w.cut([0])
     assert len(last_contacts(w).gap) == 0
     assert last_contacts(world()) is NO_CONTACTS
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_sorting_moves_each_contact_as_a_whole_and_says_where_it_is(seed):
+    generator, count = np.random.default_rng(seed), 12
+    contacts = laid_out(lambda arena: new_contacts(arena, count))
+    moved = ("particle", "feature", "end_a", "end_b", "share", "normal", "gap", "friction", "restitution", "rolling",
+             "impulse", "partner", "impact")  # fmt: skip
+    found = {name: generator.integers(1, 1000, getattr(contacts, name)[:count].shape) for name in moved}
+    for name, values in found.items():
+        getattr(contacts, name)[:count] = values
+    wanted, place = generator.permutation(count), np.zeros(count, np.int64)
+    sort_contacts(contacts, wanted.copy(), place)
+    for name, values in found.items():
+        assert (getattr(contacts, name)[:count] == values[wanted]).all(), name
+        assert (getattr(contacts, name)[place] == values).all(), name

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.collision.filter import LINE
-from sandbox.physics.collision.outline import outline_of
+from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.pipeline.collide import CROSSED
 from sandbox.physics.step import step
 from tests.support.carts import ring_wheel

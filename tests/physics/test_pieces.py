@@ -13,10 +13,10 @@ from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
 from sandbox.physics.analysis.query import shown_springs
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
-from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import of_body
 from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
 from sandbox.session.commands.records import from_record

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.outline import outline_of
 from sandbox.physics.constraints import AREA
+from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.snapshot import hash_by_array, restore, state_hash, take
 from sandbox.physics.state import BY_NAME, BY_STORED, COLUMNS, reference
 from sandbox.physics.step import step
@@ -26,8 +26,8 @@ STORED = [
 ]  # fmt: skip
 # Those that are no part of a state where all of them are as usual.
 SPARSE = [
-    "parting_reserve", "angle", "spin", "rolls", "rolling", "slow_change", "unmoved", "lowest_mode",
-    "stiffness_now", "damping_now", "lowest_mode_now", "ramp_ticks", "element_lowest_mode", "element_stiffness_now",
+    "parting_reserve", "angle", "spin", "rolls", "rolling", "slow_change", "unmoved", "lowest_mode", "stiffness_now",
+    "damping_now", "lowest_mode_now", "ramp_ticks", "belt", "element_lowest_mode", "element_stiffness_now",
     "element_damping_now", "element_lowest_mode_now", "element_ramp_ticks", "element_area_now", "element_area_ticks",
     "part_impulse", "contact_impact", "hand_strength", "hand_radius", "hand_force", "setting_now", "setting_ticks",
 ]  # fmt: skip

@@ -58,6 +58,7 @@ SECTIONS: dict[str, dict[str, Recipe]] = {
     "World": {
         "terrain_gaps": Recipe(1.05, "light"),
         "friction": Recipe(1.2, "light"),
+        "belts": Recipe(1.2),
         "walls": Recipe(1.9),
         "groups": Recipe(0.9),
         "buoyancy": Recipe(0.95, "light"),

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.arrays import Floats
-from sandbox.physics.collision.outline import Outline, outline_of
+from sandbox.physics.collision.outline import Outline
+from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.world import World
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import kinetic_energy, total_energy
-from sandbox.physics.collision.outline import outline_of
+from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.settings import Substeps
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.contact.small_steps import small_steps

@@ -21,6 +21,7 @@ from sandbox.app.draw.themes import THEMES, Theme, theme_now
 from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
+from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads, mark_treads
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
@@ -102,6 +103,10 @@ class Renderer:
         # The terrain that was drawn last, and how many there have been: arrays cannot be compared as a key is.
         self._ground: Terrain | None = None
         self._grounds = 0
+        # Belts of terrain, and of bodies as long as these speeds are theirs.
+        self._ground_treads: list[Tread] = []
+        self._body_treads: list[Tread] = []
+        self._belts: NDArray[np.float64] | None = None
         self._level_slots: LevelSlots | None = None
         self._own_slots: LevelSlots | None = None
         self._joined: tuple[Joined, ...] = ()
@@ -172,10 +177,13 @@ class Renderer:
                     self._backdrop.draw(
                         painter, camera, current.terrain, self.level, self.theme, frame.tiles, self.scale
                     )  # fmt: skip
+                    at = camera.project(current.terrain.vertex)
+                    self._draw_treads(self._ground_treads, at, frame, camera, springs)
             with profile.part("things"):
                 if self.level is not None:
                     drawables = self._drawables_of(frame, current, particles, springs)
                     self._draw_things(drawables, frame, camera)
+                self._draw_treads(self._body_treads, pixels, frame, camera, springs)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
                     self._draw_lattice(frame, current, particles, springs)
@@ -192,9 +200,13 @@ class Renderer:
 
     def _follow(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Note what this picture is drawn from, so that one of the same need not be drawn again."""
-        shown, moves = self.overlays.shown, not self.effects.is_still
         if current.terrain is not self._ground:
             self._ground, self._grounds = current.terrain, self._grounds + 1
+            self._ground_treads = ground_treads(current.terrain)
+        if current.belt is not self._belts:
+            self._belts, self._body_treads = current.belt, body_treads(current)
+        shown = self.overlays.shown
+        moves = not self.effects.is_still or bool(self._ground_treads or self._body_treads)
         key = (
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
@@ -227,6 +239,14 @@ class Renderer:
             self.effects.mark_dust(dust, camera, self.theme, self.scale)
             painter.marks(dust, frame.tiles.array)
         drawables.draw(painter, frame, self.lattice)
+
+    def _draw_treads(
+        self, treads: list[Tread], at: NDArray[np.float64], frame: Frame, camera: Camera, springs: NDArray[np.bool_]
+    ) -> None:
+        if treads:
+            layer = MarkList()
+            mark_treads(layer, treads, at, springs, camera, self.scale, frame.seconds, self.theme)
+            self._painter.marks(layer, frame.tiles.array)
 
     def _slots_now(self, level: Level, joined: tuple[Joined, ...]) -> LevelSlots:
         """The slots of the level and of what has joined it."""

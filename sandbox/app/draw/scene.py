@@ -21,6 +21,7 @@ from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots, joined_
 from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
 from sandbox.app.draw.things.soft import CRUMB, FLAT, ROUNDING, USUAL_ROUNDING, Shape, shape_of
 from sandbox.app.draw.things.springs import CYLINDER
+from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads
 from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
@@ -54,6 +55,10 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         ],
         "pieces": {"own": LEAST_OWN, "kept": LEAST_KEPT, "crumb": CRUMB, "flat": _lighting(FLAT)},
         "ground": ground,
+        "treads": [
+            *_treads(ground_treads(snapshot.terrain), snapshot.terrain.vertex),
+            *_treads(body_treads(snapshot)),
+        ],
         "pictures": _pictures(slots, ground),
     }
 
@@ -218,6 +223,23 @@ def _ground(level: Level, snapshot: Snapshot) -> list[dict[str, Any]]:
         kind = ground_look(level, name, bool(np.ptp(corners[:, 0]) > WIDE * extent)) if is_solid else "line"
         points = np.concatenate([corners[:1], after]).round(DIGITS).tolist()
         made.append({"kind": kind, "points": points, **(_solid(kind) if is_solid else {})})
+    return made
+
+
+def _treads(treads: list[Tread], vertex: NDArray[np.float64] | None = None) -> list[dict[str, Any]]:
+    """Belts: their ways by points [m] of terrain, or by slots of particles."""
+    made = []
+    for tread in treads:
+        way = [*tread.ends[:, 0].tolist(), int(tread.ends[-1, 1])]
+        places = {"slots": way} if vertex is None else {"points": vertex[way].round(DIGITS).tolist()}
+        made.append(
+            {
+                **places,
+                "springs": tread.springs.tolist(),
+                "arc": tread.arc.round(DIGITS).tolist(),
+                **{name: getattr(tread, name) for name in ("speed", "closed", "side", "radius")},
+            }
+        )
     return made
 
 

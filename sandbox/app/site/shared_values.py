@@ -9,7 +9,7 @@ from typing import Any
 
 from sandbox.app.base import coefficient_scale, loop
 from sandbox.app.draw import looks, themes
-from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, wheels
+from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, treads, wheels
 from sandbox.app.panel import readings
 from sandbox.app.play import hand_labels, stage
 from sandbox.app.run import playback
@@ -55,6 +55,10 @@ def shared_values() -> dict[str, dict[str, Any]]:
         | {"PLANKS": members.PLANKS_A_CELL, "BOLTS_FROM": members.BOLTS_FROM, "CYLINDER": _hex(springs.CYLINDER)},
         "SHAPES": _of(soft, "LEAST_ROUNDING", "MOST_ROUNDING", "MOST_GROWN", "LINE_HALF")
         | _of(sheets, "CLOTH_TEXELS", "LAID_TEXELS", "HEM_HALF"),
+        "TREADS": _of(
+            treads, "STRAP_HALF", "CHEVRON", "CHEVRON_HALF", "SIDE", "APART", "MOST_PASSING", "LEAST_APART", "BESIDE"
+        )
+        | {"COLOUR": _hex(treads.CHEVRON_COLOUR)},
         "WHEELS": _of(wheels, "RIM_FROM", "LUGS_FROM", "LUG"),
         "FACES": _of(faces, "LARGEST", "SMALLEST", "SQUEEZED", "FAST", "BLINK", "BLINK_EVERY", "MOST_COMPARED")
         | {"TONGUE": _hex(faces.TONGUE)},

@@ -12,7 +12,7 @@ from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.editor_tool import EditorTool
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.document.model import TerrainDef, WallsDef
-from sandbox.level.format.limits import FRICTION_LIMIT
+from sandbox.level.format.limits import BELT_LIMIT, FRICTION_LIMIT
 from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.polygon import simplified
 
@@ -29,10 +29,19 @@ class SurfaceOptions(Options):
     restitution: float | None = _surface("bounce", "How much speed a bounce keeps; empty = the level's.", 1.0)
 
 
-class GroundDrawing(OutlineDrawing[SurfaceOptions]):
+@dataclass(frozen=True)
+class GroundOptions(SurfaceOptions):
+    """A piece of terrain: its surface may run, too."""
+
+    belt: float = option(0.0, OptionInfo(
+        "number", "belt", "How fast its surface runs to the right of who stands on it.", "m/s", -BELT_LIMIT, BELT_LIMIT
+    ))  # fmt: skip
+
+
+class GroundDrawing(OutlineDrawing[GroundOptions]):
     """A solid piece of terrain."""
 
-    defaults = SurfaceOptions()
+    defaults = GroundOptions()
 
     def placed(self, document: Document, points: list[Snap]) -> Document:
         """The document with the piece. Raises EditError."""
@@ -43,7 +52,8 @@ class GroundDrawing(OutlineDrawing[SurfaceOptions]):
         return add_terrain(document, with_corners(self._piece("ground"), corners, "solid"))
 
     def _piece(self, name: str) -> TerrainDef:
-        return TerrainDef(id=name, friction=self.options.friction, restitution=self.options.restitution)
+        chosen = self.options
+        return TerrainDef(id=name, friction=chosen.friction, restitution=chosen.restitution, belt=chosen.belt)
 
 
 class TerrainLineDrawing(GroundDrawing):

@@ -17,6 +17,7 @@ from sandbox.level.plan.rules import add_rules
 from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.plan.welds import Slots
 from sandbox.physics.changing.dividing import part_bodies
+from sandbox.physics.collision.filter import NO_EDGE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ROLLING_RESISTANCE
 from sandbox.physics.world import World
@@ -130,13 +131,16 @@ def _add_springs(world: World, level: Level, plan: Plan, slots: Slots, materials
     material = np.concatenate([*used, np.array([index[s.material] for s in loose], dtype=np.int64)]).astype(np.int64)
     pairs = slots[np.concatenate([*ends, plan.spring_ends])]
     # A loose spring joins bodies, and is in nobody's way.
-    edge = [*(body.edges for body in plan.bodies), np.zeros(len(loose), np.int8)] if level.has_contacts else None
+    edges = [*(body.edges for body in plan.bodies), np.zeros(len(loose), np.int8)]
+    edge = np.concatenate(edges) if level.has_contacts else np.zeros(len(pairs), np.int8)
+    belts = np.repeat([*(body.belt + 0.0 for body in level.bodies), 0.0], [len(each) for each in edges])
     world.add_springs(
         names + [f":{number}" for number in range(len(loose))],
         pairs[:, 0],
         pairs[:, 1],
         rest_length=np.concatenate([*(expanded.rest_length for expanded in plan.bodies), given]) + 0.0,
         material=material,
-        edge=0 if edge is None else np.concatenate(edge),
+        edge=edge,
+        belt=np.where(edge != NO_EDGE, belts, 0.0),
         **coefficients(material, materials),
     )

@@ -23,6 +23,7 @@ from sandbox.level.format.limits import (
 from sandbox.level.format.look import BodyLook, LevelLook, ParticleLook, ZoneLook
 from sandbox.level.format.quantities import (
     Angle,
+    Belt,
     Coefficient,
     Collides,
     CollisionGroup,
@@ -270,6 +271,7 @@ class TerrainDef(Description):
     )
     friction: Friction = None
     restitution: Restitution = None
+    belt: Belt = 0.0
     group: Group = None
     extras: Extras = Field(default_factory=dict)
 

@@ -57,6 +57,7 @@ SAG_LIMIT = 0.4  # of a body's height; beyond it a jelly lies on its folded tria
 FREQUENCY_RANGE = (0.01, 1_000.0)  # [Hz] of a body's slowest wobble
 RATIO_LIMIT = 10.0  # damping ratio of that wobble
 FRICTION_LIMIT = 100.0  # beyond it nothing slides that did not before
+BELT_LIMIT = 1_000.0  # [m/s]: what runs faster throws things out of every view
 INFLATION_LIMIT = 100.0  # multiple of a ring's own area
 SECONDS_LIMIT = 3_600.0  # [s] of run that an acceptance check may ask for
 

@@ -7,6 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from sandbox.level.format.limits import (
     AMPLITUDE_LIMIT,
     ANGLE_LIMIT,
+    BELT_LIMIT,
     COORDINATE_LIMIT,
     CORNER_LIMIT,
     DRAG_LIMIT,
@@ -175,6 +176,16 @@ CollisionGroup = Annotated[
 Friction = Annotated[
     FrictionCoefficient | None,
     Field(description="Friction of its surface.", json_schema_extra=empty("the level's")),
+]
+Belt = Annotated[
+    float,
+    Field(
+        ge=-BELT_LIMIT,
+        le=BELT_LIMIT,
+        description="How fast its surface runs, as that of a conveyor belt, to the right of who stands on it. Friction "
+        "carries along what touches it.",
+        json_schema_extra=unit("m/s"),
+    ),
 ]
 Restitution = Annotated[
     Share | None,

@@ -9,6 +9,7 @@ from sandbox.level.format.actuator_defs import MuscleDef
 from sandbox.level.format.limits import DEFAULT_MATERIAL, FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import (
+    Belt,
     Coefficient,
     Collides,
     CollisionGroup,
@@ -95,6 +96,7 @@ class BodyDef(Description):
     )
     friction: Friction = None
     restitution: Restitution = None
+    belt: Belt = 0.0
     collides: Collides = True
     collision_group: CollisionGroup = None
     group: Group = None

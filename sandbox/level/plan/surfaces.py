@@ -1,4 +1,4 @@
-"""Surfaces of a level: its terrain, what collides with what, friction and restitution."""
+"""Surfaces of a level: its terrain, what collides with what, friction, restitution and belts."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -47,6 +47,7 @@ def terrain_of(level: Level) -> Terrain:
             "line" if piece.polyline is not None else "solid",
             surface(piece.friction, usual.friction),
             surface(piece.restitution, usual.restitution),
+            piece.belt + 0.0,
         )
         for piece in level.terrain
     ]

@@ -4,6 +4,7 @@ import { ball, boxOf, canvasOf, castShadow, clamp, contextOf, disc, drawBar, dra
 } from './paint.js';
 import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
+import { drawTread } from './treads.js';
 /** @import { StateArrays } from './tables.js' */
 /**
  * @import { Ball, Bars, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
@@ -126,6 +127,7 @@ export class Picture {
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(this.#backdropNow(size), 0, 0);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.#drawTreads(true);
     this.#castShadows(things);
     things.working.forEach((spring) => this.#drawWorking(spring));
     things.lines.forEach((line) => this.#drawLine(line));
@@ -136,6 +138,7 @@ export class Picture {
     shapes.filter((shape) => shape.layer === 1).forEach((shape) => this.#drawShape(shape));
     things.balloons.forEach((body) => this.#drawGleams(body));
     things.faces.forEach((face, k) => this.#drawFace(face, k));
+    this.#drawTreads(false);
     this.#drawBalls();
   }
 
@@ -329,6 +332,18 @@ export class Picture {
     for (const { kind, pieces } of shapes) {
       if (kind === 'soil') drawTurf(context, pieces, theme, scale);
       if (kind === 'line') drawBar(context, pieces, linesOf(pieces), 2.4 * scale, 'steel', () => [theme.metal[0], 0.7]);
+    }
+  }
+
+  /** Belts of the ground, or of bodies.
+   * @type {(ofGround: boolean) => void} */
+  #drawTreads(ofGround) {
+    const active = this.#state('spring_active'), { camera, theme, scale, seconds } = this;
+    for (const tread of this.#scene.treads.filter(({ points }) => !points !== ofGround)) {
+      const way = tread.points?.map(([x, y]) => camera.toPixels(x, y))
+        ?? (tread.slots ?? []).map((slot) => /** @type {Point} */ ([this.at[2 * slot], this.at[2 * slot + 1]]));
+      drawTread(this.#context, tread, way, (spring) => !!active[spring], theme.tyre,
+        [camera.width, camera.height], camera.zoom, scale, seconds);
     }
   }
 

@@ -86,6 +86,17 @@ export const SHAPES = {
   LAID_TEXELS: 14,
   HEM_HALF: 1.5,
 };
+export const TREADS = {
+  STRAP_HALF: 3.6,
+  CHEVRON: 2.6,
+  CHEVRON_HALF: 0.85,
+  SIDE: 0.5,
+  APART: 20,
+  MOST_PASSING: 24,
+  LEAST_APART: 0.001,
+  BESIDE: 40,
+  COLOUR: '#ffcf4d',
+};
 export const WHEELS = {
   RIM_FROM: 14,
   LUGS_FROM: 22,

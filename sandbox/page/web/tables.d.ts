@@ -41,6 +41,7 @@ export interface StateArrays {
   damping_now: Float64Array;
   lowest_mode_now: Float64Array;
   ramp_ticks: Int32Array;
+  belt: Float64Array;
   constraint_kind: Int8Array;
   constraint_first: Int32Array;
   constraint_corners: Int32Array;

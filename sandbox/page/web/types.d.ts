@@ -352,6 +352,18 @@ export interface Ground {
   themes?: Record<string, { look: SkinLook; line: string }>;
 }
 
+// A side of a belt, from end to end of its edges; springs below 0 are terrain.
+export interface Tread {
+  points?: Point[];
+  slots?: number[];
+  springs: number[];
+  arc: number[];
+  speed: number;
+  closed: boolean;
+  side: number;
+  radius: number;
+}
+
 export interface Scene {
   view: Box;
   theme: 'dark' | 'light' | null;
@@ -362,6 +374,7 @@ export interface Scene {
   balls: Ball[];
   pieces: { own: number; kept: number; crumb: number; flat: unknown[] };
   ground: Ground[];
+  treads: Tread[];
   pictures: Record<string, { rows: number; bytes: string }>;
 }
 

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.collision.outline import Outline, outline_of
+from sandbox.physics.collision.outline import Outline
 from sandbox.physics.components import body_of
 from sandbox.physics.geometry.polygon import signed_area, winding_number
 from sandbox.physics.geometry.rigid import fitted
 from sandbox.physics.geometry.segment import distances_from_segments, segments_cross
 from sandbox.physics.marks import BANK_UNOPENED
-from sandbox.physics.pipeline.block_owner import block_of
+from sandbox.physics.pipeline.block_owner import block_of, outline_of
 from sandbox.physics.world import World
 
 # Places are tried on rings, each so many radii of a particle farther away, in so many directions.

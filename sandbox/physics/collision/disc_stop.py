@@ -1,6 +1,6 @@
 """Discs do not go through jellies: one that is pressed flat, so that no triangle gives way, stops them as a whole."""
 
-from sandbox.physics.arrays import FloatRows, Floats
+from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.collision.entered import edge_of_spring
 from sandbox.physics.collision.narrow_phase import EDGE, INSIDE, KINDS, TIP
 from sandbox.physics.collision.outline import Outline
@@ -63,14 +63,16 @@ def _stop_at_tip(
 
 @inner_kernel
 def stop_discs(
-    contacts: Contacts, count: int, outline: Outline, colliders: Colliders, velocity: FloatRows, mass: Floats,
+    contacts: Contacts, order: Slots, outline: Outline, colliders: Colliders, velocity: FloatRows, mass: Floats,
     inverse_mass: Floats, h: float,
 ) -> None:  # fmt: skip
     """Stop discs whose centres would come behind an edge of a solid body that they touch in the coming h [s].
 
-    Both get what takes their centres of mass, at most, to a common velocity along the normal, so energy is only lost.
+    order: which contacts, one after another. Both get what takes their centres of mass, at most, to a common velocity
+    along the normal, so energy is only lost.
     """
-    for c in range(count):
+    for k in range(order.shape[0]):
+        c = order[k]
         kind = contacts.feature[c] % KINDS
         p = contacts.particle[c]
         if kind == TIP:

@@ -2,15 +2,10 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from sandbox.physics.arena import (
-    FIRST_ARENA,
     Arena,
-    begin,
     give_back,
     is_full,
-    lay_out,
     mark,
     new_flags,
     new_float_rows,
@@ -18,17 +13,16 @@ from sandbox.physics.arena import (
     new_slot_rows,
     new_slots,
 )
-from sandbox.physics.arrays import Flags, SlotRows, Slots, with_empty
+from sandbox.physics.arrays import Flags, SlotRows, Slots
 from sandbox.physics.collision.close_edges import CloseEdges, close_edges, no_close_edges
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.collision.pinned_edges import no_pins, pinned_edges
 from sandbox.physics.collision.types import Colliders
-from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import GRAB_MATERIAL
-from sandbox.physics.state import State, state_of
+from sandbox.physics.state import State
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.topology.sorting import list_by_key, list_ends, list_neighbours, sort_by_key, sort_by_value
-from sandbox.physics.world import World
 
 # Owner of the first chain of terrain, the others below it; particles and bodies are above.
 TERRAIN_OWNER = -2_000_000_000
@@ -288,32 +282,6 @@ def _room(particles: int, springs: int, vertices: int, edges: int, arena: Arena)
         new_slots(arena, springs), new_slots(arena, springs + 1), new_slots(arena, particles), no_close_edges(arena),
         new_slots(arena, springs), no_pins(arena),
     )  # fmt: skip
-
-
-class OutlinePlace(NamedTuple):
-    """A world's state, and where its outline is put."""
-
-    state: State
-    outline: Outline
-
-
-@kernel
-def _derive_outline(pointer: Bundle[OutlinePlace], arena: Arena) -> None:
-    place = unpack(pointer)
-    begin(arena)
-    set_field(place, "outline", new_outline(place.state, arena))
-
-
-def outline_of(world: World) -> Outline:
-    """The outline of a world's bodies, whether anything can touch or not; made again after a change of topology."""
-    return world.derived(_make_outline, of_hands=False)
-
-
-def _make_outline(world: World) -> Outline:
-    pointer = bundle(with_empty(OutlinePlace, state=state_of(world)))
-    lay_out(_derive_outline, pointer, np.zeros(FIRST_ARENA, np.int64))
-    outline: Outline = items_of(pointer, ("outline",))
-    return outline
 
 
 @inner_kernel

@@ -48,9 +48,9 @@ def no_pins(arena: Arena) -> Terrain:
     """Lay out pinned edges for a world that has none."""
     none, nothing = new_slots(arena, 0), new_float_rows(arena, 0, 2)
     pins = Terrain(
-        nothing, none, none, none, none, new_floats(arena, 0), new_floats(arena, 0), new_floats(arena, 2),
-        new_floats(arena, 1), new_slots(arena, 2), new_slots(arena, 1), none, none, new_slots(arena, 1), nothing,
-        new_slots(arena, 1), none,
+        nothing, none, none, none, none, new_floats(arena, 0), new_floats(arena, 0), new_floats(arena, 0),
+        new_floats(arena, 2), new_floats(arena, 1), new_slots(arena, 2), new_slots(arena, 1), none, none,
+        new_slots(arena, 1), nothing, new_slots(arena, 1), none,
     )  # fmt: skip
     if not is_full(arena):
         pins.cell[0] = 1.0
@@ -62,8 +62,8 @@ def _with_cells(pins: Terrain, count: int, cell_start: Slots, cell_edge: Slots, 
     # The first `count` edges, with these lists of cells.
     return Terrain(
         pins.vertex[: 2 * count], pins.edge_a[:count], pins.edge_b[:count], pins.solid[:count], pins.chain[:count],
-        pins.friction[:count], pins.restitution[:count], pins.corner, pins.cell, pins.size, cell_start, cell_edge,
-        pins.tip, pins.way_start, pins.way, tip_start, pins.cell_tip,
+        pins.friction[:count], pins.restitution[:count], pins.belt[:count], pins.corner, pins.cell, pins.size,
+        cell_start, cell_edge, pins.tip, pins.way_start, pins.way, tip_start, pins.cell_tip,
     )  # fmt: skip
 
 
@@ -72,8 +72,9 @@ def _room(edges: int, arena: Arena) -> Terrain:
     none = no_pins(arena)
     return Terrain(
         new_float_rows(arena, 2 * edges, 2), new_slots(arena, edges), new_slots(arena, edges), new_slots(arena, edges),
-        new_slots(arena, edges), new_floats(arena, edges), new_floats(arena, edges), none.corner, none.cell, none.size,
-        none.cell_start, none.cell_edge, none.tip, none.way_start, none.way, none.tip_start, none.cell_tip,
+        new_slots(arena, edges), new_floats(arena, edges), new_floats(arena, edges), new_floats(arena, edges),
+        none.corner, none.cell, none.size, none.cell_start, none.cell_edge, none.tip, none.way_start, none.way,
+        none.tip_start, none.cell_tip,
     )  # fmt: skip
 
 

@@ -56,7 +56,7 @@ class Near(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts in ascending order of the particle that touches.
+    """Contacts of a step: found in ascending order of the particle that touches, then sorted by who solves them.
 
     An impulse across acts at the surface of what does not roll as well, and turns it by a couple with its partner: see
     rims.py.
@@ -80,6 +80,7 @@ class Contacts(NamedTuple):
     partner: SlotRows  # (k, 2): which particles the couple is taken from, -1: none
     couple: FloatRows  # (k, 4): of the particle and of end_a, by a unit impulse
     impact: Floats  # [N s]: what impacts of this tick gave along the normal; not in impulse, and starts no sweep
+    belt: Floats  # [m/s]: of both surfaces together, each to the right of who stands on it
     ahead: Flags  # with an edge of a hollow that a disc comes to from others, on which it lies (seams.py)
 
 
@@ -137,20 +138,66 @@ def contacts_between(contacts: Contacts, first: int, last: int) -> Contacts:
         b.particle[first:last], b.feature[first:last], b.end_a[first:last], b.end_b[first:last], b.share[first:last],
         b.normal[first:last], b.gap[first:last], b.friction[first:last], b.restitution[first:last],
         b.bounce[first:last], b.impulse[first:last], b.turning[first:last], b.arm[first:last], b.ratio[first:last],
-        b.rolling[first:last], b.partner[first:last], b.couple[first:last], b.impact[first:last], b.ahead[first:last],
+        b.rolling[first:last], b.partner[first:last], b.couple[first:last], b.impact[first:last], b.belt[first:last],
+        b.ahead[first:last],
     )  # fmt: skip
 
 
 @inner_kernel
-def new_contacts(arena: Arena, count: int) -> Contacts:
-    """Lay out contacts for a step to fill in."""
+def _move(contacts: Contacts, c: int, to: int) -> None:
+    # What is known of a contact before its step is prepared.
+    contacts.particle[to] = contacts.particle[c]
+    contacts.feature[to] = contacts.feature[c]
+    contacts.end_a[to] = contacts.end_a[c]
+    contacts.end_b[to] = contacts.end_b[c]
+    contacts.share[to] = contacts.share[c]
+    contacts.gap[to] = contacts.gap[c]
+    contacts.friction[to] = contacts.friction[c]
+    contacts.restitution[to] = contacts.restitution[c]
+    contacts.rolling[to] = contacts.rolling[c]
+    contacts.impact[to] = contacts.impact[c]
+    contacts.ahead[to] = contacts.ahead[c]
+    for axis in range(2):
+        contacts.normal[to, axis] = contacts.normal[c, axis]
+        contacts.partner[to, axis] = contacts.partner[c, axis]
+        contacts.impulse[to, axis] = contacts.impulse[c, axis]
+
+
+@inner_kernel
+def sort_contacts(contacts: Contacts, source: Slots, place: Slots) -> None:
+    """Sort the first contacts: the k-th is then the one that was found as source[k], and place says where each is.
+
+    source is scratch then. The last row of contacts is none, but scratch as well.
+    """
+    for k in range(source.shape[0]):
+        place[source[k]] = k
+    spare = contacts.particle.shape[0] - 1
+    for k in range(source.shape[0]):
+        if source[k] == k:
+            continue
+        # Round the circle of those that take each other's place.
+        _move(contacts, k, spare)
+        to = k
+        while source[to] != k:
+            c = source[to]
+            _move(contacts, c, to)
+            source[to] = to
+            to = c
+        _move(contacts, spare, to)
+        source[to] = to
+
+
+@inner_kernel
+def new_contacts(arena: Arena, most: int) -> Contacts:
+    """Lay out contacts for a step to fill in, and a row to sort them by."""
+    count = most + 1
     return Contacts(
         new_slots(arena, count), new_slots(arena, count), new_slots(arena, count), new_slots(arena, count),
         new_floats(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count), new_floats(arena, count),
         new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, count, 2),
         new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
         new_floats(arena, count), new_slot_rows(arena, count, 2), new_float_rows(arena, count, 4),
-        new_floats(arena, count), new_flags(arena, count),
+        new_floats(arena, count), new_floats(arena, count), new_flags(arena, count),
     )  # fmt: skip
 
 

@@ -21,8 +21,8 @@ from sandbox.physics.untangling.triangle_clamp import WorldTriangles
 
 # Places in `plan`: the first particle and the first spring of a hand, or -1; then what topology decides: whether
 # anything can touch, whether the solver's system has Hooke springs beside it, whether there are areas of more than
-# three corners.
-GRAB_PARTICLE, GRAB_SPRING, HAS_CONTACTS, HAS_HOOKE, HAS_RINGS, PLANNED = range(6)
+# three corners, whether any surface runs.
+GRAB_PARTICLE, GRAB_SPRING, HAS_CONTACTS, HAS_HOOKE, HAS_RINGS, HAS_BELTS, PLANNED = range(7)
 # Places in `progress`: the number of the tick, whether any particle may be unmoved; its substeps, 0 before they
 # are chosen, and how many are done; springs that broke; whether what it begins with was looked at.
 TICK, MAY_FLY, COUNT, DONE, BROKEN, CHECKED, PROGRESS = range(7)

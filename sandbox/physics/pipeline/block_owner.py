@@ -8,6 +8,7 @@ import numpy as np
 from sandbox.physics.arena import FIRST_ARENA, lay_out
 from sandbox.physics.arrays import empty, with_empty
 from sandbox.physics.breaking import MaterialLimits
+from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import KeptContacts
 from sandbox.physics.driving import drives_of
 from sandbox.physics.jit import bundle, items_of
@@ -23,7 +24,7 @@ from sandbox.physics.pipeline.block import (
     TICK,
     WorldBlock,
 )
-from sandbox.physics.pipeline.collide import COUPLED, KEPT, Collisions
+from sandbox.physics.pipeline.collide import COUNTED, KEPT, Collisions
 from sandbox.physics.pipeline.derive import WANTED, derive_hands, derive_topology, make_room
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers.direct.energy_bank import WAYS
@@ -57,7 +58,7 @@ class BlockOwner:
             plan=np.zeros(PLANNED, np.int64),
             progress=np.zeros(PROGRESS, np.int64),
             wanted=np.zeros(WANTED, np.int64),
-            collisions=with_empty(Collisions, counts=np.zeros(COUPLED + 1, np.int64)),
+            collisions=with_empty(Collisions, counts=np.zeros(COUNTED, np.int64)),
             workspace=with_empty(IslandWorkspace, ways=np.zeros(WAYS, np.int64)),
         )
         self._constant: tuple[Any, ...] = ()
@@ -164,6 +165,12 @@ def block_of(world: World) -> BlockOwner:
     block = world.lasting(BlockOwner)
     block.follow(world)
     return block
+
+
+def outline_of(world: World) -> Outline:
+    """The outline of a world's bodies, whether anything can touch or not; it holds until topology changes."""
+    outline: Outline = block_of(world).arrays.collisions.outline
+    return outline
 
 
 def _contacts_of(world: World) -> KeptContacts:

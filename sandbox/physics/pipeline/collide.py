@@ -15,12 +15,21 @@ from sandbox.physics.collision.restitution import find_bounces
 from sandbox.physics.collision.rims import choose_partners
 from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terrain, clamp_at_tips
 from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
-from sandbox.physics.collision.types import Colliders, Contacts, KeptContacts, Near, contacts_between
+from sandbox.physics.collision.types import (
+    TOUCHING,
+    Colliders,
+    Contacts,
+    KeptContacts,
+    Near,
+    contacts_between,
+    sort_contacts,
+    weight_of,
+)
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch
 from sandbox.physics.solvers.contact.free_contacts import solve_free_contacts
-from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, sort_free_contacts
+from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, list_contacts
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import State
 from sandbox.physics.untangling.crossing_candidates import ShapeBounds
@@ -29,8 +38,9 @@ from sandbox.physics.untangling.overlaps import CROSSINGS, OVERLAPS, Overlaps, f
 from sandbox.physics.untangling.parting import MovedParticles, part_overlaps
 
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
-# crossings of outlines, pairs of shapes that overlap; coupled contacts, which a solver solves with springs.
-CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING, COUPLED = range(8)
+# crossings of outlines, pairs of shapes that overlap; coupled contacts, which a solver solves with springs; islands of
+# the others.
+CONTACTS, KEPT, ENTRIES, PAIRS, TERRAIN_PAIRS, CROSSED, OVERLAPPING, COUPLED, FREE_ISLANDS, COUNTED = range(10)
 # Rounds in which edges are stopped at corners of terrain, and particles at terrain; the latter has the last word.
 TIP_ROUNDS = 4
 
@@ -46,9 +56,9 @@ class Collisions(NamedTuple):
     candidates: Candidates
     bounds: FloatRows  # (k, 5): see update_aabbs
     near: Near
-    contacts: Contacts
-    coupled: Contacts  # copies of the contacts that a solver solves with springs
-    source: Slots  # which contacts those are
+    contacts: Contacts  # the first counts[COUPLED] are solved with springs, the others by free islands
+    source: Slots  # (k,): scratch
+    place: Slots  # (k,): where the contacts are, as they were found
     kept: KeptContacts  # contacts of the last step; the first counts[KEPT] are the world's
     islands: Islands
     work: FreeContactScratch
@@ -146,43 +156,21 @@ def detect(state: State, collisions: Collisions, grab_spring: int, tick: int, h:
         collisions.kept, counts[KEPT], tick, h, collisions.contacts, state.terrain,
     )  # fmt: skip
     counts[CONTACTS] = count
-    if count > collisions.contacts.particle.shape[0]:
+    if count >= collisions.contacts.particle.shape[0]:
         return False
+    carry_over(collisions.contacts, count, collisions.kept, counts[KEPT])
     choose_partners(collisions.contacts, count, collisions.attached, colliders, collisions.moved)
     counts[COUPLED] = find_islands(
         collisions.contacts, count, state.inverse_mass, collisions.attached, collisions.islands
     )  # fmt: skip
-    _list_coupled(count, collisions.islands.coupled, collisions.source)
+    counts[FREE_ISLANDS] = list_contacts(collisions.islands, collisions.place[:count], collisions.source[:count])
     return True
 
 
 @inner_kernel
-def _list_coupled(count: int, coupled: Flags, source: Slots) -> None:
-    k = 0
-    for c in range(count):
-        if coupled[c]:
-            source[k] = c
-            k += 1
-
-
-@inner_kernel
-def copy_coupled(collisions: Collisions) -> None:
-    """Copy the coupled contacts, without what `prepare_contacts` finds later."""
-    contacts, to = collisions.contacts, collisions.coupled
-    for k in range(collisions.counts[COUPLED]):
-        c = collisions.source[k]
-        to.particle[k] = contacts.particle[c]
-        to.feature[k] = contacts.feature[c]
-        to.end_a[k] = contacts.end_a[c]
-        to.end_b[k] = contacts.end_b[c]
-        to.share[k] = contacts.share[c]
-        to.gap[k] = contacts.gap[c]
-        to.friction[k] = contacts.friction[c]
-        to.restitution[k] = contacts.restitution[c]
-        to.rolling[k] = contacts.rolling[c]
-        for axis in range(2):
-            to.normal[k, axis] = contacts.normal[c, axis]
-            to.partner[k, axis] = contacts.partner[c, axis]
+def sort_by_solver(collisions: Collisions) -> None:
+    """Sort contacts by who solves them, once a solver has put the coupled ones of `source` into its order."""
+    sort_contacts(collisions.contacts, collisions.source[: collisions.counts[CONTACTS]], collisions.place)
 
 
 @inner_kernel
@@ -199,77 +187,56 @@ def separate_overlaps(state: State, start: FloatRows, collisions: Collisions) ->
 
 @inner_kernel
 def prepare_contacts(state: State, start: FloatRows, collisions: Collisions, h: float) -> None:
-    """Find what bounces in a step of h [s], and give contacts the impulses that they begin with."""
-    contacts, counts, coupled = collisions.contacts, collisions.counts, collisions.coupled
+    """Find what bounces in a step of h [s], and how the particles of coupled contacts turn."""
+    contacts, counts = collisions.contacts, collisions.counts
     find_bounces(contacts, counts[CONTACTS], start, state.velocity, collisions.attached, h, h / small_steps(h))
-    carry_over(contacts, counts[CONTACTS], collisions.kept, counts[KEPT])
-    for k in range(counts[COUPLED]):
-        c = collisions.source[k]
-        coupled.bounce[k] = contacts.bounce[c]
-        coupled.impulse[k, 0], coupled.impulse[k, 1] = contacts.impulse[c, 0], contacts.impulse[c, 1]
-    if counts[COUPLED] > 0:
-        load_arms(coupled, counts[COUPLED], collisions.colliders)
+    load_arms(contacts, counts[COUPLED], collisions.colliders)
 
 
 @inner_kernel
 def solve_free(state: State, start: FloatRows, collisions: Collisions, h: float) -> None:
     """Solve the contacts of what no spring or constraint holds."""
-    contacts, counts = collisions.contacts, collisions.counts
-    found = 0
-    if counts[COUPLED] < counts[CONTACTS]:
-        found = sort_free_contacts(counts[CONTACTS], collisions.islands)
     solve_free_contacts(
-        contacts, collisions.islands, found, collisions.colliders, start, state.velocity, state.spin, h,
-        collisions.work,
+        collisions.contacts, collisions.islands, collisions.counts[FREE_ISLANDS], collisions.colliders, start,
+        state.velocity, state.spin, h, collisions.work,
     )  # fmt: skip
 
 
 @inner_kernel
 def coupled_contacts(collisions: Collisions) -> Contacts:
     """The coupled contacts of a step, which a solver solves with springs."""
-    return contacts_between(collisions.coupled, 0, collisions.counts[COUPLED])
+    return contacts_between(collisions.contacts, 0, collisions.counts[COUPLED])
 
 
 @inner_kernel
 def mark_pushed(collisions: Collisions, label: Slots, marks: Flags) -> None:
     """Mark the labels of the particles that contacts of the present step push."""
-    contacts, coupled = collisions.contacts, collisions.coupled
+    contacts = collisions.contacts
     for c in range(collisions.counts[CONTACTS]):
-        if not collisions.islands.coupled[c] and contacts.impulse[c, 0] > 0.0:
-            _mark_ends(contacts, c, label, marks)
-    for k in range(collisions.counts[COUPLED]):
-        if coupled.impulse[k, 0] > 0.0:
-            _mark_ends(coupled, k, label, marks)
-
-
-@inner_kernel
-def _mark_ends(contacts: Contacts, c: int, label: Slots, marks: Flags) -> None:
-    marks[label[contacts.particle[c]]] = True
-    if contacts.end_a[c] >= 0:
-        marks[label[contacts.end_a[c]]] = True
-    if contacts.end_b[c] >= 0:
-        marks[label[contacts.end_b[c]]] = True
+        if contacts.impulse[c, 0] > 0.0:
+            for end in range(TOUCHING):
+                p, _ = weight_of(contacts, c, end)
+                if p >= 0:
+                    marks[label[p]] = True
 
 
 @inner_kernel
 def store_impulses(collisions: Collisions) -> None:
-    """Keep a step's contacts with their impulses for the next."""
-    contacts, coupled, kept = collisions.contacts, collisions.coupled, collisions.kept
-    count = collisions.counts[CONTACTS]
-    for k in range(collisions.counts[COUPLED]):
-        c = collisions.source[k]
-        contacts.impulse[c, 0], contacts.impulse[c, 1] = coupled.impulse[k, 0], coupled.impulse[k, 1]
-        if coupled.bounce[k] >= 0.0:
+    """Keep a step's contacts with their impulses for the next, as they were found."""
+    contacts, kept, counts = collisions.contacts, collisions.kept, collisions.counts
+    for c in range(counts[COUPLED]):
+        if contacts.bounce[c] >= 0.0:
             # The impulse of an impact is no guess of what the next step needs.
-            contacts.impact[c] += coupled.impulse[k, 0]
+            contacts.impact[c] += contacts.impulse[c, 0]
             contacts.impulse[c, 0], contacts.impulse[c, 1] = 0.0, 0.0
-    for c in range(count):
-        kept.particle[c] = contacts.particle[c]
-        kept.feature[c] = contacts.feature[c]
-        kept.impulse[c, 0] = contacts.impulse[c, 0]
-        kept.impulse[c, 1] = contacts.impulse[c, 1]
-        kept.impact[c] = contacts.impact[c]
-    collisions.counts[KEPT] = count
+    for k in range(counts[CONTACTS]):
+        c = collisions.place[k]
+        kept.particle[k] = contacts.particle[c]
+        kept.feature[k] = contacts.feature[c]
+        kept.impulse[k, 0] = contacts.impulse[c, 0]
+        kept.impulse[k, 1] = contacts.impulse[c, 1]
+        kept.impact[k] = contacts.impact[c]
+    counts[KEPT] = counts[CONTACTS]
 
 
 @inner_kernel
@@ -280,8 +247,9 @@ def clamp(state: State, collisions: Collisions, h: float) -> None:
     velocity, inverse_mass = state.velocity, state.inverse_mass
     if outline.dynamic[1] > 0:
         stop_discs(
-            collisions.contacts, collisions.counts[CONTACTS], outline, colliders, velocity, state.mass, inverse_mass, h
-        )
+            collisions.contacts, collisions.place[: collisions.counts[CONTACTS]], outline, colliders, velocity,
+            state.mass, inverse_mass, h,
+        )  # fmt: skip
     clamp_at_pins(state.position, velocity, ahead, inverse_mass, outline, colliders, box, candidates.pairs.start, h)
     for k in range(TIP_ROUNDS):
         if not clamp_at_tips(

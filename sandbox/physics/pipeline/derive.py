@@ -15,6 +15,7 @@ from sandbox.physics.arena import (
     new_floats,
     new_slots,
 )
+from sandbox.physics.collision.belts import has_belts
 from sandbox.physics.collision.broad_phase import Candidates, new_boxes, new_grid, new_pairs
 from sandbox.physics.collision.outline import new_colliders, new_outline
 from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
@@ -30,6 +31,7 @@ from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
 from sandbox.physics.pipeline.block import (
     GRAB_PARTICLE,
     GRAB_SPRING,
+    HAS_BELTS,
     HAS_CONTACTS,
     HAS_HOOKE,
     HAS_RINGS,
@@ -81,9 +83,8 @@ def derive_topology(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     set_field(world, "sides", new_motor_sides(state, world.wheels, arena))
     _lay_out_labels(world, arena)
     lay_out_world_triangles(state, arena, world.triangles)
-    if world.plan[HAS_CONTACTS] != 0:
-        set_field(world.collisions, "outline", new_outline(state, arena))
-        set_field(world.collisions, "triangles", world.triangles.of_world)
+    set_field(world.collisions, "outline", new_outline(state, arena))
+    set_field(world.collisions, "triangles", world.triangles.of_world)
     if not is_full(arena):
         _lay_out_solver(world, arena)
 
@@ -158,6 +159,7 @@ def _room(world: WorldBlock, k: int) -> int:
 def _find_plan(world: WorldBlock) -> None:
     state, plan = world.state, world.plan
     plan[HAS_CONTACTS] = plan[HAS_HOOKE] = plan[HAS_RINGS] = 0
+    plan[HAS_BELTS] = 1 if has_belts(state) else 0
     for p in range(state.collides.shape[0]):
         if state.collides[p] != 0:
             plan[HAS_CONTACTS] = 1
@@ -231,8 +233,8 @@ def _lay_out_collisions(world: WorldBlock, contacts: int, arena: Arena) -> None:
     set_field(collisions, "bounds", new_float_rows(arena, outline.solid.shape[0], 5))
     set_field(collisions, "near", new_near(arena))
     set_field(collisions, "contacts", new_contacts(arena, contacts))
-    set_field(collisions, "coupled", new_contacts(arena, contacts))
     set_field(collisions, "source", new_slots(arena, contacts))
+    set_field(collisions, "place", new_slots(arena, contacts))
     set_field(collisions, "islands", new_free_islands(particles, contacts, arena))
     set_field(collisions, "work", new_work(particles, contacts, arena))
     set_field(collisions, "inversions", new_inversions(jellies, arena))

@@ -1,6 +1,7 @@
 """A tick as one kernel: its phases on one screen. Their order is part of the replay contract."""
 
 from sandbox.physics.breaking import yield_and_break
+from sandbox.physics.collision.belts import load_belts
 from sandbox.physics.driving import drive_springs
 from sandbox.physics.flight import begin_flight, label_all_joined
 from sandbox.physics.forces import integrate_velocities
@@ -15,6 +16,7 @@ from sandbox.physics.pipeline.block import (
     DONE,
     GRAB_PARTICLE,
     GRAB_SPRING,
+    HAS_BELTS,
     HAS_CONTACTS,
     HAS_HOOKE,
     HAS_RINGS,
@@ -23,16 +25,17 @@ from sandbox.physics.pipeline.block import (
     WorldBlock,
 )
 from sandbox.physics.pipeline.collide import (
+    CONTACTS,
     COUPLED,
     KEPT,
     clamp,
-    copy_coupled,
     coupled_contacts,
     detect,
     mark_pushed,
     prepare_contacts,
     separate_overlaps,
     solve_free,
+    sort_by_solver,
     store_impulses,
 )
 from sandbox.physics.ramps import begin_ramps, end_ramps
@@ -214,7 +217,9 @@ def _find_contacts(world: WorldBlock, touches: bool, has_joints: bool, h: float)
         order_by_label(source, collisions.islands.contact_label, workspace.order, collisions.islands.at)
     elif has_joints or collisions.counts[COUPLED] > 0:
         has_room = find_body_islands(collisions.contacts, source, state.inverse_mass, world.system, workspace)
-    copy_coupled(collisions)
+    sort_by_solver(collisions)
+    if world.plan[HAS_BELTS] != 0:
+        load_belts(collisions.contacts, collisions.counts[CONTACTS], collisions.outline, state)
     return has_room
 
 

@@ -54,12 +54,11 @@ def _paint_span(pixels: Pixels, y: int, first: int, last: int, slopes: Floats, p
     v = int(slopes[3] + slopes[4] * px + slopes[5] * py)
     shade = int(slopes[6] + slopes[7] * px + slopes[8] * py)
     du, dv, by = int(slopes[1]), int(slopes[4]), int(slopes[7])
-    row = y
     for x in range(first, last):
         colour = int(picture[sheet, (v >> BITS) & (SHEET - 1), (u >> BITS) & (SHEET - 1)])
         share = min(max(shade >> (BITS - 8), -256), 256)
         over = 0xFFFFFF if share > 0 else 0
-        pixels[row, x] = laid_over(colour, over, abs(share))
+        pixels[y, x] = laid_over(colour, over, abs(share))
         u, v, shade = u + du, v + dv, shade + by
 
 

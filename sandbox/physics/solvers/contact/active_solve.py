@@ -65,14 +65,14 @@ def _load_miss(
             continue
         un, ut = velocity_of(contacts, c, velocity, delta_v, terms.surface)
         at.u[c, 0] = un + terms.bias[c]
-        at.u[c, 1] = ut
+        at.u[c, 1] = ut + contacts.belt[c]
         jn = contacts.impulse[c, 0]
         wanted = at.u[c, 0] + CONTACT_SOFTNESS * terms.normal[c] * jn
         worst = max(worst, abs(min(jn * terms.normal[c], wanted)))
         if terms.tangent[c] > 0.0:
             jt = contacts.impulse[c, 1]
             most = contacts.friction[c] * max(0.0, jn)
-            j = min(most, max(-most, jt - ut / terms.tangent[c]))
+            j = min(most, max(-most, jt - at.u[c, 1] / terms.tangent[c]))
             worst = max(worst, terms.tangent[c] * abs(jt - j))
     return worst
 
@@ -132,6 +132,7 @@ def _step(
                 # (33)
                 at.rhs[i] = -(un + terms.bias[c] + CONTACT_SOFTNESS * terms.normal[c] * contacts.impulse[c, 0])
             else:
+                ut += contacts.belt[c]
                 at.rhs[i] = -(ut + STICK_SOFTNESS * terms.tangent[c] * (contacts.impulse[c, 1] - at.centre[c]))
         solve_envelope(rows, at)
         for i in range(count):

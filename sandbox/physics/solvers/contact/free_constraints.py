@@ -122,7 +122,8 @@ def _place_of(
 def _place_of_edge(
     contacts: Contacts, c: int, start: FloatRows, work: FreeContactScratch, count: int
 ) -> tuple[int, int]:
-    # The place of an edge that cannot move, be it of terrain or of a body, and the number of places then.
+    # The place of an edge that cannot move, be it of terrain or of a body, with the velocity of its surface; and the
+    # number of places then.
     a = contacts.end_a[c]
     b = contacts.end_b[c]
     share = contacts.share[c]
@@ -140,6 +141,8 @@ def _place_of_edge(
         if b >= 0:
             work.motion[count, VX + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
         work.gain[count, axis] = 0.0
+    work.motion[count, VX] += contacts.belt[c] * contacts.normal[c, 1]
+    work.motion[count, VY] -= contacts.belt[c] * contacts.normal[c, 0]
     return count, count + 1
 
 
@@ -164,11 +167,10 @@ def _way_of(contacts: Contacts, c: int, colliders: Colliders) -> float:
 
 @inner_kernel
 def _place_contact(
-    contacts: Contacts, islands: Islands, i: int, colliders: Colliders, start: FloatRows, spin: Floats,
-    work: FreeContactScratch, count: int,
+    contacts: Contacts, c: int, colliders: Colliders, start: FloatRows, spin: Floats, work: FreeContactScratch,
+    count: int,
 ) -> int:  # fmt: skip
-    # The places, level and way of an island's contact; the number of places then.
-    c = islands.contact[i]
+    # The places, level and way of a contact; the number of places then.
     disc = _disc_of(contacts, c)
     if disc >= 0:
         q, count = _place_of(disc, colliders, start, spin, work, count)
@@ -181,10 +183,10 @@ def _place_contact(
         work.highest[p] = level + 1
     if work.weight[q] > 0.0:
         work.highest[q] = level + 1
-    work.place[i, 0] = p
-    work.place[i, 1] = q
-    work.level[i] = level
-    work.way[i] = _way_of(contacts, c, colliders)
+    work.place[c, 0] = p
+    work.place[c, 1] = q
+    work.level[c] = level
+    work.way[c] = _way_of(contacts, c, colliders)
     return count
 
 
@@ -205,14 +207,13 @@ def _plan(
     deep = SOFTNESS * h / (OVERLAP_SHARE * count * count)
     most = 1.0
     work.alone[g] = False
-    for i in range(islands.first[g], islands.first[g + 1]):
-        if work.way[i] == COMING:
+    for c in range(islands.first[g], islands.first[g + 1]):
+        if work.way[c] == COMING:
             work.alone[g] = True
             continue
-        c = islands.contact[i]
         deepest = DEEPEST * _smaller_radius(contacts, c, colliders)
         if deepest > 0.0:
-            mass = 1.0 / (work.weight[work.place[i, 0]] + work.weight[work.place[i, 1]])
+            mass = 1.0 / (work.weight[work.place[c, 0]] + work.weight[work.place[c, 1]])
             most = max(most, contacts.impulse[c, 0] * deep / (mass * deepest))
     stiffer = 1.0
     while count < MOST_SMALL_STEPS and stiffer < most:
@@ -234,8 +235,8 @@ def plan_islands(
     count = 0
     for g in range(island_count):
         work.begin[g] = count
-        for i in range(islands.first[g], islands.first[g + 1]):
-            count = _place_contact(contacts, islands, i, colliders, start, spin, work, count)
+        for c in range(islands.first[g], islands.first[g + 1]):
+            count = _place_contact(contacts, c, colliders, start, spin, work, count)
         _plan(contacts, islands, g, colliders, h, work)
     work.begin[island_count] = count
 
@@ -252,27 +253,25 @@ def fill_constraints(
     for level in range(total + 1):
         at[level] = 0
     for b in range(besides):
-        for i in range(islands.first[work.beside[b]], islands.first[work.beside[b] + 1]):
-            at[work.level[i] + 1] += 1
+        for c in range(islands.first[work.beside[b]], islands.first[work.beside[b] + 1]):
+            at[work.level[c] + 1] += 1
     for level in range(total):
         at[level + 1] += at[level]
     for b in range(besides):
         g = work.beside[b]
-        for i in range(islands.first[g], islands.first[g + 1]):
-            k = at[work.level[i]]
-            at[work.level[i]] += 1
+        for c in range(islands.first[g], islands.first[g + 1]):
+            k = at[work.level[c]]
+            at[work.level[c]] += 1
             work.constraint[k, HARDNESS] = work.hardness[g]
-            _fill_constraint(contacts, islands.contact[i], i, k, colliders, work)
+            _fill_constraint(contacts, c, k, colliders, work)
     return total
 
 
 @inner_kernel
-def _fill_constraint(
-    contacts: Contacts, c: int, i: int, k: int, colliders: Colliders, work: FreeContactScratch
-) -> None:
+def _fill_constraint(contacts: Contacts, c: int, k: int, colliders: Colliders, work: FreeContactScratch) -> None:
     row = work.constraint
-    p = work.place[i, 0]
-    q = work.place[i, 1]
+    p = work.place[c, 0]
+    q = work.place[c, 1]
     work.contact[k] = c
     work.end[k, 0] = p
     work.end[k, 1] = q
@@ -280,7 +279,7 @@ def _fill_constraint(
     row[k, WEIGHT_P], row[k, WEIGHT_Q] = work.weight[p], work.weight[q]
     row[k, APART_X], row[k, APART_Y] = 0.0, 0.0
     row[k, TURN_P], row[k, TURN_Q] = work.turning[p], work.turning[q]
-    row[k, ARM], row[k, PER_REACH], row[k, WAY] = 1.0, 0.0, work.way[i]
+    row[k, ARM], row[k, PER_REACH], row[k, WAY] = 1.0, 0.0, work.way[c]
     row[k, REACH] = contacts.gap[c]
     row[k, NX], row[k, NY] = contacts.normal[c, 0], contacts.normal[c, 1]
     row[k, ALONG], row[k, ACROSS] = contacts.impulse[c, 0], contacts.impulse[c, 1]

@@ -103,18 +103,17 @@ def _push(work: FreeContactScratch, i: int, nx: float, ny: float, jn: float, jt:
 def _begin(work: FreeContactScratch, count: int, scale: float) -> None:
     # The impulses that contacts bring along, as those of a small step.
     row = work.constraint
-    for c in range(count):
-        i = c
+    for i in range(count):
         row[i, ALONG] *= scale
         row[i, ACROSS] *= scale
         _push(work, i, row[i, NX], row[i, NY], row[i, ALONG], row[i, ACROSS], row[i, ARM])
 
 
 @inlined_kernel
-def _borne(work: FreeContactScratch, c: int, p: int, along: float, rate: float, pushes: bool) -> float:
+def _borne(work: FreeContactScratch, i: int, p: int, along: float, rate: float, pushes: bool) -> float:
     # The share of its impulse that a contact keeps which a particle has left for an edge that rises; 0: it has not. It
     # has borne the particle until then, and velocities stand half a step behind.
-    if not along > 0.0 or work.turned[p] == 0.0 or work.onto[p] == c or work.constraint[c, WAY] == FOLLOWS:
+    if not along > 0.0 or work.turned[p] == 0.0 or work.onto[p] == i or work.constraint[i, WAY] == FOLLOWS:
         return 0.0
     return 1.0 if pushes else min(1.0, work.turned[p] * rate + 0.5)
 
@@ -129,12 +128,11 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
     rate = 1.0 / small
     displaced = False
     hits = 0
-    for c in range(count):
-        i = c
+    for i in range(count):
         p = end[i, 0]
         q = end[i, 1]
         if displaced or work.turned[p] + work.turned[q] > 0.0:
-            look(work, c, c + 1)
+            look(work, i, i + 1)
         ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
         late = 0.0
         if row[i, WAY] == COMING:
@@ -152,19 +150,19 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
                 continue
             late, bias = -gap / along, 0.0
             work.turned[p] = late if work.turned[p] == 0.0 else min(late, work.turned[p])
-            work.onto[p] = c
+            work.onto[p] = i
         if old == 0.0 and along + bias >= 0.0:
             continue
         if skips and along < -SLOWEST_BOUNCE:
             if not pushes:
                 continue
             if gap + small * along <= 0.0:
-                work.hit[hits], work.met[hits] = c, late
+                work.hit[hits], work.met[hits] = i, late
                 hits += 1
                 continue
         arm = row[i, ARM]
         mass = row[i, MASS] * hard
-        borne = _borne(work, c, p, along, rate, pushes)
+        borne = _borne(work, i, p, along, rate, pushes)
         new = max(old * borne, (old * hard - bias * mass) - along * mass)
         most = row[i, FRICTION] * new
         last = row[i, ACROSS]
@@ -344,7 +342,7 @@ def solve_free_contacts(
     contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows,
     velocity: FloatRows, spin: Floats, h: float, work: FreeContactScratch,
 ) -> None:  # fmt: skip
-    """Solve the sorted free contacts over a step of h [s]; work.ahead goes with velocity and spin.
+    """Solve the free contacts, as sorted, over a step of h [s]; work.ahead goes with velocity and spin.
 
     start [m/s] (n, 2): the velocities before anything acted in this step.
     """

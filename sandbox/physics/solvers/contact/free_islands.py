@@ -11,23 +11,17 @@ from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.collision.types import ENDS, Contacts, weight_of
 from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.topology.sorting import list_by_key
 
 
 class Islands(NamedTuple):
-    """Islands of a step's contacts, filled in by each step; there is room for more contacts.
+    """Islands of a step's contacts, filled in by each step; there is room for more contacts."""
 
-    Of particles: label (n,) = the first of its island; is_coupled (n,), by label. Of contacts (k,): contact_label,
-    coupled. Free contacts, island by island: contact (k,), those of the g-th at first[g]:first[g + 1]. at (n + 1,):
-    scratch.
-    """
-
-    label: Slots
-    is_coupled: Flags
-    contact_label: Slots
-    coupled: Flags
-    contact: Slots
-    first: Slots
-    at: Slots
+    label: Slots  # (n,): the first particle of its island
+    is_coupled: Flags  # (n,): by label
+    contact_label: Slots  # (k,): by contact, as found
+    first: Slots  # free contacts of the g-th island: first[g]:first[g + 1], as sorted
+    at: Slots  # (n + 2,): scratch
 
 
 @inner_kernel
@@ -67,37 +61,29 @@ def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, attached:
             if p >= 0 and inverse_mass[p] > 0.0:
                 # All that move have the same.
                 islands.contact_label[c] = label[p]
-                islands.coupled[c] = islands.is_coupled[label[p]]
                 break
-        if islands.coupled[c]:
+        if islands.is_coupled[islands.contact_label[c]]:
             coupled += 1
     return coupled
 
 
 @inner_kernel
-def sort_free_contacts(count: int, islands: Islands) -> int:
-    """Sort the free ones of the first `count` contacts by island, each in their order; how many islands they make."""
-    at = islands.at
-    for p in range(at.shape[0]):
-        at[p] = 0
+def list_contacts(islands: Islands, key: Slots, source: Slots) -> int:
+    """List contacts: coupled ones first, then the free ones by island, each as found; how many islands those make.
+
+    key: scratch, as long as source.
+    """
+    at, count = islands.at, source.shape[0]
     for c in range(count):
-        if not islands.coupled[c]:
-            at[islands.contact_label[c] + 1] += 1
+        label = islands.contact_label[c]
+        key[c] = 0 if islands.is_coupled[label] else 1 + label
+    list_by_key(key, count, at.shape[0] - 1, at, source)
     found = 0
-    total = 0
-    for p in range(at.shape[0] - 1):
-        more = at[p + 1]
-        if more > 0:
-            islands.first[found] = total
+    for k in range(1, at.shape[0] - 1):
+        if at[k + 1] > at[k]:
+            islands.first[found] = at[k]
             found += 1
-        total += more
-        at[p + 1] = total
-    islands.first[found] = total
-    for c in range(count):
-        if not islands.coupled[c]:
-            label = islands.contact_label[c]
-            islands.contact[at[label]] = c
-            at[label] += 1
+    islands.first[found] = count
     return found
 
 
@@ -106,6 +92,5 @@ def new_islands(particles: int, contacts: int, arena: Arena) -> Islands:
     """Islands to be filled in, with room for so many contacts."""
     return Islands(
         new_slots(arena, particles), new_flags(arena, particles), new_slots(arena, contacts),
-        new_flags(arena, contacts), new_slots(arena, contacts), new_slots(arena, contacts + 1),
-        new_slots(arena, particles + 1),
+        new_slots(arena, contacts + 1), new_slots(arena, particles + 2),
     )  # fmt: skip

@@ -78,8 +78,7 @@ def meet(work: FreeContactScratch, i: int, p: int, q: int, small: float) -> floa
 def look(work: FreeContactScratch, first: int, last: int) -> None:
     """Update the gaps of contacts, and the normals and arms of discs, which follow the centres."""
     row, end, motion = work.constraint, work.end, work.motion
-    for c in range(first, last):
-        i = c
+    for i in range(first, last):
         p = end[i, 0]
         q = end[i, 1]
         nx, ny = row[i, NX], row[i, NY]

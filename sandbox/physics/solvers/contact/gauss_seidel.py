@@ -382,7 +382,7 @@ def sweep(
         contacts.impulse[c, 0] = new
         jt = 0.0
         if terms.tangent[c] > 0.0:
-            slip = nx * uy - ny * ux + terms.coupling[c] * jn
+            slip = nx * uy - ny * ux + terms.coupling[c] * jn + contacts.belt[c]  # (37)
             turn_p, turn_q = surface_speeds(contacts, c, contacts.arm, terms.surface)
             slip -= turn_p + turn_q
             if has_couple(contacts, c):

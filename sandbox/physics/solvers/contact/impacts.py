@@ -41,8 +41,7 @@ LOOKS = 16
 def _find_hits(work: FreeContactScratch, rows: int, passed: int, small: float) -> int:
     # The contacts of what the last pass has pushed that approach now; how many.
     found = 0
-    for c in range(rows):
-        i = c
+    for i in range(rows):
         p, q = work.end[i, 0], work.end[i, 1]
         if work.stamp[p] != passed and work.stamp[q] != passed:
             continue
@@ -60,7 +59,7 @@ def _find_hits(work: FreeContactScratch, rows: int, passed: int, small: float) -
         u = approach(work, i)
         passes_on = work.constraint[i, RESTITUTION] >= LEAST_PASSED and u < -SLOWEST_PASSED
         if passes_on and work.constraint[i, GAP] + small * u <= 0.0:
-            work.hit[found] = c
+            work.hit[found] = i
             work.met[found] = late
             found += 1
     return found

@@ -308,7 +308,9 @@ def _lendable(island: int, islands: BodyIslands, system: System, state: State) -
 
 
 @inner_kernel
-def check_energies(workspace: IslandWorkspace, system: System, state: State, start: FloatRows) -> bool:
+def check_energies(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows
+) -> bool:  # fmt: skip
     """Check the energy of every island; whether any fails."""
     # Where a free particle gave way, `v0` is below what forces left it.
     islands, surface, push = workspace.islands, workspace.terms.surface, workspace.delassus.joints.push
@@ -332,6 +334,7 @@ def check_energies(workspace: IslandWorkspace, system: System, state: State, sta
     for k in range(islands.counts[MEMBERS]):
         islands.total[islands.island[k]] += islands.energy[k]
         islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.bank[k]
+    _credit_belts(contacts, islands, system, state.inverse_mass)
     for island in range(islands.counts[ISLANDS]):
         islands.lent[island] = _lendable(island, islands, system, state)
         islands.allowed[island] += islands.lent[island]
@@ -347,6 +350,18 @@ def _member_of(c: int, contacts: Contacts, islands: BodyIslands, inverse_mass: F
         if p >= 0 and inverse_mass[p] > 0.0:
             return islands.member[p]
     return -1
+
+
+@inner_kernel
+def _credit_belts(contacts: Contacts, islands: BodyIslands, system: System, inverse_mass: Floats) -> None:
+    # What runs a belt does the work of its friction at the speed of its surface.
+    for c in range(contacts.particle.shape[0]):
+        work = -contacts.belt[c] * contacts.impulse[c, 1]
+        k = _member_of(c, contacts, islands, inverse_mass) if work > 0.0 else -1
+        if k >= 0:
+            if k < islands.counts[BODIES] and system.bodies.underdamped[islands.body[k]]:
+                work *= 1.0 + UNDERDAMPED_BANK_SHARE
+            islands.allowed[islands.island[k]] += work
 
 
 @inner_kernel
@@ -422,7 +437,9 @@ def _damp_bodies(workspace: IslandWorkspace, system: System, state: State, halvi
 
 
 @inner_kernel
-def damp_islands(workspace: IslandWorkspace, system: System, state: State, start: FloatRows, h: float) -> None:
+def damp_islands(
+    contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows, h: float
+) -> None:  # fmt: skip
     """Slow down what moves within the bodies of islands that fail, else all that moves, until they pass."""
     # All that moves slowly enough along what contacts and springs want loses energy, and at rest they pass.
     islands, surface = workspace.islands, workspace.terms.surface
@@ -439,7 +456,7 @@ def damp_islands(workspace: IslandWorkspace, system: System, state: State, start
                     v = islands.v0[p, axis] + islands.delta_v[p, axis]
                     islands.delta_v[p, axis] = factor * v - islands.v0[p, axis]
                 surface[p] *= factor
-        if not check_energies(workspace, system, state, start):
+        if not check_energies(contacts, workspace, system, state, start):
             break
     for k in range(bodies):
         if islands.due[k]:

@@ -435,7 +435,7 @@ def _push_and_test(
         credit_penetration(contacts, workspace, state.inverse_mass, h)
         draw_on_reserves(contacts, workspace, system, state)
     _apply_impulses(workspace, system, state, h)
-    check_energies(workspace, system, state, start)
+    check_energies(contacts, workspace, system, state, start)
     return affordable - done
 
 
@@ -548,7 +548,7 @@ def _solve_island(
         _solve_without_bias(contacts, workspace, system, state, start, affordable, h)
     if any_fails(islands):
         note_way(SLOWED_DOWN, islands)
-        damp_islands(workspace, system, state, start, h)
+        damp_islands(contacts, workspace, system, state, start, h)
     count_ways(islands, workspace.ways)
     store_energies(contacts, workspace, system, state, h)
     _finish(islands, workspace.terms.surface, system, state)

@@ -110,8 +110,7 @@ def _gather(k: int, span: Span, matrix: Matrix, delassus: Delassus, row: Slots) 
             begun += 1
         upper = (j - span.first_row) * 2 * width
         lower = upper + width
-        for c in range(2 * begun):
-            i = c
+        for i in range(2 * begun):
             a = -columns[upper + i] * matrix.diagonal[j, 0]
             b = -columns[lower + i] * matrix.diagonal[j, 2]
             subtract_pair(numbers, base + i * width, columns, upper, lower, a, b, 0, i + 1)
