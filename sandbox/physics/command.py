@@ -18,8 +18,8 @@ from sandbox.physics.settings import DRAG, GRAVITY_X, WIND_X
 from sandbox.physics.state import GoodValues, State, StateArrays
 from sandbox.physics.topology.sorting import list_ends
 
-GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(13)
-SET_GRAVITY, SET_AIR = 13, 14
+GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
+SET_GRAVITY, SET_AIR = 12, 13
 # In place of a result: the arena is full, and nothing was changed; the k-th of slots and numbers, counted through, is
 # BAD_SLOT - k: a slot that is not there, or a number that is not finite, and nothing was changed.
 NO_ARENA, BAD_SLOT = -1, -2
@@ -43,7 +43,7 @@ class KernelCommand(NamedTuple):
 
 _HAND = ("first_cursor", "first_spring", "grab")
 _PARTICLE = ("first_cursor", "particle")
-# Kinds of commands by their names in files; files have no `freeze` and `break_springs`, which a tick ends with, and no
+# Kinds of commands by their names in files; files have no `break_springs`, which a tick ends with, and no
 # `part_bodies`, which building a level with cut bodies does.
 KINDS = {
     "grab": KernelCommand(GRAB, (*_HAND, "particle"), ("target", "strength", "radius"), OF_HANDS),
@@ -51,7 +51,6 @@ KINDS = {
     "release": KernelCommand(RELEASE, _HAND, (), OF_HANDS),
     "pin": KernelCommand(PIN, _PARTICLE, (), OF_TOPOLOGY),
     "unpin": KernelCommand(UNPIN, _PARTICLE, (), OF_TOPOLOGY),
-    "freeze": KernelCommand(FREEZE, _PARTICLE, (), OF_TOPOLOGY),
     "cut_springs": KernelCommand(CUT, ("springs",), (), OF_TOPOLOGY),
     "break_springs": KernelCommand(BREAK, ("springs",), (), OF_TOPOLOGY),
     "part_bodies": KernelCommand(PART, ("springs",), (), OF_TOPOLOGY),
@@ -92,11 +91,9 @@ def command(pointer: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, n
     elif kind == RELEASE:
         _release(state, slots)
     elif kind == PIN:
-        _pin(state, slots[1])
+        pin(state, slots[1])
     elif kind == UNPIN:
         _unpin(state, slots[1])
-    elif kind == FREEZE:
-        _freeze(state, world.good, slots[1])
     elif kind in (CUT, BREAK, PART):
         return _cut(state, world.good, slots, kind, arena)
     elif kind == SET_COEFFICIENTS:
@@ -125,8 +122,6 @@ def _first_bad(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
             return 2
     if kind in (GRAB, PIN, UNPIN) and not _is_body(state, slots[0], slots[slots.shape[0] - 1]):
         return slots.shape[0] - 1
-    if kind == FREEZE and not 0 <= slots[1] < particles:
-        return 1
     if kind in (CUT, BREAK, PART):
         for k in range(slots.shape[0]):
             if not 0 <= slots[k] < springs or not state.spring_active[slots[k]] or state.material[slots[k]] < 0:
@@ -187,7 +182,8 @@ def _release(state: State, slots: Slots) -> None:
 
 
 @inner_kernel
-def _pin(state: State, particle: int) -> None:
+def pin(state: State, particle: int) -> None:
+    """Hold a particle where it is."""
     state.inverse_mass[particle] = 0.0
     for axis in range(2):
         state.velocity[particle, axis] = state.slow_velocity[particle, axis] = 0.0
@@ -201,17 +197,6 @@ def _unpin(state: State, particle: int) -> None:
     for axis in range(2):
         state.slow_velocity[particle, axis] = state.velocity[particle, axis]
     state.energy_bank[particle] = BANK_UNOPENED
-
-
-@inner_kernel
-def _freeze(state: State, good: GoodValues, particle: int) -> None:
-    for axis in range(2):
-        state.position[particle, axis] = good.position[particle, axis]
-    state.angle[particle], state.mass[particle] = good.angle[particle], good.mass[particle]
-    state.radius[particle], state.gravity_scale[particle] = good.radius[particle], good.gravity_scale[particle]
-    state.friction[particle], state.restitution[particle] = good.friction[particle], good.restitution[particle]
-    state.rolling[particle] = good.rolling[particle]
-    _pin(state, particle)
 
 
 @inner_kernel

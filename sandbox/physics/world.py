@@ -482,10 +482,6 @@ class World(StateArrays):
         """Hold a particle where it is."""
         self._command("pin", particle=particle)
 
-    def freeze(self, particle: int) -> None:
-        """Bring a particle back to its last good values and pin it there."""
-        self._command("freeze", particle=particle)
-
     def unpin(self, particle: int) -> None:
         """Let a pinned particle move again, with the mass it has."""
         self._command("unpin", particle=particle)

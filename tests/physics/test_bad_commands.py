@@ -30,7 +30,6 @@ ARGUMENTS = {
     "release": ("grab",),
     "pin": ("particle",),
     "unpin": ("particle",),
-    "freeze": ("particle",),
     "cut_springs": ("springs",),
     "break_springs": ("springs",),
     "part_bodies": ("springs",),

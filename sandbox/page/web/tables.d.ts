@@ -98,10 +98,6 @@ export interface Commands {
     type: 'unpin';
     particle: number;
   };
-  freeze: {
-    type: 'freeze';
-    particle: number;
-  };
   cut_springs: {
     type: 'cut_springs';
     springs: number[];

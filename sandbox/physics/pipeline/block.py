@@ -15,7 +15,7 @@ from sandbox.physics.solvers.direct.system import System
 from sandbox.physics.solvers.iterative import Iteration
 from sandbox.physics.solvers.linear.elimination import Tuning
 from sandbox.physics.solvers.single_pass import ExplicitPass
-from sandbox.physics.state import GoodValues, State
+from sandbox.physics.state import GoodValues, Ranges, State
 from sandbox.physics.untangling.triangle_clamp import WorldTriangles
 
 # Places in `plan`: the first particle and the first spring of a hand, or -1; then what topology decides: whether
@@ -54,6 +54,7 @@ class WorldBlock(NamedTuple):
     wheels: DrivenWheels
     limits: MaterialLimits
     tuning: Tuning  # see elimination.py
+    ranges: Ranges
     start: FloatRows  # [m/s] (n, 2): velocities before anything acted in a substep
     start_length: Floats  # [m] (m,): rest lengths before drives
     shortest: Floats  # (GRAB_COUNT,): scratch
