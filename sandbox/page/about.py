@@ -12,7 +12,6 @@ from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.jit.making.platforms import WEB
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline import block, collide, tick
-from sandbox.physics.sanitise import ABSURD
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Column, Family
 from sandbox.physics.world import World
@@ -50,7 +49,6 @@ def about(world: World, words: int) -> dict[str, Any]:
         "solvers": SOLVER_NAMES,
         "hands": {"particle": world.grab_particle, "spring": world.grab_spring, "count": GRAB_COUNT},
         "area": AREA,
-        "absurd": ABSURD,
         "columns": [_column(column) for column in COLUMNS],
         "topology": [*(f"state.{column.name}" for column in TOPOLOGY), "choices"],
         "kept": kept + list(SETTING_ARRAYS),

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots
+from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots, new_tuple
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.collision.pieces import new_piece_scratch, part
+from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
 from sandbox.physics.keeping.arguments import (
@@ -28,8 +28,8 @@ from sandbox.physics.settings import DRAG, GRAVITY_X, WIND_X
 from sandbox.physics.state import GoodValues, State, StateArrays
 from sandbox.physics.topology.sorting import list_ends
 
-GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, FREEZE, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(13)
-SET_GRAVITY, SET_AIR, HOLD_KEY = 13, 14, 15
+GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
+SET_GRAVITY, SET_AIR, HOLD_KEY = 12, 13, 14
 # In place of a result: the arena is full, and nothing was changed; the k-th of slots and numbers, counted through, is
 # BAD_SLOT - k: a slot that is not there, or a number that is not finite, and nothing was changed.
 NO_ARENA, BAD_SLOT = -1, -2
@@ -53,7 +53,7 @@ class KernelCommand(NamedTuple):
 
 _HAND = ("first_cursor", "first_spring", "grab")
 _PARTICLE = ("first_cursor", "particle")
-# Kinds of commands by their names in files; files have no `freeze` and `break_springs`, which a tick ends with, and no
+# Kinds of commands by their names in files; files have no `break_springs`, which a tick ends with, and no
 # `part_bodies`, which building a level with cut bodies does.
 KINDS = {
     "grab": KernelCommand(GRAB, (*_HAND, "particle"), ("target", "strength", "radius"), OF_HANDS),
@@ -61,7 +61,6 @@ KINDS = {
     "release": KernelCommand(RELEASE, _HAND, (), OF_HANDS),
     "pin": KernelCommand(PIN, _PARTICLE, (), OF_TOPOLOGY),
     "unpin": KernelCommand(UNPIN, _PARTICLE, (), OF_TOPOLOGY),
-    "freeze": KernelCommand(FREEZE, _PARTICLE, (), OF_TOPOLOGY),
     "cut_springs": KernelCommand(CUT, ("springs",), (), OF_TOPOLOGY),
     "break_springs": KernelCommand(BREAK, ("springs",), (), OF_TOPOLOGY),
     "part_bodies": KernelCommand(PART, ("springs",), (), OF_TOPOLOGY),
@@ -103,11 +102,9 @@ def command(pointer: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, n
     elif kind == RELEASE:
         _release(state, slots)
     elif kind == PIN:
-        _pin(state, slots[1])
+        pin(state, slots[1])
     elif kind == UNPIN:
         _unpin(state, slots[1])
-    elif kind == FREEZE:
-        _freeze(state, world.good, slots[1])
     elif kind in (CUT, BREAK, PART):
         return _cut(state, world.good, slots, kind, arena)
     elif kind == SET_COEFFICIENTS:
@@ -138,8 +135,6 @@ def _first_bad(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
             return 2
     if kind in (GRAB, PIN, UNPIN) and not _is_body(state, slots[0], slots[slots.shape[0] - 1]):
         return slots.shape[0] - 1
-    if kind == FREEZE and not 0 <= slots[1] < particles:
-        return 1
     if kind in (CUT, BREAK, PART):
         for k in range(slots.shape[0]):
             if not 0 <= slots[k] < springs or not state.spring_active[slots[k]] or state.material[slots[k]] < 0:
@@ -202,7 +197,8 @@ def _release(state: State, slots: Slots) -> None:
 
 
 @inner_kernel
-def _pin(state: State, particle: int) -> None:
+def pin(state: State, particle: int) -> None:
+    """Hold a particle where it is."""
     state.inverse_mass[particle] = 0.0
     for axis in range(2):
         state.velocity[particle, axis] = state.slow_velocity[particle, axis] = 0.0
@@ -219,24 +215,14 @@ def _unpin(state: State, particle: int) -> None:
 
 
 @inner_kernel
-def _freeze(state: State, good: GoodValues, particle: int) -> None:
-    for axis in range(2):
-        state.position[particle, axis] = good.position[particle, axis]
-    state.angle[particle], state.mass[particle] = good.angle[particle], good.mass[particle]
-    state.radius[particle], state.gravity_scale[particle] = good.radius[particle], good.gravity_scale[particle]
-    state.friction[particle], state.restitution[particle] = good.friction[particle], good.restitution[particle]
-    state.rolling[particle] = good.rolling[particle]
-    _pin(state, particle)
-
-
-@inner_kernel
 def _cut(state: State, good: GoodValues, springs: Slots, kind: int, arena: Arena) -> int:
     # Take springs out, and the constraints that they were a side of, unless another spring holds that side. What falls
     # into pieces becomes several bodies; those of what breaks by itself keep the energy of the body. PART: the bodies
     # of springs have lost others already.
     begin(arena)
     count = state.law.shape[0]
-    gone, pieces = new_flags(arena, count), new_piece_scratch(state, arena)
+    gone = new_flags(arena, count)
+    pieces = new_tuple(PieceScratch, arena, particles=state.owner.shape[0], springs=count)
     start, listed = new_slots(arena, state.owner.shape[0] + 1), new_slots(arena, 2 * count)
     if is_full(arena):
         return NO_ARENA

@@ -1,158 +1,144 @@
 """Quarantine: a value that no physics can give is taken back before it spreads.
 
-A particle whose position, velocity, angle, spin or mass is not finite, or is absurd, gets its last good values back and
-is frozen: pinned where it was, until somebody unpins it; so is one whose radius, surface or gravity scale is. An absurd
-constant of a spring or a constraint gets its last good value back, the impulse of a contact is begun anew. Motion is
-good as the last tick ended with it, all else as it was last set.
+A particle with a value out of the range that its column has (state.py) gets its last good values back and is frozen:
+pinned where it was, until somebody unpins it. A constant of a spring or a constraint gets its last good value back, the
+impulse of a contact is begun anew. Motion is good as the last tick ended with it, all else as it was last set.
+
+What is found is listed, where there is a list: for each the number of its column and its slot. Without one, nothing is
+changed.
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sandbox.physics.analysis.query import slot_name
-from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.events import Containment
+from sandbox.physics.arrays import FloatRows, Floats, Slots
+from sandbox.physics.command import pin
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.state import GUARDED, Family, GoodValues, State
-from sandbox.physics.world import World
+from sandbox.physics.state import GoodValues, Ranges, State
 
-# Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that
-# energies stay finite; a mistuned spring that passes it is frozen there.
-ABSURD = 1e18
-# What a tick moves, and what is guarded of springs and constraints.
-MOTION = ("position", "velocity", "angle", "spin")
-_CONSTANTS = [column for column in GUARDED if column.family is not Family.PARTICLE]
-
-
-_CONSTANTS_OF_PARTICLES = ("radius", "gravity_scale", "friction", "restitution", "rolling")
+# Of a range: the lowest and the highest good value, and the number of the column.
+LOWEST, HIGHEST, COLUMN = range(3)
 
 
 @inner_kernel
-def _sound_motion(state: State) -> bool:
-    position = state.position
-    velocity = state.velocity
-    for p in range(position.shape[0]):
-        if not (
-            -ABSURD <= position[p, 0] <= ABSURD
-            and -ABSURD <= position[p, 1] <= ABSURD
-            and -ABSURD <= velocity[p, 0] <= ABSURD
-            and -ABSURD <= velocity[p, 1] <= ABSURD
-            and -ABSURD <= state.angle[p] <= ABSURD
-            and -ABSURD <= state.spin[p] <= ABSURD
-        ):
-            return False
-    return True
+def _list(within: Floats, slot: int, found: Slots, count: int) -> int:
+    found[2 * count], found[2 * count + 1] = int(within[COLUMN]), slot
+    return count + 1
 
 
 @inner_kernel
-def _sound_elements(state: State) -> bool:
-    for k in range(state.constraint_stiffness.shape[0]):
-        if not (
-            -ABSURD <= state.constraint_rest[k, 0] <= ABSURD
-            and -ABSURD <= state.constraint_rest[k, 1] <= ABSURD
-            and 0.0 <= state.constraint_stiffness[k] <= 1.0
-            and 0.0 <= state.constraint_damping[k] <= 1.0
-            and 0.0 <= state.constraint_lowest_mode[k] <= ABSURD
-        ):
-            return False
-    for c in range(state.corner_weight.shape[0]):
-        if not (
-            0.0 <= state.corner_weight[c] <= ABSURD
-            and -ABSURD <= state.corner_form[c, 0] <= ABSURD
-            and -ABSURD <= state.corner_form[c, 1] <= ABSURD
-        ):
-            return False
-    return True
+def _find(values: Floats, within: Floats, found: Slots, count: int) -> int:
+    # How many are found, with those of a column.
+    low, high, bad = within[LOWEST], within[HIGHEST], 0
+    for k in range(values.shape[0]):
+        if not low <= values[k] <= high:
+            bad += 1
+    if bad == 0 or found.shape[0] == 0:
+        return count + bad
+    for k in range(values.shape[0]):
+        if not low <= values[k] <= high:
+            count = _list(within, k, found, count)
+    return count
 
 
 @inner_kernel
-def are_sound(state: State, impulse: FloatRows, impact: Floats, count: int) -> bool:
-    """Whether all that a tick begins with is what physics can give, impulses of `count` contacts too; NaN is not."""
-    if not _sound_motion(state) or not _sound_elements(state):
-        return False
-    for c in range(count):
-        if not (-ABSURD <= impulse[c, 0] <= ABSURD and -ABSURD <= impulse[c, 1] <= ABSURD):
-            return False
-        if not -ABSURD <= impact[c] <= ABSURD:
-            return False
-    for p in range(state.mass.shape[0]):
-        if not (
-            0.0 < state.mass[p] <= ABSURD
-            and 0.0 <= state.inverse_mass[p] <= ABSURD
-            and 0.0 <= state.radius[p] <= ABSURD
-            and -ABSURD <= state.gravity_scale[p] <= ABSURD
-            and 0.0 <= state.friction[p] <= ABSURD
-            and 0.0 <= state.restitution[p] <= 1.0
-            and 0.0 <= state.rolling[p] <= 1.0
-        ):
-            return False
-    for s in range(state.rest_length.shape[0]):
-        if not (
-            0.0 <= state.rest_length[s] <= ABSURD
-            and 0.0 <= state.stiffness[s] <= 1.0
-            and 0.0 <= state.damping[s] <= 1.0
-            and 0.0 <= state.hooke_stiffness[s] <= ABSURD
-            and 0.0 <= state.hooke_damping[s] <= ABSURD
-            and 0.0 <= state.lowest_mode[s] <= ABSURD
-        ):
-            return False
-    return True
+def _find_rows(values: FloatRows, within: Floats, found: Slots, count: int) -> int:
+    low, high, bad = within[LOWEST], within[HIGHEST], 0
+    for k in range(values.shape[0]):
+        if not (low <= values[k, 0] <= high and low <= values[k, 1] <= high):
+            bad += 1
+    if bad == 0 or found.shape[0] == 0:
+        return count + bad
+    for k in range(values.shape[0]):
+        if not (low <= values[k, 0] <= high and low <= values[k, 1] <= high):
+            count = _list(within, k, found, count)
+    return count
 
 
 @inner_kernel
-def keep_if_sound(state: State, good: GoodValues) -> bool:
-    """Keep what a tick moves as good, if all of it is; else keep nothing and say so."""
-    if not _sound_motion(state):
-        return False
+def _freeze(state: State, good: GoodValues, found: Slots, first: int, last: int) -> int:
+    # The particles that were found, from a place of the list on.
+    for k in range(first, min(last, found.shape[0] // 2)):
+        p = found[2 * k + 1]
+        for axis in range(2):
+            state.position[p, axis] = good.position[p, axis]
+        state.angle[p], state.mass[p] = good.angle[p], good.mass[p]
+        state.radius[p], state.gravity_scale[p] = good.radius[p], good.gravity_scale[p]
+        state.friction[p], state.restitution[p] = good.friction[p], good.restitution[p]
+        state.rolling[p] = good.rolling[p]
+        pin(state, p)
+    return last
+
+
+@inner_kernel
+def _take_back(values: Floats, good: Floats, within: Floats, found: Slots, first: int) -> int:
+    last = _find(values, within, found, first)
+    for k in range(first, min(last, found.shape[0] // 2)):
+        values[found[2 * k + 1]] = good[found[2 * k + 1]]
+    return last
+
+
+@inner_kernel
+def _take_back_rows(values: FloatRows, good: FloatRows, within: Floats, found: Slots, first: int) -> int:
+    last = _find_rows(values, within, found, first)
+    for k in range(first, min(last, found.shape[0] // 2)):
+        for axis in range(2):
+            values[found[2 * k + 1], axis] = good[found[2 * k + 1], axis]
+    return last
+
+
+@inner_kernel
+def contain_motion(state: State, good: GoodValues, ranges: Ranges, found: Slots, count: int) -> int:
+    """Look for impossible values among all that a tick moves; how many are found, with `count` before."""
+    n = _freeze(state, good, found, count, _find_rows(state.position, ranges.position, found, count))
+    n = _freeze(state, good, found, n, _find_rows(state.velocity, ranges.velocity, found, n))
+    n = _freeze(state, good, found, n, _find(state.angle, ranges.angle, found, n))
+    return _freeze(state, good, found, n, _find(state.spin, ranges.spin, found, n))
+
+
+@inner_kernel
+def _contain_particles(state: State, good: GoodValues, ranges: Ranges, found: Slots, count: int) -> int:
+    n = _freeze(state, good, found, count, _find(state.mass, ranges.mass, found, count))
+    n = contain_motion(state, good, ranges, found, n)
+    n = _freeze(state, good, found, n, _find(state.inverse_mass, ranges.inverse_mass, found, n))
+    n = _freeze(state, good, found, n, _find(state.radius, ranges.radius, found, n))
+    n = _freeze(state, good, found, n, _find(state.gravity_scale, ranges.gravity_scale, found, n))
+    n = _freeze(state, good, found, n, _find(state.friction, ranges.friction, found, n))
+    n = _freeze(state, good, found, n, _find(state.restitution, ranges.restitution, found, n))
+    return _freeze(state, good, found, n, _find(state.rolling, ranges.rolling, found, n))
+
+
+@inner_kernel
+def _contain_constants(state: State, good: GoodValues, ranges: Ranges, found: Slots, count: int) -> int:
+    # Those of springs, constraints and corners.
+    n = _take_back(state.rest_length, good.rest_length, ranges.rest_length, found, count)
+    n = _take_back(state.stiffness, good.stiffness, ranges.stiffness, found, n)
+    n = _take_back(state.damping, good.damping, ranges.damping, found, n)
+    n = _take_back(state.hooke_stiffness, good.hooke_stiffness, ranges.hooke_stiffness, found, n)
+    n = _take_back(state.hooke_damping, good.hooke_damping, ranges.hooke_damping, found, n)
+    n = _take_back(state.lowest_mode, good.lowest_mode, ranges.lowest_mode, found, n)
+    n = _take_back_rows(state.constraint_rest, good.constraint_rest, ranges.constraint_rest, found, n)
+    n = _take_back(state.constraint_stiffness, good.constraint_stiffness, ranges.constraint_stiffness, found, n)
+    n = _take_back(state.constraint_damping, good.constraint_damping, ranges.constraint_damping, found, n)
+    n = _take_back(state.constraint_lowest_mode, good.constraint_lowest_mode, ranges.constraint_lowest_mode, found, n)
+    n = _take_back(state.corner_weight, good.corner_weight, ranges.corner_weight, found, n)
+    return _take_back_rows(state.corner_form, good.corner_form, ranges.corner_form, found, n)
+
+
+@inner_kernel
+def contain(state: State, good: GoodValues, ranges: Ranges, impulse: FloatRows, impact: Floats, found: Slots) -> int:
+    """Look for impossible values among all that a tick begins with, impulses of contacts too; how many are found."""
+    count = _find(impact, ranges.contact_impact, found, _find_rows(impulse, ranges.contact_impulse, found, 0))
+    for k in range(min(count, found.shape[0] // 2)):
+        contact = found[2 * k + 1]
+        impulse[contact, 0] = impulse[contact, 1] = impact[contact] = 0.0
+    count = _contain_particles(state, good, ranges, found, count)
+    return _contain_constants(state, good, ranges, found, count)
+
+
+@inner_kernel
+def keep_motion(state: State, good: GoodValues) -> None:
+    """Keep what a tick has moved as good."""
     for p in range(state.position.shape[0]):
         for axis in range(2):
             good.position[p, axis] = state.position[p, axis]
             good.velocity[p, axis] = state.velocity[p, axis]
         good.angle[p] = state.angle[p]
         good.spin[p] = state.spin[p]
-    return True
-
-
-def contain_inputs(world: World) -> None:
-    """Before a tick: take back impossible values that code outside the physics has written."""
-    for name in ("contact_impulse", "contact_impact"):
-        values = getattr(world, name)
-        for slot in np.flatnonzero(_outside(values, -ABSURD)).tolist():
-            values[slot] = 0.0
-            world.contained.append(Containment(world.tick, name, slot_name(world, name, slot), frozen=False))
-    for name in ("mass", *MOTION, "inverse_mass", *_CONSTANTS_OF_PARTICLES):
-        values = getattr(world, name)
-        lowest = -ABSURD if name in (*MOTION, "gravity_scale") else 0.0
-        highest = 1.0 if name in ("restitution", "rolling") else ABSURD
-        bad = _outside(values, lowest, highest) | ((values == 0.0) if name == "mass" else False)
-        _freeze(world, bad, name)
-    for column in _CONSTANTS:
-        name, stored = column.name, column.stored
-        lowest = -ABSURD if column.width > 1 else 0.0
-        highest = 1.0 if name.endswith(("stiffness", "damping")) and "hooke" not in name else ABSURD
-        for slot in np.flatnonzero(_outside(getattr(world, name), lowest, highest)).tolist():
-            world.change(name, world.good[name][slot], slot)
-            owner = slot_name(world, stored, slot)
-            world.contained.append(Containment(world.tick, stored, owner, frozen=False))
-
-
-def contain_outcome(world: World) -> None:
-    """After a tick: take back values that the tick itself made impossible, and keep the others as the last good
-    ones.
-    """
-    for name in MOTION:
-        _freeze(world, _outside(getattr(world, name), -ABSURD), name)
-    for name in MOTION:
-        world.good[name][:] = getattr(world, name)
-
-
-def _outside(values: NDArray[np.float64], lowest: float, highest: float = ABSURD) -> NDArray[np.bool_]:
-    """Rows (n,) that hold a value outside lowest..highest, or NaN."""
-    inside = (values >= lowest) & (values <= highest)
-    return ~(np.logical_and.reduce(inside, axis=1) if inside.ndim == 2 else inside)
-
-
-def _freeze(world: World, bad: NDArray[np.bool_], array: str) -> None:
-    for slot in np.flatnonzero(bad).tolist():
-        world.freeze(slot)
-        world.contained.append(Containment(world.tick, array, world.particle_names[slot], frozen=True))

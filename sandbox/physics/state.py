@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.arrays import ArrayKind
+from sandbox.physics.arrays import ArrayKind, Floats
 from sandbox.physics.terrain import Terrain
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -20,6 +20,32 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 # Rolling resistance, unless somebody says otherwise: a torque of at most this share of the push times the radius. Less
 # lets a disc in a heap turn for ever; ten times as much is seen on a slope of 10 degrees.
 ROLLING_RESISTANCE = 1e-3
+
+
+# Larger than anything that a level or a command can ask for (1e6 m, 1e9 m/s, 1e9 kg, 1e15 N/m), and small enough that
+# energies stay finite; a mistuned spring that passes it is frozen there.
+ABSURD = 1e18
+
+
+@dataclass(frozen=True)
+class Range:
+    """Good values: from low, or only above it, to high. NaN is never one."""
+
+    low: float
+    high: float
+    is_above: bool = False
+
+    @property
+    def lowest(self) -> float:
+        """The lowest good value."""
+        return float(np.nextafter(self.low, self.high)) if self.is_above else self.low
+
+    def __str__(self) -> str:
+        return f"above {self.low:g} to {self.high:g}" if self.is_above else f"{self.low:g} to {self.high:g}"
+
+
+FINITE, POSITIVE, NOT_NEGATIVE = Range(-ABSURD, ABSURD), Range(0.0, ABSURD, is_above=True), Range(0.0, ABSURD)
+SHARE = Range(0.0, 1.0)
 
 
 class Family(Enum):
@@ -44,10 +70,11 @@ class Family(Enum):
 class Column:
     """A line of the table. stored: the name in files, hashes and messages; name: the attribute in code.
 
-    width: numbers a row, 1 = a flat array (n,), 2 = (n, 2). guarded: the last good values are kept, and taken back where
-    the present ones are absurd (sanitise.py). topology: solvers and collision derive from it what they keep from step
-    to step (World.derived), so that it is only written by methods of World. sparse: no part of the state where all of
-    it is `usual`, so that worlds without what it is for have the hashes that they had before there was such a thing.
+    width: numbers a row, 1 = a flat array (n,), 2 = (n, 2). within: its good values, None = nobody looks. guarded: the
+    last good values are kept, and taken back where the present ones are not (sanitise.py). topology: solvers and
+    collision derive from it what they keep from step to step (World.derived), so that it is only written by methods of
+    World. sparse: no part of the state where all of it is `usual`, so that worlds without what it is for have the
+    hashes that they had before there was such a thing.
     """
 
     stored: str
@@ -56,6 +83,7 @@ class Column:
     unit: str
     meaning: str
     width: int
+    within: Range | None
     guarded: bool
     topology: bool
     sparse: bool
@@ -83,13 +111,14 @@ def _array(
     meaning: str,
     *,
     width: int = 1,
+    within: Range | None = None,
     guarded: bool = False,
     topology: bool = False,
     sparse: bool = False,
     usual: float = 0,
 ) -> NDArray[Scalar]:
     """A line of the table, which a type checker takes for the array that an instance holds under that name."""
-    return cast(Any, Column(stored, family, dtype, unit, meaning, width, guarded, topology, sparse, usual))
+    return cast(Any, Column(stored, family, dtype, unit, meaning, width, within, guarded, topology, sparse, usual))
 
 
 P, S, E, C, A, T, H, G, R, N, B, L, K = Family
@@ -105,44 +134,44 @@ class StateArrays:
 
     # fmt: off
     # ruff: noqa: E501
-    position = _array("position", P, F64, "m", "its place", width=2, guarded=True)
-    velocity = _array("velocity", P, F64, "m/s", "its velocity; 0 if pinned, except the target of a hand", width=2, guarded=True)
+    position = _array("position", P, F64, "m", "its place", width=2, within=FINITE, guarded=True)
+    velocity = _array("velocity", P, F64, "m/s", "its velocity; 0 if pinned, except the target of a hand", width=2, within=FINITE, guarded=True)
     origin = _array("origin", P, F64, "m", "its place at creation, which orders the elimination of the direct solver", width=2, topology=True)
-    mass = _array("mass", P, F64, "kg", "its mass, pinned or not", guarded=True)
-    inverse_mass = _array("inverse_mass", P, F64, "1/kg", "inverse of the mass; 0 = pinned", topology=True)
-    radius = _array("radius", P, F64, "m", "radius of its disc", guarded=True)
-    gravity_scale = _array("gravity_scale", P, F64, "1", "factor of the world's gravity", guarded=True)
+    mass = _array("mass", P, F64, "kg", "its mass, pinned or not", within=POSITIVE, guarded=True)
+    inverse_mass = _array("inverse_mass", P, F64, "1/kg", "inverse of the mass; 0 = pinned", within=NOT_NEGATIVE, topology=True)
+    radius = _array("radius", P, F64, "m", "radius of its disc", within=NOT_NEGATIVE, guarded=True)
+    gravity_scale = _array("gravity_scale", P, F64, "1", "factor of the world's gravity", within=FINITE, guarded=True)
     particle_active = _array("particle_active", P, BOOL, "", "whether its slot is in use", topology=True)
     slow_velocity = _array("slow_velocity", P, F64, "m/s", "the slow component of the velocity, for the direct solver", width=2)
     energy_bank = _array("energy_bank", P, F64, "J", "energy bank of a body, at its free particle of lowest slot; -1: a new bank begins, -2: a new bank begins empty")
-    friction = _array("friction", P, F64, "1", "friction of its surface; at a contact the geometric mean of both counts", guarded=True)
-    restitution = _array("restitution", P, F64, "1", "restitution of its surface; at a contact the larger one counts", guarded=True)
+    friction = _array("friction", P, F64, "1", "friction of its surface; at a contact the geometric mean of both counts", within=NOT_NEGATIVE, guarded=True)
+    restitution = _array("restitution", P, F64, "1", "restitution of its surface; at a contact the larger one counts", within=SHARE, guarded=True)
     owner = _array("owner", P, I32, "", "its body; negative: of a body that is named by its first particle p, -1 - p: a loose particle, or a piece that was cut off", topology=True)
     group = _array("group", P, I64, "", "its collision group, one bit", topology=True)
     collides = _array("collides", P, I64, "", "bits of the groups that it touches, TERRAIN_GROUP for terrain, 0 = nothing", topology=True)
     parting_reserve = _array("parting_reserve", P, F64, "J", "energy that a body has lost and may spend on parting from others, at its free particle of lowest slot; negative: what it was lent", sparse=True)
-    angle = _array("angle", P, F64, "rad", "angle of its disc, -pi..pi; it is only shown", guarded=True, sparse=True)
-    spin = _array("spin", P, F64, "rad/s", "turning rate of its disc; 0 while springs, constraints or a pin hold it", guarded=True, sparse=True)
+    angle = _array("angle", P, F64, "rad", "angle of its disc, -pi..pi; it is only shown", within=FINITE, guarded=True, sparse=True)
+    spin = _array("spin", P, F64, "rad/s", "turning rate of its disc; 0 while springs, constraints or a pin hold it", within=FINITE, guarded=True, sparse=True)
     rolls = _array("rolls", P, BOOL, "", "whether its disc turns while nothing holds it", sparse=True, usual=True)
-    rolling = _array("rolling", P, F64, "1", "rolling resistance; at a contact of discs the larger one counts", guarded=True, sparse=True, usual=ROLLING_RESISTANCE)
+    rolling = _array("rolling", P, F64, "1", "rolling resistance; at a contact of discs the larger one counts", within=SHARE, guarded=True, sparse=True, usual=ROLLING_RESISTANCE)
     slow_change = _array("slow_change", P, F64, "m/s", "the slow component of the change of slow_velocity in a step, for the direct solver", width=2, sparse=True)
     unmoved = _array("unmoved", P, BOOL, "", "whether it has not taken a step yet: its velocity is that of the tick, not of half a step before", sparse=True)
 
     particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True)
     particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True)
-    rest_length = _array("rest_length", S, F64, "m", "length at which it neither pulls nor pushes", guarded=True)
+    rest_length = _array("rest_length", S, F64, "m", "length at which it neither pulls nor pushes", within=NOT_NEGATIVE, guarded=True)
     natural_length = _array("natural_length", S, F64, "m", "its first rest length, before yielding and driving")
-    stiffness = _array("stiffness", S, F64, "1", "Cs of a tick", guarded=True)
-    damping = _array("damping", S, F64, "1", "Cd of a tick", guarded=True)
+    stiffness = _array("stiffness", S, F64, "1", "Cs of a tick", within=SHARE, guarded=True)
+    damping = _array("damping", S, F64, "1", "Cd of a tick", within=SHARE, guarded=True)
     law = _array("law", S, I8, "", "LAW_NISSEN, LAW_HOOKE or LAW_HAND", topology=True)
-    hooke_stiffness = _array("hooke_stiffness", S, F64, "N/m", "k of a Hooke spring", guarded=True)
-    hooke_damping = _array("hooke_damping", S, F64, "N s/m", "c of a Hooke spring", guarded=True)
+    hooke_stiffness = _array("hooke_stiffness", S, F64, "N/m", "k of a Hooke spring", within=NOT_NEGATIVE, guarded=True)
+    hooke_damping = _array("hooke_damping", S, F64, "N s/m", "c of a Hooke spring", within=NOT_NEGATIVE, guarded=True)
     material = _array("material", S, I32, "", "index into material_names, -1 = of a hand", topology=True)
     spring_active = _array("spring_active", S, BOOL, "", "whether it acts; false: cut, broken, or of a hand that holds nothing", topology=True)
     impulse = _array("impulse", S, F64, "N s", "impulse for the warm start of the iterative solver", width=2)
     tension = _array("tension", S, F64, "N s", "its pulling impulse of the last step, with \"auto\" substeps of the whole tick, for the direct solver")
     edge = _array("edge", S, I8, "", "kind of edge for collisions: none, a line of two sides, or the outline of a solid body on its left or right", topology=True)
-    lowest_mode = _array("lowest_mode", S, F64, "1", "lowest mode of the body whose firmness sets its Cs and Cd; 0: they are its own", guarded=True, sparse=True)
+    lowest_mode = _array("lowest_mode", S, F64, "1", "lowest mode of the body whose firmness sets its Cs and Cd; 0: they are its own", within=NOT_NEGATIVE, guarded=True, sparse=True)
     stiffness_now = _array("stiffness_now", S, F64, "1", "Cs of the last tick, while it comes to what is set", sparse=True)
     damping_now = _array("damping_now", S, F64, "1", "Cd of the last tick, while it comes to what is set", sparse=True)
     lowest_mode_now = _array("lowest_mode_now", S, F64, "1", "lowest_mode of the last tick, while Cs and Cd come to what is set", sparse=True)
@@ -152,12 +181,12 @@ class StateArrays:
     constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
     constraint_first = _array("element_first", E, I32, "corner", "index of its first corner", topology=True)
     constraint_corners = _array("element_corners", E, I32, "", "number of its corners", topology=True)
-    constraint_rest = _array("element_rest", E, F64, "m^2 or 1", "wanted area and area of the form; or cosine and sine of the angle at rest", width=2, guarded=True)
-    constraint_stiffness = _array("element_stiffness", E, F64, "1", "Cs of a tick", guarded=True)
-    constraint_damping = _array("element_damping", E, F64, "1", "Cd of a tick", guarded=True)
+    constraint_rest = _array("element_rest", E, F64, "m^2 or 1", "wanted area and area of the form; or cosine and sine of the angle at rest", width=2, within=FINITE, guarded=True)
+    constraint_stiffness = _array("element_stiffness", E, F64, "1", "Cs of a tick", within=SHARE, guarded=True)
+    constraint_damping = _array("element_damping", E, F64, "1", "Cd of a tick", within=SHARE, guarded=True)
     constraint_material = _array("element_material", E, I32, "", "index into material_names, -1 = Cs and Cd of its own")
     constraint_active = _array("element_active", E, BOOL, "", "whether it acts; false once a spring along its sides is cut or broken", topology=True)
-    constraint_lowest_mode = _array("element_lowest_mode", E, F64, "1", "as lowest_mode of a spring", guarded=True, sparse=True)
+    constraint_lowest_mode = _array("element_lowest_mode", E, F64, "1", "as lowest_mode of a spring", within=NOT_NEGATIVE, guarded=True, sparse=True)
     constraint_stiffness_now = _array("element_stiffness_now", E, F64, "1", "as stiffness_now of a spring", sparse=True)
     constraint_damping_now = _array("element_damping_now", E, F64, "1", "as damping_now of a spring", sparse=True)
     constraint_lowest_mode_now = _array("element_lowest_mode_now", E, F64, "1", "as lowest_mode_now of a spring", sparse=True)
@@ -166,16 +195,16 @@ class StateArrays:
     constraint_area_ticks = _array("element_area_ticks", E, I32, "tick", "ticks until the wanted area is what is set; 0: it is", sparse=True)
 
     corner_particle = _array("corner_particle", C, I32, "slot", "particle of the corner", topology=True)
-    corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "square of its gradient, at rest", guarded=True)
-    corner_form = _array("corner_form", C, F64, "m", "its place in the form at rest", width=2, guarded=True, topology=True)
+    corner_weight = _array("corner_weight", C, F64, "m^2 or 1/m^2", "square of its gradient, at rest", within=NOT_NEGATIVE, guarded=True)
+    corner_form = _array("corner_form", C, F64, "m", "its place in the form at rest", width=2, within=FINITE, guarded=True, topology=True)
 
     actuator_value = _array("part_value", A, F64, "1", "its drive value, -1..1")
     actuator_impulse = _array("part_impulse", A, F64, "N m s", "impulse of a motor in the last step, with \"auto\" substeps of the whole tick", sparse=True)
 
     contact_particle = _array("contact_particle", T, I32, "slot", "the particle of a contact of the last step")
     contact_feature = _array("contact_feature", T, I64, "", "what the particle touched (contacts.py)")
-    contact_impulse = _array("contact_impulse", T, F64, "N s", "impulse along and across the contact", width=2)
-    contact_impact = _array("contact_impact", T, F64, "N s", "impulse of its impacts along the contact in the last tick, not part of `contact_impulse`; for sounds and pictures", sparse=True)
+    contact_impulse = _array("contact_impulse", T, F64, "N s", "impulse along and across the contact", width=2, within=FINITE)
+    contact_impact = _array("contact_impact", T, F64, "N s", "impulse of its impacts along the contact in the last tick, not part of `contact_impulse`; for sounds and pictures", within=FINITE, sparse=True)
 
     hand_strength = _array("hand_strength", H, F64, "m/s^2", "largest force divided by the mass of the body; 0: it holds nothing", sparse=True)
     hand_radius = _array("hand_radius", H, F64, "m", "particles of the body within this distance of the grabbed one share the force; 0: only the grabbed one bears it", sparse=True)
@@ -209,6 +238,7 @@ ALWAYS_STORED: frozenset[str] = frozenset(column.stored for column in COLUMNS if
 TOPOLOGY: tuple[Column, ...] = tuple(column for column in COLUMNS if column.topology)
 MOVING: tuple[Column, ...] = tuple(column for column in COLUMNS if not column.topology)
 GUARDED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.guarded)
+CHECKED: tuple[Column, ...] = tuple(column for column in COLUMNS if column.within)
 # The fields of State. A step's contacts lie elsewhere, with room for more.
 STATE_FIELDS: tuple[str, ...] = tuple(column.name for column in COLUMNS if column.family is not Family.CONTACT)
 
@@ -222,9 +252,17 @@ if TYPE_CHECKING:
     class GoodValues(StateArrays):
         """The last good values of a world's guarded arrays, as kernels take them."""
 
+    class Ranges(StateArrays):
+        """Of each array that is looked at the lowest and the highest good value, and its place among all columns."""
+
 else:
     State = NamedTuple("State", [*((name, BY_NAME[name].kind) for name in STATE_FIELDS), ("terrain", Terrain)])
     GoodValues = NamedTuple("GoodValues", [(column.name, column.kind) for column in GUARDED])
+    Ranges = NamedTuple("Ranges", [(column.name, Floats) for column in CHECKED])
+
+RANGES: Ranges = cast(Any, Ranges)(
+    *(np.array([each.within.lowest, each.within.high, COLUMNS.index(each)]) for each in CHECKED if each.within)
+)
 
 
 def state_of(world: Any) -> State:
@@ -245,14 +283,16 @@ def reference() -> str:
         "# State arrays",
         "",
         "Every array of a world's state, in the order in which it is hashed and stored. Names are those of files and",
-        "messages. Made by `python -m sandbox.physics.state > docs/state.md`.",
+        "messages. A tick takes back what is out of its range, or NaN. Made by",
+        "`python -m sandbox.physics.state > docs/state.md`.",
     ]
     for family in Family:
         lines += ["", f"## One row for each {family.value}", ""]
-        lines += ["| name | type | unit | meaning |", "|---|---|---|---|"]
+        lines += ["| name | type | unit | range | meaning |", "|---|---|---|---|---|"]
         for column in FAMILIES[family]:
             kind = np.dtype(column.dtype).name + (f", {column.width} a row" if column.width > 1 else "")
-            lines.append(f"| `{column.stored}` | {kind} | {column.unit} | {column.meaning} |")
+            within = "" if column.within is None else str(column.within)
+            lines.append(f"| `{column.stored}` | {kind} | {column.unit} | {within} | {column.meaning} |")
     return "\n".join(lines) + "\n"
 
 

@@ -1,10 +1,10 @@
 """step(world): one tick. A kernel does it (pipeline/tick.py); what is rare is answered here."""
 
+from sandbox.physics.containment import contain
 from sandbox.physics.pipeline.block import BROKEN, CHECKED
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.judge import judge
 from sandbox.physics.pipeline.tick import BROKE, LOST, NO_ROOM, UNSOUND, find_broken, tick
-from sandbox.physics.sanitise import contain_inputs, contain_outcome
 from sandbox.physics.world import World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
@@ -27,7 +27,7 @@ def step(world: World) -> None:
         if code == NO_ROOM:
             block.grow()
         else:
-            contain_inputs(world)
+            contain(world, block.pointer, UNSOUND)
             block = block_of(world)
             block.begin(world)
             # What was good is not always: nothing is looked at twice.
@@ -37,7 +37,7 @@ def step(world: World) -> None:
     world.may_fly = False
     world.end_tick()
     if code == LOST:
-        contain_outcome(world)
+        contain(world, block.pointer, LOST)
         code = BROKE if find_broken(block.pointer) else code
     if code == BROKE:
         world.break_springs(block.given.limits.broken[: block.given.progress[BROKEN]].copy())

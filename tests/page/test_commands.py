@@ -65,7 +65,6 @@ BAD: dict[str, list[dict[str, Any]]] = {
     "release": [{"grab": value} for value in (-1, 0, 9, 10, 1.5, NAN, None, "1", True)],
     "pin": [{"particle": value} for value in ("no", "+hand.1", 0, -1, None, "FREE.1", NAN, True, {})],
     "unpin": [{"particle": value} for value in ("no", "+hand.1", 0, -1, None, "FREE.2", NAN, True, [])],
-    "freeze": [{"particle": value} for value in ("FREE.2", "no", 0, -1, None, NAN, True, [])],
     "cut_springs": [
         {"springs": value}
         for value in (["SPRING.1", "no"], ["SPRING.1", "SPRING.0"], ["+hand.1"], [0], "SPRING.1", None, [None], NAN)
@@ -155,7 +154,7 @@ def records_with_one_fault() -> list[dict[str, Any]]:
 def any_records(count: int) -> list[Any]:
     """Records of all types: right ones, ones with fields left out, changed or added, and what is no record."""
     chance, found = random.Random(5), []
-    inner = ("freeze", "break_springs", "part_bodies")
+    inner = ("break_springs", "part_bodies")
     types = [*GOOD, *GOOD, *COMMAND_TYPES, *inner, "nothing", "Grab", "constructor", "toString"]
     found += [None, [], {}, 5, NAN, "grab", True, {"type": None}, {"type": 5}, {"type": ["grab"]}, {"kind": "grab"}]
     while len(found) < count:
@@ -223,7 +222,6 @@ def test_the_kernel_itself_refuses_slots_that_are_not_there_in_pages(tmp_path):
     hands = [-1, 10, 11, 10**6, 2**31]
     tried = [
         *({"type": kind, "particle": slot} for kind in ("pin", "unpin") for slot in beyond),
-        *({"type": "freeze", "particle": slot} for slot in beyond if slot != world.grab_particle),
         *(
             {"type": "grab", "grab": 3, "particle": slot, "target": point, "strength": 1, "radius": 0}
             for slot in beyond
@@ -257,4 +255,4 @@ def test_each_command_that_pages_carry_out_is_tried_with_each_of_its_fields():
 
 def test_there_are_eight_bad_values_and_more_of_every_kind():
     assert all(len(each) >= 8 for each in BAD.values())
-    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {"freeze", "break_springs", "part_bodies"}
+    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {"break_springs", "part_bodies"}

@@ -10,8 +10,12 @@ from tests.page.opened import opened
 from tests.support.rules_level import answering
 from tests.test_documentation import ROOT
 
-SHOWN = "[...document.querySelectorAll('#goal, #score, #end-card')].filter((each) => !each.hidden).map((each) => each.id)"
-UNTIL_END = """new Promise((resolve) => page.toy.addEventListener('outcome', () => setTimeout(() => resolve(true), 100)))"""
+SHOWN = (
+    "[...document.querySelectorAll('#goal, #score, #end-card')].filter((each) => !each.hidden).map((each) => each.id)"
+)
+UNTIL_END = (
+    """new Promise((resolve) => page.toy.addEventListener('outcome', () => setTimeout(() => resolve(true), 100)))"""
+)
 
 
 def text_of(tab: Tab, chosen: str) -> str:
@@ -26,7 +30,9 @@ def test_a_level_without_rules_shows_nothing_of_goals(browser: Browser, tmp_path
     assert tab.evaluate(SHOWN) == []
 
 
-def test_a_win_comes_up_as_a_card_with_its_stars_and_undoing_time_takes_it_away(browser: Browser, tmp_path: Path) -> None:
+def test_a_win_comes_up_as_a_card_with_its_stars_and_undoing_time_takes_it_away(
+    browser: Browser, tmp_path: Path
+) -> None:
     tab = opened(browser, tmp_path, page_of(answering(goal="Bring the ball into the basket")))
     assert text_of(tab, "#goal") == "Bring the ball into the basket"
     assert tab.evaluate(UNTIL_END)

@@ -7,12 +7,17 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from sandbox import load_level
 from sandbox.app.share.playing import playable
+from sandbox.page.about import array_path
 from sandbox.page.page import KERNELS
 from sandbox.physics.snapshot import state_hash
+from sandbox.physics.state import BY_NAME, COLUMNS
+from sandbox.physics.step import step
+from sandbox.physics.world import World
 from sandbox.replay import read_replay, verify
 from sandbox.session.check_run import run_checks
 from sandbox.session.outcome import outcome
@@ -23,8 +28,10 @@ from tests.support.wants import needs
 
 NODE = shutil.which("node")
 TESTS = Path(__file__).with_name("modules")
-LEVELS = ("rope", "jelly_wheel", "newtons_cradle")
+LEVELS = ("rope", "jelly_wheel", "newtons_cradle", "girder")
 CHECKED = ("newtons_cradle", "rope")
+# A level in which every array with a range has rows, and ticks before a value is spoilt and after that.
+SPOILT, SPOILT_TICKS = "girder", 60
 # Goldens with what was done in them, and so many ticks of each.
 GOLDENS, TICKS = ("rope", "walker", "breaking_bridge", "jelly_wheel"), 240
 
@@ -44,6 +51,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for name in CHECKED
     }
     given = {"goldens": [f"{name}-golden" for name in GOLDENS], "checks": checks, "rules": _rules(made)}
+    given["spoilt"] = {"level": SPOILT, "ticks": SPOILT_TICKS, "tries": spoilt()}
     (made / "given.json").write_text(json.dumps(given), encoding="utf-8")
     return made
 
@@ -61,6 +69,26 @@ def _rules(folder: Path) -> dict[str, Any]:
         won.append(None if found is None else [found.is_won, found.text, found.stars, found.tick])
     keys = {tick: [command.down for command in rules_level.hands(tick)] for tick in range(rules_level.TICKS)}
     return {"hashes": hashes, "outcomes": won, "keys": {tick: downs for tick, downs in keys.items() if downs}}
+
+
+def spoilt() -> list[dict[str, Any]]:
+    """What worlds come to after a value of each array with a range was spoilt, or one of a hand's cursor."""
+    tries: list[dict[str, Any]] = []
+    with_range = [(column, False) for column in COLUMNS if column.within]
+    for column, is_cursor in [*with_range, (BY_NAME["position"], True)]:
+        world = Session(load_level(SPOILT)).world
+        _steps(world)
+        place = column.width * world.grab_particle if is_cursor else 1
+        getattr(world, column.name).reshape(-1)[place] = np.nan
+        _steps(world)
+        assert world.contained, column.name
+        tries.append({"path": array_path(column), "place": place, "hash": state_hash(world)})
+    return tries
+
+
+def _steps(world: World) -> None:
+    for _ in range(SPOILT_TICKS):
+        step(world)
 
 
 def run_in_node(name: str, folder: Path) -> None:

@@ -5,9 +5,13 @@ import sys
 import numpy as np
 import pytest
 
+from sandbox.physics.constraints import AREA
+from sandbox.physics.pipeline.block_owner import block_of
+from sandbox.physics.pipeline.tick import UNSOUND, take_back
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.state import CHECKED, COLUMNS, Family
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.support.contact_scenes import FLOOR, add_discs, add_jelly
@@ -201,3 +205,49 @@ def test_a_tick_ends_even_where_what_was_last_good_is_impossible_too(name, solve
     _steps(world, 3)
     assert world.tick == 5 and world.contained
     assert np.isfinite(world.position).all()
+
+
+def _found(world: World) -> list[tuple[str, int]]:
+    """What is taken back of a world at the beginning of a tick: array and slot of each."""
+    block, arena = block_of(world), np.zeros(100, np.int64)
+    block.begin(world)
+    count = take_back(block.pointer, arena, UNSOUND)
+    return [(COLUMNS[column].name, slot) for column, slot in arena[1 : 1 + 2 * count].reshape(-1, 2).tolist()]
+
+
+@pytest.mark.parametrize("column", CHECKED, ids=[column.name for column in CHECKED])
+def test_the_ends_of_a_range_are_good_and_what_lies_beyond_them_is_taken_back(column):
+    world = contact_world(FLOOR)
+    add_jelly(world, (0.0, 0.2), size=(0.3, 0.3), stiffness=0.05, damping=0.1)
+    last = world.particle_count - 1
+    world.add_constraints(AREA, [[0, 1, last], [1, 2, last]])
+    _steps(world, 20)
+    values, lowest, highest = getattr(world, column.name), column.within.lowest, column.within.high
+    slot, place = 1, (1, 1) if values.ndim == 2 else 1
+    before = float(values[place]) if column.guarded else 0.0
+    for good in (lowest, highest):
+        values[place] = good
+        assert _found(world) == []
+    for bad in (math.nan, math.inf, -math.inf, np.nextafter(lowest, -math.inf), np.nextafter(highest, math.inf)):
+        values[place] = bad
+        assert _found(world) == [(column.name, slot)]
+        assert _found(world) == []
+        if column.name not in ("velocity", "spin"):
+            assert values[place] == before
+        assert (world.inverse_mass[slot] == 0.0) == (column.family is Family.PARTICLE)
+
+
+def test_as_many_values_are_taken_back_as_there_are():
+    world = _net("direct")
+    _steps(world, 3)
+    start = take(world)
+    for column in CHECKED:
+        if column.family is not Family.CONTACT:
+            getattr(world, column.name)[:] = math.nan
+    step(world)
+    restored = [column.name for column in CHECKED if column.guarded and column.name not in ("velocity", "spin")]
+    assert all(np.array_equal(getattr(world, name), start.arrays[name]) for name in restored)
+    particles = [hit.name for hit in world.contained if hit.frozen]
+    assert sorted(particles) == sorted(world.particle_names)
+    springs = [column for column in CHECKED if column.family is Family.SPRING]
+    assert len(world.contained) == len(particles) + len(springs) * world.spring_count

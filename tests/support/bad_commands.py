@@ -49,7 +49,6 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "release": ("release", (0,), (HANDS,)),
     "pin": ("pin", (0,), (PARTICLES,)),
     "unpin": ("unpin", (1,), (PARTICLES,)),
-    "freeze": ("freeze", (0,), ((14, *_BEYOND, *_NO_WHOLE_NUMBER),)),
     "cut_springs": ("cut", ([0, 1],), (LISTS,)),
     "break_springs": ("break_springs", ([0, 1],), (LISTS,)),
     "part_bodies": (part_bodies, ([0, 1],), (LISTS,)),

@@ -109,10 +109,6 @@ export interface Commands {
     type: 'unpin';
     particle: number;
   };
-  freeze: {
-    type: 'freeze';
-    particle: number;
-  };
   cut_springs: {
     type: 'cut_springs';
     springs: number[];

@@ -73,7 +73,6 @@ export interface About {
   solvers: string[];
   hands: { particle: number; spring: number; count: number };
   area: number;
-  absurd: number;
   columns: Column[];
   topology: string[];
   kept: string[];

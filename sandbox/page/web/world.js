@@ -16,9 +16,6 @@ const DERIVATIONS = ['derive_topology', 'derive_hands', 'make_room'], FIRST_AREN
 const HANDS = ['derive_hands'], ROOM = ['make_room'];
 const CONTACTS = /** @type {const} */ (['collisions.kept.particle', 'collisions.kept.feature',
   'collisions.kept.impulse', 'collisions.kept.impact']);
-// What a tick moves.
-const MOTION = /** @type {const} */ (['position', 'velocity', 'angle', 'spin']);
-const IMPULSES = /** @type {const} */ (['collisions.kept.impulse', 'collisions.kept.impact']);
 // Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
 const ARGUMENTS = 64, RECORD = 16, NONE = new Float64Array();
 const MOST_STARS = 3;
@@ -156,15 +153,14 @@ export class World {
     while (code === NO_ROOM || code === UNSOUND) {
       if (code === NO_ROOM) this.#derive(ROOM);
       else {
-        this.#contain();
+        this.#takeBack(code);
         this.view('progress')[CHECKED] = 1n;
       }
       code = this.#call('tick', this.#block);
     }
     this.time += 1;
     if (code === LOST) {
-      this.#contain();
-      for (const name of MOTION) this.view(`good.${name}`).set(this.view(`state.${name}`));
+      this.#takeBack(code);
       code = this.#call('find_broken', this.#block) ? BROKE : code;
     }
     this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number)
@@ -230,19 +226,11 @@ export class World {
     return found;
   }
 
-  // Quarantine, as sanitise.py has it: impulses that no physics gives are begun again, and a particle whose motion is
-  // such gets its last good one back and is frozen.
-  #contain() {
-    /** @type {(value: number) => boolean} */
-    const isOutside = (value) => !(Math.abs(value) <= this.#about.absurd);
-    for (const path of IMPULSES) this.view(path).forEach((value, k, all) => {
-      if (isOutside(value)) all[k] = 0;
-    });
-    const lost = this.particles.filter((p) => MOTION.some((name) => {
-      const values = this.view(`state.${name}`), width = values.length / this.view('state.mass').length;
-      return values.subarray(width * p, width * (p + 1)).some(isOutside);
-    }));
-    for (const particle of lost) this.command({ type: 'freeze', particle });
+  /** Take back what a tick has said of that no physics gives it, see sanitise.py.
+   * @type {(code: number) => void} */
+  #takeBack(code) {
+    this.#inArena('take_back', code);
+    this.#derive(DERIVATIONS);
   }
 
   /** Carry out what was done: a command, or what it changes where no kernel carries it out.

@@ -1,6 +1,6 @@
 """The world block: all arrays of a world and of its steps as one structure, which kernels take as one pointer."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.breaking import MaterialLimits
@@ -16,7 +16,7 @@ from sandbox.physics.solvers.direct.system import System
 from sandbox.physics.solvers.iterative import Iteration
 from sandbox.physics.solvers.linear.elimination import Tuning
 from sandbox.physics.solvers.single_pass import ExplicitPass
-from sandbox.physics.state import GoodValues, State
+from sandbox.physics.state import GoodValues, Ranges, State
 from sandbox.physics.untangling.triangle_clamp import WorldTriangles
 
 # Places in `plan`: the first particle and the first spring of a hand, or -1; then what topology decides: whether
@@ -31,10 +31,10 @@ TICK, MAY_FLY, COUNT, DONE, BROKEN, CHECKED, PROGRESS = range(7)
 class Coefficients(NamedTuple):
     """Cs and Cd of springs (m,) and constraints (t,) in a substep, where they are not those of a tick."""
 
-    stiffness: Floats
-    damping: Floats
-    constraint_stiffness: Floats
-    constraint_damping: Floats
+    stiffness: Annotated[Floats, "springs"]
+    damping: Annotated[Floats, "springs"]
+    constraint_stiffness: Annotated[Floats, "constraints"]
+    constraint_damping: Annotated[Floats, "constraints"]
 
 
 class WorldBlock(NamedTuple):
@@ -56,6 +56,7 @@ class WorldBlock(NamedTuple):
     limits: MaterialLimits
     tuning: Tuning  # see elimination.py
     rules: Rules
+    ranges: Ranges
     start: FloatRows  # [m/s] (n, 2): velocities before anything acted in a substep
     start_length: Floats  # [m] (m,): rest lengths before drives
     shortest: Floats  # (GRAB_COUNT,): scratch

@@ -30,7 +30,7 @@ from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers.direct.energy_bank import WAYS
 from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.tuning import tuning
-from sandbox.physics.state import good_of, state_of
+from sandbox.physics.state import RANGES, good_of, state_of
 from sandbox.physics.world import World
 
 
@@ -58,6 +58,7 @@ class BlockOwner:
             plan=np.zeros(PLANNED, np.int64),
             progress=np.zeros(PROGRESS, np.int64),
             wanted=np.zeros(WANTED, np.int64),
+            ranges=RANGES,
             collisions=with_empty(Collisions, counts=np.zeros(COUNTED, np.int64)),
             workspace=with_empty(IslandWorkspace, ways=np.zeros(WAYS, np.int64)),
         )

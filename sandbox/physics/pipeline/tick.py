@@ -1,5 +1,7 @@
 """A tick as one kernel: its phases on one screen. Their order is part of the replay contract."""
 
+from sandbox.physics.arena import Arena, begin, is_full, new_slots
+from sandbox.physics.arrays import Slots
 from sandbox.physics.breaking import yield_and_break
 from sandbox.physics.collision.belts import load_belts
 from sandbox.physics.driving import drive_springs
@@ -39,7 +41,7 @@ from sandbox.physics.pipeline.collide import (
     store_impulses,
 )
 from sandbox.physics.ramps import begin_ramps, end_ramps
-from sandbox.physics.sanitise import are_sound, keep_if_sound
+from sandbox.physics.sanitise import contain, contain_motion, keep_motion
 from sandbox.physics.settings import (
     DIRECT,
     DRAG,
@@ -77,8 +79,7 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
     state, start, collisions, joints = world.state, world.start, world.collisions, world.joints
     progress, solver, touches = world.progress, world.choices[SOLVER], world.plan[HAS_CONTACTS] != 0
     if progress[COUNT] == 0:
-        kept, count = collisions.kept, collisions.counts[KEPT]
-        if progress[CHECKED] == 0 and not are_sound(state, kept.impulse, kept.impact, count):
+        if progress[CHECKED] == 0 and _contain(world, UNSOUND, progress[:0]) > 0:
             return UNSOUND
         _begin_tick(world)
     h = 1.0 / (world.choices[TICK_RATE] * progress[COUNT])
@@ -106,9 +107,32 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
             end_turns(world.system, state, h)
         progress[DONE] += 1
     _end_tick(world)
-    if not keep_if_sound(state, world.good):
+    if _contain(world, LOST, progress[:0]) > 0:
         return LOST
+    keep_motion(state, world.good)
     return BROKE if _find_broken(world) > 0 else FINISHED
+
+
+@kernel
+def take_back(pointer: Bundle[WorldBlock], arena: Arena, code: int) -> int:
+    """Take back what a tick has said UNSOUND or LOST of; how many values, and in the arena column and slot of each."""
+    world = unpack(pointer)
+    begin(arena)
+    found = new_slots(arena, 2 * _contain(world, code, world.progress[:0]))
+    if is_full(arena):
+        return 0
+    count = _contain(world, code, found)
+    if code == LOST:
+        keep_motion(world.state, world.good)
+    return count
+
+
+@inner_kernel
+def _contain(world: WorldBlock, code: int, found: Slots) -> int:
+    kept, count = world.collisions.kept, world.collisions.counts[KEPT]
+    if code == LOST:
+        return contain_motion(world.state, world.good, world.ranges, found, 0)
+    return contain(world.state, world.good, world.ranges, kept.impulse[:count], kept.impact[:count], found)
 
 
 @kernel

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Refusal } from '../../../sandbox/page/web/commands.js';
 import { canonical } from '../../../sandbox/page/web/world.js';
-import { toy } from './toys.mjs';
+import { GIVEN, toy } from './toys.mjs';
 
 const ticked = (world, count) => {
   for (let k = 0; k < count; k++) world.tick();
@@ -66,6 +66,16 @@ test('a particle whose motion no physics gives is held where it was last', async
   assert.equal(world.view('state.inverse_mass')[30], 0);
   assert.deepEqual([...world.view('state.position').slice(2 * 30, 2 * 30 + 2)], [x, y]);
   assert.ok(world.view('state.position').every(Number.isFinite));
+});
+
+test('a value of any array that no physics gives is taken back to the bits of the desktop', async () => {
+  const { level, ticks, tries } = GIVEN.spoilt, [, fresh] = await toy(level);
+  for (const { path, place, hash } of tries) {
+    const world = fresh();
+    ticked(world, ticks);
+    world.view(path)[place] = NaN;
+    assert.equal(ticked(world, ticks), hash, path);
+  }
 });
 
 test('the bytes of -0 are those of 0', () => {

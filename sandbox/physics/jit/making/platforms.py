@@ -64,6 +64,7 @@ def this_machine() -> Platform:
 # What a page calls: it draws by itself.
 _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.tick.tick",
+    "sandbox.physics.pipeline.tick.take_back",
     "sandbox.physics.pipeline.tick.find_broken",
     "sandbox.physics.pipeline.derive.derive_topology",
     "sandbox.physics.pipeline.derive.derive_hands",

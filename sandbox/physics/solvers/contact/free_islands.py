@@ -4,9 +4,8 @@ The contacts of an island with a particle that a spring or a constraint holds ar
 springs. Contacts of other islands are free.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.collision.types import ENDS, Contacts, weight_of
 from sandbox.physics.components import root_of, united
@@ -17,11 +16,11 @@ from sandbox.physics.topology.sorting import list_by_key
 class Islands(NamedTuple):
     """Islands of a step's contacts, filled in by each step; there is room for more contacts."""
 
-    label: Slots  # (n,): the first particle of its island
-    is_coupled: Flags  # (n,): by label
-    contact_label: Slots  # (k,): by contact, as found
-    first: Slots  # free contacts of the g-th island: first[g]:first[g + 1], as sorted
-    at: Slots  # (n + 2,): scratch
+    label: Annotated[Slots, "particles"]  # the first particle of its island
+    is_coupled: Annotated[Flags, "particles"]  # by label
+    contact_label: Annotated[Slots, "contacts"]  # by contact, as found
+    first: Annotated[Slots, "contacts + 1"]  # free contacts of the g-th island: first[g]:first[g + 1], as sorted
+    at: Annotated[Slots, "particles + 2"]  # scratch
 
 
 @inner_kernel
@@ -85,12 +84,3 @@ def list_contacts(islands: Islands, key: Slots, source: Slots) -> int:
             found += 1
     islands.first[found] = count
     return found
-
-
-@inner_kernel
-def new_islands(particles: int, contacts: int, arena: Arena) -> Islands:
-    """Islands to be filled in, with room for so many contacts."""
-    return Islands(
-        new_slots(arena, particles), new_flags(arena, particles), new_slots(arena, contacts),
-        new_slots(arena, contacts + 1), new_slots(arena, particles + 2),
-    )  # fmt: skip
