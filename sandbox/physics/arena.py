@@ -12,6 +12,7 @@ import numpy as np
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, FloatTables, Int32s, SlotRows, Slots
 from sandbox.physics.jit import (
+    ArenaLayout,
     flags_in,
     float_rows_in,
     float_tables_in,
@@ -107,6 +108,10 @@ def new_flags(arena: Arena, rows: int) -> Flags:
 def new_int32s(arena: Arena, rows: int) -> Int32s:
     """Integers of 32 bits (rows,)."""
     return int32s_in(arena, _take(arena, (rows + INT32S_IN_WORD - 1) // INT32S_IN_WORD), rows)
+
+
+# Named tuples, of whose arrays the lengths stand beside the fields.
+new_tuple = ArenaLayout(new_slots, new_slot_rows, new_floats, new_float_rows, new_float_tables, new_flags, new_int32s)
 
 
 def lay_out(entry: Callable[..., Any], pointer: Any, arena: Arena, *arguments: Any) -> Arena:

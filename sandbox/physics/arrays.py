@@ -30,6 +30,25 @@ SlotRows = Annotated[NDArray[np.int64], ArrayKind(np.int64, 2)]
 FloatTables = Annotated[NDArray[np.float64], ArrayKind(np.float64, 3)]
 
 Arrays = TypeVar("Arrays")
+# Of a field: the class of named tuples that lies in it; or what array it is, and the lengths that stand beside it, as
+# text, such as "contacts, 2": sums and products of numbers and names.
+FieldLayout = type | tuple[ArrayKind, str]
+
+
+@functools.cache
+def layout_of(kind: type) -> dict[str, FieldLayout | None]:
+    """What is known of the fields of a named tuple; None: neither."""
+    hints = get_type_hints(kind, include_extras=True)
+    return {name: _layout_of(hint) for name, hint in hints.items()}
+
+
+def _layout_of(hint: Any) -> FieldLayout | None:
+    if isinstance(hint, type) and hasattr(hint, "_fields"):
+        return hint
+    markers = get_args(hint)[1:]
+    kinds = [marker for marker in markers if isinstance(marker, ArrayKind)]
+    lengths = [marker for marker in markers if isinstance(marker, str)]
+    return (kinds[0], lengths[0]) if kinds and lengths else None
 
 
 def with_empty(kind: type[Arrays], **given: Any) -> Arrays:

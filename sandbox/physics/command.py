@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots
+from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots, new_tuple
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.collision.pieces import new_piece_scratch, part
+from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
 from sandbox.physics.keeping.arguments import FARTHEST, HANDS, PARTICLES, PARTS, SPRINGS, no_slot, whole, whole_numbers
@@ -206,7 +206,8 @@ def _cut(state: State, good: GoodValues, springs: Slots, kind: int, arena: Arena
     # of springs have lost others already.
     begin(arena)
     count = state.law.shape[0]
-    gone, pieces = new_flags(arena, count), new_piece_scratch(state, arena)
+    gone = new_flags(arena, count)
+    pieces = new_tuple(PieceScratch, arena, particles=state.owner.shape[0], springs=count)
     start, listed = new_slots(arena, state.owner.shape[0] + 1), new_slots(arena, 2 * count)
     if is_full(arena):
         return NO_ARENA

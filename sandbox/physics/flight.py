@@ -8,9 +8,8 @@ and so in steps of any length. A velocity that somebody gives is that of the tic
 step, unless the body is held or touches something.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_floats, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.components import find_joined
 from sandbox.physics.jit import inner_kernel
@@ -23,20 +22,11 @@ class Flight(NamedTuple):
     their mass [kg] and that times their gravity scale.
     """
 
-    label: Slots
-    stays: Flags
-    members: Slots
-    mass: Floats
-    pulled: Floats
-
-
-@inner_kernel
-def new_flight(particles: int, arena: Arena) -> Flight:
-    """Lay out scratch for a start in flight."""
-    return Flight(
-        new_slots(arena, particles), new_flags(arena, particles), new_slots(arena, particles),
-        new_floats(arena, particles), new_floats(arena, particles),
-    )  # fmt: skip
+    label: Annotated[Slots, "particles"]
+    stays: Annotated[Flags, "particles"]
+    members: Annotated[Slots, "particles"]
+    mass: Annotated[Floats, "particles"]
+    pulled: Annotated[Floats, "particles"]
 
 
 @inner_kernel

@@ -29,11 +29,11 @@ class Pair(NamedTuple):
 
 @pytest.fixture
 def translated(tmp_path, monkeypatch):
-    """A function that translates kernels, of which the last is an entry, and gives the C++ of that one."""
+    """A function that translates kernels, of which the last is an entry, and gives the C++ of that one, or another."""
     monkeypatch.syspath_prepend(str(tmp_path))
     count = 0
 
-    def translate(text):
+    def translate(text, name_of_kernel=""):
         nonlocal count
         count += 1
         name = f"kernels_of_{tmp_path.name}_{count}".replace("-", "_")
@@ -41,7 +41,8 @@ def translated(tmp_path, monkeypatch):
         module = importlib.import_module(name)
         *_, last = [value for value in vars(module).values() if getattr(value, "_kernel", None) is not None]
         whole = Translation([last._kernel]).text()
-        return re.search(rf"static [^\n]* {last._kernel.function.__name__}\(.*?\n}}", whole, re.S)[0]
+        wanted = name_of_kernel or last._kernel.function.__name__
+        return re.search(rf"static [^\n]* {wanted}\(.*?\n}}", whole, re.S)[0]
 
     yield translate
     for name in [name for name in sys.modules if name.startswith("kernels_of_")]:
@@ -116,6 +117,47 @@ def test_what_a_bundle_holds_is_not_copied(translated):
         """
     )
     assert "const Pair &pair = unpack(pointer);" in text and "set_field(pair.values, other);" in text
+
+
+LAID_OUT = """
+from typing import Annotated
+from sandbox.physics.arena import Arena, new_tuple
+
+class Marks(NamedTuple):
+    mark: Annotated[Flags, "nodes"]
+
+class Graph(NamedTuple):
+    start: Annotated[Slots, "nodes + 1"]
+    rows: Annotated[FloatRows, f"{LIMIT} * links, 2"]
+    marks: Marks
+    weight: Floats
+
+@inner_kernel
+def graph_of(weight: Floats, arena: Arena) -> Graph:
+    return new_tuple(Graph, arena, GIVEN)
+
+@kernel
+def gives(weight: Floats, arena: Arena) -> float:
+    return graph_of(weight, arena).weight[0]
+"""
+
+
+def test_arrays_of_a_named_tuple_have_the_lengths_that_stand_beside_them(translated):
+    right = "weight=weight, nodes=weight.shape[0], links=2 * LIMIT"
+    text = translated(LAID_OUT.replace("GIVEN", right), "graph_of")
+    assert text.splitlines()[1] == (
+        "    return Graph{arena::new_slots(arena, weight.shape[0] + 1), "
+        "arena::new_float_rows(arena, 3 * (2 * LIMIT), 2), Marks{arena::new_flags(arena, weight.shape[0])}, "
+        "weight};"
+    )
+    for wrong, why in (
+        ("weight=weight, nodes=weight.shape[0]", "the length links is not given"),
+        ("nodes=1, links=1", "Graph.weight is not given, and has no lengths"),
+        ("weight=1, nodes=1, links=1", "Graph.weight is Array<double, 1>, given int64_t"),
+        ("weight=weight, nodes=1.0, links=1", "new_tuple: rows is int64_t, given double"),
+    ):
+        with pytest.raises(Untranslatable, match=re.escape(why)):
+            translated(LAID_OUT.replace("GIVEN", wrong))
 
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "kernels.md").read_text(encoding="utf-8")

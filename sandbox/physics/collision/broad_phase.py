@@ -6,9 +6,9 @@ what is far away changes nothing.
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slot_rows, new_slots
+from sandbox.physics.arena import Arena, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inner_kernel
@@ -32,9 +32,9 @@ class Boxes(NamedTuple):
     (o,): whether others look for it. filter (n,): the groups that a particle looks for.
     """
 
-    box: FloatRows
-    is_target: Flags
-    filter: Slots
+    box: Annotated[FloatRows, "objects, 4"]
+    is_target: Annotated[Flags, "objects"]
+    filter: Annotated[Slots, "particles"]
 
 
 class Grid(NamedTuple):
@@ -45,19 +45,19 @@ class Grid(NamedTuple):
     number, + 1 in the first column of its cells, + 2 in their first row; object and cell have room for more.
     """
 
-    cells: SlotRows
-    large: Slots
-    start: Slots
-    at: Slots
-    object: Slots
-    cell: Slots
+    cells: Annotated[SlotRows, "objects, 4"]
+    large: Annotated[Slots, "objects"]
+    start: Annotated[Slots, "buckets + 1"]
+    at: Annotated[Slots, "buckets"]
+    object: Annotated[Slots, "entries"]
+    cell: Annotated[Slots, "entries"]
 
 
 class Pairs(NamedTuple):
     """The objects that each particle may touch: other[start[p]:start[p + 1]]; there is room for more."""
 
-    start: Slots
-    other: Slots
+    start: Annotated[Slots, "particles + 1"]
+    other: Annotated[Slots, "room"]
 
 
 class Candidates(NamedTuple):
@@ -249,24 +249,9 @@ def find_pairs(boxes: Boxes, grid: Grid, larges: int, pairs: Pairs) -> int:
 
 
 @inner_kernel
-def new_boxes(particles: int, objects: int, arena: Arena) -> Boxes:
-    """Lay out bounding boxes for a step to fill in."""
-    return Boxes(new_float_rows(arena, objects, 4), new_flags(arena, objects), new_slots(arena, particles))
-
-
-@inner_kernel
 def new_grid(objects: int, entries: int, arena: Arena) -> Grid:
     """A grid for a number of objects, with room for a number of entries."""
     buckets = 16
     while buckets < 4 * objects:
         buckets *= 2
-    return Grid(
-        new_slot_rows(arena, objects, 4), new_slots(arena, objects), new_slots(arena, buckets + 1),
-        new_slots(arena, buckets), new_slots(arena, entries), new_slots(arena, entries),
-    )  # fmt: skip
-
-
-@inner_kernel
-def new_pairs(particles: int, capacity: int, arena: Arena) -> Pairs:
-    """Empty pairs, with room for a number of them."""
-    return Pairs(new_slots(arena, particles + 1), new_slots(arena, capacity))
+    return new_tuple(Grid, arena, objects=objects, buckets=buckets, entries=entries)

@@ -5,9 +5,8 @@ several parts. They would swing about it into each other. A spring that a hinge 
 those that were cut. What would keep no whole triangle then is no lobe, and stays.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_slots
 from sandbox.physics.arrays import Flags, Slots
 from sandbox.physics.collision.sides import AT_LEFT, AT_RIGHT, TRIANGLE_CORNERS, is_whole_triangle
 from sandbox.physics.components import join, root_of
@@ -25,19 +24,10 @@ class LobeScratch(NamedTuple):
     size, tied (n,): whole triangles of a part, and those of them that have the hinge as a corner, by the part's label.
     """
 
-    rims: Slots
-    label: Slots
-    size: Slots
-    tied: Slots
-
-
-@inner_kernel
-def new_lobe_scratch(particles: int, arena: Arena) -> LobeScratch:
-    """Lay out scratch for `let_go`."""
-    return LobeScratch(
-        new_slots(arena, particles), new_slots(arena, particles), new_slots(arena, particles),
-        new_slots(arena, particles),
-    )  # fmt: skip
+    rims: Annotated[Slots, "particles"]
+    label: Annotated[Slots, "particles"]
+    size: Annotated[Slots, "particles"]
+    tied: Annotated[Slots, "particles"]
 
 
 @inner_kernel

@@ -7,12 +7,11 @@ grid that lost a corner, the triangle of its other corners keeps its area from t
 way. All of this is state, and nothing is kept beside it: what restores that joins the pieces again.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Slots
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
-from sandbox.physics.collision.lobes import LobeScratch, let_go, new_lobe_scratch
+from sandbox.physics.collision.lobes import LobeScratch, let_go
 from sandbox.physics.collision.sides import (
     AT_LEFT,
     AT_RIGHT,
@@ -35,22 +34,12 @@ class PieceScratch(NamedTuple):
     has_triangles, has_solids (n,): by first particle of a torn body; beside (m,): AT_LEFT and AT_RIGHT, added up.
     """
 
-    torn: Slots
-    label: Slots
-    has_triangles: Flags
-    has_solids: Flags
-    beside: Slots
+    torn: Annotated[Slots, "particles"]
+    label: Annotated[Slots, "particles"]
+    has_triangles: Annotated[Flags, "particles"]
+    has_solids: Annotated[Flags, "particles"]
+    beside: Annotated[Slots, "springs"]
     lobes: LobeScratch
-
-
-@inner_kernel
-def new_piece_scratch(state: State, arena: Arena) -> PieceScratch:
-    """Lay out scratch for `part`."""
-    particles, springs = state.owner.shape[0], state.spring_active.shape[0]
-    return PieceScratch(
-        new_slots(arena, particles), new_slots(arena, particles), new_flags(arena, particles),
-        new_flags(arena, particles), new_slots(arena, springs), new_lobe_scratch(particles, arena),
-    )  # fmt: skip
 
 
 @inner_kernel

@@ -37,6 +37,7 @@ float_rows_in: Any = interpreted.float_rows_in
 float_tables_in: Any = interpreted.float_tables_in
 flags_in: Any = interpreted.flags_in
 int32s_in: Any = interpreted.int32s_in
+ArenaLayout = interpreted.ArenaLayout
 
 # Functions, of which it is looked up which kernel they run.
 _PLAIN = (FunctionType, BuiltinFunctionType)

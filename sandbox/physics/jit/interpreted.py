@@ -3,10 +3,11 @@
 import functools
 import math
 from collections.abc import Callable, Iterable
-from typing import Any, Generic, TypeVar, cast
+from typing import Any, Generic, TypeVar, cast, get_type_hints
 
 import numpy as np
 
+from sandbox.physics.arrays import ArrayKind, layout_of
 from sandbox.physics.jit.bundles import owner_of
 
 COMPILED = False
@@ -117,3 +118,40 @@ def _array_in(dtype: Any) -> Any:
 slots_in, slot_rows_in = _array_in(np.int64), _array_in(np.int64)
 floats_in, float_rows_in, float_tables_in = _array_in(np.float64), _array_in(np.float64), _array_in(np.float64)
 flags_in, int32s_in = _array_in(np.bool_), _array_in(np.int32)
+
+
+class ArenaLayout:
+    """In kernels: lays out a named tuple in an arena.
+
+    kernels: what lays out an array there, by its kind: kernel(arena, *lengths).
+    """
+
+    def __init__(self, *kernels: Callable[..., Any]) -> None:
+        hints = [get_type_hints(kernel, include_extras=True)["return"] for kernel in kernels]
+        self.kernels: dict[ArrayKind, Callable[..., Any]] = {
+            hint.__metadata__[0]: kernel for hint, kernel in zip(hints, kernels, strict=True)
+        }
+
+    def __call__(self, kind: type[Items], arena: Any, /, **given: Any) -> Items:
+        """A named tuple of what is given by the names of its fields, and else of arrays that begin at 0.
+
+        given: also the names in the lengths that stand beside those, and beside those of tuples in it.
+        """
+        items = []
+        for name, layout in layout_of(cast(Any, kind)).items():
+            if name in given:
+                items.append(given[name])
+            elif isinstance(layout, type):
+                items.append(self(layout, arena, **given))
+            elif layout is not None:
+                items.append(self.kernels[layout[0]](arena, *_lengths(layout[1], given)))
+        return kind(*items)
+
+
+def _lengths(text: str, given: dict[str, Any]) -> tuple[int, ...]:
+    return cast(tuple[int, ...], eval(_compiled(text), {}, given))
+
+
+@functools.cache
+def _compiled(text: str) -> Any:
+    return compile(f"({text},)", "lengths", "eval")

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.arena import Arena, is_full, new_floats, new_slots
+from sandbox.physics.arena import Arena, is_full, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import Floats
 from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.joints.hands import Grips, HandRows, load_hands, store_hands
@@ -14,7 +14,7 @@ from sandbox.physics.joints.limited_springs import (
     store_limited,
 )
 from sandbox.physics.joints.motors import DrivenWheels, MotorRows, MotorSides, list_motors, load_motors, store_motors
-from sandbox.physics.joints.rows import PAIR, SECOND_OF_TWO, JointRows, any_on, new_rows
+from sandbox.physics.joints.rows import PAIR, SECOND_OF_TWO, JointRows, any_on
 from sandbox.physics.state import State
 
 
@@ -38,7 +38,7 @@ def lay_out_joints(
     gripped = grips.start[hands]
     # A spring has two free ends at most; a hand has two rows.
     entries = sides.first[2 * count] + 2 * limited + 2 * gripped
-    rows = new_rows(alone + 2 * hands, entries, arena)
+    rows = new_tuple(JointRows, arena, rows=alone + 2 * hands, entries=entries)
     motor_rows = MotorRows(new_slots(arena, count), wheels.speed, wheels.torque, wheels.part)
     limited_rows = LimitedRows(new_slots(arena, 1), forces.limited, new_floats(arena, limited))
     first_of_hand = new_slots(arena, hands)

@@ -12,9 +12,8 @@ Another kind of joint makes its rows in `joint_set.py` and fills in their number
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_float_rows, new_floats, new_slots
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.jit import inner_kernel
 
@@ -25,24 +24,14 @@ SCALAR, PAIR, SECOND_OF_TWO = 0, 1, -1
 class JointRows(NamedTuple):
     """The rows of a world's joints. Topology decides the first three fields, a substep the others."""
 
-    first: Slots  # (k + 1,): entries of row k are first[k] to first[k + 1]
-    particle: Slots  # (e,): free ones, each at most once in a row
-    pair: Slots  # (k,): SCALAR, or one of two that follow each other
-    gradient: FloatRows  # (e, 2)
-    target: Floats
-    softness: Floats  # 1/K
-    limit: Floats  # of the impulse, 0: the row is off; two that are clamped together have the same
-    impulse: Floats  # that of the last substep, then of this one
-
-
-@inner_kernel
-def new_rows(rows: int, entries: int, arena: Arena) -> JointRows:
-    """Lay out so many rows of so many entries, to be filled in."""
-    return JointRows(
-        new_slots(arena, rows + 1), new_slots(arena, entries), new_slots(arena, rows),
-        new_float_rows(arena, entries, 2), new_floats(arena, rows), new_floats(arena, rows), new_floats(arena, rows),
-        new_floats(arena, rows),
-    )  # fmt: skip
+    first: Annotated[Slots, "rows + 1"]  # entries of row k are first[k] to first[k + 1]
+    particle: Annotated[Slots, "entries"]  # free ones, each at most once in a row
+    pair: Annotated[Slots, "rows"]  # SCALAR, or one of two that follow each other
+    gradient: Annotated[FloatRows, "entries, 2"]
+    target: Annotated[Floats, "rows"]
+    softness: Annotated[Floats, "rows"]  # 1/K
+    limit: Annotated[Floats, "rows"]  # of the impulse, 0: the row is off; two that are clamped together have the same
+    impulse: Annotated[Floats, "rows"]  # that of the last substep, then of this one
 
 
 @inner_kernel

@@ -1,6 +1,6 @@
 """The world block: all arrays of a world and of its steps as one structure, which kernels take as one pointer."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.breaking import MaterialLimits
@@ -30,10 +30,10 @@ TICK, MAY_FLY, COUNT, DONE, BROKEN, CHECKED, PROGRESS = range(7)
 class Coefficients(NamedTuple):
     """Cs and Cd of springs (m,) and constraints (t,) in a substep, where they are not those of a tick."""
 
-    stiffness: Floats
-    damping: Floats
-    constraint_stiffness: Floats
-    constraint_damping: Floats
+    stiffness: Annotated[Floats, "springs"]
+    damping: Annotated[Floats, "springs"]
+    constraint_stiffness: Annotated[Floats, "constraints"]
+    constraint_damping: Annotated[Floats, "constraints"]
 
 
 class WorldBlock(NamedTuple):

@@ -14,12 +14,13 @@ from sandbox.physics.arena import (
     new_float_rows,
     new_floats,
     new_slots,
+    new_tuple,
 )
-from sandbox.physics.collision.broad_phase import Candidates, new_boxes, new_grid, new_pairs
+from sandbox.physics.collision.broad_phase import Boxes, Candidates, Pairs, new_grid
 from sandbox.physics.collision.outline import new_colliders, new_outline
 from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
 from sandbox.physics.constraints import TRIANGLE
-from sandbox.physics.flight import new_flight
+from sandbox.physics.flight import Flight
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, set_field, unpack
 from sandbox.physics.joints.hands import label_bodies, new_grips
 from sandbox.physics.joints.joint_answers import joints_by_mass, new_joints
@@ -48,18 +49,19 @@ from sandbox.physics.pipeline.collide import (
     update_terrain_aabbs,
 )
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER
-from sandbox.physics.solvers.contact.contact_order import new_contact_order
-from sandbox.physics.solvers.contact.free_constraints import new_work
-from sandbox.physics.solvers.contact.free_islands import new_islands as new_free_islands
-from sandbox.physics.solvers.contact.gauss_seidel import new_contact_constraints
+from sandbox.physics.solvers.contact.active_set import new_active_set
+from sandbox.physics.solvers.contact.contact_order import ContactOrder
+from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch
+from sandbox.physics.solvers.contact.free_islands import Islands
+from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints
 from sandbox.physics.solvers.direct.islands import COLUMNS, NUMBERS, lay_out_islands, use_diagonal_delassus
 from sandbox.physics.solvers.direct.layout import lay_out_system
 from sandbox.physics.solvers.held_springs import new_held_springs
 from sandbox.physics.solvers.iterative import new_iteration
 from sandbox.physics.solvers.single_pass import lay_out_explicit_pass
-from sandbox.physics.untangling.crossing_candidates import new_shape_bounds
+from sandbox.physics.untangling.crossing_candidates import ShapeBounds
 from sandbox.physics.untangling.inversion import new_inversions
-from sandbox.physics.untangling.overlaps import new_overlaps
+from sandbox.physics.untangling.overlaps import Overlaps
 from sandbox.physics.untangling.triangle_clamp import lay_out_world_triangles
 
 # Places in `wanted`: those of the counts of collisions, then numbers and columns of blocks of bodies.
@@ -140,9 +142,12 @@ def make_room(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     contacts = max(_room(world, CONTACTS), _room(world, KEPT))
     set_field(world.collisions, "kept", new_kept_contacts(arena, contacts))
     coupled = contacts if world.plan[HAS_CONTACTS] != 0 else 0
-    set_field(world.workspace, "terms", new_contact_constraints(coupled, particles, arena))
+    active = new_active_set(coupled, particles, arena)
+    terms = new_tuple(ContactConstraints, arena, contacts=coupled, particles=particles, active=active)
+    set_field(world.workspace, "terms", terms)
     members = particles + world.system.bodies.lowest.shape[0]
-    set_field(world.workspace, "order", new_contact_order(coupled, max(coupled, members), arena))
+    order = new_tuple(ContactOrder, arena, contacts=coupled, groups=max(coupled, members))
+    set_field(world.workspace, "order", order)
     if coupled > 0:
         _lay_out_collisions(world, contacts, arena)
         if not is_full(arena):
@@ -176,11 +181,8 @@ def _lay_out_scratch(world: WorldBlock, arena: Arena) -> None:
     set_field(world, "start", new_float_rows(arena, particles, 2))
     set_field(world, "start_length", new_floats(arena, springs))
     set_field(world, "shortest", new_floats(arena, GRAB_COUNT))
-    set_field(world, "flight", new_flight(particles, arena))
-    set_field(world, "coefficients", Coefficients(
-        new_floats(arena, springs), new_floats(arena, springs), new_floats(arena, constraints),
-        new_floats(arena, constraints),
-    ))  # fmt: skip
+    set_field(world, "flight", new_tuple(Flight, arena, particles=particles))
+    set_field(world, "coefficients", new_tuple(Coefficients, arena, springs=springs, constraints=constraints))
 
 
 @inner_kernel
@@ -219,24 +221,25 @@ def _lay_out_collisions(world: WorldBlock, contacts: int, arena: Arena) -> None:
     collisions, particles = world.collisions, world.state.owner.shape[0]
     outline, jellies = collisions.outline, collisions.triangles.jellies
     objects, shapes = particles + outline.dynamic[0], outline.solid_of.shape[0]
-    boxes = new_boxes(particles, objects, arena)
-    candidates = Candidates(
-        new_pairs(particles, _room(world, PAIRS), arena), new_pairs(particles, _room(world, TERRAIN_PAIRS), arena),
-        boxes.box,
-    )  # fmt: skip
+    crossings, overlapping = _room(world, CROSSED), _room(world, OVERLAPPING)
+    boxes = new_tuple(Boxes, arena, particles=particles, objects=objects)
+    pairs = new_tuple(Pairs, arena, particles=particles, room=_room(world, PAIRS))
+    of_terrain = new_tuple(Pairs, arena, particles=particles, room=_room(world, TERRAIN_PAIRS))
     set_field(collisions, "boxes", boxes)
-    set_field(collisions, "candidates", candidates)
-    set_field(collisions, "colliders", new_colliders(world.state.terrain, outline, _room(world, OVERLAPPING), arena))
+    set_field(collisions, "candidates", Candidates(pairs, of_terrain, boxes.box))
+    set_field(collisions, "colliders", new_colliders(world.state.terrain, outline, overlapping, arena))
     set_field(collisions, "grid", new_grid(objects, _room(world, ENTRIES), arena))
     set_field(collisions, "bounds", new_float_rows(arena, outline.solid.shape[0], 5))
     set_field(collisions, "near", new_near(arena))
     set_field(collisions, "contacts", new_contacts(arena, contacts))
     set_field(collisions, "coupled", new_contacts(arena, contacts))
     set_field(collisions, "source", new_slots(arena, contacts))
-    set_field(collisions, "islands", new_free_islands(particles, contacts, arena))
-    set_field(collisions, "work", new_work(particles, contacts, arena))
+    set_field(collisions, "islands", new_tuple(Islands, arena, particles=particles, contacts=contacts))
+    work = new_tuple(FreeContactScratch, arena, particles=particles, contacts=contacts)
+    set_field(collisions, "work", work)
     set_field(collisions, "inversions", new_inversions(jellies, arena))
-    set_field(collisions, "shape_bounds", new_shape_bounds(shapes, arena))
-    set_field(collisions, "overlaps", new_overlaps(shapes, _room(world, CROSSED), _room(world, OVERLAPPING), arena))
+    set_field(collisions, "shape_bounds", new_tuple(ShapeBounds, arena, shapes=shapes))
+    overlaps = new_tuple(Overlaps, arena, shapes=shapes, crossings=crossings, pairs=overlapping)
+    set_field(collisions, "overlaps", overlaps)
     set_field(collisions, "moved", new_flags(arena, particles))
     set_field(collisions, "attached", new_flags(arena, particles))

@@ -5,9 +5,8 @@ it under its wheels alone. So most edges need not be compared with any other to 
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, Slots
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders
@@ -28,20 +27,11 @@ class ShapeBounds(NamedTuple):
     intact (s,): it crosses itself nowhere but where it was made so.
     """
 
-    box: FloatRows
-    crossing: FloatRows
-    group: Slots
-    collides: Slots
-    intact: Flags
-
-
-@inner_kernel
-def new_shape_bounds(shapes: int, arena: Arena) -> ShapeBounds:
-    """ShapeBounds to be filled in."""
-    return ShapeBounds(
-        new_float_rows(arena, shapes, 4), new_float_rows(arena, shapes, 4), new_slots(arena, shapes),
-        new_slots(arena, shapes), new_flags(arena, shapes),
-    )  # fmt: skip
+    box: Annotated[FloatRows, "shapes, 4"]
+    crossing: Annotated[FloatRows, "shapes, 4"]
+    group: Annotated[Slots, "shapes"]
+    collides: Annotated[Slots, "shapes"]
+    intact: Annotated[Flags, "shapes"]
 
 
 @inner_kernel

@@ -1,8 +1,8 @@
 """Jellies: groups of triangles that share sides, as topology alone decides."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slot_rows, new_slots
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slot_rows, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, SlotRows, Slots
 from sandbox.physics.components import join, root_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
@@ -36,17 +36,17 @@ class TriangleScratch(NamedTuple):
     at_rim. By corner of a jelly: the side of the rim that begins there, and the one that ends there; number.
     """
 
-    label: Slots
-    start: Slots
-    low: Slots
-    high: Slots
-    one: Slots
-    other: Slots
-    at_rim: Flags
-    lies_flat: Flags
-    begin: Slots
-    end: Slots
-    number: Slots
+    label: Annotated[Slots, "triangles"]
+    start: Annotated[Slots, "marks"]
+    low: Annotated[Slots, "3 * triangles"]
+    high: Annotated[Slots, "3 * triangles"]
+    one: Annotated[Slots, "3 * triangles"]
+    other: Annotated[Slots, "3 * triangles"]
+    at_rim: Annotated[Flags, "3 * triangles"]
+    lies_flat: Annotated[Flags, "triangles"]
+    begin: Annotated[Slots, "3 * triangles"]
+    end: Annotated[Slots, "3 * triangles"]
+    number: Annotated[Slots, "3 * triangles"]
 
 
 @inner_kernel
@@ -219,16 +219,6 @@ def new_jellies(triangles: int, arena: Arena) -> Jellies:
 
 
 @inner_kernel
-def _new_scratch(triangles: int, bound: int, arena: Arena) -> TriangleScratch:
-    corners = 3 * triangles
-    return TriangleScratch(
-        new_slots(arena, triangles), new_slots(arena, max(bound, corners) + 1), new_slots(arena, corners),
-        new_slots(arena, corners), new_slots(arena, corners), new_slots(arena, corners), new_flags(arena, corners),
-        new_flags(arena, triangles), new_slots(arena, corners), new_slots(arena, corners), new_slots(arena, corners),
-    )  # fmt: skip
-
-
-@inner_kernel
 def group_triangles(corners: SlotRows, is_left: Flags, bound: int, arena: Arena) -> Jellies:
     """The jellies that triangles of particles below a bound (t, 3) make, in the order of their first triangles.
 
@@ -237,7 +227,7 @@ def group_triangles(corners: SlotRows, is_left: Flags, bound: int, arena: Arena)
     triangles = corners.shape[0]
     room, counts = new_jellies(triangles, arena), new_slots(arena, COUNTS)
     start = mark(arena)
-    work = _new_scratch(triangles, bound, arena)
+    work = new_tuple(TriangleScratch, arena, triangles=triangles, marks=max(bound, 3 * triangles) + 1)
     if triangles == 0 or is_full(arena):
         return room
     derive_jellies(corners, is_left, bound, room, counts, work)

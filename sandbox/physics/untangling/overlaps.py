@@ -6,9 +6,8 @@ together crosses nowhere, so nothing more is looked at where nothing overlaps. L
 a particle that is caught in a mesh narrower than itself must not hold it open.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_slot_rows, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
 from sandbox.physics.collision.edge_geometry import winds
@@ -34,25 +33,15 @@ CROSSINGS, OVERLAPS, COUNTS = range(3)
 class Overlaps(NamedTuple):
     """The overlaps of a step: crossings of edges, and the pairs of shapes that overlap; there is room for more."""
 
-    edge: SlotRows  # (k, 2) of a crossing: that of the lower shape first
-    share: FloatRows  # (k, 2): along them
-    following: Slots  # (k,): the next crossing of the same pair, -1: none
-    shape: SlotRows  # (q, 2) of a pair: the lower first
-    first: Slots  # (q,): its first crossing
-    separates: Flags  # (q,): whether they do
-    next_pair: Slots  # (q,): the next of the same lower shape
-    first_pair: Slots  # by shape
-    counts: Slots
-
-
-@inner_kernel
-def new_overlaps(shapes: int, crossings: int, pairs: int, arena: Arena) -> Overlaps:
-    """Empty overlaps, with room for a number of them."""
-    return Overlaps(
-        new_slot_rows(arena, crossings, 2), new_float_rows(arena, crossings, 2), new_slots(arena, crossings),
-        new_slot_rows(arena, pairs, 2), new_slots(arena, pairs), new_flags(arena, pairs), new_slots(arena, pairs),
-        new_slots(arena, shapes), new_slots(arena, COUNTS),
-    )  # fmt: skip
+    edge: Annotated[SlotRows, "crossings, 2"]  # of a crossing: that of the lower shape first
+    share: Annotated[FloatRows, "crossings, 2"]  # along them
+    following: Annotated[Slots, "crossings"]  # the next crossing of the same pair, -1: none
+    shape: Annotated[SlotRows, "pairs, 2"]  # of a pair: the lower first
+    first: Annotated[Slots, "pairs"]  # its first crossing
+    separates: Annotated[Flags, "pairs"]  # whether they do
+    next_pair: Annotated[Slots, "pairs"]  # the next of the same lower shape
+    first_pair: Annotated[Slots, "shapes"]  # by shape
+    counts: Annotated[Slots, f"{COUNTS}"]
 
 
 @inner_kernel

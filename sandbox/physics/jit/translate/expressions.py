@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from sandbox.physics.jit import Kernel, interpreted
+from sandbox.physics.arrays import layout_of
+from sandbox.physics.jit import Kernel, interpreted, kernel_of
 from sandbox.physics.jit.translate.cpp_types import (
     FLAG,
     FLOAT,
@@ -294,6 +295,10 @@ class Expressions:
         return Code(f"{kind.cpp}{{{', '.join(code.text for code in codes)}}}", kind)
 
     def call(self, node: ast.Call) -> Code:
+        name = node.func.id if isinstance(node.func, ast.Name) else ""
+        value = meaning(self.module, name)
+        if isinstance(value, interpreted.ArenaLayout):
+            return self._laid_out(node, value)
         if node.keywords or any(isinstance(argument, ast.Starred) for argument in node.args):
             raise self.refuse(node, "arguments are given by their places")
         if isinstance(node.func, ast.Attribute):
@@ -301,16 +306,15 @@ class Expressions:
             return self._called(node, getattr(module, node.func.attr, None))
         if not isinstance(node.func, ast.Name):
             raise self.refuse(node, f"{ast.unparse(node.func)} is no kernel")
-        name = node.func.id
-        if name in _BUILTIN and meaning(self.module, name) is None:
+        if name in _BUILTIN and value is None:
             return _BUILTIN[name](self, node)
-        return self._called(node, meaning(self.module, name))
+        return self._called(node, value)
 
     def _called(self, node: ast.Call, value: Any) -> Code:
         if isinstance(value, Kernel):
-            return self._kernel(node, value)
+            return self._kernel(node, value, [self.code(argument) for argument in node.args])
         if isinstance(value, type) and hasattr(value, "_fields"):
-            return self._made(node, self.program.struct(value))
+            return self._made(node, self.program.struct(value), [self.code(argument) for argument in node.args])
         known = _known(value)
         if known in _OF_MATH:
             name, kind = _OF_MATH[known]
@@ -326,8 +330,7 @@ class Expressions:
             return Code(f"unpack({bundle.text})", bundle.type.items, stays=True)
         raise self.refuse(node, f"{ast.unparse(node.func)} is no kernel")
 
-    def _kernel(self, node: ast.Call, kernel: Kernel) -> Code:
-        codes = [self.code(argument) for argument in node.args]
+    def _kernel(self, node: ast.Call, kernel: Kernel, codes: list[Code]) -> Code:
         result = self.program.called(kernel, [code.type for code in codes])
         if isinstance(result, str):
             raise self.refuse(node, f"{ast.unparse(node.func)}: {result}")
@@ -335,8 +338,7 @@ class Expressions:
         name = self.program.name_of(function.__module__, self.module, function.__name__)
         return Code(f"{name}({', '.join(code.text for code in codes)})", result)
 
-    def _made(self, node: ast.Call, struct: Struct) -> Code:
-        codes = [self.code(argument) for argument in node.args]
+    def _made(self, node: ast.Call, struct: Struct, codes: list[Code]) -> Code:
         if len(codes) != len(struct.fields):
             raise self.refuse(node, f"{struct.kind.__name__} has {len(struct.fields)} fields")
         for code, (name, kind) in zip(codes, struct.fields, strict=True):
@@ -347,6 +349,38 @@ class Expressions:
             for code, (_, kind) in zip(codes, struct.fields, strict=True)
         ]
         return Code(f"{struct.cpp}{{{', '.join(texts)}}}", struct)
+
+    def _laid_out(self, node: ast.Call, layout: interpreted.ArenaLayout) -> Code:
+        kind, arena = node.args
+        given = {str(each.arg): each.value for each in node.keywords}
+        value = meaning(self.module, kind.id) if isinstance(kind, ast.Name) else None
+        if not hasattr(value, "_fields"):
+            raise self.refuse(node, f"{ast.unparse(kind)} is no named tuple")
+        return self._struct_laid_out(node, layout, value, self.code(arena), given)
+
+    def _struct_laid_out(
+        self, node: ast.Call, layout: interpreted.ArenaLayout, kind: Any, arena: Code, given: dict[str, ast.expr]
+    ) -> Code:
+        codes = []
+        for name, field in layout_of(kind).items():
+            if name in given:
+                codes.append(self.code(given[name]))
+            elif isinstance(field, type):
+                codes.append(self._struct_laid_out(node, layout, field, arena, given))
+            elif field is not None:
+                kernel = kernel_of(layout.kernels[field[0]])
+                assert kernel is not None
+                codes.append(self._kernel(node, kernel, [arena, *self._lengths(node, field[1], given)]))
+            else:
+                raise self.refuse(node, f"{kind.__name__}.{name} is not given, and has no lengths")
+        return self._made(node, self.program.struct(kind), codes)
+
+    def _lengths(self, node: ast.Call, text: str, given: dict[str, ast.expr]) -> list[Code]:
+        lengths = ast.parse(f"({text},)", mode="eval")
+        missing = {each.id for each in ast.walk(lengths) if isinstance(each, ast.Name)} - given.keys()
+        if missing:
+            raise self.refuse(node, f"the length {min(missing)} is not given")
+        return [self.scalar(each) for each in _Replaced(given).visit(lengths).body.elts]
 
     def _only(self, node: ast.Call, wanted: Scalar) -> Code:
         if len(node.args) != 1:
@@ -377,6 +411,16 @@ class Expressions:
 
     def _as_float(self, node: ast.Call) -> Code:
         return Code(f"double({self._only(node, FLOAT).text})", FLOAT)
+
+
+class _Replaced(ast.NodeTransformer):
+    """Lengths, with what is given in place of their names."""
+
+    def __init__(self, given: dict[str, ast.expr]) -> None:
+        self._given = given
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return self._given[node.id]
 
 
 _TRANSLATED: dict[type, Callable[[Expressions, Any], Code]] = {

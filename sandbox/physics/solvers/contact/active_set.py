@@ -1,9 +1,9 @@
 """Memory of the exact active set of contacts (active_solve.py), and L D L^T of its matrix within an envelope."""
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_slot_rows, new_slots
+from sandbox.physics.arena import Arena, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.types import ENDS
 from sandbox.physics.jit import inner_kernel
@@ -20,26 +20,26 @@ class ActiveSet(NamedTuple):
     Nodes are the blocks of the Delassus operator, then particles. A place is ENDS contact + end.
     """
 
-    head: Slots  # by node: place of its first contact, -1: none
-    following: Slots  # by place: the next one of the node
-    rank: Slots  # by node: in a walk
-    queue: Slots  # nodes by rank
-    slow: Flags  # by contact: all that it touches is slow, and firm
-    order: Slots  # (k,): slow contacts along the walk
-    row: Slots  # (2 k,): row of a contact's normal and tangent, -1: at its bound
-    state: SlotRows  # (k, 2): see active_rows.py
-    u: FloatRows  # [m/s] (k, 2)
-    bound: Floats  # [N s] (k,): friction that a contact goes to
-    centre: Floats  # [N s] (k,): friction from which sticking is soft
-    best: FloatRows  # [N s] (k, 2): the impulses that miss least
-    of_row: Slots  # by row: 2 contact + axis
-    start: Slots  # by row: where it begins in matrix
-    first: Slots  # by row: its first column
-    pivot: Floats
-    rhs: Floats
-    matrix: Floats  # [1/kg]
-    answer: FloatRows  # [m/s] by particle: velocities by a unit impulse, else 0
-    turned: Floats  # [m/s] by particle: the same of surfaces
+    head: Annotated[Slots, "2 * touched"]  # by node: place of its first contact, -1: none
+    following: Annotated[Slots, f"{ENDS} * contacts"]  # by place: the next one of the node
+    rank: Annotated[Slots, "2 * touched"]  # by node: in a walk
+    queue: Annotated[Slots, "2 * touched"]  # nodes by rank
+    slow: Annotated[Flags, "contacts"]  # by contact: all that it touches is slow, and firm
+    order: Annotated[Slots, "contacts"]  # slow contacts along the walk
+    row: Annotated[Slots, "2 * contacts"]  # row of a contact's normal and tangent, -1: at its bound
+    state: Annotated[SlotRows, "contacts, 2"]  # see active_rows.py
+    u: Annotated[FloatRows, "contacts, 2"]  # [m/s]
+    bound: Annotated[Floats, "contacts"]  # [N s]: friction that a contact goes to
+    centre: Annotated[Floats, "contacts"]  # [N s]: friction from which sticking is soft
+    best: Annotated[FloatRows, "contacts, 2"]  # [N s]: the impulses that miss least
+    of_row: Annotated[Slots, "2 * contacts"]  # by row: 2 contact + axis
+    start: Annotated[Slots, "2 * contacts + 1"]  # by row: where it begins in matrix
+    first: Annotated[Slots, "2 * contacts"]  # by row: its first column
+    pivot: Annotated[Floats, "2 * contacts"]
+    rhs: Annotated[Floats, "2 * contacts"]
+    matrix: Annotated[Floats, "room"]  # [1/kg]
+    answer: Annotated[FloatRows, "touched, 2"]  # [m/s] by particle: velocities by a unit impulse, else 0
+    turned: Annotated[Floats, "touched"]  # [m/s] by particle: the same of surfaces
 
 
 @inner_kernel
@@ -49,14 +49,7 @@ def new_active_set(count: int, particles: int, arena: Arena) -> ActiveSet:
     touched = particles if count > 0 else 0
     # (sum of lengths)^2 <= rows times the sum of their squares.
     room = rows + int(math.sqrt(MOST_PRODUCTS * rows)) + 1 if count > 0 else 0
-    return ActiveSet(
-        new_slots(arena, 2 * touched), new_slots(arena, ENDS * count), new_slots(arena, 2 * touched),
-        new_slots(arena, 2 * touched), new_flags(arena, count), new_slots(arena, count), new_slots(arena, rows),
-        new_slot_rows(arena, count, 2), new_float_rows(arena, count, 2), new_floats(arena, count),
-        new_floats(arena, count), new_float_rows(arena, count, 2), new_slots(arena, rows), new_slots(arena, rows + 1),
-        new_slots(arena, rows), new_floats(arena, rows), new_floats(arena, rows), new_floats(arena, room),
-        new_float_rows(arena, touched, 2), new_floats(arena, touched),
-    )  # fmt: skip
+    return new_tuple(ActiveSet, arena, contacts=count, touched=touched, room=room)
 
 
 @inner_kernel

@@ -1,8 +1,7 @@
 """The order of the contacts that a solver gets: island by island, so that each can be solved as if it were alone."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_slots
 from sandbox.physics.arrays import Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import list_by_key
@@ -14,18 +13,10 @@ class ContactOrder(NamedTuple):
     By contact, scratch: island, order.
     """
 
-    first: Slots
-    islands: Slots
-    island: Slots
-    order: Slots
-
-
-@inner_kernel
-def new_contact_order(contacts: int, islands: int, arena: Arena) -> ContactOrder:
-    """Room for an order of contacts."""
-    return ContactOrder(
-        new_slots(arena, islands + 1), new_slots(arena, 1), new_slots(arena, contacts), new_slots(arena, contacts)
-    )
+    first: Annotated[Slots, "groups + 1"]
+    islands: Annotated[Slots, "1"]
+    island: Annotated[Slots, "contacts"]
+    order: Annotated[Slots, "contacts"]
 
 
 @inner_kernel

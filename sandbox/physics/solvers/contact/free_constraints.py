@@ -3,9 +3,8 @@
 Islands that take as many small steps are solved side by side: what does not touch does not wait for each other.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_float_rows, new_floats, new_slot_rows, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.turning import rolling_ratios
 from sandbox.physics.collision.types import Colliders, Contacts
@@ -55,42 +54,42 @@ class FreeContactScratch(NamedTuple):
     There is room for more contacts. What cannot move has a place for each contact.
     """
 
-    place: SlotRows  # (k, 2): of a contact's particle and of what it pushes
-    level: Slots  # (k,): of a contact, as way
-    way: Floats
-    constraint: FloatRows  # (k, COLUMNS): see the columns
-    end: SlotRows  # (k, 2): places of a constraint
-    contact: Slots  # (k,): that of a constraint
-    at: Slots  # (k + 1,): scratch, where each level goes on
-    begin: Slots  # (g + 1,): first place of an island
-    steps: Slots  # (g,): small steps of an island
-    hardness: Floats  # (g,)
-    alone: Flags  # (g,): nothing is solved beside the island
-    allowed: Floats  # [J] (g,): energy that the island may end with
-    beside: Slots  # (g,): islands that are solved side by side
-    particle: Slots  # (m,): that of a place
-    weight: Floats  # [1/kg] (m,)
-    turning: Floats  # [1/kg] (m,): the weight of its surface
-    motion: FloatRows  # (m, 8): see the columns of a place
-    gain: FloatRows  # [m/s] (m, 2): what forces add to the velocity in the step
-    highest: Slots  # (m,): level so far
-    local: Slots  # (n,): the place of a particle, -1: none
-    ahead: FloatRows  # [m] (n, 2): how much further than h v' a particle has gone in the step
-    added: FloatRows  # [m/s] (m, 2): what impacts (impacts.py) have added in this small step
-    stamp: Slots  # (m,): the pass that it was hit in
-    since: Floats  # [s] (m,): when that was
-    hit: Slots  # the constraint of a hit; by hit, as all down to last
-    pushed: Floats  # [N s]: impulse along
-    across: Floats  # [N s]: impulse across
-    met: Floats  # [s]: when
-    speed: Floats  # [m/s]: along, before it
-    wanted: Floats  # [m/s]: along, after it
-    slip: Floats  # [m/s]: across, before it
-    last_across: Floats  # [N s]: across before the last friction
-    last: Floats  # [N s]: what pushed for that
-    first: Floats  # [s] (m,): when the first hit of a pass is
-    turned: Floats  # [s] (m,): when in a small step it met an edge that rises, 0: it has not
-    onto: Slots  # (m,): the constraint with that edge
+    place: Annotated[SlotRows, "contacts, 2"]  # of a contact's particle and of what it pushes
+    level: Annotated[Slots, "contacts"]  # of a contact, as way
+    way: Annotated[Floats, "contacts"]
+    constraint: Annotated[FloatRows, f"contacts, {COLUMNS}"]  # see the columns
+    end: Annotated[SlotRows, "contacts, 2"]  # places of a constraint
+    contact: Annotated[Slots, "contacts"]  # that of a constraint
+    at: Annotated[Slots, "contacts + 1"]  # scratch, where each level goes on
+    begin: Annotated[Slots, "contacts + 1"]  # (g + 1,): first place of an island
+    steps: Annotated[Slots, "contacts"]  # (g,): small steps of an island
+    hardness: Annotated[Floats, "contacts"]  # (g,)
+    alone: Annotated[Flags, "contacts"]  # (g,): nothing is solved beside the island
+    allowed: Annotated[Floats, "contacts"]  # [J] (g,): energy that the island may end with
+    beside: Annotated[Slots, "contacts"]  # (g,): islands that are solved side by side
+    particle: Annotated[Slots, "2 * contacts"]  # that of a place
+    weight: Annotated[Floats, "2 * contacts"]  # [1/kg]
+    turning: Annotated[Floats, "2 * contacts"]  # [1/kg]: the weight of its surface
+    motion: Annotated[FloatRows, "2 * contacts, 8"]  # see the columns of a place
+    gain: Annotated[FloatRows, "2 * contacts, 2"]  # [m/s]: what forces add to the velocity in the step
+    highest: Annotated[Slots, "2 * contacts"]  # level so far
+    local: Annotated[Slots, "particles"]  # the place of a particle, -1: none
+    ahead: Annotated[FloatRows, "particles, 2"]  # [m]: how much further than h v' a particle has gone in the step
+    added: Annotated[FloatRows, "2 * contacts, 2"]  # [m/s]: what impacts (impacts.py) have added in this small step
+    stamp: Annotated[Slots, "2 * contacts"]  # the pass that it was hit in
+    since: Annotated[Floats, "2 * contacts"]  # [s]: when that was
+    hit: Annotated[Slots, "contacts"]  # the constraint of a hit; by hit, as all down to last
+    pushed: Annotated[Floats, "contacts"]  # [N s]: impulse along
+    across: Annotated[Floats, "contacts"]  # [N s]: impulse across
+    met: Annotated[Floats, "contacts"]  # [s]: when
+    speed: Annotated[Floats, "contacts"]  # [m/s]: along, before it
+    wanted: Annotated[Floats, "contacts"]  # [m/s]: along, after it
+    slip: Annotated[Floats, "contacts"]  # [m/s]: across, before it
+    last_across: Annotated[Floats, "contacts"]  # [N s]: across before the last friction
+    last: Annotated[Floats, "contacts"]  # [N s]: what pushed for that
+    first: Annotated[Floats, "2 * contacts"]  # [s]: when the first hit of a pass is
+    turned: Annotated[Floats, "2 * contacts"]  # [s]: when in a small step it met an edge that rises, 0: it has not
+    onto: Annotated[Slots, "2 * contacts"]  # the constraint with that edge
 
 
 @inner_kernel
@@ -315,22 +314,3 @@ def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: F
     elif row[k, WAY] == COMING:
         row[k, BOUNCE] = -1.0
         row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
-
-
-@inner_kernel
-def new_work(particles: int, contacts: int, arena: Arena) -> FreeContactScratch:
-    """Work to be filled in, with room for so many contacts."""
-    places = 2 * contacts
-    return FreeContactScratch(
-        new_slot_rows(arena, contacts, 2), new_slots(arena, contacts), new_floats(arena, contacts),
-        new_float_rows(arena, contacts, COLUMNS), new_slot_rows(arena, contacts, 2), new_slots(arena, contacts),
-        new_slots(arena, contacts + 1), new_slots(arena, contacts + 1), new_slots(arena, contacts),
-        new_floats(arena, contacts), new_flags(arena, contacts), new_floats(arena, contacts),
-        new_slots(arena, contacts), new_slots(arena, places), new_floats(arena, places), new_floats(arena, places),
-        new_float_rows(arena, places, 8), new_float_rows(arena, places, 2), new_slots(arena, places),
-        new_slots(arena, particles), new_float_rows(arena, particles, 2), new_float_rows(arena, places, 2),
-        new_slots(arena, places), new_floats(arena, places), new_slots(arena, contacts), new_floats(arena, contacts),
-        new_floats(arena, contacts), new_floats(arena, contacts), new_floats(arena, contacts),
-        new_floats(arena, contacts), new_floats(arena, contacts), new_floats(arena, contacts),
-        new_floats(arena, contacts), new_floats(arena, places), new_floats(arena, places), new_slots(arena, places),
-    )  # fmt: skip

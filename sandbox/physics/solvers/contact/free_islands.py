@@ -4,9 +4,8 @@ The contacts of an island with a particle that a spring or a constraint holds ar
 springs. Contacts of other islands are free.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.collision.types import ENDS, Contacts, weight_of
 from sandbox.physics.components import root_of, united
@@ -21,13 +20,13 @@ class Islands(NamedTuple):
     scratch.
     """
 
-    label: Slots
-    is_coupled: Flags
-    contact_label: Slots
-    coupled: Flags
-    contact: Slots
-    first: Slots
-    at: Slots
+    label: Annotated[Slots, "particles"]
+    is_coupled: Annotated[Flags, "particles"]
+    contact_label: Annotated[Slots, "contacts"]
+    coupled: Annotated[Flags, "contacts"]
+    contact: Annotated[Slots, "contacts"]
+    first: Annotated[Slots, "contacts + 1"]
+    at: Annotated[Slots, "particles + 1"]
 
 
 @inner_kernel
@@ -99,13 +98,3 @@ def sort_free_contacts(count: int, islands: Islands) -> int:
             islands.contact[at[label]] = c
             at[label] += 1
     return found
-
-
-@inner_kernel
-def new_islands(particles: int, contacts: int, arena: Arena) -> Islands:
-    """Islands to be filled in, with room for so many contacts."""
-    return Islands(
-        new_slots(arena, particles), new_flags(arena, particles), new_slots(arena, contacts),
-        new_flags(arena, contacts), new_slots(arena, contacts), new_slots(arena, contacts + 1),
-        new_slots(arena, particles + 1),
-    )  # fmt: skip

@@ -6,16 +6,15 @@ surfaces, whose impulse is at most friction times the push (Coulomb). Both act o
 start with the impulses of the last step, so a body at rest is at rest from the first sweep on.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_float_rows, new_floats
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.turning import spin_of
 from sandbox.physics.collision.types import ENDS, TOUCHING, Contacts, couple_of, weight_of
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, push_at
-from sandbox.physics.solvers.contact.active_set import ActiveSet, new_active_set
+from sandbox.physics.solvers.contact.active_set import ActiveSet
 
 # Cs / Cd of a contact that penetrates: the part of the penetration that a step removes. Higher shakes what rests, lower
 # leaves heaps soft.
@@ -52,26 +51,16 @@ class Delassus(NamedTuple):
 class ContactConstraints(NamedTuple):
     """What sweeps keep by contact, with room for more contacts; surface is by particle."""
 
-    bias: Floats  # [m/s]: added to its velocity
-    normal: Floats  # J W J^T [1/kg]: along the normal,
-    coupling: Floats  # between both,
-    tangent: Floats  # and along the tangent
-    last_impulse: FloatRows  # [N s] (k, 2): before a sweep
-    search_direction: FloatRows  # [N s] (k, 2): where the sweeps so far have led
-    resisted: Floats  # [N s]: of its rolling resistance, at the smaller radius
-    surface: Floats  # [m/s] (n,): spin times radius, which sweeps change
-    calm: Floats  # 1, or 0 where what it touches is fast or not rigid
+    bias: Annotated[Floats, "contacts"]  # [m/s]: added to its velocity
+    normal: Annotated[Floats, "contacts"]  # J W J^T [1/kg]: along the normal,
+    coupling: Annotated[Floats, "contacts"]  # between both,
+    tangent: Annotated[Floats, "contacts"]  # and along the tangent
+    last_impulse: Annotated[FloatRows, "contacts, 2"]  # [N s]: before a sweep
+    search_direction: Annotated[FloatRows, "contacts, 2"]  # [N s]: where the sweeps so far have led
+    resisted: Annotated[Floats, "contacts"]  # [N s]: of its rolling resistance, at the smaller radius
+    surface: Annotated[Floats, "particles"]  # [m/s]: spin times radius, which sweeps change
+    calm: Annotated[Floats, "contacts"]  # 1, or 0 where what it touches is fast or not rigid
     active: ActiveSet  # see active_solve.py
-
-
-@inner_kernel
-def new_contact_constraints(count: int, particles: int, arena: Arena) -> ContactConstraints:
-    """Lay out constraints for a number of contacts, of so many particles."""
-    return ContactConstraints(
-        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_floats(arena, count),
-        new_floats(arena, particles), new_floats(arena, count), new_active_set(count, particles, arena),
-    )  # fmt: skip
 
 
 @inner_kernel

@@ -6,18 +6,15 @@ Symbolic work alone: made again when topology or pins change, no part of a world
 from sandbox.physics.arena import (
     Arena,
     is_full,
-    new_flags,
-    new_float_rows,
-    new_float_tables,
-    new_floats,
     new_slots,
+    new_tuple,
 )
 from sandbox.physics.arrays import Flags
 from sandbox.physics.jit import inner_kernel, set_field
 from sandbox.physics.solvers.direct.choosing import COUNTS, LINKS, MOST_WIDE, NODES, chosen_for_matrix
 from sandbox.physics.solvers.direct.jelly_groups import lay_out_groups
 from sandbox.physics.solvers.direct.placing import Lying, Places, places_of
-from sandbox.physics.solvers.direct.system import SPIN_NUMBERS, Bodies, Constraints, Rows, Springs, System
+from sandbox.physics.solvers.direct.system import Bodies, Constraints, Rows, Springs, System
 from sandbox.physics.solvers.linear.dissection import Dissection
 from sandbox.physics.solvers.linear.elimination import (
     BODIES,
@@ -67,7 +64,7 @@ def lay_out_system(state: State, unlimited: Flags, given: Tuning, arena: Arena, 
     set_field(out, "fronts", fronts)
     set_field(out, "matrix", matrix)
     set_field(out, "bodies", _new_bodies(places, arena))
-    set_field(out, "rows", _new_rows(places, arena))
+    set_field(out, "rows", new_tuple(Rows, arena, particle=places.particle, rows=places.particle.shape[0]))
     set_field(out, "springs", _new_springs(places, arena))
     set_field(out, "constraints", _new_constraints(places, nodes, counts[MOST_WIDE], arena))
     if not is_full(arena):
@@ -85,48 +82,26 @@ def cut_to(room: Dissection, fronts: int, borders: int) -> Dissection:
 
 @inner_kernel
 def _new_bodies(places: Places, arena: Arena) -> Bodies:
-    count = places.lowest.shape[0]
-    return Bodies(
-        places.row_start, places.spring_start, places.constraint_start, places.lowest, places.pivot, places.anchored,
-        new_flags(arena, count), new_flags(arena, count), new_flags(arena, count), new_flags(arena, count),
-        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-        new_float_rows(arena, count, SPIN_NUMBERS),
-    )  # fmt: skip
-
-
-@inner_kernel
-def _new_rows(places: Places, arena: Arena) -> Rows:
-    count = places.particle.shape[0]
-    return Rows(
-        places.particle, new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
-        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
-        new_float_rows(arena, count, 2), new_float_rows(arena, count, 2), new_float_rows(arena, count, 2),
-        new_float_rows(arena, count, 2),
+    return new_tuple(
+        Bodies, arena, row_start=places.row_start, spring_start=places.spring_start,
+        constraint_start=places.constraint_start, lowest=places.lowest, pivot=places.pivot, anchored=places.anchored,
+        bodies=places.lowest.shape[0],
     )  # fmt: skip
 
 
 @inner_kernel
 def _new_springs(places: Places, arena: Arena) -> Springs:
-    count = places.spring.shape[0]
-    return Springs(
-        places.spring, places.row_a, places.row_b, places.spring_block, new_floats(arena, count),
-        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_float_rows(arena, count, 2),
+    return new_tuple(
+        Springs, arena, slot=places.spring, row_a=places.row_a, row_b=places.row_b, block=places.spring_block,
+        springs=places.spring.shape[0],
     )  # fmt: skip
 
 
 @inner_kernel
 def _new_constraints(places: Places, rows: int, most_wide: int, arena: Arena) -> Constraints:
     # Ready for a step; most_wide: how many wide ones a body has at most.
-    count, corners = places.constraint.shape[0], places.row.shape[0]
-    answered = rows if most_wide > 0 else 0
-    return Constraints(
-        places.constraint, places.kind, places.first, places.row, places.corner, places.block, places.wide,
-        new_float_rows(arena, count, 2), new_floats(arena, corners), new_float_rows(arena, corners, 2),
-        new_float_rows(arena, corners, 2), new_float_rows(arena, corners, 2), new_floats(arena, count),
-        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-        new_floats(arena, count), new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-        new_floats(arena, count), new_float_tables(arena, most_wide, answered, 2), new_floats(arena, most_wide),
+    return new_tuple(
+        Constraints, arena, slot=places.constraint, kind=places.kind, first=places.first, row=places.row,
+        corner=places.corner, block=places.block, wide=places.wide, constraints=places.constraint.shape[0],
+        corners=places.row.shape[0], most_wide=most_wide, answered=rows if most_wide > 0 else 0,
     )  # fmt: skip

@@ -5,7 +5,7 @@ things lie is decided when topology or pins change (layout.py); all else is scra
 A kernel of one body is f(span, system, ...), with the body's Span of all three.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, FloatTables, SlotRows, Slots
 from sandbox.physics.jit import inlined_kernel
@@ -30,33 +30,33 @@ class Bodies(NamedTuple):
     lowest: Slots  # its free particle of lowest slot
     pivot: Slots  # row of the one pinned particle that holds it; -1: none does, -2: several do
     anchored: Flags
-    touched: Flags  # by contacts
-    underdamped: Flags  # some Cs is above its Cd
-    inverted: Flags  # inverted, matched: see shape_matching.py
-    matched: Flags
-    energy0: Floats  # [J]: once forces, pins and drives have moved
-    bank: Floats  # [J]: what its energy bank has
-    spared: Floats  # [kg m^2/s]: see rigid_turn.py
-    spin: FloatRows  # (b, SPIN_NUMBERS): likewise
+    touched: Annotated[Flags, "bodies"]  # by contacts
+    underdamped: Annotated[Flags, "bodies"]  # some Cs is above its Cd
+    inverted: Annotated[Flags, "bodies"]  # inverted, matched: see shape_matching.py
+    matched: Annotated[Flags, "bodies"]
+    energy0: Annotated[Floats, "bodies"]  # [J]: once forces, pins and drives have moved
+    bank: Annotated[Floats, "bodies"]  # [J]: what its energy bank has
+    spared: Annotated[Floats, "bodies"]  # [kg m^2/s]: see rigid_turn.py
+    spin: Annotated[FloatRows, f"bodies, {SPIN_NUMBERS}"]  # likewise
 
 
 class Rows(NamedTuple):
     """One row for every particle that springs of the matrix touch: free ones in elimination order, then pinned ones."""
 
     particle: Slots
-    mass: Floats  # [kg]
-    inverse_mass: Floats
-    inertia: Floats  # [kg]: mass, or what shape matching makes of it
-    position: FloatRows  # [m]
-    start: FloatRows  # [m/s], as all below but x_moved: before forces
-    v_star: FloatRows  # v*, after forces
-    v_star_matched: FloatRows  # v*, or what shape matching makes of it
-    slow: FloatRows  # see slow_motion.py
-    x_moved: FloatRows  # [m]: once pins have moved
-    v: FloatRows  # v'
-    v_best: FloatRows
-    delta_v: FloatRows  # D
-    saved_delta_v: FloatRows
+    mass: Annotated[Floats, "rows"]  # [kg]
+    inverse_mass: Annotated[Floats, "rows"]
+    inertia: Annotated[Floats, "rows"]  # [kg]: mass, or what shape matching makes of it
+    position: Annotated[FloatRows, "rows, 2"]  # [m]
+    start: Annotated[FloatRows, "rows, 2"]  # [m/s], as all below but x_moved: before forces
+    v_star: Annotated[FloatRows, "rows, 2"]  # v*, after forces
+    v_star_matched: Annotated[FloatRows, "rows, 2"]  # v*, or what shape matching makes of it
+    slow: Annotated[FloatRows, "rows, 2"]  # see slow_motion.py
+    x_moved: Annotated[FloatRows, "rows, 2"]  # [m]: once pins have moved
+    v: Annotated[FloatRows, "rows, 2"]  # v'
+    v_best: Annotated[FloatRows, "rows, 2"]
+    delta_v: Annotated[FloatRows, "rows, 2"]  # D
+    saved_delta_v: Annotated[FloatRows, "rows, 2"]
 
 
 class Springs(NamedTuple):
@@ -66,19 +66,19 @@ class Springs(NamedTuple):
     row_a: Slots  # row_a, row_b: ends
     row_b: Slots
     block: Slots  # that its ends share, -1: one end is pinned
-    rest: Floats  # [m]
-    start_rest: Floats  # [m]: rest length at the start of the step
-    K: Floats  # [kg]: K of the equation
-    K_beta: Floats  # [kg]: K beta
-    transverse: Floats  # [kg]: geometric stiffness h T / l
-    k_h2: Floats  # [kg]: k h^2 of its energy; that of a tick in one step where ticks choose their substeps
-    length: Floats  # [m]
-    error: Floats  # [m]
-    predicted: Floats  # [m]
-    impulse: Floats  # [N s]
-    tangential: Floats  # [N s]
-    tension: Floats  # [N s]
-    normal: FloatRows
+    rest: Annotated[Floats, "springs"]  # [m]
+    start_rest: Annotated[Floats, "springs"]  # [m]: rest length at the start of the step
+    K: Annotated[Floats, "springs"]  # [kg]: K of the equation
+    K_beta: Annotated[Floats, "springs"]  # [kg]: K beta
+    transverse: Annotated[Floats, "springs"]  # [kg]: geometric stiffness h T / l
+    k_h2: Annotated[Floats, "springs"]  # [kg]: k h^2 of its energy; with substeps by choice that of a tick in one step
+    length: Annotated[Floats, "springs"]  # [m]
+    error: Annotated[Floats, "springs"]  # [m]
+    predicted: Annotated[Floats, "springs"]  # [m]
+    impulse: Annotated[Floats, "springs"]  # [N s]
+    tangential: Annotated[Floats, "springs"]  # [N s]
+    tension: Annotated[Floats, "springs"]  # [N s]
+    normal: Annotated[FloatRows, "springs, 2"]
 
 
 class Constraints(NamedTuple):
@@ -91,23 +91,23 @@ class Constraints(NamedTuple):
     corner: Slots  # (q,): slots
     block: SlotRows  # (t, 3): of the pairs (0, 1), (1, 2), (2, 0) of a narrow one's corners, -1: one is pinned
     wide: Slots  # (t,): number among the body's wide ones, -1: narrow
-    rest: FloatRows  # rest, weight: those of the step, copied
-    weight: Floats
-    place: FloatRows  # (q, 2), as gradient and spare
-    gradient: FloatRows
-    spare: FloatRows
-    stiffness: Floats  # stiffness, damping: as the solver caps them
-    damping: Floats
-    K: Floats
-    K_beta: Floats
-    K_with_floor: Floats  # [kg]: K with that of the floor where it is predicted to push
-    floor: Floats  # [kg]: k h^2 of what holds a triangle from outside, 0: nothing
-    k_h2: Floats
-    error: Floats  # error, predicted: of C
-    predicted: Floats
-    impulse: Floats
-    response: FloatTables  # (w, n, 2): z of the wide ones
-    scale: Floats  # (w,): 1 / (1 / K + g . z) of those
+    rest: Annotated[FloatRows, "constraints, 2"]  # rest, weight: those of the step, copied
+    weight: Annotated[Floats, "corners"]
+    place: Annotated[FloatRows, "corners, 2"]  # as gradient and spare
+    gradient: Annotated[FloatRows, "corners, 2"]
+    spare: Annotated[FloatRows, "corners, 2"]
+    stiffness: Annotated[Floats, "constraints"]  # stiffness, damping: as the solver caps them
+    damping: Annotated[Floats, "constraints"]
+    K: Annotated[Floats, "constraints"]
+    K_beta: Annotated[Floats, "constraints"]
+    K_with_floor: Annotated[Floats, "constraints"]  # [kg]: K with that of the floor where it is predicted to push
+    floor: Annotated[Floats, "constraints"]  # [kg]: k h^2 of what holds a triangle from outside, 0: nothing
+    k_h2: Annotated[Floats, "constraints"]
+    error: Annotated[Floats, "constraints"]  # error, predicted: of C
+    predicted: Annotated[Floats, "constraints"]
+    impulse: Annotated[Floats, "constraints"]
+    response: Annotated[FloatTables, "most_wide, answered, 2"]  # (w, n, 2): z of the wide ones
+    scale: Annotated[Floats, "most_wide"]  # 1 / (1 / K + g . z) of those
 
 
 class ShapeMatchGroups(NamedTuple):

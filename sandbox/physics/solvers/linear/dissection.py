@@ -5,9 +5,9 @@ half that touch the first are eliminated last. Integer work and comparisons of c
 the order decides the last bits of a tick. Source: George 1973, in its geometric form.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, new_slot_rows, new_slots
+from sandbox.physics.arena import Arena, new_tuple
 from sandbox.physics.arrays import Floats, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import sort_by_value
@@ -27,19 +27,19 @@ TOO_SHORT = -1
 class Halving(NamedTuple):
     """Nodes (n,) while they are split; from part on scratch."""
 
-    start: Slots
-    near: Slots  # neighbours of node k: near[start[k]:start[k + 1]]
+    start: Annotated[Slots, "nodes + 1"]
+    near: Annotated[Slots, "2 * pairs"]  # neighbours of node k: near[start[k]:start[k + 1]]
     x: Floats  # [m]
     y: Floats
-    by_x: Slots  # nodes of one body after another by x; becomes the elimination order
-    by_y: Slots  # the same by y
-    part: Slots
-    merge_buffer: Slots
-    same: Slots  # (n,): 0..n-1
-    mark: Slots
-    where: Slots
-    stack: SlotRows  # first and last row, level, side, where the separator begins, -1: not split yet
-    waiting: SlotRows  # fronts whose parent is yet to come, by level and side
+    by_x: Annotated[Slots, "large"]  # nodes of one body after another by x; becomes the elimination order
+    by_y: Annotated[Slots, "large"]  # the same by y
+    part: Annotated[Slots, "large"]
+    merge_buffer: Annotated[Slots, "large"]
+    same: Annotated[Slots, "large"]  # 0..n-1
+    mark: Annotated[Slots, "large"]
+    where: Annotated[Slots, "large"]
+    stack: Annotated[SlotRows, f"3 * {DEEPEST}, 5"]  # first, last row, level, side, separator, -1: not split yet
+    waiting: Annotated[SlotRows, f"{DEEPEST} + 1, 2"]  # fronts whose parent is yet to come, by level and side
 
 
 class Dissection(NamedTuple):
@@ -50,13 +50,13 @@ class Dissection(NamedTuple):
     that is still waiting for its parent shares; to_parent: for each border row its place among the parent's rows.
     """
 
-    first: Slots
-    last: Slots
-    child: SlotRows
-    place: SlotRows
-    border_start: Slots
-    border: Slots
-    to_parent: Slots
+    first: Annotated[Slots, "nodes"]
+    last: Annotated[Slots, "nodes"]
+    child: Annotated[SlotRows, "nodes, 2"]
+    place: Annotated[SlotRows, "nodes, 2"]
+    border_start: Annotated[Slots, "nodes + 1"]
+    border: Annotated[Slots, "borders"]
+    to_parent: Annotated[Slots, "borders"]
 
 
 @inner_kernel
@@ -246,19 +246,10 @@ def new_halving(pairs: int, x: Floats, y: Floats, large: int, arena: Arena) -> H
 
     large: nodes of bodies that may be dissected, 0 where none is large enough.
     """
-    return Halving(
-        new_slots(arena, x.shape[0] + 1), new_slots(arena, 2 * pairs), x, y, new_slots(arena, large),
-        new_slots(arena, large), new_slots(arena, large), new_slots(arena, large), new_slots(arena, large),
-        new_slots(arena, large), new_slots(arena, large), new_slot_rows(arena, 3 * DEEPEST, 5),
-        new_slot_rows(arena, DEEPEST + 1, 2),
-    )  # fmt: skip
+    return new_tuple(Halving, arena, x=x, y=y, nodes=x.shape[0], pairs=pairs, large=large)
 
 
 @inner_kernel
 def new_dissection(nodes: int, borders: int, arena: Arena) -> Dissection:
     """A dissection of so many nodes to be filled in, with room for borders of so many rows in all."""
-    return Dissection(
-        new_slots(arena, nodes), new_slots(arena, nodes), new_slot_rows(arena, nodes, 2),
-        new_slot_rows(arena, nodes, 2), new_slots(arena, nodes + 1), new_slots(arena, borders),
-        new_slots(arena, borders),
-    )  # fmt: skip
+    return new_tuple(Dissection, arena, nodes=nodes, borders=borders)

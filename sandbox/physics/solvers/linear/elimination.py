@@ -1,8 +1,8 @@
 """Elimination order of a whole system: body by body, large ones dissected, the others by minimum degree."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, give_back, is_full, mark, new_slots
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_tuple
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.components import label_linked
 from sandbox.physics.jit import inner_kernel
@@ -40,16 +40,16 @@ class Links(NamedTuple):
 class Elimination(NamedTuple):
     """The order of n nodes, which become the rows of the matrix; b bodies in the order of their lowest nodes."""
 
-    order: Slots  # (n,) by row
-    rank: Slots  # (n,) by node
-    body: Slots  # (n,) by row
-    first_row: Slots  # (b + 1,)
-    lowest: Slots  # (b,): node
-    first_front: Slots  # (b + 1,)
-    label: Slots  # label, number, ends (n,): scratch
-    number: Slots
-    row_of: Slots  # the row of each node ordered by minimum degree, by their numbers
-    ends: Slots
+    order: Annotated[Slots, "nodes"]  # by row
+    rank: Annotated[Slots, "nodes"]  # by node
+    body: Annotated[Slots, "nodes"]  # by row
+    first_row: Annotated[Slots, "nodes + 1"]
+    lowest: Annotated[Slots, "nodes"]  # node
+    first_front: Annotated[Slots, "nodes + 1"]
+    label: Annotated[Slots, "nodes"]  # label, number, ends (n,): scratch
+    number: Annotated[Slots, "nodes"]
+    row_of: Annotated[Slots, "nodes"]  # the row of each node ordered by minimum degree, by their numbers
+    ends: Annotated[Slots, "nodes"]
 
 
 @inner_kernel
@@ -168,21 +168,12 @@ class Ordered(NamedTuple):
 
 
 @inner_kernel
-def _new_elimination(nodes: int, arena: Arena) -> Elimination:
-    return Elimination(
-        new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes + 1),
-        new_slots(arena, nodes), new_slots(arena, nodes + 1), new_slots(arena, nodes), new_slots(arena, nodes),
-        new_slots(arena, nodes), new_slots(arena, nodes),
-    )  # fmt: skip
-
-
-@inner_kernel
 def order_for_elimination(links: Links, tuning: Tuning, counts: Slots, arena: Arena) -> Ordered:
     """The elimination order of nodes; counts (COUNTS,): how much there is of all."""
     nodes, pairs, smallest = links.x.shape[0], links.a.shape[0], tuning.whole[SMALLEST]
     large = nodes if nodes >= smallest else 0
     blocks, borders = FILL_GUESS * nodes + 16, BORDER_GUESS * large
-    made, halving = _new_elimination(nodes, arena), new_halving(pairs, links.x, links.y, large, arena)
+    made, halving = new_tuple(Elimination, arena, nodes=nodes), new_halving(pairs, links.x, links.y, large, arena)
     scratch = mark(arena)
     fronts, small = new_dissection(large, borders, arena), new_ordering(nodes, pairs, blocks, arena)
     outcome = BLOCKS_TOO_SHORT

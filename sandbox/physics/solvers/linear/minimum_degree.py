@@ -4,9 +4,9 @@ Everything here is integer work, a pure function of which particles the springs 
 library's choice enters, because the order decides the last bits of a tick.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slots
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, Int32s, Slots
 from sandbox.physics.components import join, root_of
 from sandbox.physics.jit import inner_kernel
@@ -19,42 +19,42 @@ FILL_GUESS = 24
 class QuotientGraph(NamedTuple):
     """The neighbours of nodes (n,): near_count nodes and element_count elements each, in rows that begin at start."""
 
-    start: Slots
-    near: Slots
-    near_count: Slots
-    element: Slots
-    element_count: Slots
+    start: Annotated[Slots, "nodes + 1"]
+    near: Annotated[Slots, "2 * links"]
+    near_count: Annotated[Slots, "nodes"]
+    element: Annotated[Slots, "2 * links"]
+    element_count: Annotated[Slots, "nodes"]
 
 
 class Columns(NamedTuple):
     """The nodes that eliminating a node joins, its element: node[start[k]:start[k + 1]] for the k-th."""
 
-    start: Slots
-    node: Slots
+    start: Annotated[Slots, "nodes + 1"]
+    node: Annotated[Slots, "blocks"]
 
 
 class Marks(NamedTuple):
     """By element: absorbed; outside: members beyond the newest one, counted: for which step. mark: step of a node."""
 
-    absorbed: Flags
-    mark: Slots
-    outside: Slots
-    counted: Slots
+    absorbed: Annotated[Flags, "nodes"]
+    mark: Annotated[Slots, "nodes"]
+    outside: Annotated[Slots, "nodes"]
+    counted: Annotated[Slots, "nodes"]
 
 
 class Parts(NamedTuple):
     """Nodes (n,) that hang together: the lowest of them by node, and how many are left by that lowest one."""
 
-    label: Slots
-    left: Slots
+    label: Annotated[Slots, "nodes"]
+    left: Annotated[Slots, "nodes"]
 
 
 class Heap(NamedTuple):
     """Nodes by degree, least first, ties by lowest index; place: where each node is in it."""
 
-    node: Slots
-    place: Slots
-    degree: Slots
+    node: Annotated[Slots, "nodes"]
+    place: Annotated[Slots, "nodes"]
+    degree: Annotated[Slots, "nodes"]
 
 
 @inner_kernel
@@ -215,7 +215,7 @@ class Ordering(NamedTuple):
     """Room for ordering a graph of up to n nodes: see what it is made of; order (n,)."""
 
     graph: QuotientGraph
-    order: Slots
+    order: Annotated[Slots, "nodes"]
     columns: Columns
     marks: Marks
     parts: Parts
@@ -267,16 +267,7 @@ def order_graph(start: Slots, near: Slots, number: Slots, made: Ordering) -> boo
 @inner_kernel
 def new_ordering(nodes: int, links: int, blocks: int, arena: Arena) -> Ordering:
     """Room for ordering a graph; blocks: of the factor, below its diagonal."""
-    return Ordering(
-        QuotientGraph(
-            new_slots(arena, nodes + 1), new_slots(arena, 2 * links), new_slots(arena, nodes),
-            new_slots(arena, 2 * links), new_slots(arena, nodes),
-        ),
-        new_slots(arena, nodes), Columns(new_slots(arena, nodes + 1), new_slots(arena, blocks)),
-        Marks(new_flags(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes)),
-        Parts(new_slots(arena, nodes), new_slots(arena, nodes)),
-        Heap(new_slots(arena, nodes), new_slots(arena, nodes), new_slots(arena, nodes)),
-    )  # fmt: skip
+    return new_tuple(Ordering, arena, nodes=nodes, links=links, blocks=blocks)
 
 
 @inner_kernel
