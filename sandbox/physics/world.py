@@ -293,7 +293,7 @@ class World(StateArrays):
         position [m] (k, 2); velocity [m/s] (k, 2) or one for all; the others (k,) or one for all; owner: None = each
         its own; others: arrays of the state by name, such as spin, which springs and constraints take away again.
         A pinned particle starts at rest. Raises ValueError for a name that is taken, no mass above 0, what is
-        not finite, and other shapes.
+        out of its range (docs/state.md), and other shapes.
         """
         count, first = len(names), self.particle_count
         masses, is_pinned = arguments.floats("mass", mass, (count,)), arguments.flags("pinned", pinned, (count,))
@@ -310,12 +310,12 @@ class World(StateArrays):
             energy_bank=BANK_UNOPENED,
             mass=masses,
             inverse_mass=np.where(is_pinned, 0.0, 1.0 / masses),
-            radius=arguments.floats("radius", radius, (count,), 0.0),
+            radius=radius,
             gravity_scale=gravity_scale,
             particle_active=True,
             unmoved=True,
-            friction=arguments.floats("friction", friction, (count,), 0.0),
-            restitution=arguments.floats("restitution", restitution, (count,), 0.0),
+            friction=friction,
+            restitution=restitution,
             owner=-1 - first - np.arange(count) if owner is None else owner,
             group=group,
             collides=collides,
@@ -345,7 +345,7 @@ class World(StateArrays):
 
         particle_a, particle_b: slots (k,); the others (k,) or one for all. rest_length [m]: None or NaN = as placed.
         Raises IndexError for a slot that does not exist, and ValueError for a name that is taken, a spring from a
-        particle to itself, numbers that are not finite, and other shapes.
+        particle to itself, numbers out of their range (docs/state.md), and other shapes.
         """
         count, first = len(names), self.spring_count
         a = arguments.slots("particle_a", particle_a, PARTICLES, self.particle_count)
@@ -389,7 +389,7 @@ class World(StateArrays):
         rest, None = as they stand. inflation: area wanted as a multiple of the form's, below 0 turned over. The others
         (t,) or one for all.
         Raises IndexError for a slot that does not exist, and ValueError for one that comes twice, a bend with no three
-        corners or with a link of no length, an area with fewer than three corners, and numbers that are not finite.
+        corners or with a link of no length, an area with fewer than three corners, and numbers out of their range.
         """
         slots = arguments.slot_rows("corners", corners, PARTICLES, self.particle_count)
         count, size = slots.shape

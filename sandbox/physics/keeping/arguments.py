@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.marks import LONGEST_RAMP
-from sandbox.physics.state import FAMILIES, Column, Family, StateArrays
+from sandbox.physics.state import FAMILIES, Column, Family, Range, StateArrays
 
 # Words for the rows of families, where a slot of one is asked for.
 PARTICLES, SPRINGS, CONSTRAINTS, HANDS, PARTS = "particles", "springs", "constraints", "hands", "driven parts"
@@ -20,6 +20,7 @@ PARTICLES, SPRINGS, CONSTRAINTS, HANDS, PARTS = "particles", "springs", "constra
 _WHOLE, _NUMBERS, _LISTS = (int, np.integer), (float, int, np.integer, np.floating), (tuple, list, np.ndarray, Sequence)
 # Slots beyond this are beyond any array; kernels take no more digits.
 FARTHEST = 2**62
+ANY = Range(-math.inf, math.inf)
 
 
 def shown(value: Any) -> str:
@@ -126,12 +127,14 @@ def point(argument: str, value: Any) -> tuple[float, float]:
     return number(argument, value[0]), number(argument, value[1])
 
 
-def floats(argument: str, values: ArrayLike, shape: tuple[int, ...], least: float = -math.inf) -> Floats:
-    """Finite numbers of at least `least`, spread over a shape."""
+def floats(
+    argument: str, values: ArrayLike, shape: tuple[int, ...], least: float = -math.inf, most: float = math.inf
+) -> Floats:
+    """Finite numbers from least to most, spread over a shape."""
     given = _numbers(argument, values)
-    if not np.isfinite(given).all() or (given < least).any():
-        bad = given[~np.isfinite(given) | (given < least)].flat[0]
-        raise ValueError(f"{argument} {shown(float(bad))}: {_range_of(least, math.inf)} is needed")
+    is_bad = ~(np.isfinite(given) & (given >= least) & (given <= most))
+    if is_bad.any():
+        raise ValueError(f"{argument} {shown(float(given[is_bad].flat[0]))}: {_range_of(least, most)} is needed")
     return _spread(argument, given.astype(np.float64), shape)
 
 
@@ -173,7 +176,8 @@ def _rows(column: Column, values: ArrayLike, count: int) -> NDArray[Any]:
     shape = (count,) if column.width == 1 else (count, column.width)
     kind = np.dtype(column.dtype).kind
     if kind == "f":
-        return floats(column.name, values, shape)
+        within = column.within or ANY
+        return floats(column.name, values, shape, within.lowest, within.high)
     if kind == "b":
         return flags(column.name, values, shape)
     given = _plain(column.name, values)
