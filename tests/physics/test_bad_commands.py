@@ -67,7 +67,7 @@ OTHERS = {
     "add springs, too few": (lambda world: world.add_springs(["v", "w"], [0], [1]), "2 names"),
     "add springs, rest": (lambda world: world.add_springs(["v"], [0], [1], rest_length=INF), "rest_length inf: "),
     "add springs, stiffness": (lambda world: world.add_springs(["v"], [0], [1], stiffness=NAN), "stiffness nan: "),
-    "add springs, stiff": (lambda world: world.add_springs(["v"], [0], [1], stiffness=5.0), "stiffness 5.0: a number f"),
+    "add springs, stiff": (lambda world: world.add_springs(["v"], [0], [1], stiffness=5.0), "stiffness 5.0: a number"),
     "add particles, far": (lambda world: world.add_particles(["e"], [[0, -1e19]]), "position -1e+19: a number from -1"),
     "add particles, lively": (lambda world: world.add_particles(["e"], [[0, 1]], restitution=1.5), "restitution 1.5: "),
     "add springs, dampings": (lambda world: world.add_springs(["v"], [0], [1], damping=[0, 1]), "damping of shape"),

@@ -20,9 +20,9 @@ that follows the one place and moves another can give energy to what swings.
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slots
+from sandbox.physics.arena import Arena, is_full, new_floats, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.components import find_joined
 from sandbox.physics.geometry.rigid import best_turn, rotated, with_pair
@@ -53,17 +53,17 @@ LARGEST_LEAD = 0.05
 class Grips(NamedTuple):
     """The hands that hold something that can move, g of them, and the particles that they grip, k in all."""
 
-    hand: Slots  # (g,): its number
-    cursor: Slots  # (g,): slot of its particle, as spring and held
-    spring: Slots
-    held: Slots
-    mass: Floats  # (g,): M [kg]
-    arm: FloatRows  # [m] (g, 2): the point that is held, about the mean, in the form that the body was created in
-    lead: Floats  # [m] (g,): how far that point may be off the held particle
-    start: Slots  # particles of hand i: particle[start[i]:start[i + 1]]
-    particle: Slots
-    share: Floats  # (k,): s of each
-    form: FloatRows  # [m] (k, 2): its place about the mean in that form
+    hand: Annotated[Slots, "hands"]  # its number
+    cursor: Annotated[Slots, "hands"]  # slot of its particle, as spring and held
+    spring: Annotated[Slots, "hands"]
+    held: Annotated[Slots, "hands"]
+    mass: Annotated[Floats, "hands"]  # M [kg]
+    arm: Annotated[FloatRows, "hands, 2"]  # [m]: the held point about the mean, in the form at creation
+    lead: Annotated[Floats, "hands"]  # [m]: how far that point may be off the held particle
+    start: Annotated[Slots, "hands + 1"]  # particles of hand i: particle[start[i]:start[i + 1]]
+    particle: Annotated[Slots, "particles"]
+    share: Annotated[Floats, "particles"]  # s of each
+    form: Annotated[FloatRows, "particles, 2"]  # [m]: its place about the mean in that form
 
 
 @inner_kernel
@@ -148,26 +148,16 @@ def _fill_in_grip(state: State, label: Slots, i: int, spring: int, work: Floats,
 
 
 @inner_kernel
-def _room_to_grip(hands: int, particles: int, arena: Arena) -> Grips:
-    return Grips(
-        new_slots(arena, hands), new_slots(arena, hands), new_slots(arena, hands), new_slots(arena, hands),
-        new_floats(arena, hands), new_float_rows(arena, hands, 2), new_floats(arena, hands),
-        new_slots(arena, hands + 1), new_slots(arena, particles), new_floats(arena, particles),
-        new_float_rows(arena, particles, 2),
-    )  # fmt: skip
-
-
-@inner_kernel
 def new_grips(state: State, label: Slots, grab_particle: int, grab_spring: int, arena: Arena) -> Grips:
     """The grips of a world's hands; label (n,): see label_bodies; the slots of the first hand, or -1."""
-    grips = _room_to_grip(0, 0, arena)
+    grips = new_tuple(Grips, arena, hands=0, particles=0)
     hands, particles = 0, 0
     if grab_spring >= 0:
         for hand in range(GRAB_COUNT):
             end = _list_gripped(state, label, hand, grab_spring + hand, particles, grips)
             hands += 1 if end > particles else 0
             particles = end
-    grips = _room_to_grip(hands, particles, arena)
+    grips = new_tuple(Grips, arena, hands=hands, particles=particles)
     work = new_floats(arena, particles)
     if hands == 0 or is_full(arena):
         return grips

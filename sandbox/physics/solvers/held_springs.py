@@ -13,9 +13,9 @@ with j, so there is one j; at the limit Newton's method finds it. P reaches the 
 y . P is what it does to a spring.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slot_rows, new_slots
+from sandbox.physics.arena import Arena, is_full, new_tuple
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.hands import Grips, HandRows
@@ -36,29 +36,20 @@ LEAST_INVERSE_MASS_SHARE = 1e-12
 class HeldSprings(NamedTuple):
     """The hands that are solved with springs, and those springs."""
 
-    hand: Slots  # (g,): first row of each
-    row: Slots  # by particle (n,): that of the hand that holds it, -1: none
-    entry: Slots  # by particle (n,): its place in the row
-    at: SlotRows  # (m, 2) by spring that pulls: the rows of hands at its ends, the first -1: none
-    answer: FloatRows  # (m, 4): y of each
-    asked: FloatRows  # (m, 4): A y of each
-    mass: Floats  # [kg] (m,): effective mass where no hand that answers at once is at its limit
-    free: FloatRows  # (2, 2): scratch, P0
-
-
-@inner_kernel
-def _room_for(hands: int, particles: int, springs: int, arena: Arena) -> HeldSprings:
-    return HeldSprings(
-        new_slots(arena, hands), new_slots(arena, particles), new_slots(arena, particles),
-        new_slot_rows(arena, springs, 2), new_float_rows(arena, springs, 4), new_float_rows(arena, springs, 4),
-        new_floats(arena, springs), new_float_rows(arena, 2, 2),
-    )  # fmt: skip
+    hand: Annotated[Slots, "hands"]  # first row of each
+    row: Annotated[Slots, "particles"]  # by particle: that of the hand that holds it, -1: none
+    entry: Annotated[Slots, "particles"]  # by particle: its place in the row
+    at: Annotated[SlotRows, "springs, 2"]  # by spring that pulls: the rows of hands at its ends, the first -1: none
+    answer: Annotated[FloatRows, "springs, 4"]  # y of each
+    asked: Annotated[FloatRows, "springs, 4"]  # A y of each
+    mass: Annotated[Floats, "springs"]  # [kg]: effective mass where no hand that answers at once is at its limit
+    free: Annotated[FloatRows, "2, 2"]  # scratch, P0
 
 
 @inner_kernel
 def no_held_springs(arena: Arena) -> HeldSprings:
     """Those of a world without hands."""
-    return _room_for(0, 0, 0, arena)
+    return new_tuple(HeldSprings, arena, hands=0, particles=0, springs=0)
 
 
 @inner_kernel
@@ -77,7 +68,7 @@ def new_held_springs(hands: HandRows, state: State, springs: int, arena: Arena) 
     count, particles = grips.hand.shape[0], state.owner.shape[0]
     if count == 0:
         return no_held_springs(arena)
-    made = _room_for(count, particles, springs, arena)
+    made = new_tuple(HeldSprings, arena, hands=count, particles=particles, springs=springs)
     if is_full(arena):
         return made
     for p in range(particles):

@@ -6,9 +6,9 @@ article.
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, give_back, is_full, mark, new_float_rows, new_floats, new_slots
+from sandbox.physics.arena import Arena, give_back, is_full, mark, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import (
@@ -64,25 +64,25 @@ class ConstraintScratch(NamedTuple):
     m, kept = 0 and whole = 1, then 1 / AREA_SHARE.
     """
 
-    place: FloatRows
-    slope: FloatRows  # gradient
-    wanted: Floats  # -(Cs C / h + Cd dC/dt) m
-    damped: Floats
-    kept: Floats
-    whole: Floats
-    impulse: Floats  # the sum of its j
+    place: Annotated[FloatRows, "corners, 2"]
+    slope: Annotated[FloatRows, "corners, 2"]  # gradient
+    wanted: Annotated[Floats, "constraints"]  # -(Cs C / h + Cd dC/dt) m
+    damped: Annotated[Floats, "constraints"]
+    kept: Annotated[Floats, "constraints"]
+    whole: Annotated[Floats, "constraints"]
+    impulse: Annotated[Floats, "constraints"]  # the sum of its j
 
 
 class SpringScratch(NamedTuple):
     """Scratch of the springs that do something, count of them by slot."""
 
-    slot: Slots
-    normal: FloatRows
-    wanted: Floats  # [m/s]: r
-    mass: Floats  # [kg]
-    limit: Floats  # [N s]: of those of limited force, as impulse
-    impulse: Floats  # [N s]: the sum of its impulses
-    change: FloatRows  # [m/s] (n, 2) by particle
+    slot: Annotated[Slots, "springs"]
+    normal: Annotated[FloatRows, "springs, 2"]
+    wanted: Annotated[Floats, "springs"]  # [m/s]: r
+    mass: Annotated[Floats, "springs"]  # [kg]
+    limit: Annotated[Floats, "springs"]  # [N s]: of those of limited force, as impulse
+    impulse: Annotated[Floats, "springs"]  # [N s]: the sum of its impulses
+    change: Annotated[FloatRows, "particles, 2"]  # [m/s]: by particle
 
 
 class Iteration(NamedTuple):
@@ -325,16 +325,8 @@ def new_iteration(state: State, limit: Floats, arena: Arena) -> Iteration:
         give_back(arena, scratch)
     return Iteration(
         listed[:count], heavy_first[:count], limit if limits else limit[:0],
-        SpringScratch(
-            new_slots(arena, count), new_float_rows(arena, count, 2), new_floats(arena, count),
-            new_floats(arena, count), new_floats(arena, count), new_floats(arena, count),
-            new_float_rows(arena, state.owner.shape[0], 2),
-        ),
-        ConstraintScratch(
-            new_float_rows(arena, corners, 2), new_float_rows(arena, corners, 2), new_floats(arena, constraints),
-            new_floats(arena, constraints), new_floats(arena, constraints), new_floats(arena, constraints),
-            new_floats(arena, constraints),
-        ),
+        new_tuple(SpringScratch, arena, springs=count, particles=state.owner.shape[0]),
+        new_tuple(ConstraintScratch, arena, constraints=constraints, corners=corners),
         no_held_springs(arena),
     )  # fmt: skip
 

@@ -1,8 +1,8 @@
 """Where the numbers of fronts lie: those that stay, and those that wait for a parent."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slot_rows, new_slots
+from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.linear.dissection import DEEPEST, Dissection
@@ -20,16 +20,16 @@ class FrontPlaces(NamedTuple):
     """Where the fronts lie: see Fronts. By level: size of what the largest front leaves, and what lies before; before
     (f+1,) is scratch."""
 
-    of_row: Slots
-    diagonal: Slots
-    row_width: Slots
-    width: Slots
-    base: Slots
-    remains: Slots
-    fork: SlotRows
-    size: Slots
-    beyond: Slots
-    before: Slots
+    of_row: Annotated[Slots, "rows"]
+    diagonal: Annotated[Slots, "rows"]
+    row_width: Annotated[Slots, "rows"]
+    width: Annotated[Slots, "fronts"]
+    base: Annotated[Slots, "fronts"]
+    remains: Annotated[Slots, "fronts"]
+    fork: Annotated[SlotRows, "fronts, 2"]
+    size: Annotated[Slots, f"{DEEPEST}"]
+    beyond: Annotated[Slots, f"{DEEPEST}"]
+    before: Annotated[Slots, "fronts + 1"]
 
 
 @inner_kernel
@@ -128,11 +128,7 @@ def new_fronts(
     worth: multiplications that the shorter half must have.
     """
     fronts, lengths = found.first.shape[0], new_slots(arena, LENGTHS)
-    places = FrontPlaces(
-        new_slots(arena, rows), new_slots(arena, rows), new_slots(arena, rows), new_slots(arena, fronts),
-        new_slots(arena, fronts), new_slots(arena, fronts), new_slot_rows(arena, fronts, 2), new_slots(arena, DEEPEST),
-        new_slots(arena, DEEPEST), new_slots(arena, fronts + 1),
-    )  # fmt: skip
+    places = new_tuple(FrontPlaces, arena, rows=rows, fronts=fronts)
     if not is_full(arena):
         lay_out_fronts(first_front, bodies, found, places, worth, lengths)
     widest = lengths[WIDEST]
