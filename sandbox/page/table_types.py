@@ -21,8 +21,6 @@ _ARRAYS = {
     "float64": "Float64Array", "int64": "BigInt64Array", "int32": "Int32Array", "int8": "Int8Array",
     "bool": "Uint8Array",
 }  # fmt: skip
-# What a kernel takes that a world carries out by itself.
-_OF_SLOTS = {"particle": "number", "springs": "number[]"}
 
 
 def table_types() -> str:
@@ -49,7 +47,8 @@ def _commands() -> Iterator[str]:
             fields = {field: _type_of(schema) for field, schema in entries[name]["fields"].items()}
             optional = {field for field, schema in entries[name]["fields"].items() if "isRequired" not in schema}
         else:
-            fields, optional = {slot: _OF_SLOTS[slot] for slot in kind.slots if slot in _OF_SLOTS}, set()
+            # Springs that break, or that a level begins without: a world carries it out by itself.
+            fields, optional = dict.fromkeys(kind.slots, "number[]"), set()
         yield f"  {name}: {{"
         yield f"    type: '{name}';"
         yield from (f"    {field}{'?' * (field in optional)}: {kind};" for field, kind in fields.items())
