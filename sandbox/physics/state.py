@@ -100,7 +100,11 @@ class Column:
 
     def empty(self) -> NDArray[Any]:
         """An array of no rows."""
-        return np.zeros((0, self.width) if self.width > 1 else 0, dtype=self.dtype)
+        return self.usual_rows(0)
+
+    def usual_rows(self, count: int) -> NDArray[Any]:
+        """An array of so many rows, which are as usual."""
+        return np.full((count, self.width) if self.width > 1 else count, self.usual, dtype=self.dtype)
 
 
 def _array(

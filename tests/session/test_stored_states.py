@@ -7,6 +7,7 @@ from sandbox.app.run.playback import Playback
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.session.commands import AddParticle, CutSprings, Grab, MoveGrab, Pin, Release, Unpin
+from sandbox.session.replay.format import decode_state
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from sandbox.session.session import Session
@@ -107,3 +108,24 @@ def test_the_verdict_does_not_speak_of_ticks_that_were_passed_over(replay):
     while not playback.verdict:
         playback.advance(1 / 60)
     assert "some were passed over, all others equal bit for bit" in playback.verdict
+
+
+def without(replay, *names):
+    """The state of tick 300, decoded from a file that does not have these arrays."""
+    stored = replay.states[300]
+    arrays = {name: text for name, text in stored.arrays.items() if name not in names}
+    return decode_state(replay.level, 300, arrays, stored.settings, stored.joined)
+
+
+def test_what_a_file_of_before_does_not_have_is_as_usual(replay):
+    whole = without(replay)
+    later = without(replay, "belt", "rolls", "slow_change", "setting_ticks")
+    assert whole.arrays.keys() == later.arrays.keys()
+    assert not later.belt.any() and later.rolls.all() and later.slow_change.shape == whole.velocity.shape
+    assert state_hash(without(replay, "belt", "setting_ticks")) == state_hash(whole)
+
+
+@pytest.mark.parametrize("names", [("mass",), ("hand_force", "hand_radius", "hand_strength")])
+def test_a_state_without_what_none_goes_without_is_refused(replay, names):
+    with pytest.raises(ValueError, match=r"state: (the arrays are|hand_strength, .* are not equally long)"):
+        without(replay, *names)

@@ -36,7 +36,7 @@ from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.settings import NUMBER_COUNT
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.state import BY_STORED, FAMILIES, Column, Family
+from sandbox.physics.state import ALWAYS_STORED, BY_STORED, FAMILIES, Column, Family
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import World, WorldSettings
 from sandbox.session.commands.adding import name_slots_to
@@ -132,13 +132,18 @@ def decode_state(
     level: Level, tick: int, state: dict[str, str], settings: WorldSettings, joined: Sequence[Mapping[str, Any]]
 ) -> Snapshot:
     """The snapshot of a state line of a level's run; joined: what joined it until then. Raises ValueError, one line."""
-    if set(state) != set(BY_STORED):
+    if not ALWAYS_STORED <= set(state) <= set(BY_STORED):
         raise ValueError(f"state: the arrays are {', '.join(BY_STORED)}")
     arrays = {name: decode_array(BY_STORED[name], text) for name, text in state.items()}
     for family in Family:
         names = [column.stored for column in FAMILIES[family]]
-        if len({len(arrays[name]) for name in names}) != 1:
+        counts = {len(arrays[name]) for name in names if name in arrays}
+        if len(counts) != 1:
             raise ValueError(f"state: {', '.join(names)} are not equally long")
+        # What a file does not have yet is as usual.
+        arrays |= {
+            column.stored: column.usual_rows(*counts) for column in FAMILIES[family] if column.stored not in state
+        }
     for name in ("particle_a", "particle_b", "corner_particle", "contact_particle"):
         if np.any((arrays[name] < 0) | (arrays[name] >= len(arrays["mass"]))):
             raise ValueError(f"state.{name}: names a particle that does not exist")
