@@ -14,6 +14,7 @@ from sandbox.level.plan.forms import add_forms
 from sandbox.level.plan.materials import coefficients, strain_limits
 from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
+from sandbox.level.plan.water import hulls_of, water_of
 from sandbox.level.plan.welds import Slots
 from sandbox.physics.changing.dividing import part_bodies
 from sandbox.physics.settings import WorldSettings
@@ -45,6 +46,7 @@ def build_world(level: Level) -> World:
     _part_cut_bodies(world, level, plan)
     add_forms(world, level, plan.bodies, materials, firsts)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
+    world.water, world.hulls = water_of(level), hulls_of(level, plan.bodies, materials)
     world.source = level
     return world
 
@@ -128,7 +130,8 @@ def _add_springs(world: World, level: Level, plan: Plan, slots: Slots, materials
     material = np.concatenate([*used, np.array([index[s.material] for s in loose], dtype=np.int64)]).astype(np.int64)
     pairs = slots[np.concatenate([*ends, plan.spring_ends])]
     # A loose spring joins bodies, and is in nobody's way.
-    edge = [*(body.edges for body in plan.bodies), np.zeros(len(loose), np.int8)] if level.has_contacts else None
+    has_edges = level.has_contacts or level.has_water
+    edge = [*(body.edges for body in plan.bodies), np.zeros(len(loose), np.int8)] if has_edges else None
     world.add_springs(
         names + [f":{number}" for number in range(len(loose))],
         pairs[:, 0],

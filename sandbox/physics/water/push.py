@@ -1,0 +1,307 @@
+"""Push: what water does to velocities in a step, before the springs act: lift, and drag that cannot overshoot.
+
+Lift is the gradient of U of all that water cannot enter (wet_parts.py): calm water neither gives nor takes energy.
+
+    triangle  density g A times the integral of each corner's shape function over what is wet; A = the area that its
+              constraint wants, so that soft bodies are not crushed by the depth
+    hull      the pressure on each edge, integrated between its ends
+    disc      density g times the area that is wet
+
+Drag of a side of length L and normal n that moves at u through the water, and that of a disc:
+
+    density (fast_drag / 4 |u n| (u n) n + slow_drag u) L        density (fast_drag |u| + 2 pi slow_drag) r u
+
+It is a resistance D times u, implicit,
+
+    (m + h D) v' = m v + h D flow
+
+with the velocity before anything acts. So it is 0 for what rests, whatever holds that, and Archimedes is right to
+rounding. Of what nothing holds, drag also takes its part of what forces add in the step, h D / (m + h D): else it would
+rise and sink too fast by the change of its velocity in a step.
+"""
+
+import math
+
+from sandbox.physics.arrays import FloatRows, Floats, Slots
+from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP_SHIFT
+from sandbox.physics.collision.types import KeptContacts
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.settings import GRAVITY_X, GRAVITY_Y
+from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.state import State
+from sandbox.physics.water.displacers import (
+    BXX,
+    BXY,
+    BYY,
+    CX,
+    CY,
+    DX,
+    DY,
+    FX,
+    FY,
+    HELD,
+    LOADS,
+    MASS,
+    NET_X,
+    NET_Y,
+    RXX,
+    RXY,
+    RYY,
+    SUMS,
+    Water,
+)
+from sandbox.physics.water.pools import BOTTOM, DENSITY, FAST, FLOW_X, FLOW_Y, LEFT, RIGHT, SLOW, TOP
+from sandbox.physics.water.wet_parts import PI, clipped, disc_area_below, wet_shares
+
+
+@inner_kernel
+def _resist(water: Water, k: int, p: int, xx: float, xy: float, yy: float) -> None:
+    load, u, v = water.load, water.pool[k, FLOW_X], water.pool[k, FLOW_Y]
+    load[p, RXX] += xx
+    load[p, RXY] += xy
+    load[p, RYY] += yy
+    load[p, DX] += xx * u + xy * v
+    load[p, DY] += xy * u + yy * v
+    water.wet[p] = True
+
+
+@inner_kernel
+def wet_part(water: Water, k: int, a: int, b: int, position: FloatRows) -> tuple[float, float]:
+    """The part of the way from a to b that lies in pool k; empty where the second is not above the first."""
+    pool = water.pool
+    dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
+    s0, s1 = clipped(position[a, 0], dx, pool[k, LEFT], pool[k, RIGHT], 0.0, 1.0)
+    s0, s1 = clipped(position[a, 1], dy, pool[k, BOTTOM], pool[k, TOP], s0, s1)
+    return s0, s1
+
+
+@inner_kernel
+def _lift_triangle(water: Water, k: int, i: int, state: State, g: float) -> None:
+    pool, load, x = water.pool, water.load, state.position
+    p, q, r = water.triangle[i, 0], water.triangle[i, 1], water.triangle[i, 2]
+    middle = (x[p, 0] + x[q, 0] + x[r, 0]) / 3.0
+    if not (pool[k, LEFT] <= middle and middle <= pool[k, RIGHT]):
+        return
+    if not x[p, 1] + x[q, 1] + x[r, 1] >= 3.0 * pool[k, BOTTOM]:
+        return
+    top = pool[k, TOP]
+    at_p, at_q, at_r = wet_shares(top - x[p, 1], top - x[q, 1], top - x[r, 1])
+    if not at_p + at_q + at_r > 0.0:
+        return
+    weight = pool[k, DENSITY] * g * abs(state.constraint_rest[water.constraint[i], 0])
+    load[p, FY] += weight * at_p
+    load[q, FY] += weight * at_q
+    load[r, FY] += weight * at_r
+    water.wet[p] = water.wet[q] = water.wet[r] = True
+
+
+@inner_kernel
+def _press_edge(water: Water, k: int, a: int, b: int, position: FloatRows, weight: float, top: float) -> None:
+    # F_b = -n L int p(s) s ds,  F_a = -n L int p(s) (1 - s) ds,  p = weight (top - y)
+    load = water.load
+    dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
+    s0, s1 = wet_part(water, k, a, b, position)
+    if not s0 < s1:
+        return
+    p0 = weight * (top - position[a, 1] - s0 * dy)
+    p1 = weight * (top - position[a, 1] - s1 * dy)
+    whole = 0.5 * (s1 - s0) * (p0 + p1)
+    at_b = (s1 - s0) / 6.0 * (p0 * (2.0 * s0 + s1) + p1 * (s0 + 2.0 * s1))
+    # Times the outer normal and the length: (dy, -dx).
+    load[a, FX] -= dy * (whole - at_b)
+    load[a, FY] += dx * (whole - at_b)
+    load[b, FX] -= dy * at_b
+    load[b, FY] += dx * at_b
+    water.wet[a] = water.wet[b] = True
+
+
+@inner_kernel
+def _press_shell(water: Water, k: int, o: int, position: FloatRows, g: float) -> None:
+    # Pressure is counted from the hull's highest corner, where that is below the surface: what comes on top of it
+    # would squeeze the hull and lift nothing. Where it is turned inside out, it acts from the other side.
+    area, highest = 0.0, -math.inf
+    for e in range(water.shell_start[o], water.shell_start[o + 1]):
+        a, b = water.shell_a[e], water.shell_b[e]
+        area += position[a, 0] * position[b, 1] - position[b, 0] * position[a, 1]
+        highest = max(highest, position[a, 1])
+    weight = water.pool[k, DENSITY] * g * (1.0 if area >= 0.0 else -1.0)
+    top = min(water.pool[k, TOP], highest)
+    for e in range(water.shell_start[o], water.shell_start[o + 1]):
+        _press_edge(water, k, water.shell_a[e], water.shell_b[e], position, weight, top)
+
+
+@inner_kernel
+def _drag_edge(water: Water, k: int, i: int, state: State, start: FloatRows) -> None:
+    # The resistance of what is wet of it is shared by its ends as its length is.
+    pool, x, s = water.pool, state.position, water.edge[i]
+    a, b = state.particle_a[s], state.particle_b[s]
+    s0, s1 = wet_part(water, k, a, b, x)
+    dx, dy = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1]
+    length = math.sqrt(dx * dx + dy * dy)
+    if not (s0 < s1 and length > 0.0):
+        return
+    nx, ny = dy / length, -dx / length
+    ux = 0.5 * (start[a, 0] + start[b, 0]) - pool[k, FLOW_X]
+    uy = 0.5 * (start[a, 1] + start[b, 1]) - pool[k, FLOW_Y]
+    mass = pool[k, DENSITY] * length * water.sides[i]
+    slow, fast = mass * pool[k, SLOW], 0.25 * mass * pool[k, FAST] * abs(ux * nx + uy * ny)
+    xx, xy, yy = slow + fast * nx * nx, fast * nx * ny, slow + fast * ny * ny
+    at_b = 0.5 * (s1 * s1 - s0 * s0)
+    at_a = (s1 - s0) - at_b
+    _resist(water, k, a, at_a * xx, at_a * xy, at_a * yy)
+    _resist(water, k, b, at_b * xx, at_b * xy, at_b * yy)
+
+
+@inner_kernel
+def _push_disc(water: Water, k: int, i: int, state: State, start: FloatRows, g: float, ahead: float) -> None:
+    # ahead [s]: the force is that of the place to which its velocity brings it until then. What nothing holds moves by
+    # h v' + e (v - v') (free_contacts.py): with the force at x + e v that map keeps areas, so that heave neither grows
+    # nor dies out.
+    pool, p, radius = water.pool, water.disc[i], state.radius[water.disc[i]]
+    if water.disc_area[i] > 0.0:
+        radius = math.sqrt(water.disc_area[i] / PI)
+    x, y = state.position[p, 0] + ahead * start[p, 0], state.position[p, 1] + ahead * start[p, 1]
+    if not (pool[k, LEFT] <= x and x <= pool[k, RIGHT] and pool[k, BOTTOM] <= y and radius > 0.0):
+        return
+    area = disc_area_below(pool[k, TOP] - y, radius)
+    if not area > 0.0:
+        return
+    water.load[p, FY] += pool[k, DENSITY] * g * area
+    water.wet[p] = True
+    if water.is_bare[i]:
+        ux, uy = start[p, 0] - pool[k, FLOW_X], start[p, 1] - pool[k, FLOW_Y]
+        speed = math.sqrt(ux * ux + uy * uy)
+        share = area / (PI * radius * radius)
+        resistance = pool[k, DENSITY] * share * radius * (2.0 * PI * pool[k, SLOW] + pool[k, FAST] * speed)
+        _resist(water, k, p, resistance, 0.0, resistance)
+
+
+@inner_kernel
+def _slow_spin(water: Water, k: int, i: int, state: State, h: float) -> None:
+    # The rim of a disc is a side that moves along itself: 2 pi r density slow_drag (r omega) r, and I = m r^2 / 2.
+    pool, p = water.pool, water.disc[i]
+    if state.spin[p] == 0.0 or not water.wet[p]:
+        return
+    r = state.radius[p]
+    x, y = state.position[p, 0], state.position[p, 1]
+    if pool[k, LEFT] <= x and x <= pool[k, RIGHT] and pool[k, BOTTOM] <= y and r > 0.0:
+        share = disc_area_below(pool[k, TOP] - y, r) / (PI * r * r)
+        state.spin[p] /= 1.0 + h * 4.0 * PI * r * pool[k, DENSITY] * pool[k, SLOW] * share * state.inverse_mass[p]
+
+
+@inner_kernel
+def _load(water: Water, state: State, start: FloatRows, g: float, early: float) -> None:
+    # What water does to each particle.
+    for p in range(water.wet.shape[0]):
+        water.wet[p] = False
+        for column in range(LOADS):
+            water.load[p, column] = 0.0
+    for k in range(water.pool.shape[0]):
+        for i in range(water.triangle.shape[0]):
+            _lift_triangle(water, k, i, state, g)
+        for o in range(water.shell_start.shape[0] - 1):
+            _press_shell(water, k, o, state.position, g)
+        for i in range(water.edge.shape[0]):
+            _drag_edge(water, k, i, state, start)
+        for i in range(water.disc.shape[0]):
+            _push_disc(water, k, i, state, start, g, early if water.is_loose[i] else 0.0)
+
+
+@inner_kernel
+def _hold(water: Water, label: Slots, p: int) -> None:
+    if label[p] >= 0:
+        water.body[label[p], HELD] = 1.0
+
+
+@inner_kernel
+def _find_held(water: Water, state: State, label: Slots, kept: KeptContacts, count: int) -> None:
+    # What pins, hands or the contacts of the last step hold.
+    for s in range(state.spring_active.shape[0]):
+        if state.spring_active[s]:
+            a, b = state.particle_a[s], state.particle_b[s]
+            if not state.inverse_mass[a] > 0.0:
+                _hold(water, label, b)
+            if not state.inverse_mass[b] > 0.0:
+                _hold(water, label, a)
+    for c in range(count):
+        if not (kept.impulse[c, 0] > 0.0 or kept.impact[c] > 0.0):
+            continue
+        number, kind = kept.feature[c] // KINDS, kept.feature[c] % KINDS
+        _hold(water, label, kept.particle[c])
+        if kind == DISC:
+            _hold(water, label, number)
+        elif kind != TERRAIN:
+            _hold(water, label, state.particle_a[number % TIP_SHIFT])
+
+
+@inner_kernel
+def _sum_bodies(water: Water, state: State, label: Slots, numbers: Floats) -> None:
+    load, body, mass = water.load, water.body, state.mass
+    for p in range(body.shape[0]):
+        for column in range(SUMS):
+            body[p, column] = 0.0
+    for p in range(body.shape[0]):
+        g = label[p]
+        if g < 0 or not state.particle_active[p] or not state.inverse_mass[p] > 0.0:
+            continue
+        weight = mass[p] * state.gravity_scale[p]
+        body[g, MASS] += mass[p]
+        body[g, NET_X] += load[p, FX] + weight * numbers[GRAVITY_X]
+        body[g, NET_Y] += load[p, FY] + weight * numbers[GRAVITY_Y]
+        body[g, BXX] += load[p, RXX]
+        body[g, BXY] += load[p, RXY]
+        body[g, BYY] += load[p, RYY]
+
+
+@inner_kernel
+def _slow_bodies(water: Water, state: State, label: Slots, h: float) -> None:
+    # All of a body gets the same change, so that no spring in it is strained.
+    body = water.body
+    for g in range(body.shape[0]):
+        m = body[g, MASS]
+        if not (body[g, BXX] + body[g, BYY] > 0.0 and m > 0.0) or body[g, HELD] > 0.0:
+            continue
+        ax, ay = h * body[g, NET_X] / m, h * body[g, NET_Y] / m
+        added = math.sqrt(ax * ax + ay * ay)
+        if not added > 0.0:
+            continue
+        nx, ny = ax / added, ay / added
+        resistance = nx * (body[g, BXX] * nx + body[g, BXY] * ny) + ny * (body[g, BXY] * nx + body[g, BYY] * ny)
+        share = h * resistance / (m + h * resistance)
+        body[g, CX], body[g, CY] = -share * ax, -share * ay
+    for p in range(body.shape[0]):
+        if label[p] >= 0 and state.particle_active[p] and state.inverse_mass[p] > 0.0:
+            state.velocity[p, 0] += body[label[p], CX]
+            state.velocity[p, 1] += body[label[p], CY]
+
+
+@inner_kernel
+def push_by_water(
+    water: Water, state: State, start: FloatRows, label: Slots, numbers: Floats, kept: KeptContacts, count: int,
+    touches: bool, h: float,
+) -> None:  # fmt: skip
+    """Change velocities as water does in a step of h [s].
+
+    start [m/s] (n, 2): velocities before anything acted; label (n,): of bodies, see joints/hands.py; kept: the contacts
+    of the last step, so many; touches: whether anything can touch.
+    """
+    load, velocity, mass = water.load, state.velocity, state.mass
+    # As free_contacts.py moves what nothing holds. Gravity that points upwards makes no pressure.
+    early = 0.5 * (h - h / small_steps(h)) if touches else 0.0
+    _load(water, state, start, max(0.0, -numbers[GRAVITY_Y]), early)
+    for p in range(load.shape[0]):
+        if not water.wet[p] or not state.inverse_mass[p] > 0.0:
+            continue
+        # v += -(m + h D)^-1 h D (start - flow) + h F / m
+        xx, xy, yy = mass[p] + h * load[p, RXX], h * load[p, RXY], mass[p] + h * load[p, RYY]
+        rx = load[p, DX] - load[p, RXX] * start[p, 0] - load[p, RXY] * start[p, 1]
+        ry = load[p, DY] - load[p, RXY] * start[p, 0] - load[p, RYY] * start[p, 1]
+        per = h / (xx * yy - xy * xy)
+        velocity[p, 0] += per * (yy * rx - xy * ry) + h * load[p, FX] / mass[p]
+        velocity[p, 1] += per * (xx * ry - xy * rx) + h * load[p, FY] / mass[p]
+    _sum_bodies(water, state, label, numbers)
+    _find_held(water, state, label, kept, count)
+    _slow_bodies(water, state, label, h)
+    for k in range(water.pool.shape[0]):
+        for i in range(water.disc.shape[0]):
+            _slow_spin(water, k, i, state, h)
