@@ -105,7 +105,7 @@ class Expansion(Generic[Body]):
     def hull(self) -> Pairs:
         """Springs (k, 2) of a closed outline that displaces water in place of triangles.
 
-        The number of each in the form, and 1 where the inside is on the left of the way from its second end to its first.
+        The number of each in the form; 1 where the inside is on the left of the way from its second end to its first.
         """
         return NO_HULL
 
