@@ -15,9 +15,9 @@ It is a resistance D times u, implicit,
 
     (m + h D) v' = m v + h D flow
 
-with the velocity before anything acts. So it is 0 for what rests, whatever holds that, and Archimedes is right to
-rounding. Of what nothing holds, drag also takes its part of what forces add in the step, h D / (m + h D): else it would
-rise and sink too fast by the change of its velocity in a step.
+by particle, with the velocity before anything acts. So it is 0 for what rests, whatever holds that, and Archimedes is
+right to rounding. Of what nothing holds, drag also takes its part of what forces add in the step, as of a rigid body:
+else it would rise and sink too fast by the change of its velocity in a step.
 """
 
 import math
@@ -35,6 +35,8 @@ from sandbox.physics.water.displacers import (
     BYY,
     CX,
     CY,
+    DRAG_X,
+    DRAG_Y,
     DX,
     DY,
     FX,
@@ -50,6 +52,8 @@ from sandbox.physics.water.displacers import (
     RXX,
     RXY,
     RYY,
+    TOOK_X,
+    TOOK_Y,
     TORQUE,
     TURN,
     Water,
@@ -266,9 +270,9 @@ def _load(water: Water, state: State, start: FloatRows, g: float, early: float) 
 
 
 @inner_kernel
-def _push(water: Water, state: State, start: FloatRows, h: float) -> None:
+def _push(water: Water, state: State, start: FloatRows, label: Slots, h: float) -> None:
     # v += -(m + h D)^-1 h D (start - flow) + h F / m
-    load, velocity, mass = water.load, state.velocity, state.mass
+    load, body, velocity, mass = water.load, water.body, state.velocity, state.mass
     for p in range(load.shape[0]):
         if not water.wet[p] or not state.inverse_mass[p] > 0.0:
             continue
@@ -276,8 +280,15 @@ def _push(water: Water, state: State, start: FloatRows, h: float) -> None:
         rx = load[p, DX] - load[p, RXX] * start[p, 0] - load[p, RXY] * start[p, 1]
         ry = load[p, DY] - load[p, RXY] * start[p, 0] - load[p, RYY] * start[p, 1]
         per = h / (xx * yy - xy * xy)
-        velocity[p, 0] += per * (yy * rx - xy * ry) + h * load[p, FX] / mass[p]
-        velocity[p, 1] += per * (xx * ry - xy * rx) + h * load[p, FY] / mass[p]
+        dx, dy = per * (yy * rx - xy * ry), per * (xx * ry - xy * rx)
+        velocity[p, 0] += dx + h * load[p, FX] / mass[p]
+        velocity[p, 1] += dy + h * load[p, FY] / mass[p]
+        g = label[p]
+        if g >= 0:
+            body[g, DRAG_X] += rx
+            body[g, DRAG_Y] += ry
+            body[g, TOOK_X] += mass[p] * dx
+            body[g, TOOK_Y] += mass[p] * dy
 
 
 @inner_kernel
@@ -345,21 +356,19 @@ def _sum_bodies(water: Water, state: State, label: Slots, numbers: Floats) -> No
 
 @inner_kernel
 def _slow_bodies(water: Water, state: State, label: Slots, h: float) -> None:
-    # All of a body gets the same change, so that no spring in it is strained.
+    # What nothing holds moves as one, v += (m + h D)^-1 h (F - D (start - flow)) of all of it. Its particles get the
+    # same change, so that no spring is strained.
     body = water.body
     for g in range(body.shape[0]):
         m = body[g, MASS]
         body[g, CX], body[g, CY] = 0.0, 0.0
         if not (body[g, BXX] + body[g, BYY] > 0.0 and m > 0.0) or body[g, HELD] > 0.0:
             continue
-        ax, ay = h * body[g, NET_X] / m, h * body[g, NET_Y] / m
-        added = math.sqrt(ax * ax + ay * ay)
-        if not added > 0.0:
-            continue
-        nx, ny = ax / added, ay / added
-        resistance = nx * (body[g, BXX] * nx + body[g, BXY] * ny) + ny * (body[g, BXY] * nx + body[g, BYY] * ny)
-        share = h * resistance / (m + h * resistance)
-        body[g, CX], body[g, CY] = -share * ax, -share * ay
+        xx, xy, yy = m + h * body[g, BXX], h * body[g, BXY], m + h * body[g, BYY]
+        fx, fy = body[g, NET_X] + body[g, DRAG_X], body[g, NET_Y] + body[g, DRAG_Y]
+        per = h / (xx * yy - xy * xy)
+        body[g, CX] = per * (yy * fx - xy * fy) - (h * body[g, NET_X] + body[g, TOOK_X]) / m
+        body[g, CY] = per * (xx * fy - xy * fx) - (h * body[g, NET_Y] + body[g, TOOK_Y]) / m
     for p in range(body.shape[0]):
         if label[p] >= 0 and state.particle_active[p] and state.inverse_mass[p] > 0.0:
             state.velocity[p, 0] += body[label[p], CX]
@@ -384,8 +393,8 @@ def push_by_water(
     for k in range(water.pool.shape[0]):
         for i in range(water.triangle.shape[0]):
             _lift_passing(water, k, i, state, start, label, g, h)
-    _push(water, state, start, h)
     _sum_bodies(water, state, label, numbers)
+    _push(water, state, start, label, h)
     _slow_bodies(water, state, label, h)
     for k in range(water.pool.shape[0]):
         for i in range(water.disc.shape[0]):
