@@ -117,10 +117,8 @@ def _lift_triangle(water: Water, k: int, i: int, state: State, g: float) -> None
 @inner_kernel
 def _rise(water: Water, label: Slots, p: int, position: FloatRows, start: FloatRows, h: float) -> float:
     # How far a particle goes up in a step, at its velocity in the middle between that before it and that after it.
-    if label[p] < 0:
-        return h * start[p, 1]
     body, g = water.body, label[p]
-    if body[g, HELD] > 0.0:
+    if g < 0 or not body[g, MASS] > 0.0 or body[g, HELD] > 0.0:
         return h * start[p, 1]
     change = h * (body[g, NET_Y] - body[g, BYY] * start[p, 1]) / (body[g, MASS] + h * body[g, BYY])
     arm = position[p, 0] - position[g, 0] - body[g, MX] / body[g, MASS]
