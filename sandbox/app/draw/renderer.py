@@ -22,6 +22,7 @@ from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
+from sandbox.app.draw.water import Pools
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.pulls import Pull
@@ -99,6 +100,7 @@ class Renderer:
         self._painter = Painter()
         self._backdrop = Backdrop()
         self._still = Still()
+        self._pools = Pools(level)
         # The terrain that was drawn last, and how many there have been: arrays cannot be compared as a key is.
         self._ground: Terrain | None = None
         self._grounds = 0
@@ -162,7 +164,7 @@ class Renderer:
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
             if self.level is not None:
                 self._level_slots = self._slots_now(self.level, current.equipment.joined)
-                self.effects.see(current, frame.seconds, self._level_slots.strikes)
+                self.effects.see(current, frame.seconds, self._level_slots.strikes, self._pools.boxes)
             place = pygame.Rect(camera.viewport)
             self._follow(frame, current, camera, overlay)
             if self._still.show(surface, place):
@@ -176,6 +178,7 @@ class Renderer:
                 if self.level is not None:
                     drawables = self._drawables_of(frame, current, particles, springs)
                     self._draw_things(drawables, frame, camera)
+            self._draw_water(frame, current, camera)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
                     self._draw_lattice(frame, current, particles, springs)
@@ -192,7 +195,7 @@ class Renderer:
 
     def _follow(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Note what this picture is drawn from, so that one of the same need not be drawn again."""
-        shown, moves = self.overlays.shown, not self.effects.is_still
+        shown, moves = self.overlays.shown, not self.effects.is_still or self._pools.flow
         if current.terrain is not self._ground:
             self._ground, self._grounds = current.terrain, self._grounds + 1
         key = (
@@ -227,6 +230,13 @@ class Renderer:
             self.effects.mark_dust(dust, camera, self.theme, self.scale)
             painter.marks(dust, frame.tiles.array)
         drawables.draw(painter, frame, self.lattice)
+
+    def _draw_water(self, frame: Frame, current: Snapshot, camera: Camera) -> None:
+        layer = MarkList()
+        self._pools.draw(self._painter.surface, layer, camera, frame, current.terrain)
+        if self.detail < NO_EFFECTS and self.has_effects:
+            self.effects.mark_drops(layer, camera, self.theme, self.scale)
+        self._painter.marks(layer, frame.tiles.array)
 
     def _slots_now(self, level: Level, joined: tuple[Joined, ...]) -> LevelSlots:
         """The slots of the level and of what has joined it."""

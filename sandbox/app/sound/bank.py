@@ -26,13 +26,14 @@ class Note(NamedTuple):
 
 MAKERS: dict[str, Callable[[Note], Wave]] = {
     "thud": lambda note: waves.thud(note.step, note.stuff),
+    "splash": lambda note: waves.splash(note.step),
     "pluck": lambda note: waves.pluck(note.step),
     "snap": lambda note: waves.snap(note.step),
     "squeak": lambda note: waves.squeak(note.step),
     "motor": lambda note: waves.motor(note.step),
 }
 # How loud each kind is beside the others: what lasts, and what is sharp to the ear, is softer.
-LEVELS = {"thud": 0.8, "pluck": 0.45, "snap": 0.85, "squeak": 0.16, "motor": 0.22}
+LEVELS = {"thud": 0.8, "splash": 0.5, "pluck": 0.45, "snap": 0.85, "squeak": 0.16, "motor": 0.22}
 
 
 @dataclass(frozen=True, eq=False)
