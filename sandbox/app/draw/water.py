@@ -1,12 +1,13 @@
 """Water: pools drawn in front of what is in them, with waves where something crosses the surface. Looks alone."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.app.draw.camera import Camera
+from sandbox.app.draw.camera import Box, Camera
 from sandbox.app.draw.colours import Colour, mixed, packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import Theme, rgb_of
@@ -36,10 +37,10 @@ STREAKS, STREAK = 18, 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class _Pool:
+class DrawnPool:
     """Water of a zone: its box and flow, and its own colour, if it has one."""
 
-    box: tuple[float, float, float, float]
+    box: Box
     flow: tuple[float, float]
     colour: Colour | None
 
@@ -60,10 +61,10 @@ class _Kept:
     profile: NDArray[np.uint32]
 
 
-def _pool_of(zone: ZoneDef) -> _Pool:
+def _pool_of(zone: ZoneDef) -> DrawnPool:
     assert zone.box is not None and zone.water is not None
     colour = None if zone.look is None or zone.look.colour is None else rgb_of(colour_of(zone.look.colour))
-    return _Pool(zone.box, zone.water.flow, colour)
+    return DrawnPool(zone.box, zone.water.flow, colour)
 
 
 class Pools:
@@ -80,6 +81,14 @@ class Pools:
         """Left, bottom, right and top [m] of each (k, 4)."""
         return np.array([pool.box for pool in self._pools], np.float64).reshape(-1, 4)
 
+    def seen(self) -> Iterator[tuple[Box, DrawnPool]]:
+        """All water, with the part of each box that lies within the walls of the level."""
+        for pool in self._pools:
+            left, bottom, right, top = pool.box
+            if self._walls is not None:
+                left, bottom, right = max(left, self._walls[0]), max(bottom, self._walls[1]), min(right, self._walls[2])
+            yield (left, bottom, right, top), pool
+
     @property
     def flow(self) -> bool:
         """Whether any water flows, and so looks different all the time."""
@@ -87,25 +96,13 @@ class Pools:
 
     def draw(self, surface: pygame.Surface, marks: MarkList, camera: Camera, frame: Frame, terrain: Terrain) -> None:
         """Draw all of it over what is on a surface, but not over solid ground; marks: of what is drawn last."""
-        for number, pool in enumerate(self._pools):
-            place = self._place(pool, camera)
+        for number, (box, pool) in enumerate(self.seen()):
+            place = _place(box, camera)
             if place.width > 0 and place.height > 0:
                 below = self._draw_pool(number, surface, camera, frame, terrain, place)
                 if any(pool.flow):
                     corner = (place.left, place.bottom - below.get_height())
                     _mark_streaks(marks, pool, camera, frame, (below, corner))
-
-    def _place(self, pool: _Pool, camera: Camera) -> pygame.Rect:
-        """The pixels of what is seen of a pool, the highest waves over it included."""
-        left, bottom, right, top = pool.box
-        if self._walls is not None:
-            left, bottom, right = max(left, self._walls[0]), max(bottom, self._walls[1]), min(right, self._walls[2])
-        (x0, y0), (x1, y1) = camera.to_pixels((left, top + HIGHEST)), camera.to_pixels((right, bottom))
-        view = pygame.Rect(camera.viewport)
-        low, high = np.clip([x0, x1], view.left, view.right), np.clip([y0 - 2.0, y1], view.top, view.bottom)
-        return pygame.Rect(
-            round(low[0]), round(high[0]), round(low[1]) - round(low[0]), round(high[1]) - round(high[0])
-        )
 
     def _draw_pool(
         self, number: int, surface: pygame.Surface, camera: Camera, frame: Frame, terrain: Terrain, place: pygame.Rect
@@ -135,7 +132,17 @@ class Pools:
         return kept.below
 
 
-def surface_of(box: tuple[float, float, float, float], camera: Camera, frame: Frame, columns: Floats) -> Floats:
+def _place(box: Box, camera: Camera) -> pygame.Rect:
+    """The pixels of what is seen of water in a box, the highest waves over it included."""
+    left, bottom, right, top = box
+    (x0, y0), (x1, y1) = camera.to_pixels((left, top + HIGHEST)), camera.to_pixels((right, bottom))
+    view = pygame.Rect(camera.viewport)
+    low, high = (min(max(round(x), view.left), view.right) for x in (x0, x1))
+    upper, lower = (min(max(round(y), view.top), view.bottom) for y in (y0 - 2.0, y1))
+    return pygame.Rect(low, upper, high - low, lower - upper)
+
+
+def surface_of(box: Box, camera: Camera, frame: Frame, columns: Floats) -> Floats:
     """Where the surface of water in a box is (k,) [pixels] at columns (k,) [pixels]."""
     left, _, right, top = box
     x, y = camera.to_world((0.0, 0.0))[0] + frame.at[:, 0] / camera.zoom, frame.at[:, 1] / camera.zoom
@@ -213,7 +220,7 @@ def _cut_out(surface: pygame.Surface, corner: tuple[int, int], camera: Camera, t
 
 
 def _mark_streaks(
-    marks: MarkList, pool: _Pool, camera: Camera, frame: Frame, seen: tuple[pygame.Surface, tuple[int, int]]
+    marks: MarkList, pool: DrawnPool, camera: Camera, frame: Frame, seen: tuple[pygame.Surface, tuple[int, int]]
 ) -> None:
     """Mark how water flows, where it is seen: the pixels of it, and where those lie."""
     left, bottom, right, top = pool.box

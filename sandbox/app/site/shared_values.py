@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from sandbox.app.base import coefficient_scale, loop
-from sandbox.app.draw import looks, themes
+from sandbox.app.draw import effects, looks, themes, water
 from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, wheels
 from sandbox.app.panel import readings
 from sandbox.app.play import hand_labels, stage
@@ -42,7 +42,7 @@ def shared_values() -> dict[str, dict[str, Any]]:
         | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},
         "SOUND": _of(
             sound_events, "SOFTEST", "HARDEST", "NEWS", "MEMORY", "MOST", "JERK", "HARD_JERK", "TUNED",
-            "HIGHEST_STRING", "SNAP_PITCH", "MOTOR_PITCH", "MOTOR_RISE",
+            "HIGHEST_STRING", "SNAP_PITCH", "MOTOR_PITCH", "MOTOR_RISE", "SOFT_SPLASH", "HARD_SPLASH", "SPLASH_PITCH",
         )
         | _of(waves, "SCALE", "LOWEST", "STEPS")
         | _of(voices, "VOICES", "REST", "MOTOR_FADE", "WIDTH")
@@ -56,6 +56,12 @@ def shared_values() -> dict[str, dict[str, Any]]:
         "SHAPES": _of(soft, "LEAST_ROUNDING", "MOST_ROUNDING", "MOST_GROWN", "LINE_HALF")
         | _of(sheets, "CLOTH_TEXELS", "LAID_TEXELS", "HEM_HALF"),
         "WHEELS": _of(wheels, "RIM_FROM", "LUGS_FROM", "LUG"),
+        "WATER": _of(
+            water, "CLEAR", "MURKY", "DEEP", "NEAR", "SLOWEST", "PER_SPEED", "HIGHEST", "LENGTH", "PERIOD", "FADE",
+            "MOST", "STEP", "LINE_HALF", "LIGHT", "STREAKS", "STREAK",
+        )
+        | _of(effects, "SPLASH", "DROPS_A_SPEED", "FASTEST_DROP", "FALL", "PLACES", "MOST_DROPS")
+        | {"DROP_LIFE": effects.LIVES["drop"]},
         "FACES": _of(faces, "LARGEST", "SMALLEST", "SQUEEZED", "FAST", "BLINK", "BLINK_EVERY", "MOST_COMPARED")
         | {"TONGUE": _hex(faces.TONGUE)},
         "COLOURS": {

@@ -33,8 +33,8 @@ JERK, HARD_JERK = 1.0, 8.0
 TUNED, HIGHEST_STRING = 24.0, 700.0
 # Pitches [Hz] of a break of a spring of 0.3 m, and of a motor that stands and one of 1 rad/s.
 SNAP_PITCH, MOTOR_PITCH, MOTOR_RISE = 420.0, 70.0, 9.0
-# A splash is heard from this speed [m/s] through the surface on, and is as loud as any at the other; its pitch [Hz] where
-# what falls in sounds at 200 Hz when it is struck.
+# A splash is heard from this speed [m/s] through the surface on, and is as loud as any at the other; its pitch [Hz],
+# where what falls in sounds at 200 Hz when it is struck.
 SOFT_SPLASH, HARD_SPLASH, SPLASH_PITCH = 0.7, 7.0, 260.0
 # Of one tick at most this many of each kind: the loudest.
 MOST = 4

@@ -4,6 +4,7 @@ import { ball, boxOf, canvasOf, castShadow, clamp, contextOf, disc, drawBar, dra
 } from './paint.js';
 import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
+import { Water } from './water.js';
 /** @import { StateArrays } from './tables.js' */
 /**
  * @import { Ball, Bars, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
@@ -65,6 +66,7 @@ export class Picture {
   #context;
   #scene;
   #world;
+  #water;
   /** @type {Things | null} */
   #things = null;
   /** @type {Uint8Array[]} */
@@ -93,6 +95,7 @@ export class Picture {
     this.#scene = unfolded(scene, world);
     keepPictures(scene.pictures);
     this.#world = world;
+    this.#water = new Water(scene, world);
   }
 
   /** @template {keyof StateArrays} N @param {N} name */
@@ -137,6 +140,7 @@ export class Picture {
     things.balloons.forEach((body) => this.#drawGleams(body));
     things.faces.forEach((face, k) => this.#drawFace(face, k));
     this.#drawBalls();
+    this.#water.draw(context, camera, theme.name, scale, seconds, this.at, previous);
   }
 
   /** Where particles are in the picture, and the strain of springs.
