@@ -13,6 +13,8 @@ LAW_NISSEN, LAW_HOOKE, LAW_HAND = range(3)
 GRAB_COUNT = 10
 # The material index of a grab's spring: of no material, so that no slider reaches it.
 GRAB_MATERIAL = -1
+# Cs and Cd of a grab's spring, which nothing reads; hashes hold them.
+GRAB_STIFFNESS, GRAB_DAMPING = 0.2, 0.3
 # The material index of a constraint with Cs and Cd of its own, which no slider reaches.
 OWN_MATERIAL = -1
 # The longest ramp [ticks].

@@ -24,18 +24,17 @@ from sandbox.physics.keeping.capacity import Capacity
 from sandbox.physics.keeping.equipment import Equipment, Joined
 from sandbox.physics.keeping.forms import FirmBody
 from sandbox.physics.keeping.names import Names
-from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_MATERIAL, LAW_NISSEN
+from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS, LAW_NISSEN
 from sandbox.physics.rules.table import Rules
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN, Terrain
+from sandbox.physics.water.pools import NO_HULLS, NO_POOLS
 
 Derived = TypeVar("Derived")
 Point = tuple[float, float]
 
 _GRAB_NAMES = [f"+hand.{grab}" for grab in range(GRAB_COUNT)]
-# Cs and Cd of a grab's spring, which nothing reads; hashes hold them.
-GRAB_STIFFNESS, GRAB_DAMPING = 0.2, 0.3
 # Largest force of a hand over the mass of the body that it holds [m/s^2], where nothing else is said: ten times its
 # weight. Lower lags behind the mouse, higher tears what is soft.
 HAND_STRENGTH = 100.0
@@ -43,7 +42,7 @@ HAND_STRENGTH = 100.0
 # Attributes that another value of counts as a change of topology. A step's contacts are other arrays in every step, and
 # nothing is derived from them.
 _WATCHED = frozenset(
-    {"terrain", "actuators", "limits", "forms", "rules"}
+    {"terrain", "water", "hulls", "actuators", "limits", "forms", "rules"}
     | {column.name for column in COLUMNS if column.family is not Family.CONTACT}
 )
 
@@ -88,6 +87,7 @@ class World(StateArrays):
         self.joined: tuple[Joined, ...] = ()
         self.grab_particle = self.grab_spring = -1
         self.terrain: Terrain = NO_TERRAIN
+        self.water, self.hulls = NO_POOLS, NO_HULLS  # see water/pools.py
         # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
         self.contained: list[Containment] = []
         self.broken: Slots = np.zeros(0, dtype=np.int64)

@@ -40,7 +40,7 @@ LEVELS = sorted((Path(__file__).resolve().parents[2] / "levels").glob("*.json"))
 
 
 def level_of(**parts):
-    return Level(format="spring-sandbox/level", version=2, name="Lint", **parts)
+    return Level(format="spring-sandbox/level", version=3, name="Lint", **parts)
 
 
 def found(level):

@@ -1,4 +1,4 @@
-"""Effects: sparks of what tears and dust of what hits. The eye's memory: made of snapshots, never part of a run."""
+"""Effects: sparks of what tears, dust of what hits, drops of what splashes. The eye's memory, never part of a run."""
 
 from dataclasses import dataclass, field
 
@@ -10,22 +10,27 @@ from sandbox.app.draw.colours import packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import SPARK, SPARK_GLOW, Theme
 from sandbox.physics.analysis.query import shown_springs
+from sandbox.physics.collision.filter import NO_EDGE
 from sandbox.physics.snapshot import Snapshot
 
 Floats = NDArray[np.float64]
 
 # At most this many at a time; of one moment at most this many places.
-MOST_SPARKS, MOST_DUST, PLACES = 240, 80, 16
+MOST_SPARKS, MOST_DUST, MOST_DROPS, PLACES = 240, 80, 200, 16
 SPARKS_A_TEAR = 9
 # Change of velocity [m/s] in a frame from which a contact raises dust.
 HARD = 2.2
 FALL = 9.8
-LIVES = {"spark": (0.25, 0.6), "dust": (0.35, 0.9)}
+LIVES = {"spark": (0.25, 0.6), "dust": (0.35, 0.9), "drop": (0.35, 0.8)}
+# From what speed [m/s] on something that goes through a surface of water splashes; drops of it a m/s, and the fastest.
+SPLASH, DROPS_A_SPEED, FASTEST_DROP = 0.9, 2.0, 5.0
 # How long [s] the lattice shows where something broke, how many places of it, and how large [pixels at scale 1].
 CROSS_LIFE, MOST_CROSSES, CROSS = 1.5, 64, 5.0
 # Longest time [s] that passes for them in a frame.
 LONGEST = 0.1
 TAIL = 0.028
+
+DRY: Floats = np.zeros((0, 4))
 
 
 @dataclass
@@ -58,14 +63,18 @@ class Effects:
 
     def _forget(self) -> None:
         self._sparks, self._dust, self._crosses = _Motes(MOST_SPARKS), _Motes(MOST_DUST), _Motes(MOST_CROSSES)
+        self._drops = _Motes(MOST_DROPS)
 
     @property
     def is_still(self) -> bool:
         """Whether nothing flies about."""
-        return not (len(self._sparks.rows) or len(self._dust.rows) or len(self._crosses.rows))
+        return not any(len(motes.rows) for motes in (self._sparks, self._dust, self._crosses, self._drops))
 
-    def see(self, now: Snapshot, seconds: float, strikes: NDArray[np.bool_] | None) -> None:
-        """Take in a snapshot, shown at a time [s] of the run; strikes (m,): springs that spark when they tear."""
+    def see(self, now: Snapshot, seconds: float, strikes: NDArray[np.bool_] | None, pools: Floats = DRY) -> None:
+        """Take in a snapshot, shown at a time [s] of the run.
+
+        strikes (m,): springs that spark when they tear; pools (k, 4): left, bottom, right and top of water [m].
+        """
         before, passed = self._before, seconds - self._seconds
         self._before, self._seconds = now, seconds
         if before is None or now.tick < before.tick or len(now.mass) != len(before.mass) or passed < 0.0:
@@ -74,11 +83,14 @@ class Effects:
         self._sparks.pass_time(min(passed, LONGEST), FALL, 0.0)
         self._dust.pass_time(min(passed, LONGEST), 0.0, 3.0)
         self._crosses.pass_time(min(passed, LONGEST), 0.0, 0.0)
+        self._drops.pass_time(min(passed, LONGEST), FALL, 0.0)
         if now.tick > before.tick:
             # By the tick, so that a run looks alike each time.
             rng = np.random.default_rng(now.tick)
             self._see_tears(before, now, rng, strikes)
             self._see_hits(before, now, rng)
+            for left, _, right, top in pools.tolist():
+                self._see_splashes(before, now, rng, (left, right, top))
 
     def _see_tears(
         self, before: Snapshot, now: Snapshot, rng: np.random.Generator, strikes: NDArray[np.bool_] | None
@@ -112,6 +124,25 @@ class Effects:
             force = np.minimum(np.sqrt(np.sum((now.velocity[hit] - before.velocity[hit]) ** 2, axis=1)), 8.0)
             self._puff(now.position[hit], 1 + force.astype(np.int64) // 2, rng)
 
+    def _see_splashes(
+        self, before: Snapshot, now: Snapshot, rng: np.random.Generator, surface: tuple[float, float, float]
+    ) -> None:
+        left, right, top = surface
+        (x, y), speed = now.position.T, np.abs(now.velocity[:, 1])
+        passed = (before.position[:, 1] > top) != (y > top)
+        with np.errstate(invalid="ignore"):
+            splashing = np.flatnonzero(passed & (x > left) & (x < right) & (speed > SPLASH) & now.particle_active)
+        splashing = splashing[_is_outside(now)[splashing]] if len(splashing) else splashing
+        hit = splashing[np.argsort(-speed[splashing], kind="stable")[:PLACES]]
+        count = (DROPS_A_SPEED * np.minimum(speed[hit], FASTEST_DROP)).astype(np.int64)
+        fast, total = np.repeat(np.minimum(speed[hit], FASTEST_DROP), count), int(count.sum())
+        if total:
+            at = np.column_stack([np.repeat(x[hit], count) + rng.normal(0.0, 0.05, total), np.full(total, top)])
+            way = np.column_stack([rng.normal(0.0, 0.3, total), rng.uniform(0.25, 0.75, total)])
+            self._drops.add(
+                at, fast[:, None] * way, rng.uniform(*LIVES["drop"], total), rng.uniform(0.012, 0.035, total)
+            )
+
     def _puff(self, at: Floats, count: NDArray[np.int64], rng: np.random.Generator) -> None:
         where = np.repeat(at, count, axis=0)
         total = len(where)
@@ -128,6 +159,14 @@ class Effects:
             red, green, blue = theme.dust
             size = np.clip(rows[:, 6] * camera.zoom * (1.6 + 1.8 * (1.0 - left)), 2.0, 48.0 * scale)
             marks.discs(camera.project(rows[:, :2]), size, red << 16 | green << 8 | blue, 0.4 * left, glow=True)
+
+    def mark_drops(self, marks: MarkList, camera: Camera, theme: Theme, scale: float) -> None:
+        """Draw drops, before everything."""
+        rows = self._drops.rows
+        if len(rows):
+            left = 1.0 - rows[:, 4] / rows[:, 5]
+            size = np.clip(rows[:, 6] * camera.zoom, 1.2 * scale, 5.0 * scale)
+            marks.discs(camera.project(rows[:, :2]), size, packed(theme.foam), np.minimum(1.0, 2.0 * left))
 
     def mark_sparks(self, marks: MarkList, camera: Camera, scale: float) -> None:
         """Draw sparks, before everything."""
@@ -148,3 +187,12 @@ class Effects:
                 ends = np.concatenate([at - way, at + way], axis=1)
                 for half, colour in ((2.4 * scale, theme.card), (1.1 * scale, theme.past)):
                     marks.strokes(ends, half, packed(colour), np.minimum(1.0, 3.0 * left))
+
+
+def _is_outside(state: Snapshot) -> NDArray[np.bool_]:
+    """Which particles (n,) are not inside a body: an edge ends there, or no spring."""
+    inside, springs = np.zeros(len(state.mass), dtype=np.bool_), shown_springs(state)
+    ends = np.stack([state.particle_a, state.particle_b], axis=1)
+    inside[ends[springs & (state.edge == NO_EDGE)]] = True
+    inside[ends[springs & (state.edge != NO_EDGE)]] = False
+    return ~inside

@@ -23,6 +23,7 @@ from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
 from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads, mark_treads
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
+from sandbox.app.draw.water import Pools
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.pulls import Pull
@@ -100,6 +101,7 @@ class Renderer:
         self._painter = Painter()
         self._backdrop = Backdrop()
         self._still = Still()
+        self._pools = Pools(level)
         # The terrain that was drawn last, and how many there have been: arrays cannot be compared as a key is.
         self._ground: Terrain | None = None
         self._grounds = 0
@@ -167,7 +169,7 @@ class Renderer:
             self.non_finite = int(np.count_nonzero(particles & ~np.isfinite(pixels).all(axis=1)))
             if self.level is not None:
                 self._level_slots = self._slots_now(self.level, current.equipment.joined)
-                self.effects.see(current, frame.seconds, self._level_slots.strikes)
+                self.effects.see(current, frame.seconds, self._level_slots.strikes, self._pools.boxes)
             place = pygame.Rect(camera.viewport)
             self._follow(frame, current, camera, overlay)
             if self._still.show(surface, place):
@@ -184,6 +186,7 @@ class Renderer:
                     drawables = self._drawables_of(frame, current, particles, springs)
                     self._draw_things(drawables, frame, camera)
                 self._draw_treads(self._body_treads, pixels, frame, camera, springs)
+            self._draw_water(frame, current, camera)
             with profile.part("marks"):
                 if self.lattice or self.level is None:
                     self._draw_lattice(frame, current, particles, springs)
@@ -206,7 +209,8 @@ class Renderer:
         if current.belt is not self._belts:
             self._belts, self._body_treads = current.belt, body_treads(current)
         shown = self.overlays.shown
-        moves = not self.effects.is_still or bool(self._ground_treads or self._body_treads)
+        treads = self._ground_treads or self._body_treads
+        moves = not self.effects.is_still or bool(treads or self._pools.flow)
         key = (
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
@@ -247,6 +251,13 @@ class Renderer:
             layer = MarkList()
             mark_treads(layer, treads, at, springs, camera, self.scale, frame.seconds, self.theme)
             self._painter.marks(layer, frame.tiles.array)
+
+    def _draw_water(self, frame: Frame, current: Snapshot, camera: Camera) -> None:
+        layer = MarkList()
+        self._pools.draw(self._painter.surface, layer, camera, frame, current.terrain)
+        if self.detail < NO_EFFECTS and self.has_effects:
+            self.effects.mark_drops(layer, camera, self.theme, self.scale)
+        self._painter.marks(layer, frame.tiles.array)
 
     def _slots_now(self, level: Level, joined: tuple[Joined, ...]) -> LevelSlots:
         """The slots of the level and of what has joined it."""

@@ -23,6 +23,7 @@ from sandbox.app.draw.things.soft import CRUMB, FLAT, ROUNDING, USUAL_ROUNDING, 
 from sandbox.app.draw.things.springs import CYLINDER
 from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads
 from sandbox.app.draw.things.wheels import DrawnWheel
+from sandbox.app.draw.water import DrawnPool, Pools
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
 from sandbox.physics.geometry.polygon import signed_area
@@ -59,8 +60,19 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
             *_treads(ground_treads(snapshot.terrain), snapshot.terrain.vertex),
             *_treads(body_treads(snapshot)),
         ],
+        "water": [_pool(box, pool) for box, pool in Pools(level).seen()],
         "pictures": _pictures(slots, ground),
     }
+
+
+def _pool(box: tuple[float, ...], pool: DrawnPool) -> dict[str, Any]:
+    """Water: the part of its box that is seen [m], its flow [m/s], and its colours in each theme."""
+    names = ("near", "deep", "foam")
+    tones = {
+        name: dict(zip(names, map(_colours, map(tuple, pool.tones(theme))), strict=True))
+        for name, theme in THEMES.items()
+    }
+    return {"box": [round(value, DIGITS) for value in box], "flow": list(pool.flow), "tones": tones}
 
 
 def _added(count: int, own: NDArray[np.int64], first_hand: int) -> NDArray[np.int64]:

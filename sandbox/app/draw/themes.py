@@ -25,6 +25,8 @@ class Theme:
     line: Colour
     tyre: Colour
     dust: Colour
+    water: tuple[Colour, Colour]
+    foam: Colour
     # Strain: squeezed, at rest, stretched.
     strain: tuple[Colour, Colour, Colour]
     # Overlays: contact points, forces of contacts, velocities, and springs past what is proven stable.
@@ -47,6 +49,7 @@ DARK = Theme(
     shadow=_rgb(0x04060A), shadow_strength=0.50, soil=_pair(0x463C42, 0x2A262E), turf=_pair(0x6CC58B, 0x2F7A5C),
     rock=_pair(0x59627A, 0x2A2F3D), metal=_pair(0x7D8AA5, 0x39425A), text=_rgb(0xE8ECF4), accent=_rgb(0x5ED0B2),
     card=_rgb(0x1A202C), line=_rgb(0x2E384A), tyre=_rgb(0x4C5362), dust=_rgb(0xCDBFA6),
+    water=_pair(0x3C9FD0, 0x163E74), foam=_rgb(0xCFF1FF),
     strain=(_rgb(0x4D8DFF), _rgb(0xC9CFDA), _rgb(0xFFB03A)),
     contact=_rgb(0xFF6AD5), force=_rgb(0xFFE45C), velocity=_rgb(0x6FF2E0), past=_rgb(0xFF4D8B),
 )  # fmt: skip
@@ -55,6 +58,7 @@ LIGHT = Theme(
     shadow=_rgb(0x4A4030), shadow_strength=0.26, soil=_pair(0xB08459, 0xBF966A), turf=_pair(0x93CF63, 0x5C9C44),
     rock=_pair(0xA3A9B5, 0x7F8794), metal=_pair(0xAEB8C8, 0x78859A), text=_rgb(0x27303F), accent=_rgb(0x12907A),
     card=_rgb(0xFFFDF8), line=_rgb(0xDDD5C6), tyre=_rgb(0x42444C), dust=_rgb(0xE9DCC2),
+    water=_pair(0x46B2E4, 0x1F6FB4), foam=_rgb(0xFFFFFF),
     strain=(_rgb(0x1446C0), _rgb(0x8A8F98), _rgb(0xD9730B)),
     contact=_rgb(0x9C1FB0), force=_rgb(0x7A4B00), velocity=_rgb(0x006E75), past=_rgb(0xC2004F),
 )  # fmt: skip

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from sandbox.app.base import coefficient_scale, loop
-from sandbox.app.draw import looks, themes
+from sandbox.app.draw import effects, looks, themes, water
 from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, treads, wheels
 from sandbox.app.panel import readings
 from sandbox.app.play import hand_labels, stage
@@ -42,7 +42,7 @@ def shared_values() -> dict[str, dict[str, Any]]:
         | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},
         "SOUND": _of(
             sound_events, "SOFTEST", "HARDEST", "NEWS", "MEMORY", "MOST", "JERK", "HARD_JERK", "TUNED",
-            "HIGHEST_STRING", "SNAP_PITCH", "MOTOR_PITCH", "MOTOR_RISE",
+            "HIGHEST_STRING", "SNAP_PITCH", "MOTOR_PITCH", "MOTOR_RISE", "SOFT_SPLASH", "HARD_SPLASH", "SPLASH_PITCH",
         )
         | _of(waves, "SCALE", "LOWEST", "STEPS")
         | _of(voices, "VOICES", "REST", "MOTOR_FADE", "WIDTH")
@@ -60,6 +60,12 @@ def shared_values() -> dict[str, dict[str, Any]]:
         )
         | {"COLOUR": _hex(treads.CHEVRON_COLOUR)},
         "WHEELS": _of(wheels, "RIM_FROM", "LUGS_FROM", "LUG"),
+        "WATER": _of(
+            water, "CLEAR", "MURKY", "DEEP", "NEAR", "SLOWEST", "PER_SPEED", "HIGHEST", "LENGTH", "PERIOD", "FADE",
+            "MOST", "STEP", "LINE_HALF", "LIGHT", "STREAKS", "STREAK",
+        )
+        | _of(effects, "SPLASH", "DROPS_A_SPEED", "FASTEST_DROP", "FALL", "PLACES", "MOST_DROPS")
+        | {"DROP_LIFE": effects.LIVES["drop"]},
         "FACES": _of(faces, "LARGEST", "SMALLEST", "SQUEEZED", "FAST", "BLINK", "BLINK_EVERY", "MOST_COMPARED")
         | {"TONGUE": _hex(faces.TONGUE)},
         "COLOURS": {

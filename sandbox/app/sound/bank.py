@@ -26,6 +26,7 @@ class Note(NamedTuple):
 
 MAKERS: dict[str, Callable[[Note], Wave]] = {
     "thud": lambda note: waves.thud(note.step, note.stuff),
+    "splash": lambda note: waves.splash(note.step),
     "pluck": lambda note: waves.pluck(note.step),
     "snap": lambda note: waves.snap(note.step),
     "squeak": lambda note: waves.squeak(note.step),
@@ -39,7 +40,7 @@ MAKERS: dict[str, Callable[[Note], Wave]] = {
     "star": lambda note: signals.star(note.step),
 }
 # How loud each kind is beside the others: what lasts, and what is sharp to the ear, is softer.
-LEVELS = {"thud": 0.8, "pluck": 0.45, "snap": 0.85, "squeak": 0.16, "motor": 0.22}
+LEVELS = {"thud": 0.8, "splash": 0.5, "pluck": 0.45, "snap": 0.85, "squeak": 0.16, "motor": 0.22}
 # And the signals of rules and of the end of a run.
 SIGNAL_LEVELS = {"bell": 0.5, "coin": 0.4, "drum": 0.8, "buzzer": 0.28, "won": 0.5, "lost": 0.5, "star": 0.35}
 

@@ -1,4 +1,4 @@
-"""SoundEvents: collects what is to be heard of a run: blows, breaks, jerks of strings, rubbing and motors.
+"""SoundEvents: collects what is to be heard of a run: blows, splashes, breaks, jerks of strings, rubbing and motors.
 
 It reads and never writes.
 """
@@ -33,6 +33,9 @@ JERK, HARD_JERK = 1.0, 8.0
 TUNED, HIGHEST_STRING = 24.0, 700.0
 # Pitches [Hz] of a break of a spring of 0.3 m, and of a motor that stands and one of 1 rad/s.
 SNAP_PITCH, MOTOR_PITCH, MOTOR_RISE = 420.0, 70.0, 9.0
+# A splash is heard from this speed [m/s] through the surface on, and is as loud as any at the other; its pitch [Hz],
+# where what falls in sounds at 200 Hz when it is struck.
+SOFT_SPLASH, HARD_SPLASH, SPLASH_PITCH = 0.7, 7.0, 260.0
 # Of one tick at most this many of each kind: the loudest.
 MOST = 4
 
@@ -116,12 +119,13 @@ class SoundEvents:
             self._before = self._before if self._key[:2] == key[:2] else None
             self._bodies, self._key = timbres_of(world), key
             count, self.has_new_bodies = len(self._bodies.mass), True
-            self._blows, self._rubs, self._jerks = (_Onsets(count) for _ in range(3))
+            self._blows, self._rubs, self._jerks, self._splashes = (_Onsets(count) for _ in range(4))
         before = self._before
         if before is not None and before.tick == world.tick - 1:
             keep = float(np.exp(-1.0 / (MEMORY * world.settings.tick_rate)))
             with np.errstate(all="ignore"):
                 self._hear_contacts(world, before, keep)
+                self._hear_splashes(world, keep)
                 self._hear_breaks(world, before)
                 self._hear_strings(world, before, keep)
         held = _held(world)
@@ -186,6 +190,27 @@ class SoundEvents:
         fast = (change[:, 0] * change[:, 0] + change[:, 1] * change[:, 1] > LEAP * LEAP) & world.particle_active[balls]
         held = [particle for particle, _ in before.held]
         return balls[fast & ~np.isin(balls, held)] if fast.any() else balls[:0]
+
+    # Splashes.
+
+    def _hear_splashes(self, world: World, keep: float) -> None:
+        bodies = self._bodies
+        assert bodies is not None
+        if not len(world.water):
+            return
+        x, y = world.position.T
+        sinking = world.velocity[:, 1] / world.settings.tick_rate
+        passing = np.zeros(len(x), dtype=np.bool_)
+        for left, _, right, top, *_ in world.water.tolist():
+            passing |= ((y > top) != (y - sinking > top)) & (x > left) & (x < right)
+        passing &= world.particle_active & (world.inverse_mass > 0.0)
+        found, count = np.flatnonzero(passing), len(bodies.mass)
+        body, speed = bodies.body[found], np.zeros(count)
+        np.maximum.at(speed, body, np.abs(world.velocity[found, 1]))
+        for b in _loudest(self._splashes.new(speed, SOFT_SPLASH, keep), speed):
+            place = world.position[found[np.argmax(np.where(body == b, np.abs(world.velocity[found, 1]), -1.0))]]
+            loudness = (speed[b] / HARD_SPLASH) ** 0.8 * bodies.weight[b]
+            self._add("splash", SPLASH_PITCH * float(bodies.pitch[b] / 200.0) ** 0.5, "", loudness, place, b)
 
     # Breaks.
 

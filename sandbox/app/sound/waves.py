@@ -140,6 +140,19 @@ def snap(step: int) -> Wave:
     return finished(wave, 0.0008)
 
 
+def splash(step: int) -> Wave:
+    """Something that falls into water: a hiss that swells and dies down, and bubbles that ring ever higher."""
+    t, pitch = seconds(0.5), pitch_of(step)
+    rng = np.random.default_rng(step)
+    rise = np.minimum(t / 0.02, 1.0)
+    wave = noise(len(t), 1.5 * pitch, 12.0 * pitch + 1500.0, step) * rise * np.exp(-t / 0.09)
+    for at in rng.uniform(0.03, 0.22, 5):
+        after = np.maximum(t - at, 0.0)
+        own = pitch * rng.uniform(1.5, 4.0)
+        wave += 0.22 * np.exp(-after / 0.03) * np.sin(turns(own * (1.0 + 3.0 * after))) * (t >= at)
+    return finished(wave, 0.004)
+
+
 def squeak(step: int) -> Wave:
     """Something that rubs: a reedy tone that slides upward and trembles."""
     t, pitch = seconds(0.2), pitch_of(step)

@@ -15,6 +15,7 @@ from sandbox.level.plan.materials import coefficients, strain_limits
 from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.rules import add_rules
 from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
+from sandbox.level.plan.water import hulls_of, water_of
 from sandbox.level.plan.welds import Slots
 from sandbox.physics.changing.dividing import part_bodies
 from sandbox.physics.collision.filter import NO_EDGE
@@ -47,6 +48,7 @@ def build_world(level: Level) -> World:
     _part_cut_bodies(world, level, plan)
     add_forms(world, level, plan.bodies, materials, firsts)
     world.terrain, world.surface = terrain_of(level), surface_of(level)
+    world.water, world.hulls = water_of(level), hulls_of(level, plan.bodies, materials)
     add_rules(world, level, plan, slots)
     world.source = level
     return world
@@ -132,7 +134,7 @@ def _add_springs(world: World, level: Level, plan: Plan, slots: Slots, materials
     pairs = slots[np.concatenate([*ends, plan.spring_ends])]
     # A loose spring joins bodies, and is in nobody's way.
     edges = [*(body.edges for body in plan.bodies), np.zeros(len(loose), np.int8)]
-    edge = np.concatenate(edges) if level.has_contacts else np.zeros(len(pairs), np.int8)
+    edge = np.concatenate(edges) if level.has_contacts or level.has_water else np.zeros(len(pairs), np.int8)
     belts = np.repeat([*(body.belt + 0.0 for body in level.bodies), 0.0], [len(each) for each in edges])
     world.add_springs(
         names + [f":{number}" for number in range(len(loose))],

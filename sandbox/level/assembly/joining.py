@@ -4,7 +4,7 @@ import functools
 import itertools
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -66,6 +66,7 @@ class Joiners:
             "name": SOURCE,
             "settings": base.settings.model_dump(mode="json"),
             "contacts": _contacts(base),
+            "zones": _zones(base, plain),
             "materials": _materials(world, definition, bodies),
             "bodies": plain,
             "springs": definition.get("springs") or [],
@@ -242,6 +243,13 @@ def _contacts(level: Level) -> dict[str, Any] | None:
     if not level.has_contacts:
         return None
     return {} if level.contacts is None else level.contacts.model_dump(mode="json")
+
+
+def _zones(level: Level, bodies: Sequence[Any]) -> list[dict[str, Any]]:
+    """Some water if there is any in a level, so that bodies that join it get what water drags."""
+    taken = [body.get("id") for body in bodies if isinstance(body, dict)]
+    name = next(name for number in itertools.count() if (name := f"water {number}") not in taken)
+    return [{"id": name, "box": [0.0, 0.0, 1.0, 1.0], "water": {}}] if level.has_water else []
 
 
 def _known_material(world: World, name: str) -> Material | None:

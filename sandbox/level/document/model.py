@@ -391,6 +391,11 @@ class Level(Description):
         """Whether things in the level touch."""
         return self.contacts is not None or self.walls is not None or bool(self.terrain)
 
+    @property
+    def has_water(self) -> bool:
+        """Whether there is water in the level."""
+        return any(zone.water is not None for zone in self.zones)
+
     def material(self, name: str) -> "Material | None":
         """The material of that name, the default one even where the level does not list it; None: there is none."""
         return self.materials.get(name, NissenMaterial() if name == DEFAULT_MATERIAL else None)

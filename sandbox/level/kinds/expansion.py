@@ -20,6 +20,7 @@ Body = TypeVar("Body", bound=BodyDef)
 Floats = NDArray[np.float64]
 WHOLE_MOTIONS = 3
 NO_POLYGONS: Pairs = np.zeros((0, 3), dtype=np.int64)
+NO_HULL: Pairs = np.zeros((0, 2), dtype=np.int64)
 
 
 class Expansion(Generic[Body]):
@@ -100,6 +101,13 @@ class Expansion(Generic[Body]):
     def polygons(self) -> Pairs:
         """Polygons (t, k) of particles that keep their areas while no side is cut, counter-clockwise."""
         return NO_POLYGONS
+
+    def hull(self) -> Pairs:
+        """Springs (k, 2) of a closed outline that displaces water in place of triangles.
+
+        The number of each in the form; 1 where the inside is on the left of the way from its second end to its first.
+        """
+        return NO_HULL
 
     @property
     def inflation(self) -> float:
@@ -239,6 +247,11 @@ class Expansion(Generic[Body]):
                 )
         if self.body.pose is not None and len(self.body.pose) != particles:
             yield f"{path}.pose", f"has {len(self.body.pose)} items for {particles} particles; give one each"
+
+
+def round_hull(first: int, count: int) -> Pairs:
+    """The hull of a counter-clockwise ring of springs that follow each other."""
+    return np.stack([np.arange(first, first + count), np.zeros(count, np.int64)], axis=1)
 
 
 def round_outline_faults(path: str, kind: str, position: tuple[float, float], radius: float) -> Iterator[Fault]:

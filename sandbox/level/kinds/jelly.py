@@ -13,7 +13,7 @@ from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import COORDINATE_LIMIT, CORNER_LIMIT, PARTICLE_LIMIT
 from sandbox.level.format.quantities import Angle, Description, Mass, Point, Size, Spacing, unit
 from sandbox.level.kinds.body_def import BodyDef
-from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion
+from sandbox.level.kinds.expansion import NO_HULL, NO_POLYGONS, Expansion
 from sandbox.level.kinds.fitting import (
     FittedMesh,
     Loop,
@@ -197,6 +197,12 @@ class Jelly(Expansion[JellyDef]):
         outer = np.take_along_axis(corners, (cut[:, None] + np.array([3, 4, 5])) % 4, axis=1)
         both = np.stack([inner, outer], axis=1).reshape(-1, 3)
         return both[(both >= 0).all(axis=1)]
+
+    def hull(self) -> Pairs:
+        """The outline, unless one of its springs is cut."""
+        edges = self.edges
+        outline = np.flatnonzero((edges == SOLID_LEFT) | (edges == SOLID_RIGHT))
+        return NO_HULL if self.body.cut else np.stack([outline, edges[outline] == SOLID_RIGHT], axis=1)
 
     def faults(self, path: str) -> Iterator[Fault]:
         """Faults of a shape that crosses itself, leaves the world, or has no point of the grid inside."""

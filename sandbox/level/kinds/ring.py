@@ -10,7 +10,7 @@ from pydantic import Field
 from sandbox.level.format.level_error import Fault
 from sandbox.level.format.quantities import Angle, Inflation, Mass, Point, Size, empty
 from sandbox.level.kinds.body_def import BENDING, BENDS_FREELY, BendingDef, BodyDef
-from sandbox.level.kinds.expansion import NO_POLYGONS, Expansion, round_outline_faults
+from sandbox.level.kinds.expansion import NO_HULL, NO_POLYGONS, Expansion, round_hull, round_outline_faults
 from sandbox.level.kinds.geometry import Pairs, Points, ring, spokes
 
 
@@ -52,6 +52,11 @@ class Ring(Expansion[RingDef]):
     def polygons(self) -> Pairs:
         """The whole ring, unless it keeps no area."""
         return NO_POLYGONS if self.body.inflation is None else np.arange(self.body.segments, dtype=np.int64)[None]
+
+    def hull(self) -> Pairs:
+        """All of its springs. Without an area to keep water would press it flat, and flows through it."""
+        body = self.body
+        return NO_HULL if body.inflation is None else round_hull(0, body.segments)
 
     @property
     def inflation(self) -> float:

@@ -11,7 +11,7 @@ from sandbox.level.format.actuator_defs import MotorDef
 from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.quantities import Angle, Mass, Point, Size, empty
 from sandbox.level.kinds.body_def import BodyDef
-from sandbox.level.kinds.expansion import Expansion, Floats, round_outline_faults
+from sandbox.level.kinds.expansion import Expansion, Floats, round_hull, round_outline_faults
 from sandbox.level.kinds.geometry import Pairs, Points, ring, spokes
 
 
@@ -88,6 +88,10 @@ class Wheel(Expansion[WheelDef]):
     def motor(self) -> MotorDef | None:
         """The motor that turns both rings about the hub."""
         return self.body.motor
+
+    def hull(self) -> Pairs:
+        """The outer ring."""
+        return round_hull(2 * self.body.segments, self.body.segments)
 
     def outline_faults(self, path: str) -> Iterator[Fault]:
         """Faults of a rim without an inner ring, or that leaves the world."""

@@ -5,6 +5,7 @@ import { ball, boxOf, canvasOf, castShadow, clamp, contextOf, disc, drawBar, dra
 import { COLOURS, FACES, LINES, SHAPES, STRAIN, WHEELS } from './shared.js';
 import { thingsOf, unfolded } from './things.js';
 import { drawTread } from './treads.js';
+import { Water } from './water.js';
 /** @import { StateArrays } from './tables.js' */
 /**
  * @import { Ball, Bars, Box, Face, FilledBody, LinePiece, Point, Scene, Shape, Sheet, Splat, Strand, Theme, Things,
@@ -66,6 +67,7 @@ export class Picture {
   #context;
   #scene;
   #world;
+  #water;
   /** @type {Things | null} */
   #things = null;
   /** @type {Uint8Array[]} */
@@ -94,6 +96,7 @@ export class Picture {
     this.#scene = unfolded(scene, world);
     keepPictures(scene.pictures);
     this.#world = world;
+    this.#water = new Water(scene, world);
   }
 
   /** @template {keyof StateArrays} N @param {N} name */
@@ -140,6 +143,7 @@ export class Picture {
     things.faces.forEach((face, k) => this.#drawFace(face, k));
     this.#drawTreads(false);
     this.#drawBalls();
+    this.#water.draw(context, camera, theme.name, scale, seconds, this.at, previous);
   }
 
   /** Where particles are in the picture, and the strain of springs.

@@ -1,9 +1,10 @@
-// Sound: what is heard of a run: blows, breaks, jerks of strings and motors, made of a few sines and a little noise.
+// Sound: what is heard of a run: blows, splashes, breaks, jerks of strings and motors, made of a few sines and a little noise.
 import { SOUND } from './shared.js';
-/** @import { Sounds } from './types.js' */
+/** @import { Pool, Sounds } from './types.js' */
 /** @import { World } from './world.js' */
 
 const { SOFTEST, HARDEST, NEWS, MEMORY, MOST, JERK, HARD_JERK, REST, VOICES, LEVELS, MOTOR_FADE: FADE } = SOUND;
+const { SOFT_SPLASH, HARD_SPLASH, SPLASH_PITCH } = SOUND;
 const { SCALE, LOWEST, STEPS, TUNED, HIGHEST_STRING, SNAP_PITCH, MOTOR_PITCH, MOTOR_RISE, WIDTH } = SOUND;
 
 /** The nearest note [Hz] of a scale of five steps, on which all things sound well together.
@@ -29,6 +30,8 @@ export class Sound {
   #usual;
   /** @type {Float64Array} */
   #jerks;
+  /** @type {Float64Array} */
+  #splashes;
   /** @type {Map<string, number>} */
   #last = new Map();
   /** @type {Map<number, { hum: OscillatorNode, out: GainNode }>} */
@@ -39,13 +42,14 @@ export class Sound {
   before = null;
 
   /** bodies: of each particle its body; of each body mass, pitch, weight, stuff, if it is a string. stuffs: modes.
-   * @param {World} world @param {Sounds} sounds */
-  constructor(world, { bodies, stuffs, motors }) {
+   * @param {World} world @param {Sounds} sounds @param {Pool[]} water */
+  constructor(world, { bodies, stuffs, motors }, water) {
     this.world = world;
+    this.water = water;
     this.bodies = bodies;
     this.stuffs = stuffs;
     this.motors = motors;
-    this.#usual = this.#jerks = new Float64Array();
+    this.#usual = this.#jerks = this.#splashes = new Float64Array();
     this.forget();
   }
 
@@ -74,6 +78,7 @@ export class Sound {
     this.before = null;
     this.#usual = new Float64Array(this.bodies.mass.length).fill(Infinity);
     this.#jerks = this.#usual.slice();
+    this.#splashes = this.#usual.slice();
   }
 
   // Let motors fall silent until the next tick: time stands.
@@ -87,6 +92,7 @@ export class Sound {
     const { world, before } = this, velocity = world.view('state.velocity');
     if (this.isOn && before?.time === world.time - 1) {
       this.#hearBlows(velocity, before.velocity, pan);
+      this.#hearSplashes(velocity, pan);
       this.#hearStrings(pan);
       if (world.broken.length) this.#hearBreak(world.broken, pan);
     }
@@ -126,6 +132,26 @@ export class Sound {
     }
   }
 
+  /** @type {(velocity: Float64Array, pan: Pan) => void} */
+  #hearSplashes(velocity, pan) {
+    if (!this.water.length) return;
+    const { of, mass, pitch, weight } = this.bodies, { world } = this, { tick_rate } = world.settings();
+    const position = world.view('state.position'), active = world.view('state.particle_active');
+    const inverse = world.view('state.inverse_mass');
+    const speed = new Float64Array(mass.length), place = new Int32Array(mass.length);
+    inverse.forEach((value, p) => {
+      if (!value || !active[p]) return;
+      const [x, y, v] = [position[2 * p], position[2 * p + 1], velocity[2 * p + 1]];
+      const passes = this.water.some(({ box: [left, , right, top] }) =>
+        x > left && x < right && (y > top) !== (y - v / tick_rate > top));
+      if (passes && Math.abs(v) > speed[of[p]]) [speed[of[p]], place[of[p]]] = [Math.abs(v), p];
+    });
+    for (const b of this.#new(speed, this.#splashes, SOFT_SPLASH)) {
+      const loudness = (speed[b] / HARD_SPLASH) ** 0.8 * weight[b];
+      this.#play('splash', b, SPLASH_PITCH * Math.sqrt(pitch[b] / 200), loudness, pan(place[b]));
+    }
+  }
+
   /** @type {(pan: Pan) => void} */
   #hearStrings(pan) {
     const { of, mass, strand } = this.bodies;
@@ -158,7 +184,7 @@ export class Sound {
     this.#play('snap', this.bodies.of[p], pitch, 0.55 + 0.12 * Math.log2(springs.length), pan(p));
   }
 
-  /** @type {(kind: 'thud' | 'pluck' | 'snap', body: number, wanted: number, loudness: number, pan: number,
+  /** @type {(kind: 'thud' | 'splash' | 'pluck' | 'snap', body: number, wanted: number, loudness: number, pan: number,
    *   stuff?: string) => void} */
   #play(kind, body, wanted, loudness, pan, stuff) {
     const context = this.#context;
@@ -172,6 +198,9 @@ export class Sound {
       const { modes, noise, cut, blow, glide } = this.stuffs[stuff];
       for (const [ratio, decay, strength] of modes) this.#tone(out, pitch * ratio, 0.4 * strength, decay, glide);
       this.#burst(out, 0.6 * noise, cut, blow);
+    } else if (kind === 'splash') {
+      this.#burst(out, 1.2, 12 * pitch + 1500, 0.09);
+      [0.04, 0.09, 0.15].forEach((at, k) => this.#tone(out, pitch * (2 + k), 0.2, 0.03, 1, at));
     } else if (kind === 'snap') {
       this.#tone(out, pitch, 0.4, 0.02, 2.5);
       [0, 0.018, 0.04].forEach((at, k) => this.#burst(out, 0.8 / (k + 1), Math.min(5 * pitch + 2000, 9000), 0.01, at));
@@ -202,12 +231,12 @@ export class Sound {
     return fade;
   }
 
-  /** @type {(out: AudioNode, pitch: number, strength: number, decay: number, glide: number) => void} */
-  #tone(out, pitch, strength, decay, glide) {
+  /** @type {(out: AudioNode, pitch: number, strength: number, decay: number, glide: number, at?: number) => void} */
+  #tone(out, pitch, strength, decay, glide, at = 0) {
     const tone = new OscillatorNode(out.context, { frequency: pitch }), { currentTime } = out.context;
     tone.frequency.setValueAtTime(pitch * glide, currentTime);
     tone.frequency.setTargetAtTime(pitch, currentTime, 0.03);
-    tone.connect(this.#fading(tone, out, strength, decay));
+    tone.connect(this.#fading(tone, out, strength, decay, at));
   }
 
   /** @type {(out: AudioNode, strength: number, cut: number, decay: number, at?: number) => void} */

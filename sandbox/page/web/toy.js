@@ -61,7 +61,7 @@ export class Toy extends EventTarget {
       changed: () => { this.#isMoved = this.#isDirty = true; }, fit: () => this.fit(), say: (text) => this.say(text),
     });
     this.drives = new Drives(this.run, level.keys, level.about.names.key);
-    this.sound = new Sound(this.world, level.sounds);
+    this.sound = new Sound(this.world, level.sounds, level.scene.water);
     this.#checks = new Checks(level, this.world);
     this.#previous = this.world.view('state.position').slice();
     this.#listen(keyboard);

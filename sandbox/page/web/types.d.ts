@@ -363,6 +363,19 @@ export interface Tread {
   radius: number;
 }
 
+// Colours of water at its surface, deep down, and of its foam.
+export interface Tones {
+  near: string;
+  deep: string;
+  foam: string;
+}
+
+export interface Pool {
+  box: Box;
+  flow: Point;
+  tones: Record<'dark' | 'light', Tones>;
+}
+
 export interface Scene {
   view: Box;
   theme: 'dark' | 'light' | null;
@@ -374,6 +387,7 @@ export interface Scene {
   pieces: { own: number; kept: number; crumb: number; flat: unknown[] };
   ground: Ground[];
   treads: Tread[];
+  water: Pool[];
   pictures: Record<string, { rows: number; bytes: string }>;
 }
 
@@ -412,6 +426,18 @@ export interface Face {
   springs: SpringEnds[];
   angle: number;
   spot: Spot;
+}
+
+// A drop: where it began [m], its velocity then [m/s], when that was and how long it lives [s], its size [m], its pool.
+export interface Drop {
+  x: number;
+  y: number;
+  u: number;
+  v: number;
+  born: number;
+  life: number;
+  size: number;
+  pool: number;
 }
 
 export type Flag = ArrayLike<number>;

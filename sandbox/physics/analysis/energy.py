@@ -3,6 +3,7 @@
 import numpy as np
 
 from sandbox.physics.analysis.last_tick import of_last_tick
+from sandbox.physics.analysis.water_energy import water_energy
 from sandbox.physics.arrays import Floats
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, TRIANGLE, constraint_values
 from sandbox.physics.geometry.segment import lengths
@@ -10,6 +11,7 @@ from sandbox.physics.marks import GRAB_MATERIAL, LAW_HOOKE
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
+from sandbox.physics.water.pools import FLOW_X, FLOW_Y
 from sandbox.physics.world import World
 
 # The energy of what blew up is inf or NaN, and no fault.
@@ -115,14 +117,16 @@ def measure_constraints(world: World) -> tuple[Floats, Floats, Floats]:
 
 @_unbounded
 def gravity_energy(world: World) -> float:
-    """Sum of -m g . x over the free particles [J], g times each one's gravity scale; zero at the origin's height."""
+    """Sum of -m g . x over the free particles [J], g times each one's gravity scale; zero at the origin's height.
+
+    With that of the water that they displace.
+    """
     world = of_last_tick(world)
     free = world.particle_active & (world.inverse_mass > 0.0)
-    return float(
-        -np.sum(
-            (world.mass * world.gravity_scale)[free, None] * world.position[free] * np.asarray(world.settings.gravity)
-        )
+    of_particles = -np.sum(
+        (world.mass * world.gravity_scale)[free, None] * world.position[free] * np.asarray(world.settings.gravity)
     )
+    return float(of_particles) + water_energy(world)
 
 
 def total_energy(world: World) -> float:
@@ -134,7 +138,7 @@ class Dissipation:
     """Energy [J] lost in ticks: `before` each, then `after` it; energy that a tick gained counts against it.
 
     What commands change between ticks is not counted, nor is a tick in which something works on the world: a grab that
-    holds a particle, a muscle, a hydraulic or motor that is driven, the wind.
+    holds a particle, a muscle, a hydraulic or motor that is driven, the wind, water that flows.
     """
 
     def __init__(self) -> None:
@@ -160,4 +164,6 @@ class Dissipation:
 def _is_worked_on(world: World) -> bool:
     settings = world.settings
     blows = settings.drag > 0.0 and any(settings.wind)
-    return world.any_held() or bool(len(world.actuators.muscles.spring)) or bool(np.any(world.actuator_value)) or blows
+    flows = bool(world.water[:, FLOW_X : FLOW_Y + 1].any())
+    is_driven = bool(len(world.actuators.muscles.spring)) or bool(np.any(world.actuator_value))
+    return world.any_held() or is_driven or blows or flows

@@ -10,6 +10,7 @@ from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, St
 from sandbox.physics.arrays import Slots
 from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.state import FAMILIES, Family
+from sandbox.physics.water.pools import HULL
 from sandbox.physics.world import World
 
 Parts = TypeVar("Parts", Muscles, Hydraulics)
@@ -46,6 +47,7 @@ def equipped(world: World, other: World, place: Place, parts: tuple[str, ...]) -
         for form in other.forms
     ]
     areas = [range(each.start + place.constraint, each.stop + place.constraint) for each in other.area_constraints]
+    hulls = other.hulls + np.array([world.hulls[-1:, HULL].sum() + 1, place.spring, 0])
     return Equipment(
         place.material_names,
         limits,
@@ -53,6 +55,7 @@ def equipped(world: World, other: World, place: Place, parts: tuple[str, ...]) -
         (*world.area_names, *other.area_names),
         (*world.area_constraints, *areas),
         (*world.forms, *forms),
+        np.concatenate([world.hulls, hulls]),
         world.joined,
     )
 

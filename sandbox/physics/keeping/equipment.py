@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from sandbox.physics.actuators import Actuators, StrainLimits
+from sandbox.physics.arrays import SlotRows
 from sandbox.physics.keeping.forms import FirmBody
 
 
@@ -32,7 +33,8 @@ class Equipment(NamedTuple):
     """The constant part of a world, by the names that World has for it.
 
     Names of materials and the strains that each bears; driven parts; bodies that keep areas, and the constraints of
-    each; bodies that may be stiff by their form; what joined the world while it ran, in order.
+    each; bodies that may be stiff by their form; hulls, which displace water (water/pools.py); what joined the world
+    while it ran, in order.
     """
 
     material_names: tuple[str, ...]
@@ -41,4 +43,5 @@ class Equipment(NamedTuple):
     area_names: tuple[str, ...]
     area_constraints: tuple[range, ...]
     forms: tuple[FirmBody, ...]
+    hulls: SlotRows
     joined: tuple[Joined, ...]

@@ -31,6 +31,7 @@ from sandbox.physics.solvers.direct.energy_bank import WAYS
 from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.tuning import tuning
 from sandbox.physics.state import RANGES, good_of, state_of
+from sandbox.physics.water.displacers import Water
 from sandbox.physics.world import World
 
 
@@ -88,7 +89,10 @@ class BlockOwner:
             self.given = self.given._replace(
                 drives=drives_of(world.actuators), wheels=wheels_of(world.actuators), limits=_limits_of(world)
             )
-        self.given = self.given._replace(state=state_of(world), good=good_of(world), tuning=tuning(), rules=world.rules)
+        water = with_empty(Water, pool=world.water, hull=world.hulls)
+        self.given = self.given._replace(
+            state=state_of(world), good=good_of(world), tuning=tuning(), rules=world.rules, water=water
+        )
         self.given.plan[GRAB_PARTICLE], self.given.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
         self._lay_out(world)
 

@@ -65,6 +65,7 @@ from sandbox.physics.untangling.crossing_candidates import ShapeBounds
 from sandbox.physics.untangling.inversion import new_inversions
 from sandbox.physics.untangling.overlaps import Overlaps
 from sandbox.physics.untangling.triangle_clamp import lay_out_world_triangles
+from sandbox.physics.water.displacers import lay_out_water
 
 # Places in `wanted`: those of the counts of collisions, then numbers and columns of blocks of bodies.
 BLOCK_NUMBERS, BLOCK_COLUMNS, WANTED = COUPLED, COUPLED + 1, COUPLED + 2
@@ -85,6 +86,7 @@ def derive_topology(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     set_field(world, "sides", new_motor_sides(state, world.wheels, arena))
     _lay_out_labels(world, arena)
     lay_out_world_triangles(state, arena, world.triangles)
+    lay_out_water(state, arena, world.water)
     set_field(world.collisions, "outline", new_outline(state, arena))
     set_field(world.collisions, "triangles", world.triangles.of_world)
     if not is_full(arena):

@@ -66,6 +66,7 @@ from sandbox.physics.solvers.single_pass import apply_explicit
 from sandbox.physics.solvers.single_pass import solve as solve_single_pass
 from sandbox.physics.substeps import choose_substeps, drag_factor_of, kept_by, limit_rings, turn_into_substep
 from sandbox.physics.untangling.triangle_clamp import clamp_world
+from sandbox.physics.water.push import push_by_water
 
 # What a tick says at its end. It has changed nothing where something that it begins with is not sound, and goes on
 # where it was, once there is more room. Something that it has moved is not sound; springs broke.
@@ -85,6 +86,11 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
     h = 1.0 / (world.choices[TICK_RATE] * progress[COUNT])
     while progress[DONE] < progress[COUNT]:
         integrate_velocities(state, world.numbers, start, h)
+        if world.water.pool.shape[0] > 0:
+            push_by_water(
+                world.water, state, start, world.body_label, world.numbers, collisions.kept, collisions.counts[KEPT],
+                touches, h,
+            )  # fmt: skip
         inputs = _inputs(world)
         has_joints = prepare_joints(joints, state, inputs.stiffness, inputs.damping, h)
         if not _find_contacts(world, touches, has_joints, h):
@@ -293,6 +299,10 @@ def _begin_flight(world: WorldBlock, touches: bool, h: float) -> None:
         if touches:
             mark_pushed(world.collisions, flight.label, flight.stays)
             alone = h / small_steps(h)
+        for p in range(world.water.wet.shape[0]):
+            # Lift acts in the first step as it does in all others: what floats would jump.
+            if world.water.wet[p]:
+                flight.stays[flight.label[p]] = True
         begin_flight(state, world.numbers, flight, alone, h)
 
 

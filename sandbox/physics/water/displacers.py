@@ -1,0 +1,234 @@
+"""Displacers: what of a world water cannot enter, as its topology decides it.
+
+Bodies with triangles displace those. A hull, the outline of a wheel or of a ring that keeps its area, displaces what it
+encloses while none of its springs is cut. All other particles, those of ropes and loose ones, are discs. What was cut
+goes on displacing: the corners of a triangle that is no more are discs, each with a third of its area.
+"""
+
+from typing import NamedTuple
+
+from sandbox.physics.arena import (
+    Arena,
+    give_back,
+    is_full,
+    mark,
+    new_flags,
+    new_float_rows,
+    new_floats,
+    new_slot_rows,
+    new_slots,
+)
+from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.collision.filter import LINE, NO_EDGE
+from sandbox.physics.constraints import AREA, TRIANGLE
+from sandbox.physics.jit import inner_kernel, set_field
+from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.state import State
+from sandbox.physics.water.pools import HULL, SPRING, TURNED
+
+# Columns of `load` of a particle: force [N] (2), resistance [kg/s] xx, xy, yy, and that times the flow [N] (2).
+FX, FY, RXX, RXY, RYY, DX, DY, LOADS = range(8)
+# Columns of `body`, at the label of a body: mass [kg], force and weight [N] (2), resistance [kg/s] xx, xy, yy; about
+# its first particle the sums of m r [kg m] (2), of m r^2 [kg m^2], and the torque [N m]; present drag [N] (2), and what
+# it took from the particles [kg m/s] (2); whether a pin, a hand or a contact holds it. And what follows: its turning
+# acceleration [rad/s^2], and the change of its velocity [m/s] (2).
+MASS, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y, HELD, TURN, CX, CY, SUMS = (
+    range(19)
+)
+
+
+class Water(NamedTuple):
+    """Pools and hulls of a world (pools.py), what it displaces, and scratch of a step."""
+
+    pool: FloatRows
+    hull: SlotRows
+    triangle: SlotRows  # (t, 3): particles
+    constraint: Slots  # (t,): the constraint of each, which says how large it is to be
+    shell_start: Slots  # edges of whole hull o: shell_start[o]:shell_start[o + 1]
+    shell_a: Slots  # what is enclosed lies on the left of the way from a to b
+    shell_b: Slots
+    edge: Slots  # springs that are dragged
+    sides: Floats  # how many sides of each are wet: 2 of a line
+    disc: Slots
+    disc_area: Floats  # [m^2]; 0: it has its own radius
+    is_bare: Flags  # whether a disc is dragged as such, as no edge of it is
+    is_loose: Flags  # whether nothing is joined to it
+    load: FloatRows  # (n, LOADS)
+    body: FloatRows  # (n, SUMS)
+    wet: Flags  # (n,)
+
+
+class WaterScratch(NamedTuple):
+    """Scratch: by particle: area [m^2] of lost triangles, whether it is in a triangle, has an edge, is joined to
+    anything; by owner (see _key): whether a whole hull encloses it; by hull: whether it is whole; by spring: whether it
+    is of a whole hull."""
+
+    lost: Floats
+    in_triangle: Flags
+    has_edge: Flags
+    is_joined: Flags
+    enclosed: Flags
+    is_whole: Flags
+    is_hull: Flags
+
+
+@inner_kernel
+def _key(state: State, p: int) -> int:
+    # Owners are numbers of bodies, or minus 1 minus a particle.
+    owner = state.owner[p]
+    return owner if owner >= 0 else state.owner.shape[0] - 1 - owner
+
+
+@inner_kernel
+def _list_triangles(state: State, water: Water, work: WaterScratch) -> int:
+    count = 0
+    for k in range(state.constraint_kind.shape[0]):
+        first = state.constraint_first[k]
+        for c in range(first, first + state.constraint_corners[k]):
+            if state.constraint_active[k]:
+                work.is_joined[state.corner_particle[c]] = True
+        if state.constraint_kind[k] != AREA or state.constraint_corners[k] != TRIANGLE:
+            continue
+        p, q, r = state.corner_particle[first], state.corner_particle[first + 1], state.corner_particle[first + 2]
+        if state.constraint_active[k]:
+            water.triangle[count, 0], water.triangle[count, 1], water.triangle[count, 2] = p, q, r
+            water.constraint[count] = k
+            count += 1
+        third = abs(state.constraint_rest[k, 1]) / 3.0
+        for c in range(first, first + TRIANGLE):
+            work.in_triangle[state.corner_particle[c]] = True
+            if not state.constraint_active[k]:
+                work.lost[state.corner_particle[c]] += third
+    return count
+
+
+@inner_kernel
+def _find_whole_hulls(state: State, hull: SlotRows, work: WaterScratch) -> None:
+    for row in range(hull.shape[0]):
+        work.is_whole[hull[row, HULL]] = True
+    for row in range(hull.shape[0]):
+        if not state.spring_active[hull[row, SPRING]]:
+            work.is_whole[hull[row, HULL]] = False
+    for row in range(hull.shape[0]):
+        s = hull[row, SPRING]
+        if work.is_whole[hull[row, HULL]]:
+            work.is_hull[s] = True
+            # Where a weld makes one particle of two, one end belongs to another body.
+            key = _key(state, state.particle_a[s])
+            if key == _key(state, state.particle_b[s]):
+                work.enclosed[key] = True
+
+
+@inner_kernel
+def _list_shells(state: State, water: Water, work: WaterScratch) -> tuple[int, int]:
+    # How many whole hulls there are, and how many edges they have.
+    hull, shells, count = water.hull, 0, 0
+    for row in range(hull.shape[0]):
+        if not work.is_whole[hull[row, HULL]]:
+            continue
+        if row == 0 or hull[row, HULL] != hull[row - 1, HULL]:
+            water.shell_start[shells] = count
+            shells += 1
+        s, turned = hull[row, SPRING], hull[row, TURNED] != 0
+        water.shell_a[count] = state.particle_b[s] if turned else state.particle_a[s]
+        water.shell_b[count] = state.particle_a[s] if turned else state.particle_b[s]
+        count += 1
+    water.shell_start[shells] = count
+    return shells, count
+
+
+@inner_kernel
+def _list_edges(state: State, water: Water, work: WaterScratch) -> int:
+    # How many springs are dragged. What a hull encloses is dry.
+    count = 0
+    for s in range(state.spring_active.shape[0]):
+        if not state.spring_active[s] or state.material[s] == GRAB_MATERIAL:
+            continue
+        a, b = state.particle_a[s], state.particle_b[s]
+        work.is_joined[a] = work.is_joined[b] = True
+        if state.edge[s] == NO_EDGE:
+            continue
+        is_outside = work.is_hull[s] or state.edge[s] != LINE
+        if not is_outside and work.enclosed[_key(state, a)] and work.enclosed[_key(state, b)]:
+            continue
+        water.edge[count] = s
+        water.sides[count] = 1.0 if is_outside else 2.0
+        work.has_edge[a] = work.has_edge[b] = True
+        count += 1
+    return count
+
+
+@inner_kernel
+def _list_discs(state: State, water: Water, work: WaterScratch) -> int:
+    count = 0
+    for p in range(state.owner.shape[0]):
+        if not state.particle_active[p] or not state.inverse_mass[p] > 0.0:
+            continue
+        is_full = work.in_triangle[p] or work.enclosed[_key(state, p)]
+        if not work.lost[p] > 0.0 and is_full:
+            continue
+        water.disc[count] = p
+        water.disc_area[count] = work.lost[p]
+        water.is_bare[count] = not work.has_edge[p]
+        water.is_loose[count] = not work.is_joined[p]
+        count += 1
+    return count
+
+
+@inner_kernel
+def _new_scratch(state: State, hull: SlotRows, arena: Arena) -> WaterScratch:
+    particles, springs = state.owner.shape[0], state.spring_active.shape[0]
+    hulls = hull[hull.shape[0] - 1, HULL] + 1 if hull.shape[0] > 0 else 0
+    return WaterScratch(
+        new_floats(arena, particles), new_flags(arena, particles), new_flags(arena, particles),
+        new_flags(arena, particles), new_flags(arena, 2 * particles), new_flags(arena, hulls),
+        new_flags(arena, springs),
+    )  # fmt: skip
+
+
+@inner_kernel
+def _make_lists_as_long_as(triangles: int, hulls: int, edges: int, springs: int, discs: int, water: Water) -> None:
+    set_field(water, "triangle", water.triangle[:triangles])
+    set_field(water, "constraint", water.constraint[:triangles])
+    set_field(water, "shell_start", water.shell_start[: hulls + 1])
+    set_field(water, "shell_a", water.shell_a[:edges])
+    set_field(water, "shell_b", water.shell_b[:edges])
+    set_field(water, "edge", water.edge[:springs])
+    set_field(water, "sides", water.sides[:springs])
+    set_field(water, "disc", water.disc[:discs])
+    set_field(water, "disc_area", water.disc_area[:discs])
+    set_field(water, "is_bare", water.is_bare[:discs])
+    set_field(water, "is_loose", water.is_loose[:discs])
+
+
+@inner_kernel
+def lay_out_water(state: State, arena: Arena, water: Water) -> None:
+    """Lay out what a world with these pools and hulls displaces, as its topology is now; nothing without a pool."""
+    if water.pool.shape[0] == 0:
+        return
+    particles, springs, constraints = state.owner.shape[0], state.spring_active.shape[0], state.constraint_kind.shape[0]
+    set_field(water, "triangle", new_slot_rows(arena, constraints, 3))
+    set_field(water, "constraint", new_slots(arena, constraints))
+    set_field(water, "shell_start", new_slots(arena, water.hull.shape[0] + 1))
+    set_field(water, "shell_a", new_slots(arena, water.hull.shape[0]))
+    set_field(water, "shell_b", new_slots(arena, water.hull.shape[0]))
+    set_field(water, "edge", new_slots(arena, springs))
+    set_field(water, "sides", new_floats(arena, springs))
+    set_field(water, "disc", new_slots(arena, particles))
+    set_field(water, "disc_area", new_floats(arena, particles))
+    set_field(water, "is_bare", new_flags(arena, particles))
+    set_field(water, "is_loose", new_flags(arena, particles))
+    set_field(water, "load", new_float_rows(arena, particles, LOADS))
+    set_field(water, "body", new_float_rows(arena, particles, SUMS))
+    set_field(water, "wet", new_flags(arena, particles))
+    scratch = mark(arena)
+    work = _new_scratch(state, water.hull, arena)
+    if is_full(arena):
+        return
+    triangles = _list_triangles(state, water, work)
+    _find_whole_hulls(state, water.hull, work)
+    hulls, edges = _list_shells(state, water, work)
+    dragged = _list_edges(state, water, work)
+    discs = _list_discs(state, water, work)
+    _make_lists_as_long_as(triangles, hulls, edges, dragged, discs, water)
+    give_back(arena, scratch)
