@@ -47,8 +47,9 @@ def _commands() -> Iterator[str]:
             fields = {field: _type_of(schema) for field, schema in entries[name]["fields"].items()}
             optional = {field for field, schema in entries[name]["fields"].items() if "isRequired" not in schema}
         else:
-            # Springs that break, or that a level begins without: a world carries it out by itself.
-            fields, optional = dict.fromkeys(kind.slots, "number[]"), set()
+            # Of springs and constraints: a world carries it out by itself.
+            fields = dict.fromkeys(kind.slots, "number[]") | dict.fromkeys(kind.numbers, "number")
+            optional = set()
         yield f"  {name}: {{"
         yield f"    type: '{name}';"
         yield from (f"    {field}{'?' * (field in optional)}: {kind};" for field, kind in fields.items())

@@ -12,6 +12,7 @@ from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
 from sandbox.physics.keeping.arguments import (
+    CONSTRAINTS,
     FARTHEST,
     HANDS,
     KEYS,
@@ -29,7 +30,7 @@ from sandbox.physics.state import GoodValues, State, StateArrays
 from sandbox.physics.topology.sorting import list_ends
 
 GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
-SET_GRAVITY, SET_AIR, HOLD_KEY = 12, 13, 14
+SET_GRAVITY, SET_AIR, HOLD_KEY, FIRM_SPRINGS, FIRM_CONSTRAINTS = range(12, 17)
 # In place of a result: the arena is full, and nothing was changed; the k-th of slots and numbers, counted through, is
 # BAD_SLOT - k: a slot that is not there, or a number that is not finite, and nothing was changed.
 NO_ARENA, BAD_SLOT = -1, -2
@@ -53,6 +54,9 @@ class KernelCommand(NamedTuple):
 
 _HAND = ("first_cursor", "first_spring", "grab")
 _PARTICLE = ("first_cursor", "particle")
+_FIRMNESS = ("stiffness", "damping", "lowest_mode", "duration")
+# What is a list of slots, of which a command has one alone.
+_LISTS = ("springs", "constraints")
 # Kinds of commands by their names in files; files have no `break_springs`, which a tick ends with, and no
 # `part_bodies`, which building a level with cut bodies does.
 KINDS = {
@@ -72,6 +76,8 @@ KINDS = {
     "set_air": KernelCommand(SET_AIR, ("?wind", "?drag", "duration"), ("drag", "wind")),
     "set_drive": KernelCommand(DRIVE, ("part",), ("value",)),
     "hold_key": KernelCommand(HOLD_KEY, ("key", "down")),
+    "firm_springs": KernelCommand(FIRM_SPRINGS, ("springs",), _FIRMNESS),
+    "firm_constraints": KernelCommand(FIRM_CONSTRAINTS, ("constraints",), _FIRMNESS),
     "push": KernelCommand(PUSH, ("first_cursor",), ("position", "impulse", "outward", "radius")),
     "shake": KernelCommand(SHAKE, ("first_cursor",), ("acceleration", "tick_rate")),
 }
@@ -116,6 +122,8 @@ def command(pointer: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, n
         _set_air(state, world.numbers, slots, numbers)
     elif kind == DRIVE:
         state.actuator_value[slots[0]] = numbers[0]
+    elif kind in (FIRM_SPRINGS, FIRM_CONSTRAINTS):
+        _firm(state, world.good, slots, numbers, kind)
     elif kind == HOLD_KEY:
         state.key_down[slots[0]] = slots[1] != 0
     elif kind == PUSH:
@@ -143,6 +151,11 @@ def _first_bad(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
         return 0
     if kind == HOLD_KEY and not 0 <= slots[0] < state.key_down.shape[0]:
         return 0
+    if kind in (FIRM_SPRINGS, FIRM_CONSTRAINTS):
+        rows = springs if kind == FIRM_SPRINGS else state.constraint_kind.shape[0]
+        for k in range(slots.shape[0]):
+            if not 0 <= slots[k] < rows:
+                return k
     for k in range(numbers.shape[0]):
         if not -math.inf < numbers[k] < math.inf:
             return slots.shape[0] + k
@@ -261,12 +274,22 @@ def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Flo
         if _is_of(state.material[s], slots):
             stiffness = numbers[0] if slots[2] != 0 else state.stiffness[s]
             damping = numbers[1] if slots[3] != 0 else state.damping[s]
-            set_spring(state, good, s, stiffness, damping, slots[4])
+            set_spring(state, good, s, stiffness, damping, 0.0, slots[4])
     for k in range(state.constraint_material.shape[0]):
         if _is_of(state.constraint_material[k], slots):
             stiffness = numbers[0] if slots[2] != 0 else state.constraint_stiffness[k]
             damping = numbers[1] if slots[3] != 0 else state.constraint_damping[k]
-            set_constraint(state, good, k, stiffness, damping, slots[4])
+            set_constraint(state, good, k, stiffness, damping, 0.0, slots[4])
+
+
+@inner_kernel
+def _firm(state: State, good: GoodValues, slots: Slots, numbers: Floats, kind: int) -> None:
+    # Of springs or constraints of a body.
+    for at in range(slots.shape[0]):
+        if kind == FIRM_SPRINGS:
+            set_spring(state, good, slots[at], numbers[0], numbers[1], numbers[2], int(numbers[3]))
+        else:
+            set_constraint(state, good, slots[at], numbers[0], numbers[1], numbers[2], int(numbers[3]))
 
 
 @inner_kernel
@@ -337,8 +360,8 @@ def carry_out(pointer: Any, name: str, given: Mapping[str, Any], state: StateArr
     and ValueError for a number that is not finite; nothing is changed then.
     """
     kind = KINDS[name]
-    if kind.slots == ("springs",):
-        slots = whole_numbers("springs", given["springs"])
+    if kind.slots[0] in _LISTS:
+        slots = whole_numbers(kind.slots[0], given[kind.slots[0]])
     else:
         slots = np.array([_packed(kind, each, given) for each in kind.slots], np.int64)
     values = [given[each] for each in kind.numbers]
@@ -362,8 +385,8 @@ def _packed(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> int:
 
 def _fault(kind: KernelCommand, place: int, given: Mapping[str, Any], numbers: Floats, state: StateArrays) -> Exception:
     """What is wrong with the slot or number at a place, as BAD_SLOT counts."""
-    is_list = kind.slots == ("springs",)
-    beyond = place - (len(given["springs"]) if is_list else len(kind.slots))
+    is_list = kind.slots[0] in _LISTS
+    beyond = place - (len(given[kind.slots[0]]) if is_list else len(kind.slots))
     if beyond >= 0:
         return ValueError(f"{', '.join(kind.numbers)} {numbers.tolist()}: finite numbers are needed")
     name = kind.slots[0 if is_list else place]
@@ -372,6 +395,7 @@ def _fault(kind: KernelCommand, place: int, given: Mapping[str, Any], numbers: F
         "grab": (HANDS, len(state.hand_strength)),
         "particle": (PARTICLES, len(state.owner)),
         "springs": (SPRINGS, len(state.law)),
+        "constraints": (CONSTRAINTS, len(state.constraint_kind)),
         "part": (PARTS, len(state.actuator_value)),
         "key": (KEYS, len(state.key_down)),
     }[name]

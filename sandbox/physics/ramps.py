@@ -157,30 +157,43 @@ def end_ramps(state: State, numbers: Floats) -> None:
 
 
 @inner_kernel
-def set_spring(state: State, good: GoodValues, s: int, stiffness: float, damping: float, duration: int) -> None:
-    """Set Cs and Cd of a spring as its own, to be in force in so many ticks; 0: at once."""
+def set_spring(
+    state: State, good: GoodValues, s: int, stiffness: float, damping: float, lowest_mode: float, duration: int
+) -> None:
+    """Set Cs, Cd and lowest mode of a spring, to be in force in so many ticks; 0: at once. Without a lowest mode Cs and
+    Cd are its own.
+
+    A lowest mode above 0 is in force from the start, none only at the end: until then what becomes rigid moves as a
+    body.
+    """
     if state.ramp_ticks[s] == 0 or duration == 0:
         state.stiffness_now[s] = state.stiffness[s] if duration > 0 else 0.0
         state.damping_now[s] = state.damping[s] if duration > 0 else 0.0
         state.lowest_mode_now[s] = state.lowest_mode[s] if duration > 0 else 0.0
+    if duration > 0 and lowest_mode > 0.0:
+        state.lowest_mode_now[s] = lowest_mode
     state.ramp_ticks[s] = duration
     state.stiffness[s] = good.stiffness[s] = stiffness
     state.damping[s] = good.damping[s] = damping
-    state.lowest_mode[s] = good.lowest_mode[s] = 0.0
+    state.lowest_mode[s] = good.lowest_mode[s] = lowest_mode
     _disturb_ends(state, s)
 
 
 @inner_kernel
-def set_constraint(state: State, good: GoodValues, k: int, stiffness: float, damping: float, duration: int) -> None:
-    """Set Cs and Cd of a constraint as its own, to be in force in so many ticks; 0: at once."""
+def set_constraint(
+    state: State, good: GoodValues, k: int, stiffness: float, damping: float, lowest_mode: float, duration: int
+) -> None:
+    """Set Cs, Cd and lowest mode of a constraint, as `set_spring` does."""
     if state.constraint_ramp_ticks[k] == 0 or duration == 0:
         state.constraint_stiffness_now[k] = state.constraint_stiffness[k] if duration > 0 else 0.0
         state.constraint_damping_now[k] = state.constraint_damping[k] if duration > 0 else 0.0
         state.constraint_lowest_mode_now[k] = state.constraint_lowest_mode[k] if duration > 0 else 0.0
+    if duration > 0 and lowest_mode > 0.0:
+        state.constraint_lowest_mode_now[k] = lowest_mode
     state.constraint_ramp_ticks[k] = duration
     state.constraint_stiffness[k] = good.constraint_stiffness[k] = stiffness
     state.constraint_damping[k] = good.constraint_damping[k] = damping
-    state.constraint_lowest_mode[k] = good.constraint_lowest_mode[k] = 0.0
+    state.constraint_lowest_mode[k] = good.constraint_lowest_mode[k] = lowest_mode
     _disturb_corners(state, k)
 
 

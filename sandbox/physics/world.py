@@ -442,6 +442,14 @@ class World(StateArrays):
                 arguments.number(name, value, 0.0, 1.0)
         self._command("set_coefficients", material=material, duration=duration, **given)
 
+    def set_firmness(
+        self, springs: Slots, constraints: Slots, values: tuple[float, float, float], duration: int = 0
+    ) -> None:
+        """Set Cs, Cd and lowest mode of springs and constraints of a body, or of a piece; duration: see ramps.py."""
+        given: dict[str, Any] = dict(zip(("stiffness", "damping", "lowest_mode"), values, strict=True))
+        self._command("firm_springs", springs=springs, duration=duration, **given)
+        self._command("firm_constraints", constraints=constraints, duration=duration, **given)
+
     def set_gravity(self, gravity: Point, duration: int = 0) -> None:
         """Set gravity [m/s^2]; duration [ticks]: see ramps.py."""
         self._command("set_gravity", gravity=arguments.point("gravity", gravity), duration=duration)

@@ -41,7 +41,7 @@ class Session:
     def __init__(self, level: Level, script: Iterable[ScriptLine] = (), start: Snapshot | None = None) -> None:
         self.level = level
         self.world = build_world(level)
-        self._actions = RuleActions(level)
+        self._actions = RuleActions(level, self.world)
         if start is not None:
             restore(self.world, start)
             name_added(self.world)

@@ -27,6 +27,8 @@ def answering(**changes: Any) -> Level:
         ],
         "bodies": [
             {"id": "rope", "type": "rope", "start": [2, 3], "end": [4, 3], "segments": 5, "pinned": [0, 5]},
+            {"id": "cube", "type": "jelly", "shape": {"box": [1, 1]}, "spacing": 0.5, "position": [-7, 0.6],
+             "firmness": {"sag": 0.0}},
             {"id": "line", "type": "rope", "start": [5, 3], "end": [7, 3], "segments": 5, "pinned": [0, 5]},
             {"id": "wheel", "type": "wheel", "position": [-4, 0.5], "radius": 0.4, "thickness": 0.1, "segments": 10,
              "motor": {"speed": 6.0, "torque": 20.0, "key": "d"}},
@@ -46,7 +48,7 @@ def answering(**changes: Any) -> Level:
              "then": [{"pin": "line.5"}, {"gravity": [0, -8], "during": 0.5}]},
             {"id": "key", "when": {"key": "g"}, "for_seconds": 0.1, "then": [{"cut": "line:2"}, {"sound": "bell"}]},
             {"id": "late", "when": {"any": [{"time": 3.0}, {"metric": "speed", "body": "wheel", "at_least": 90}]},
-             "then": [{"wind": [1, 0]}, {"checkpoint": True}]},
+             "then": [{"wind": [1, 0]}, {"checkpoint": True}, {"sag": 0.2, "body": "cube", "during": 0.4}]},
             {"id": "still", "when": {"metric": "settled", "body": "rope", "at_least": 0.1}, "then": [{"say": "Still"}]},
             {"id": "lost", "when": {"none": [{"metric": "y", "particle": "ball", "at_least": -1}]},
              "then": [{"fail": "It fell"}]},

@@ -149,6 +149,22 @@ export interface Commands {
     key: number;
     down: boolean;
   };
+  firm_springs: {
+    type: 'firm_springs';
+    springs: number[];
+    stiffness: number;
+    damping: number;
+    lowest_mode: number;
+    duration: number;
+  };
+  firm_constraints: {
+    type: 'firm_constraints';
+    constraints: number[];
+    stiffness: number;
+    damping: number;
+    lowest_mode: number;
+    duration: number;
+  };
   push: {
     type: 'push';
     position: [number, number];

@@ -86,7 +86,7 @@ export interface About {
   counts: Counts;
 }
 
-// What a rule does: a text or a sound of it, a counter that changes, or a command with slots in place of names.
+// What a rule does: a text or a sound of it, a counter that changes, or commands with slots in place of names.
 export interface Action {
   win?: string;
   fail?: string;
@@ -95,7 +95,7 @@ export interface Action {
   stars?: { counter: number | null; second: number; third: number };
   count?: number;
   by?: number;
-  command?: Command;
+  commands?: Command[];
   isCheckpoint?: boolean;
 }
 

@@ -175,12 +175,12 @@ export class World {
       if (!this.view('state.rule_due')[rule]) return;
       this.view('state.rule_due')[rule] = 0;
       for (const action of actions) {
-        const stars = this.view('state.rule_stars'), { count, by = 1, command } = action;
+        const stars = this.view('state.rule_stars'), { count, by = 1, commands = [] } = action;
         if (action.win !== undefined && !stars[rule]) {
           stars[rule] = this.#stars(action, Number(this.view('state.rule_first')[rule]));
         }
         if (count !== undefined) this.view('state.counter')[count] += by;
-        if (command) this.#actBy(command);
+        commands.forEach((command) => this.#actBy(command));
       }
     });
   }

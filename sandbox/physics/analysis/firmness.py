@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
 from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.changing.ramping import set_rows
 from sandbox.physics.equation import (
     HIGHEST_COEFFICIENT,
     coefficients_from_frequency,
@@ -23,7 +22,6 @@ from sandbox.physics.equation import (
 )
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, design_gravity
-from sandbox.physics.ramps import CONSTRAINTS, SPRINGS
 from sandbox.physics.world import World
 
 # F^2 sag H / g of a box that stands on the floor, which holds its foot: 0.75 of that of a free column.
@@ -172,14 +170,16 @@ def give_firmness(world: World, body: FirmBody, stiffness: float, damping: float
     """Give a body of a world, or a piece of one, Cs and Cd as `set_firmness` does. Raises ValueError."""
     stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
     damping = arguments.number("damping", damping, 0.0, 1.0)
-    lowest_mode = lowest_mode_of(body.shape)
+    world.set_firmness(body.springs, body.constraints, values_of(body, stiffness, damping), duration)
+
+
+def values_of(body: FirmBody, stiffness: float, damping: float) -> tuple[float, float, float]:
+    """Cs, Cd and lowest mode of each spring of a body that has these Cs and Cd as a whole."""
     if stiffness == damping == 1.0:
         # All of them rigid, which they are alone as well.
-        lowest_mode = 0.0
-    else:
-        stiffness, damping = of_springs(stiffness, damping, lowest_mode)
-    for family, slots in ((SPRINGS, body.springs), (CONSTRAINTS, body.constraints)):
-        set_rows(world, family, slots, (stiffness, damping, lowest_mode), duration)
+        return stiffness, damping, 0.0
+    lowest_mode = lowest_mode_of(body.shape)
+    return (*of_springs(stiffness, damping, lowest_mode), lowest_mode)
 
 
 def usual_ratio(hz: float, h: float) -> float:

@@ -1,10 +1,7 @@
 """Ramping: begins ramps (ramps.py) of the bodies of a world, and of everything in it."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from sandbox.physics.arrays import Slots
 from sandbox.physics.keeping import arguments
 from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.ramps import COEFFICIENTS, CONSTRAINTS, SPRINGS, in_force
@@ -12,23 +9,6 @@ from sandbox.physics.world import World
 
 # Cs and Cd from which what is made whole firms up: soft, and so damped that it creeps to its form rather than leaps.
 SOFT_STIFFNESS, SOFT_DAMPING = 0.05, 0.9
-
-
-def set_rows(world: World, family: str, slots: Slots, values: Sequence[float], duration: int) -> None:
-    """Set Cs, Cd and lowest mode of rows, to be in force in so many ticks; 0: at once.
-
-    A lowest mode above 0 is in force from the start, none only at the end: until then what becomes rigid moves as a
-    body. Raises as `World.change` does.
-    """
-    duration = arguments.ticks("duration", duration)
-    present = in_force(world, family)
-    for name, value, now in zip(COEFFICIENTS, values, present, strict=True):
-        begins = value if name == "lowest_mode" and value > 0.0 else now[slots]
-        world.change(f"{family}{name}_now", begins if duration else 0.0, slots)
-        world.change(f"{family}{name}", value, slots)
-    world.change(f"{family}ramp_ticks", duration, slots)
-    if family == SPRINGS:
-        world.disturb(world.particle_a[slots], world.particle_b[slots])
 
 
 def inflate(world: World, body: int, inflation: float, duration: int = 0) -> None:
