@@ -98,7 +98,7 @@ def _body(chance: random.Random, name: str, x: float, y: float) -> Part:
         body["particle_mass"] = chance.choice([1.0, number(chance, 0.01, 0.5), number(chance, 1.0, 500.0)])
     for field, share, low, high in (
         ("friction", 0.3, 0.0, 2.0), ("restitution", 0.3, 0.0, 1.0), ("particle_radius", 0.2, 0.0, 0.1),
-        ("gravity_scale", 0.15, -0.5, 2.0),
+        ("gravity_scale", 0.15, -0.5, 2.0), ("belt", 0.15, -4.0, 4.0),
     ):  # fmt: skip
         if chance.random() < share:
             body[field] = number(chance, low, high)
@@ -213,4 +213,6 @@ def _surroundings(chance: random.Random) -> Part:
     if chance.random() < 0.4:
         corners = [[-4.0 + 2.0 * k, number(chance, 1.6, 4.0)] for k in range(chance.randint(2, 5))]
         terrain.append({"id": "line", "polyline": corners, "friction": 0.2})
+    for piece in terrain:
+        piece["belt"] = chance.choice([0.0, 1.5, -4.0])
     return found | ({"terrain": terrain} if terrain else {})
