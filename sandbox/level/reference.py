@@ -85,7 +85,7 @@ def _sections(models: dict[str, Model], whole: Model) -> Iterator[str]:
     yield "## Contacts, walls and terrain\n"
     yield from map(table, ("Contacts", "Walls", "Terrain"))
     yield "## Zones and water\n"
-    yield from map(table, ("Zone", "Water"))
+    yield from (*map(table, ("Zone", "Water")), prose.WATER)
     yield from (prose.BODIES, table("Every body"))
     yield from (table(name.capitalize()) for kind, each in EXPANSIONS.items() for name in (kind, *each.alternatives))
     yield from map(table, ("Firmness", "Bending"))

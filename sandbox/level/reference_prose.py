@@ -75,6 +75,50 @@ TABLES = """\
 - `–` stands for no unit, or for no limits other than the type's.
 """
 
+WATER_EXAMPLE = """\
+{
+  "format": "spring-sandbox/level",
+  "version": 3,
+  "name": "A raft on a river",
+  "view": [-6, -4, 6, 3],
+  "settings": {"solver": "direct"},
+  "materials": {"wood": {"stiffness": 0.9, "damping": 0.99}},
+  "walls": {"box": [-9, -5, 9, 9]},
+  "terrain": [{"id": "bed", "polygon": [[-9, -5], [9, -5], [9, -3], [-9, -3]]}],
+  "zones": [{"id": "river", "box": [-9, -4, 9, 0], "water": {"density": 10, "flow": [0.5, 0]}}],
+  "bodies": [
+    {
+      "type": "jelly",
+      "id": "raft",
+      "shape": {"box": [2, 0.5]},
+      "position": [0, 1],
+      "spacing": 0.25,
+      "particle_mass": 0.1,
+      "material": "wood"
+    }
+  ]
+}
+"""
+
+WATER = f"""\
+### How water acts
+
+```json
+{WATER_EXAMPLE}```
+
+- A body floats if it has less mass per area than the water. The raft has 27 particles of 0.1 kg on 1 m^2, so 0.27 of it
+  is under the surface.
+- Jellies displace water by their triangles. Wheels, rings that keep an area and jellies without areas do by what their
+  outline encloses. Loose particles do by their discs, as do the particles of ropes, bridges, girders, webs and meshes.
+  What is cut from a jelly goes on displacing water. A wheel or a ring with a cut outline takes it in.
+- Bodies are measured from centre to centre of their particles. They are drawn larger by the radius of those.
+- The surface is flat and is the top of the box. Its sides and its floor are no walls: put a pool between terrain or
+  walls, or make it wider than the view. A body that leaves it through a side falls.
+- Lift needs gravity that points down. `gravity_scale` changes the weight of a body and not its lift.
+- Where the water is thick, take more `slow_drag`: 5 is honey. Without any drag a body bobs for ever.
+- Water in two zones that overlap lifts twice.
+"""
+
 BODIES = """\
 ## Bodies
 

@@ -4,10 +4,13 @@ import json
 
 import pytest
 
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.parse import parse_level
 from sandbox.level.reading.salvage import salvage
+from sandbox.level.reference_prose import WATER_EXAMPLE
+from sandbox.physics.step import step
 
 POOL = {"id": "pool", "box": [-5, -2, 5, 0]}
 GOAL = {"id": "goal", "circle": [1, 2, 0.5]}
@@ -92,3 +95,12 @@ def test_what_is_valid_of_zones_is_salvaged():
 
 def test_a_zone_alone_makes_nothing_touch():
     assert not parse_level(encoded(zones=[POOL, GOAL, GATE]), "test").has_contacts
+
+
+def test_the_reference_s_example_of_water_is_a_level_whose_raft_floats_as_deep_as_it_says():
+    level = parse_level(WATER_EXAMPLE.encode(), "example")
+    world = build_world(level)
+    for _ in range(900):
+        step(world)
+    raft = world.position[: world.grab_particle, 1]
+    assert -raft.min() == pytest.approx(0.27 * 0.5, rel=0.02)

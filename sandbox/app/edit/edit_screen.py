@@ -19,6 +19,7 @@ from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNI
 from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette, palette_width
 from sandbox.app.edit.canvas.canvas import SNAP_STEP
+from sandbox.app.edit.canvas.edited_zones import box_of
 from sandbox.app.edit.canvas.overlay import draw_snap
 from sandbox.app.edit.canvas.picking import PickTool
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
@@ -308,9 +309,10 @@ class EditScreen:
 
     @property
     def whole_box(self) -> Box | None:
-        """The box [m] around all that there is, walls too; None where there is nothing."""
-        walls = self.document.level.walls
+        """The box [m] around all that there is, walls and zones too; None where there is nothing."""
+        walls, zones = self.document.level.walls, self.document.level.zones
         boxes = [box for box in (self.scene.bounds(), None if walls is None else walls.box) if box is not None]
+        boxes += map(box_of, zones)
         return union(*boxes) if boxes else None
 
     def _fit_to(self, *boxes: Box | None) -> None:

@@ -35,6 +35,7 @@ from sandbox.app.draw.renderer import (
     THINNEST_SPRING,
 )
 from sandbox.app.edit.canvas.edited_terrain import Ground, paint_ground, paint_walls
+from sandbox.app.edit.canvas.edited_zones import paint_zone
 from sandbox.app.edit.canvas.flesh import ALPHA, Flesh
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
@@ -173,6 +174,8 @@ class ScenePainter:
         canvas = Canvas(layer, self.compiled)
         if scene.level.walls is not None:
             paint_walls(canvas, camera, scene.level.walls.box, self.scale)
+        for zone in scene.level.zones:
+            paint_zone(canvas, camera, zone, self.scale)
         paint_ground(canvas, camera, Ground(scene, ~(items | chosen.hidden_items)), self.scale)
         if not hidden:
             paint_ground(canvas, camera, Ground(scene, items, ACCENT), self.scale)
