@@ -14,6 +14,7 @@ from sandbox.app.draw.detail import FULL, NO_EFFECTS, NO_SHADOWS
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.raster.painter import MarkList, Painter
+from sandbox.app.draw.shade import Shade
 from sandbox.app.draw.still import UNSEEN, UNSEEN_STRAIN, UNSEEN_TURN, Still
 from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
@@ -70,6 +71,8 @@ class Overlay:
     # And a picture of it, with the place of its middle [m].
     ghost_picture: tuple[pygame.Surface, tuple[float, float]] | None = None
     stability: NDArray[np.float64] | None = None
+    # An earlier run at this tick, which is seen behind this one.
+    earlier: Snapshot | None = None
     lit: NDArray[np.bool_] | None = None
 
 
@@ -99,6 +102,7 @@ class Renderer:
         self._painter = Painter()
         self._backdrop = Backdrop()
         self._still = Still()
+        self._shade: Shade | None = None
         # The terrain that was drawn last, and how many there have been: arrays cannot be compared as a key is.
         self._ground: Terrain | None = None
         self._grounds = 0
@@ -174,6 +178,9 @@ class Renderer:
                     )  # fmt: skip
             with profile.part("things"):
                 if self.level is not None:
+                    if overlay.earlier is not None:
+                        self._shade = self._shade or Shade(self.level)
+                        self._shade.draw(painter, overlay.earlier, camera, self.theme, frame.tiles, self.scale)
                     drawables = self._drawables_of(frame, current, particles, springs)
                     self._draw_things(drawables, frame, camera)
             with profile.part("marks"):
@@ -199,7 +206,7 @@ class Renderer:
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
             (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost)),
-             overlay.is_refused,
+             overlay.is_refused, None if overlay.earlier is None else overlay.earlier.tick,
              None if overlay.ghost_picture is None else (id(overlay.ghost_picture[0]), overlay.ghost_picture[1]),
              b"" if overlay.lit is None else overlay.lit.tobytes()),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),
