@@ -93,6 +93,7 @@ SHORTCUTS = (
     Shortcut("forces", ("F5",), "Forces of springs and contacts", "View", "play"),
     Shortcut("velocities", ("F6",), "Velocities", "View", "play"),
     Shortcut("stability", ("F7",), "Stability: how near springs are to the limit", "View", "play"),
+    Shortcut("zones", ("F10",), "Zones, in levels that have some", "View", "play"),
     Shortcut("graphs", ("F8",), "Graphs: energy, strain, speeds, torque, time", "View", "play"),
     Shortcut("pick", ("O",), "Start or stop the graph of a particle", "View", "play"),
     Shortcut("compare", ("F9",), "Compare two settings, or go back to one", "View", "play"),

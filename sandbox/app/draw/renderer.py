@@ -22,7 +22,8 @@ from sandbox.app.draw.themes import THEMES, Theme, theme_now
 from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
-from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
+from sandbox.app.draw.views.overlays import DASHES, ZONES, Overlays, part_of
+from sandbox.app.draw.views.zone_outlines import mark_zones
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.pulls import Pull
@@ -190,6 +191,8 @@ class Renderer:
                 if self.overlays.shown & VEILING:
                     self._backdrop.veil(painter, camera, VEIL)
                 layer = MarkList()
+                if ZONES in self.overlays.shown and self.level is not None:
+                    mark_zones(layer, self.level.zones, camera, self.theme, self.scale)
                 self.overlays.mark(layer, frame, current, camera, particles, springs, overlay.stability)
                 painter.marks(layer, frame.tiles.array)
         if overlay.lit is not None:

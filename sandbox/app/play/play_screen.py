@@ -13,9 +13,9 @@ from sandbox.app.base.shortcuts import Mode, tip_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
+from sandbox.app.draw.colours import Colour
 from sandbox.app.draw.detail import FULL, NO_EFFECTS
-from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
+from sandbox.app.draw.views.overlays import names_for
 from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.graphs.graph_dock import GraphDock
@@ -37,7 +37,7 @@ from sandbox.app.play.melting import toggle_melt
 from sandbox.app.play.palette import NAMES, PartsPalette
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import HAND_TOOL, Stage
-from sandbox.app.play.status import NO_LOADS, STATUS_HEIGHT, counted_parts, motor_parts, rate_parts, warnings
+from sandbox.app.play.status import STATUS_HEIGHT, run_parts
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.play.troubles import Troubles
@@ -45,9 +45,6 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.document.model import Level
-from sandbox.physics.analysis.motor_readings import motor_readings
-from sandbox.physics.analysis.query import shown_particles, shown_springs
-from sandbox.physics.solvers import SOLVERS
 from sandbox.session.scene import RunScene
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.play_tools import PLAY_TOOLS
@@ -278,7 +275,7 @@ class PlayScreen:
             "palette": self._toggle_palette,
             "catalogue": self._open_catalogue,
             "let_go": self._let_go,
-            **{name: partial(stage.toggle_view, name) for name in OVERLAYS},
+            **{name: partial(stage.toggle_view, name) for name in names_for(self.playback.level)},
             "hand": self._next_strength,
             "melt": self.toggle_melt,
             "follow": self._follow,
@@ -570,22 +567,8 @@ class PlayScreen:
 
     def status(self, figures: Figures) -> list[tuple[str, Colour]]:
         """State and recording of the run, and for who has opened the whole panel tick and figures."""
-        playback, current = self.playback, self.playback.current
-        parts: list[tuple[str, Colour]] = [(self._state(), ACCENT if not playback.clock.paused else WARNING)]
-        if playback.session.recording is not None:
-            parts.append((f"recording {playback.session.recording.name}", DANGER))
-        if playback.replay is not None:
-            parts.append((playback.outcome or f"recording, {playback.replay.ticks:,} ticks", TEXT))
-        world = playback.session.world
-        readings = motor_readings(world)
-        if readings and not SOLVERS[world.settings.solver].joints_bear_load:
-            parts.append((NO_LOADS, WARNING))
-        parts += warnings(self.stage.renderer.non_finite, playback.behind)
-        if not self.shape.open.get(MORE, False):
-            return parts
-        counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
-        parts.append((f"tick {playback.session.tick:,}", MUTED))
-        return [*parts, *motor_parts(readings), *counted_parts(*counts), *rate_parts(figures)]
+        shown = figures if self.shape.open.get(MORE, False) else None
+        return run_parts(self.playback, self._state(), self.stage.renderer.non_finite, shown)
 
     def _state(self) -> str:
         """The state of the run in a word, as status line and window title show it."""
@@ -597,7 +580,7 @@ class PlayScreen:
         return self.playback.level.name
 
     def states(self) -> list[str]:
-        """State words for the window's title: tick, speed, hands, recording, replay."""
+        """State words for the window's title: tick, speed, hands, recording, replay, outcome."""
         words = [f"tick {self.playback.session.tick}", self._state()]
         if self.stage.drag.holds:
             words.append(f"holding {len(self.stage.drag.holds)}")
@@ -605,4 +588,6 @@ class PlayScreen:
             words.append("recording")
         if self.playback.replay is not None:
             words.append(self.playback.outcome or "watching")
+        if (result := self.game.result) is not None:
+            words.append("won" if result.is_won else "lost")
         return words

@@ -8,9 +8,11 @@ import pygame
 
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Pixel
+from sandbox.app.draw.views.overlays import ZONES
 from sandbox.app.play.goals.result_card import Ending, ResultCard, star_times
 from sandbox.app.play.goals.score import chips_of
 from sandbox.app.play.goals.score_view import CHIP, TOP, ScoreView
+from sandbox.app.play.goals.zone_names import draw_zone_names
 from sandbox.app.play.stage import Stage
 from sandbox.app.run.ghost_run import GhostRun
 from sandbox.app.run.playback import Playback
@@ -275,7 +277,10 @@ class Game:
         return TOP + CHIP if self._is_on else 0.0
 
     def draw(self, surface: pygame.Surface) -> None:
-        """Draw score and goal."""
+        """Draw score and goal, and the names of zones that are shown."""
+        stage = self._stage()
+        if ZONES in stage.renderer.overlays.shown:
+            draw_zone_names(surface, self._ui, stage.camera, stage.playback.level.zones, stage.renderer.theme)
         if not self._is_on:
             return
         playback = self._playback

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pygame
 
 from sandbox.app.base.recent_pictures import RecentPictures
-from sandbox.app.draw.colours import ACCENT, LINE, MUTED, NOTICE, TEXT, shown_theme
+from sandbox.app.draw.colours import LINE, MUTED, NOTICE, TEXT, shown_theme
 from sandbox.app.play.goals.score import Chip
 from sandbox.app.widgets.icons import painted_icon
 from sandbox.app.widgets.stars import painted_stars
@@ -105,13 +105,11 @@ def _painted_chip(ui: Ui, chip: Chip, most: int) -> pygame.Surface:
 def _painted_goal(ui: Ui, goal: str, most: int) -> pygame.Surface:
     """The goal on a plate that is at most so wide [pixels]."""
     font, inset = ui.font(GOAL_SIZE, True), ui.px(PADDING)
-    room = min(ui.px(GOAL_WIDTH), most) - 3 * inset - ui.px(ICON)
+    room = min(ui.px(GOAL_WIDTH), most) - 2 * inset
     lines = [font.render(line, True, TEXT) for line in wrapped(goal, font, max(room, 1), GOAL_LINES)]
-    step, left = line_height(font), inset + ui.px(ICON) + ui.px(INSIDE)
+    step, middle = line_height(font), max(line.width for line in lines) // 2 + inset
     height = step * len(lines) + 2 * ui.px(GOAL_INSET)
-    plate = _plate(ui, left + max(line.width for line in lines) + inset + ui.px(2), height)
-    flag = painted_icon("goal", ui.px(ICON), ACCENT)
-    plate.blit(flag, (inset, (height - flag.height) // 2))
+    plate = _plate(ui, 2 * middle, height)
     for number, line in enumerate(lines):
-        plate.blit(line, (left, ui.px(GOAL_INSET) + number * step))
+        plate.blit(line, line.get_rect(midtop=(middle, ui.px(GOAL_INSET) + number * step)))
     return plate
