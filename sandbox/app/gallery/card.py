@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, Colour
-from sandbox.app.widgets.stars import painted_stars
+from sandbox.app.widgets.icons import painted_stars
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Pressable
@@ -160,7 +160,7 @@ class Card(Pressable):
     def _paint_won(self, card: pygame.Surface, picture: pygame.Rect, stars: int, time: str) -> None:
         """Stars and time on a plate in the lower right corner of the picture."""
         ui = self.ui
-        row, text = painted_stars(ui, stars, STAR_SIZE), ui.font(12, True).render(time, True, TEXT)
+        row, text = painted_stars(stars, ui.px(STAR_SIZE)), ui.font(12, True).render(time, True, TEXT)
         inset, gap, edge = ui.px(9), ui.px(7), ui.px(8)
         plate = pygame.Surface((row.width + gap + text.width + 2 * inset, ui.px(25)), pygame.SRCALPHA)
         pygame.draw.rect(plate, (*SURFACE, 235), plate.get_rect(), border_radius=plate.height // 2)

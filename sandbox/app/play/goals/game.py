@@ -6,6 +6,7 @@ from typing import Protocol
 
 import pygame
 
+from sandbox.app.base.shortcuts import shortcuts, spoken
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.views.overlays import ZONES
@@ -31,8 +32,8 @@ GOAL_SECONDS, FADING = 6.0, 0.5
 TWICE = 1.5
 # Under what it is remembered whether the ghost is wanted.
 GHOST = "ghost"
-CHECKPOINT = "Checkpoint. R comes back to here."
-BACK_AT_CHECKPOINT = "Back at the checkpoint. R once more goes to the beginning."
+CHECKPOINT = "Checkpoint. {} comes back to here."
+BACK_AT_CHECKPOINT = "Back at the checkpoint. {} once more goes to the beginning."
 NO_GHOST = "There is no best run yet: win this level first, then its ghost can run along."
 
 
@@ -126,11 +127,13 @@ class Game:
             return False
         playback.apply_pending()
         tick = last_checkpoint(playback.level, playback.session.world)
-        if tick is None or self._is_second(playback, tick) or not playback.begin_again_from(tick):
+        if tick is None or self._is_second(playback, tick):
             return False
-        self._let_go_on()
-        self._went_back = playback, tick
-        self._screen.say(BACK_AT_CHECKPOINT)
+        # Where the way there is cancelled, the run stays where it is.
+        if playback.begin_again_from(tick):
+            self._let_go_on()
+            self._went_back = playback, tick
+            self._screen.say(BACK_AT_CHECKPOINT.format(_restart_key()))
         return True
 
     def _is_second(self, playback: Playback, tick: int) -> bool:
@@ -249,7 +252,7 @@ class Game:
             if action.sound is not None:
                 self._app.sounds.signal(action.sound)
             if action.checkpoint and not playback.watching:
-                self._screen.say(CHECKPOINT)
+                self._screen.say(CHECKPOINT.format(_restart_key()))
         result = self.result if ended else None
         if result is not None and self._is_on and not playback.watching:
             self._end(result)
@@ -287,3 +290,8 @@ class Game:
         chips = chips_of(playback.level, playback.current, self.result)
         goal = playback.level.goal if self.card is None else ""
         self.score.draw(surface, self._ui, chips, goal, self._goal_left / FADING, self._room)
+
+
+def _restart_key() -> str:
+    """The keys that go back to a checkpoint, as a part of a sentence."""
+    return spoken(next(entry.keys for entry in shortcuts("play") if entry.action == "reset"))

@@ -8,9 +8,9 @@ import pygame
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, Colour, mixed
 from sandbox.app.play.goals.score import told_time
 from sandbox.app.widgets.dialogs import Choice
-from sandbox.app.widgets.icons import painted_icon
-from sandbox.app.widgets.stars import GOLD, painted_stars
-from sandbox.app.widgets.styles import PANELS
+from sandbox.app.widgets.icons import GOLD, painted_icon, painted_stars
+from sandbox.app.widgets.plate import box
+from sandbox.app.widgets.styles import PANELS, BoxLook
 from sandbox.app.widgets.texts import line_height, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
@@ -142,7 +142,8 @@ class _Face(Widget):
         surface, middle, gap = pygame.Surface(size, pygame.SRCALPHA), size[0] // 2, ui.px(GAP)
         side = ui.px(EMBLEM)
         colour = ACCENT if outcome.is_won else DANGER
-        pygame.draw.aacircle(surface, mixed(PANELS["dialog"].back, colour, 0.22), (middle, side // 2), side // 2)
+        shade = mixed(PANELS["dialog"].back, colour, 0.22)
+        surface.blit(box((side, side), BoxLook(shade, shade, colour), side // 2, 1), (middle - side // 2, 0))
         emblem = painted_icon("won" if outcome.is_won else "lost", ui.px(ICON), colour)
         surface.blit(emblem, emblem.get_rect(center=(middle, side // 2)))
         y, bold = side + gap, ui.font(TEXT_SIZE, True)
@@ -153,7 +154,7 @@ class _Face(Widget):
         y += gap
         if outcome.is_won:
             number, grown = self._stars
-            stars = painted_stars(ui, number, STAR, grown)
+            stars = painted_stars(number, ui.px(STAR), grown)
             surface.blit(stars, stars.get_rect(midtop=(middle, y)))
             y += ui.px(STAR) + gap
         plain, parts = ui.font(TIME_SIZE), self._ending.times

@@ -7,8 +7,7 @@ import pygame
 from sandbox.app.base.recent_pictures import RecentPictures
 from sandbox.app.draw.colours import LINE, MUTED, NOTICE, TEXT, shown_theme
 from sandbox.app.play.goals.score import Chip
-from sandbox.app.widgets.icons import painted_icon
-from sandbox.app.widgets.stars import painted_stars
+from sandbox.app.widgets.icons import painted_icon, painted_stars
 from sandbox.app.widgets.texts import line_height, shortened, wrapped
 from sandbox.app.widgets.ui import Ui
 
@@ -87,7 +86,7 @@ def _painted_chip(ui: Ui, chip: Chip, most: int) -> pygame.Surface:
     if chip.value:
         parts.append(bold.render(shortened(chip.value, bold, most // 2), True, chip.colour))
     if chip.stars is not None:
-        parts.append(painted_stars(ui, chip.stars, STAR))
+        parts.append(painted_stars(chip.stars, ui.px(STAR)))
     between, inset = ui.px(INSIDE), ui.px(PADDING)
     width = sum(part.width for part in parts) + between * (len(parts) - 1) + 2 * inset
     if chip.icon == "clock":
