@@ -6,7 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.play.goals.score import Chip, chips_of, has_clock, told_time
+from sandbox.app.play.goals.score import Chip, chips_of, told_time
 from sandbox.editor.storage.best_runs import best_recording, best_result
 from sandbox.editor.storage.recent import remember
 from sandbox.level.reading.files import parse_level
@@ -404,25 +404,9 @@ def test_two_runs_side_by_side_are_neither_won_nor_lost(falling):
     assert game(falling).card is None and not falling.playback.clock.paused
 
 
-@pytest.mark.parametrize(
-    ("rule", "says"),
-    [
-        ({"id": "a", "when": {"time": 3}, "then": [{"say": "x"}]}, True),
-        ({"id": "a", "when": {"all": [{"time": 3}, IN_BASKET]}, "then": [{"say": "x"}]}, True),
-        ({"id": "a", "when": IN_BASKET, "then": [{"win": "x", "stars": {"second": 9, "third": 5}}]}, True),
-        (
-            {
-                "id": "a",
-                "when": IN_BASKET,
-                "then": [{"win": "x", "stars": {"counter": "rings", "second": 1, "third": 2}}],
-            },
-            False,
-        ),
-        ({"id": "a", "when": IN_BASKET, "then": [{"win": "x"}]}, False),
-    ],
-)
-def test_there_is_a_clock_where_time_matters(rule, says):
-    assert has_clock(level(rule)) is says
+@pytest.mark.parametrize(("rules", "says"), [((WIN,), True), ((LATE,), True), ((RING,), False)])
+def test_there_is_a_clock_where_time_matters(open_app, rules, says):
+    assert any(chip.icon == "clock" for chip in chips(open_app(level(*rules)))) is says
 
 
 def test_a_clock_counts_down_to_the_time_at_which_the_run_is_lost(losing):

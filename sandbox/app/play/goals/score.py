@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from sandbox.app.draw.colours import ACCENT, DANGER, TEXT, WARNING, Colour
 from sandbox.level.document.model import Level
-from sandbox.level.rules.question import QuestionDef
+from sandbox.level.rules.rule import has_clock
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.outcome import Outcome
 
@@ -33,18 +33,6 @@ def told_time(seconds: float, decimals: int = 2) -> str:
     return f"{whole // 60}:{whole % 60:02}.{rest:0{decimals}}"
 
 
-def has_clock(level: Level) -> bool:
-    """Whether time matters in a level: a rule asks for it, or a win has stars by it."""
-
-    def asks(question: QuestionDef) -> bool:
-        return question.time is not None or any(map(asks, question.members))
-
-    has_stars = any(
-        action.stars is not None and action.stars.counter is None for rule in level.rules for action in rule.then
-    )
-    return has_stars or any(asks(rule.when) for rule in level.rules)
-
-
 def time_limit(level: Level) -> float | None:
     """The time [s] at which a level is lost, whatever else happens; None: there is none."""
     limits = [
@@ -58,7 +46,7 @@ def time_limit(level: Level) -> float | None:
 def chips_of(level: Level, state: Snapshot, result: Outcome | None) -> list[Chip]:
     """What is shown of a state of a level that has this result."""
     chips = [Chip("goal", colour=ACCENT)] if level.goal else []
-    if has_clock(level):
+    if has_clock(level.rules):
         chips.append(_clock(level, state.tick if result is None else result.tick))
     values = zip(level.counters, state.counter.tolist(), strict=True)
     chips += [Chip(name=counter.text, value=f"{value + 0.0:.6g}") for counter, value in values if counter.text]
