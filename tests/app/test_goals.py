@@ -146,6 +146,16 @@ def test_undo_with_the_card_open_closes_it(open_app):
     driver.key(pygame.K_z, pygame.KMOD_CTRL)
     driver.frames(2)
     assert game(driver).card is None and game(driver).result is None
+    assert not driver.playback.clock.paused
+
+
+def test_who_scrubs_back_from_a_win_stays_there_and_a_restart_from_there_runs(falling):
+    play_to_the_end(falling)
+    falling.playback.seek(10)
+    falling.frames(5)
+    assert game(falling).card is None and falling.playback.clock.paused and falling.playback.session.tick == 10
+    falling.key(pygame.K_r, pygame.KMOD_SHIFT)
+    assert not falling.playback.clock.paused
 
 
 @pytest.mark.parametrize("key", [pygame.K_ESCAPE, pygame.K_SPACE])

@@ -63,6 +63,8 @@ class Game:
         self.score = ScoreView()
         self.card: ResultCard | None = None
         self._ending: Ending | None = None
+        # The tick at whose end the run was won or lost and paused, while it still stands because of that.
+        self._ended_at: int | None = None
         self._since = self._goal_left = 0.0
         self._goal_fades = self._is_recording = False
         self._went_back: tuple[Playback, int] | None = None
@@ -77,9 +79,10 @@ class Game:
 
     def begin(self) -> None:
         """Be about the run that is on the stage now."""
-        if self.close():
-            # It was the end that let the run before pause.
-            self._playback.clock.paused = False
+        self.close()
+        if self._ended_at is not None:
+            # It was its end that let the run before pause.
+            self._playback.clock.paused, self._ended_at = False, None
         self._playback.pauses_at_end = self._is_on
         self._goal_left = GOAL_SECONDS
         self._went_back = None
@@ -197,7 +200,7 @@ class Game:
                 is_best = self._is_recording = self._app.best.note(playback, Result(result.stars, result.tick, rate))
             except OSError as error:
                 self._screen.say(f"The best result cannot be kept: {error.strerror or error}.")
-        self._since = 0.0
+        self._since, self._ended_at = 0.0, result.tick
         self._open_card(Ending(result, rate, None if before is None else before.seconds, is_best))
         self._app.sounds.signal("won" if result.is_won else "lost")
         for number, time in enumerate(star_times(result.stars)):
@@ -231,11 +234,16 @@ class Game:
         """Take in what the ticks of a frame of frame_time [s] brought; pointer: where the mouse is over the world."""
         playback = self._playback
         self._tell_fired(playback)
-        if self.card is not None and self._ending is not None:
-            if not playback.clock.paused or self.result != self._ending.outcome:
-                self.close()
-            else:
+        if not playback.clock.paused:
+            self._ended_at = None
+            self.close()
+        elif self.card is not None and self._ending is not None:
+            if self.result == self._ending.outcome:
                 self.card.update(frame_time, self._app.chosen["motion"] == "less")
+            else:
+                # What was undone did not happen, and the run goes on; who goes through time stays where he is.
+                playback.clock.paused = self._ended_at != playback.session.tick
+                self.close()
         self._follow_goal(frame_time, pointer)
         if self._is_recording and not self._app.best.moves:
             self._is_recording = False
