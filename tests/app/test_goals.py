@@ -248,7 +248,9 @@ def test_the_goal_is_shown_at_the_start_and_again_while_the_run_is_paused(fallin
 def test_a_level_without_rules_shows_nothing_of_all_this(driver):
     assert chips(driver) == [] and game(driver).result is None and game(driver).height == 0.0
     assert "ghost" not in driver.app.play.toolbar.buttons and "ghost" not in driver.app.play.toolbar.left_out
-    assert "zones" not in driver.app.play.actions and "zones" not in driver.panel.world.views.buttons
+    assert "zones" not in driver.panel.world.views.buttons
+    driver.key(pygame.K_F10)
+    assert driver.stage.renderer.overlays.shown == set() and "This level has no zones." in driver.notices
     assert driver.app.play._keys.shown() == []
 
 

@@ -34,6 +34,7 @@ TWICE = 1.5
 GHOST = "ghost"
 CHECKPOINT = "Checkpoint. {} comes back to here."
 BACK_AT_CHECKPOINT = "Back at the checkpoint. {} once more goes to the beginning."
+NO_ZONES = "This level has no zones."
 NO_GHOST = "There is no best run yet: win this level first, then its ghost can run along."
 
 
@@ -71,7 +72,9 @@ class Game:
         self._ghost: GhostRun | None = None
         self.has_ghost = False
         self.begin()
-        self.actions: dict[str, Callable[[], object]] = {"restart": screen.restart, "ghost": self._toggle_ghost}
+        self.actions: dict[str, Callable[[], object]] = {
+            "restart": screen.restart, "ghost": self._toggle_ghost, ZONES: self._toggle_zones
+        }  # fmt: skip
 
     @property
     def _playback(self) -> Playback:
@@ -205,6 +208,12 @@ class Game:
         self._app.sounds.signal("won" if result.is_won else "lost")
         for number, time in enumerate(star_times(result.stars)):
             self._app.sounds.signal("star", STAR_STEP + STAR_RISE * number, time)
+
+    def _toggle_zones(self) -> None:
+        if self._playback.level.zones:
+            self._stage().toggle_view(ZONES)
+        else:
+            self._screen.say(NO_ZONES)
 
     # The ghost.
 

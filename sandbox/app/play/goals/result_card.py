@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, Colour, mixed
 from sandbox.app.play.goals.score import told_time
 from sandbox.app.widgets.dialogs import Choice
-from sandbox.app.widgets.icons import GOLD, painted_icon, painted_stars
+from sandbox.app.widgets.icons import painted_icon, painted_stars
 from sandbox.app.widgets.plate import box
 from sandbox.app.widgets.styles import PANELS, BoxLook
 from sandbox.app.widgets.texts import line_height, wrapped
@@ -56,7 +56,7 @@ class Ending:
         if not self.outcome.is_won:
             return [(time, MUTED)]
         if self.is_best:
-            return [(time, TEXT), ("Best so far", GOLD)] if self.best is not None else [(time, TEXT)]
+            return [(time, TEXT), ("Best so far", ACCENT)] if self.best is not None else [(time, TEXT)]
         return [(time, TEXT), (f"Best {told_time(self.best)}", MUTED)] if self.best is not None else [(time, TEXT)]
 
 
