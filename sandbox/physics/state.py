@@ -222,7 +222,7 @@ class StateArrays:
     rule_last = _array("rule_last", R, I64, "tick", "the tick at whose end it fired last; -1: it has not", sparse=True, usual=-1)
     rule_due = _array("rule_due", R, BOOL, "", "whether it fired in the last tick: its actions come before the next one", sparse=True)
     rule_stars = _array("rule_stars", R, I8, "", "stars of its first win; 0: none yet", sparse=True)
-    counter = _array("counter", N, F64, "", "its value", sparse=True)
+    counter = _array("counter", N, F64, "1", "its value", sparse=True)
     probe_position = _array("probe_position", B, F64, "m", "where it was at the end of the last tick", width=2, sparse=True)
     still_ticks = _array("still_ticks", L, I32, "tick", "for how many ticks on end it has been still", sparse=True)
     key_down = _array("key_down", K, BOOL, "", "whether it is held", sparse=True)

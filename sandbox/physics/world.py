@@ -28,7 +28,7 @@ from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_
 from sandbox.physics.rules.table import Rules
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, StateArrays, good_of, state_of
-from sandbox.physics.terrain import NO_TERRAIN, Terrain
+from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.pools import NO_HULLS, NO_POOLS
 
 Derived = TypeVar("Derived")
@@ -39,8 +39,7 @@ _GRAB_NAMES = [f"+hand.{grab}" for grab in range(GRAB_COUNT)]
 # weight. Lower lags behind the mouse, higher tears what is soft.
 HAND_STRENGTH = 100.0
 
-# Attributes that another value of counts as a change of topology. A step's contacts are other arrays in every step, and
-# nothing is derived from them.
+# Attributes that another value of counts as a change of topology. From a step's contacts nothing is derived.
 _WATCHED = frozenset(
     {"terrain", "water", "hulls", "actuators", "limits", "forms", "rules"}
     | {column.name for column in COLUMNS if column.family is not Family.CONTACT}
@@ -57,7 +56,7 @@ class World(StateArrays):
     """
 
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
-        # Never state: counts the changes of topology, those by hands apart; whether any may be `unmoved`.
+        # Never state: counts of changes of topology, those by hands apart; whether any may be `unmoved`.
         self.topology_version, self.hand_version, self.may_fly = 0, 0, True
         self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
         self._lasting: dict[Callable[[World], Any], Any] = {}
@@ -86,8 +85,7 @@ class World(StateArrays):
         self.source: Any = None
         self.joined: tuple[Joined, ...] = ()
         self.grab_particle = self.grab_spring = -1
-        self.terrain: Terrain = NO_TERRAIN
-        self.water, self.hulls = NO_POOLS, NO_HULLS  # see water/pools.py
+        self.terrain, self.water, self.hulls = NO_TERRAIN, NO_POOLS, NO_HULLS  # see terrain.py and water/pools.py
         # What was taken back since somebody last looked, and the springs that broke in the last tick; never state.
         self.contained: list[Containment] = []
         self.broken: Slots = np.zeros(0, dtype=np.int64)
@@ -442,14 +440,6 @@ class World(StateArrays):
                 arguments.number(name, value, 0.0, 1.0)
         self._command("set_coefficients", material=material, duration=duration, **given)
 
-    def set_firmness(
-        self, springs: Slots, constraints: Slots, values: tuple[float, float, float], duration: int = 0
-    ) -> None:
-        """Set Cs, Cd and lowest mode of springs and constraints of a body, or of a piece; duration: see ramps.py."""
-        given: dict[str, Any] = dict(zip(("stiffness", "damping", "lowest_mode"), values, strict=True))
-        self._command("firm_springs", springs=springs, duration=duration, **given)
-        self._command("firm_constraints", constraints=constraints, duration=duration, **given)
-
     def set_gravity(self, gravity: Point, duration: int = 0) -> None:
         """Set gravity [m/s^2]; duration [ticks]: see ramps.py."""
         self._command("set_gravity", gravity=arguments.point("gravity", gravity), duration=duration)
@@ -548,9 +538,8 @@ class World(StateArrays):
         self.good["rest_length"][springs] = lengths
 
     def hold(
-        self, grab: int, particle: int, target: Point, strength: float = HAND_STRENGTH,
-        radius: float = 0.0,
-    ) -> None:  # fmt: skip
+        self, grab: int, particle: int, target: Point, strength: float = HAND_STRENGTH, radius: float = 0.0
+    ) -> None:
         """Grab a particle with a hand, which draws it to its cursor, at target [m]: a mouse joint (joints/hands.py).
 
         strength [m/s^2]: largest force over the mass of the body held. radius [m]: particles of the body that

@@ -67,3 +67,17 @@ def stars_of(stars: StarsDef | None, level: Level, state: World | Snapshot, tick
         value = float(state.counter[[counter.id for counter in level.counters].index(stars.counter)])
     is_least = stars.third > stars.second
     return 1 + sum(value >= bound if is_least else value <= bound for bound in (stars.second, stars.third))
+
+
+def last_checkpoint(level: Level, state: World | Snapshot) -> int | None:
+    """The tick that a restart goes back to: at its end a checkpoint fired last; None: to the beginning.
+
+    A run that is won begins anew, and so does one whose last checkpoint came after it was lost.
+    """
+    result = outcome(level, state)
+    last = state.rule_last.tolist()
+    ticks = [last[rule] for rule, each in enumerate(level.rules) if any(action.checkpoint for action in each.then)]
+    tick = max(ticks, default=-1)
+    if tick < 0 or (result is not None and (result.is_won or tick >= result.tick)):
+        return None
+    return int(tick)

@@ -16,7 +16,7 @@ from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.draw.textures import Tiles
 from sandbox.app.draw.themes import THEMES
 from sandbox.app.draw.things.frame import Frame
-from sandbox.app.draw.views.overlays import LONGEST_ARROW, NAMES, Overlays, Scale, stability_tones
+from sandbox.app.draw.views.overlays import LONGEST_ARROW, NAMES, Overlays, Scale, names_for, stability_tones
 from sandbox.app.play.legend import Legend, rows_of
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.query import shown_particles, shown_springs
@@ -66,7 +66,7 @@ def picture(session, shown, theme="dark", compiled=True, scale=1.0):
 def test_each_overlay_is_seen_in_both_themes_with_kernels_and_without(fallen, theme):
     for compiled in (True, False):
         bare, _ = picture(fallen, (), theme, compiled)
-        for name in NAMES:
+        for name in names_for(box_level()):
             shown, _ = picture(fallen, [name], theme, compiled)
             assert (np.abs(shown - bare).max(axis=2) > 40).sum() > 20, (name, compiled)
 
@@ -156,7 +156,7 @@ def test_the_legend_stays_in_its_room_smaller_or_with_fewer_rows(size, scale):
 def test_keys_and_buttons_show_overlays_with_their_legend_and_take_them_away(driver):
     driver.take_sliders()
     shown = driver.stage.renderer.overlays.shown
-    keys = dict(zip(NAMES, (pygame.K_l, *range(pygame.K_F3, pygame.K_F8)), strict=True))
+    keys = dict(zip(names_for(driver.playback.level), (pygame.K_l, *range(pygame.K_F3, pygame.K_F8)), strict=True))
     for name, key in keys.items():
         driver.key(key)
         driver.frames(1)

@@ -37,21 +37,26 @@ def sample(part: dict[str, Any]) -> Any:
     return {"string": "a", "boolean": True}.get(part["type"], part.get("minimum", 1))
 
 
-def objects(part: dict[str, Any]) -> Iterator[tuple[list[str], dict[str, Any], Any]]:
-    """The place of every object inside a part of the schema, the object's own schema, and a value that holds it."""
+def objects(part: dict[str, Any], outer: tuple[str, ...] = ()) -> Iterator[tuple[list[str], dict[str, Any], Any]]:
+    """The place of every object inside a part of the schema, the object's own schema, and a value that holds it.
+
+    outer: titles of the objects around it; one that holds others of its kind is gone into once.
+    """
     for choice in choices(part):
         if "properties" in choice:
+            if outer.count(choice["title"]) > 1:
+                continue
             whole = sample(choice)
             yield [], choice, {**whole, UNKNOWN: 1}
             for key, inner in choice["properties"].items():
-                for place, found, value in objects(inner):
+                for place, found, value in objects(inner, (*outer, choice["title"])):
                     yield [key, *place], found, {**whole, key: value}
         elif choice.get("type") == "array" and "items" in choice:
-            for place, found, value in objects(choice["items"]):
+            for place, found, value in objects(choice["items"], outer):
                 yield ["0", *place], found, [value]
         else:
             for items in choice.get("patternProperties", {}).values():
-                for place, found, value in objects(items):
+                for place, found, value in objects(items, outer):
                     yield ["a", *place], found, {"a": value}
 
 

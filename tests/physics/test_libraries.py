@@ -131,7 +131,7 @@ def test_edited_kernels_are_compiled_once_on_this_machine(package, untouched):
     text = file.read_text()
     file.write_text(text.replace("position[p, 0] += velocity[p, 0] * h", "position[p, 0] += velocity[p, 0] * h * 2.0"))
     way, state, lines = outcome(package, "")
-    why = "kernels were edited in physics/integrate.py: they are compiled once, which takes about 20 s"
+    why = "kernels were edited in physics/integrate.py: they are compiled once, which takes about 15 s"
     assert (way, lines) == ("library", [why]) and state != untouched[1]
     assert outcome(package, "") == (way, state, [])
     assert outcome(package, "", SANDBOX_KERNELS="interpreted")[1] == state

@@ -13,7 +13,7 @@ from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.state import COLUMNS
+from sandbox.physics.state import COLUMNS, Family
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.support.physics_scenes import grid, network, run, scaled
@@ -26,6 +26,8 @@ def busy_world(solver="iterative"):
     world.add_constraints(AREA, [[0, 1, 6], [6, 7, 12]], stiffness=0.1)
     world.add_constraints(BEND, [[0, 1, 2]], damping=0.1, material=-1)
     world.fit(Actuators(("part",)), [0.5])
+    for family in (Family.RULE, Family.COUNTER, Family.PROBE, Family.STILL, Family.KEY):
+        world.append(family, 1)
     world.reserve_grabs()
     world.hold(0, 12, (2.0, 2.5))
     run(world, 5)

@@ -30,6 +30,8 @@ SPARSE = [
     "damping_now", "lowest_mode_now", "ramp_ticks", "belt", "element_lowest_mode", "element_stiffness_now",
     "element_damping_now", "element_lowest_mode_now", "element_ramp_ticks", "element_area_now", "element_area_ticks",
     "part_impulse", "contact_impact", "hand_strength", "hand_radius", "hand_force", "setting_now", "setting_ticks",
+    "rule_held", "rule_fired", "rule_first", "rule_last", "rule_due", "rule_stars", "counter", "probe_position",
+    "still_ticks", "key_down",
 ]  # fmt: skip
 
 

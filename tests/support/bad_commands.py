@@ -12,11 +12,12 @@ import numpy as np
 
 from sandbox.physics.actuators import Actuators
 from sandbox.physics.changing.dividing import part_bodies
+from sandbox.physics.changing.ramping import set_rows
 from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.command import KINDS
 from sandbox.physics.jit import way
 from sandbox.physics.snapshot import state_hash
-from sandbox.physics.state import COLUMNS
+from sandbox.physics.state import COLUMNS, Family
 from sandbox.physics.world import World
 
 NAN, INF = math.nan, math.inf
@@ -39,6 +40,12 @@ POINTS = (
     *((0.0, each) for each in _NO_NUMBERS), *((each, 0.0) for each in _NO_NUMBERS), (0.0,), (0.0, 1.0, 2.0), (), 1.0,
     None, "ab", np.zeros((2, 2)), NAN,
 )  # fmt: skip
+FAR_LISTS = ([0, 13], [-1], [10**30], 0, None, "01", NAN, np.array([0.0]))
+FIRMNESSES = (
+    *((each, 0.5, 0.1) for each in SHARES), *((0.5, each, 0.1) for each in SHARES),
+    *((0.5, 0.5, each) for each in NOT_BELOW_0), (0.5, 0.5), 0.5, None,
+)  # fmt: skip
+KEYS = (1, 2, *_BEYOND, *_NO_WHOLE_NUMBER)
 DURATIONS = (-1, 1_000_001, 10**30, *_NO_WHOLE_NUMBER)
 _GIVEN_POINTS, _GIVEN_NUMBERS = (tuple(each for each in values if each is not None) for values in (POINTS, NOT_BELOW_0))
 # Of every kind: the method of World, or a function of one, arguments that are right, and for each of these what is
@@ -59,6 +66,9 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "set_gravity": ("set_gravity", ((1.0, 0.0), 3), (POINTS, DURATIONS)),
     "set_air": ("set_air", ((1.0, 0.0), 0.5, 3), (_GIVEN_POINTS, _GIVEN_NUMBERS, DURATIONS)),
     "set_drive": ("drive", (0, 0.5), (PARTS, DRIVES)),
+    "firm_springs": (set_rows, ([0, 1], [], (0.5, 0.5, 0.1), 3), (FAR_LISTS, FAR_LISTS, FIRMNESSES, DURATIONS)),
+    "firm_constraints": (set_rows, ([], [], (0.5, 0.5, 0.1), 3), (FAR_LISTS, FAR_LISTS, FIRMNESSES, DURATIONS)),
+    "hold_key": ("hold_key", (0, True), (KEYS,)),
     "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),
     "shake": ("shake", ((1.0, 0.0),), (POINTS,)),
 }  # fmt: skip
@@ -71,6 +81,7 @@ def made(has_hands: bool = True) -> World:
     world.add_particles(["a", "b", "c", "d"], [(0, 0), (1, 0), (0, 1), (5, 5)], pinned=[False, True, False, False])
     world.add_springs(["s", "t", "u"], [0, 1, 0], [1, 2, 2])
     world.fit(Actuators(("engine",)), [0.25])
+    world.append(Family.KEY, 1)
     if has_hands:
         world.reserve_grabs()
         world.hold(0, 2, (0.5, 1.5))

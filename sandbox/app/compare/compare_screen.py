@@ -45,6 +45,8 @@ class CompareScreen(PlayScreen):
     room_for_notices = ROOM_FOR_NOTICES
     # One of them would be undone, and the other not.
     can_cancel = False
+    # What one of them wins the other may lose.
+    is_game = False
 
     def __init__(self, app: Application, playback: TwinPlayback, other: TwinPlayback, source: Path | None) -> None:
         playback.pair(other)
@@ -161,8 +163,9 @@ class CompareScreen(PlayScreen):
         self.difference = Difference()
         self._app.show_replay_progress(other, self.can_cancel)
 
-    def _reset(self) -> None:
-        super()._reset()
+    def restart(self) -> None:
+        """Begin both again from their beginning."""
+        super().restart()
         if self.panel is not None and self.side == SIDES[1]:
             self.panel.attach(self.other)
 

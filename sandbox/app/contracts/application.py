@@ -12,6 +12,7 @@ from sandbox.app.contracts.editing import Editing
 from sandbox.app.contracts.screen import Screen
 from sandbox.app.film.film import Film
 from sandbox.app.film.film_pair import FilmPair
+from sandbox.app.run.best_keeping import BestKeeping
 from sandbox.app.run.playback import Playback
 from sandbox.app.run.scene_keeping import SceneKeeping
 from sandbox.app.settings.chosen import Chosen
@@ -121,6 +122,10 @@ class Files(Protocol):
         """Open a level, to be played or edited; whether it could be."""
         ...
 
+    def next_level(self, level: Level, source: Path | None) -> tuple[Path, bool] | None:
+        """The level to play after one that was won, and whether it is shipped; source: the file of that one."""
+        ...
+
     def open_replay(self, path: str | Path) -> bool:
         """Open a recording; whether it could be."""
         ...
@@ -214,6 +219,11 @@ class Application(Protocol):
     @property
     def scenes(self) -> SceneKeeping:
         """Keeps runs on disk, so that they outlive the app."""
+        ...
+
+    @property
+    def best(self) -> BestKeeping:
+        """Keeps the best runs of levels."""
         ...
 
     @property

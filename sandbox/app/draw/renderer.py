@@ -14,6 +14,7 @@ from sandbox.app.draw.detail import FULL, NO_EFFECTS, NO_SHADOWS
 from sandbox.app.draw.effects import Effects
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.raster.painter import MarkList, Painter
+from sandbox.app.draw.shade import Shade
 from sandbox.app.draw.still import UNSEEN, UNSEEN_STRAIN, UNSEEN_TURN, Still
 from sandbox.app.draw.strain_colours import strain_place, strain_tones
 from sandbox.app.draw.textures import Tiles
@@ -21,9 +22,14 @@ from sandbox.app.draw.themes import THEMES, Theme, theme_now
 from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
+<<<<<<< HEAD
 from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads, mark_treads
 from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
 from sandbox.app.draw.water import Pools
+=======
+from sandbox.app.draw.views.overlays import DASHES, ZONES, Overlays, part_of
+from sandbox.app.draw.views.zone_outlines import mark_zones
+>>>>>>> 9b39cbee5ced0d998de12dadb1a87885828c0f5a
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.pulls import Pull
@@ -72,6 +78,8 @@ class Overlay:
     # And a picture of it, with the place of its middle [m].
     ghost_picture: tuple[pygame.Surface, tuple[float, float]] | None = None
     stability: NDArray[np.float64] | None = None
+    # An earlier run at this tick, which is seen behind this one.
+    earlier: Snapshot | None = None
     lit: NDArray[np.bool_] | None = None
 
 
@@ -101,7 +109,11 @@ class Renderer:
         self._painter = Painter()
         self._backdrop = Backdrop()
         self._still = Still()
+<<<<<<< HEAD
         self._pools = Pools(level)
+=======
+        self._shade: Shade | None = None
+>>>>>>> 9b39cbee5ced0d998de12dadb1a87885828c0f5a
         # The terrain that was drawn last, and how many there have been: arrays cannot be compared as a key is.
         self._ground: Terrain | None = None
         self._grounds = 0
@@ -183,6 +195,9 @@ class Renderer:
                     self._draw_treads(self._ground_treads, at, frame, camera, springs)
             with profile.part("things"):
                 if self.level is not None:
+                    if overlay.earlier is not None:
+                        self._shade = self._shade or Shade(self.level)
+                        self._shade.draw(painter, overlay.earlier, camera, self.theme, frame.tiles, self.scale)
                     drawables = self._drawables_of(frame, current, particles, springs)
                     self._draw_things(drawables, frame, camera)
                 self._draw_treads(self._body_treads, pixels, frame, camera, springs)
@@ -194,6 +209,8 @@ class Renderer:
                 if self.overlays.shown & VEILING:
                     self._backdrop.veil(painter, camera, VEIL)
                 layer = MarkList()
+                if ZONES in self.overlays.shown and self.level is not None:
+                    mark_zones(layer, self.level.zones, camera, self.theme, self.scale)
                 self.overlays.mark(layer, frame, current, camera, particles, springs, overlay.stability)
                 painter.marks(layer, frame.tiles.array)
         if overlay.lit is not None:
@@ -215,7 +232,7 @@ class Renderer:
             (camera.centre, camera.zoom, camera.viewport, self.scale, self.theme.name, self.compiled, self.detail,
              self.has_effects, self.asleep, self.pointer),
             (overlay.hovered, tuple(overlay.trail), overlay.cursor, tuple(map(tuple, overlay.ghost)),
-             overlay.is_refused,
+             overlay.is_refused, None if overlay.earlier is None else overlay.earlier.tick,
              None if overlay.ghost_picture is None else (id(overlay.ghost_picture[0]), overlay.ghost_picture[1]),
              b"" if overlay.lit is None else overlay.lit.tobytes()),
             tuple(pull.cursor for pull in overlay.pulls if pull.at_limit), frozenset(shown),

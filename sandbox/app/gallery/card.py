@@ -6,6 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, Colour
+from sandbox.app.widgets.icons import painted_stars
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Pressable
@@ -17,6 +18,7 @@ CORNER = 10.0
 PADDING = 13.0
 NAME_SIZE, LINE_SIZE = 14.0, 11.5
 NAME_HEIGHT, LINE_HEIGHT = 23.0, 16.0
+STAR_SIZE = 14.0
 # Lines below the name while nobody points at it, and at most.
 SHORT_LINES, MOST_LINES = 2, 14
 
@@ -24,7 +26,8 @@ SHORT_LINES, MOST_LINES = 2, 14
 class Card(Pressable):
     """One thing to open; line: what to do with it, text: all that is said of it, tags: what else it is found by.
 
-    is_small: a row with the picture at its left and the name beside it. badge: a word over the picture.
+    is_small: a row with the picture at its left and the name beside it. badge: a word over the picture. won: the stars
+    and the time of the best run, over it too.
     """
 
     is_lit = True
@@ -36,6 +39,7 @@ class Card(Pressable):
         super().__init__(ui, rect, container)
         self.name, self.text, self.action, self.is_small = name, text, action, is_small
         self.line = self.badge = ""
+        self.won: tuple[int, str] | None = None
         self.tags: tuple[str, ...] = ()
         self.picture: pygame.Surface | None = None
         self.broken = False
@@ -56,6 +60,11 @@ class Card(Pressable):
     def show_texts(self, name: str, text: str, tags: tuple[str, ...]) -> None:
         """Show another name and text."""
         self.name, self.text, self.tags = name, text, tags
+        self.repaint()
+
+    def show_won(self, stars: int, time: str) -> None:
+        """Show how well the level was won."""
+        self.won = stars, time
         self.repaint()
 
     def show_fault(self, fault: str) -> None:
@@ -112,6 +121,8 @@ class Card(Pressable):
         top = picture.bottom
         if self.badge:
             self._paint_badge(card)
+        if self.won is not None:
+            self._paint_won(card, picture, *self.won)
         pygame.draw.line(card, LINE, (1, top), (width - 2, top))
         y, left = top + ui.px(8), ui.px(PADDING)
         bold, plain = ui.font(NAME_SIZE, True), ui.font(LINE_SIZE)
@@ -145,6 +156,17 @@ class Card(Pressable):
         place = text.get_rect(topleft=(ui.px(20), ui.px(13))).inflate(ui.px(18), ui.px(8))
         pygame.draw.rect(card, ACCENT, place, border_radius=place.height // 2)
         card.blit(text, text.get_rect(center=place.center))
+
+    def _paint_won(self, card: pygame.Surface, picture: pygame.Rect, stars: int, time: str) -> None:
+        """Stars and time on a plate in the lower right corner of the picture."""
+        ui = self.ui
+        row, text = painted_stars(stars, ui.px(STAR_SIZE)), ui.font(12, True).render(time, True, TEXT)
+        inset, gap, edge = ui.px(9), ui.px(7), ui.px(8)
+        plate = pygame.Surface((row.width + gap + text.width + 2 * inset, ui.px(25)), pygame.SRCALPHA)
+        pygame.draw.rect(plate, (*SURFACE, 235), plate.get_rect(), border_radius=plate.height // 2)
+        plate.blit(row, (inset, (plate.height - row.height) // 2))
+        plate.blit(text, (inset + row.width + gap, (plate.height - text.height) // 2))
+        card.blit(plate, plate.get_rect(bottomright=(picture.right - edge, picture.bottom - edge)))
 
     def press(self) -> None:
         """Open it."""

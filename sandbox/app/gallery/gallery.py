@@ -28,9 +28,11 @@ from sandbox.app.gallery.preview import Preview
 from sandbox.app.gallery.replay_card import date_of, fill_replay
 from sandbox.app.gallery.scene_card import fill_scene
 from sandbox.app.gallery.sections import FIRST, in_sections, is_found, search_rank
+from sandbox.app.play.goals.score import told_time
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.storage.best_runs import best_result
 from sandbox.editor.storage.recent import played_levels, recent_levels
 from sandbox.editor.storage.scene_shelf import scenes_in
 from sandbox.level.format.level_error import LevelError, one_line
@@ -57,6 +59,8 @@ NO_LEVELS = (
     "E in any level."
 )
 NO_REPLAYS = "No recordings yet. Record a run with Ctrl+R, or save what you did with Ctrl+Shift+S."
+# What stands in the file of a level that can be won.
+RULES = b'"rules"'
 SAVED, KEPT, GO_ON = "Saved", "Not saved, and kept", "Go on where you were"
 KEPT_LINE = "What you played, as it stood. The newest come first, and the oldest go some day."
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
@@ -241,7 +245,7 @@ class Gallery:
         if picture is not None:
             card.show_picture(picture)
             yield True
-            if is_shipped:
+            if is_shipped and RULES not in content:
                 return
         try:
             level = parse_level(content, str(path))
@@ -252,6 +256,9 @@ class Gallery:
             # Levels of one's own are often still without a name.
             about = [one_line(path.name), *([level.description] if level.description else [])]
             card.show_texts(level.name, ": ".join(about), level.tags)
+        result = best_result(level) if level.rules and not card.is_small else None
+        if result is not None:
+            card.show_won(result.stars, told_time(result.seconds))
         if picture is not None:
             return
         picture = yield from draw_in_slices(level, theme, SECONDS if jit.COMPILED else 0.0)

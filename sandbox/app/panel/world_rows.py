@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Set
 from dataclasses import replace
 from typing import Any
 
+from sandbox.app.draw.views.overlays import names_for
 from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.panel_rows import INSIDE, MARGIN, ROW, PanelRows
 from sandbox.app.panel.readings import with_unit
@@ -56,7 +57,8 @@ class WorldRows:
         options = [(name, name.capitalize(), _strength_tip(strength)) for name, strength in STRENGTHS.items()]
         self.hand = ui.choice(rows.row(ROW - 2, 8, MARGIN + LABEL, INSIDE - LABEL), options, self._choose["hand"], back)
         ui.label(rows.place(MARGIN, 0, LABEL, ROW - 2), "Show", back, "muted")
-        self.views = ViewRow(ui, rows.row(ROW - 2, 8, MARGIN + LABEL, INSIDE - LABEL), self._choose["view"], back)
+        place, names = rows.row(ROW - 2, 8, MARGIN + LABEL, INSIDE - LABEL), names_for(self.playback.level)
+        self.views = ViewRow(ui, place, names, self._choose["view"], back)
         columns = (rows.place(MARGIN, 0, INSIDE / 2, 34), rows.place(MARGIN + INSIDE / 2, 0, INSIDE / 2, 34))
         self.energies = [TextBlock(ui, place, "", back) for place in columns]
         rows.row(40)

@@ -10,7 +10,7 @@ from sandbox.app.draw.colours import Colour, packed
 from sandbox.app.draw.lines import Canvas
 from sandbox.app.draw.strain_colours import FULL_STRAIN, SLIGHT_STRAIN, strain_tones
 from sandbox.app.draw.themes import Theme
-from sandbox.app.draw.views.overlays import ARROW, BAR, DOT, POINT, Overlays, stability_tones
+from sandbox.app.draw.views.overlays import ARROW, BAR, DOT, POINT, ZONES, Overlays, stability_tones
 from sandbox.app.play.hand_labels import newtons
 from sandbox.app.widgets.fonts import plain_font
 from sandbox.app.widgets.texts import line_height, wrapped
@@ -146,6 +146,8 @@ def rows_of(overlays: Overlays, solver: str) -> list[tuple[str, Draw]]:
             rows.append((f"spring pulls with {newtons(overlays.spring.value)}; hollow: it pushes", _bars))
     if "velocities" in shown:
         rows.append((f"moves at {overlays.velocity.value:g} m/s", _velocity))
+    if ZONES in shown:
+        rows.append(("zone, with its name", _zone))
     if "stability" in shown:
         kind = SOLVERS[solver]
         if kind.bounded:
@@ -220,6 +222,11 @@ def _bars(sample: _Sample) -> None:
     sample.line(8, 0, 24, 0, sample.theme.strain[2], BAR)
     sample.line(38, 0, 54, 0, sample.theme.strain[0], BAR)
     sample.line(38, 0, 54, 0, sample.theme.card, 0.45 * BAR)
+
+
+def _zone(sample: _Sample) -> None:
+    for k in range(4):
+        sample.line(6 + 13 * k, 0, 14 + 13 * k, 0, sample.theme.accent, 1.8)
 
 
 def _stability(sample: _Sample) -> None:

@@ -13,9 +13,9 @@ from sandbox.app.base.shortcuts import Mode, tip_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, WARNING, Colour
+from sandbox.app.draw.colours import Colour
 from sandbox.app.draw.detail import FULL, NO_EFFECTS
-from sandbox.app.draw.views.overlays import NAMES as OVERLAYS
+from sandbox.app.draw.views.overlays import names_for
 from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.graphs.graph_dock import GraphDock
@@ -28,6 +28,7 @@ from sandbox.app.parts.part_page import PartPage
 from sandbox.app.play.bake_choice import ask_to_keep
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.earlier_runs import EarlierRuns
+from sandbox.app.play.goals.game import Game
 from sandbox.app.play.hand_labels import draw_labels
 from sandbox.app.play.hand_strength import keep_strength, kept_strength, next_strength
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
@@ -36,7 +37,7 @@ from sandbox.app.play.melting import toggle_melt
 from sandbox.app.play.palette import NAMES, PartsPalette
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import HAND_TOOL, Stage
-from sandbox.app.play.status import NO_LOADS, STATUS_HEIGHT, counted_parts, motor_parts, rate_parts, warnings
+from sandbox.app.play.status import STATUS_HEIGHT, run_parts
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.play.troubles import Troubles
@@ -44,9 +45,6 @@ from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.document.model import Level
-from sandbox.physics.analysis.motor_readings import motor_readings
-from sandbox.physics.analysis.query import shown_particles, shown_springs
-from sandbox.physics.solvers import SOLVERS
 from sandbox.session.scene import RunScene
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.play_tools import PLAY_TOOLS
@@ -75,6 +73,8 @@ class PlayScreen:
     welcome: ClassVar[str] = ""
     # Whether playing the run again can be cancelled.
     can_cancel = True
+    # Whether its run can be won and lost.
+    is_game = True
 
     def __init__(
         self, app: Application, playback: Playback, source: Path | None = None, of_document: bool = False
@@ -105,6 +105,8 @@ class PlayScreen:
         self._keys = DriveKeys(playback)
         self.troubles = Troubles(app, lambda: self.stage, self.say)
         self._legend = Legend()
+        can_end = self.is_game and bool(playback.level.rules or playback.level.goal)
+        self.game = Game(app, self, lambda: self.stage, can_end)
         self.actions = self._actions()
         app.show_replay_progress(playback, self.can_cancel)
         before = app.scenes.begin(playback, source)
@@ -133,7 +135,7 @@ class PlayScreen:
     def moves(self) -> bool:
         """Whether the run moves, which it does not while a page is open, or pictures of parts are to come."""
         is_filling = self.part_page is not None and self.part_page.moves
-        return is_filling or (self.playback.moves and not self._ui.is_covered and not self.rests)
+        return is_filling or self.game.moves or (self.playback.moves and not self._ui.is_covered and not self.rests)
 
     @property
     def runs(self) -> bool:
@@ -144,7 +146,7 @@ class PlayScreen:
     def rests(self) -> bool:
         """Whether time passes in the run, and yet nothing in it moves, nobody drives it, and no graph goes on."""
         is_driven = any(is_held for _, is_held in self._keys.shown())
-        goes_on = is_driven or self.graphs.is_shown or self.playback.has_pending
+        goes_on = is_driven or self.graphs.is_shown or self.playback.has_pending or self.game.is_busy
         return self.runs and self.stage.rests and self.playback.travel.target is None and not goes_on
 
     @property
@@ -186,7 +188,9 @@ class PlayScreen:
         """Lay the bar and the panel out again."""
         self._ui = ui
         self.show_panel = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
-        self.toolbar = Toolbar(ui, self._app.act, self.of_document)
+        self._has_ghost = self.game.has_ghost
+        absent = {"keep": not self.of_document, "ghost": not self._has_ghost}
+        self.toolbar = Toolbar(ui, self._app.act, {action for action, is_absent in absent.items() if is_absent})
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
@@ -196,7 +200,7 @@ class PlayScreen:
         left = left if self.palette is None else self.palette.right + below
         self.troubles.build(ui, left, BAR_HEIGHT + below)
         left = (self.viewport[0] + self.viewport[2] / 2) / ui.scale - AGAIN_SIZE[0] / 2
-        place = ui.rect(left, BAR_HEIGHT + self.again_top, *AGAIN_SIZE)
+        place = ui.rect(left, BAR_HEIGHT + self.again_top + self.game.height, *AGAIN_SIZE)
         self.restart_button = ui.button(place, "Again", self._reset, style="primary", tip=tip_of("reset", "play"))
         self.restart_button.visible = False
         # Beside a panel in a narrow window they have no room: they lie below it.
@@ -216,6 +220,7 @@ class PlayScreen:
             self.panel = self._make_panel(ui, choices, height)
             if before is not None and before.playback.level is self.playback.level:
                 self.panel.choose_material(before.material)
+        self.game.build(ui)
 
     def _make_panel(self, ui: Ui, choices: dict[str, Callable[[str], None]], height: float) -> SidePanel:
         return Panel(ui, self.playback, self.say, choices, BAR_HEIGHT, height, self.shape, self.set_contacts)
@@ -269,13 +274,14 @@ class PlayScreen:
             **{tool.action: partial(self._take_up, tool) for tool in PLAY_TOOLS.values()},
             "palette": self._toggle_palette,
             "catalogue": self._open_catalogue,
-            "let_go": stage.let_go,
-            **{name: partial(stage.toggle_view, name) for name in OVERLAYS},
+            "let_go": self._let_go,
+            **{name: partial(stage.toggle_view, name) for name in names_for(self.playback.level)},
             "hand": self._next_strength,
             "melt": self.toggle_melt,
             "follow": self._follow,
             "touching": lambda: self.set_contacts(ContactSettings.of(self.playback.level).other),
             **self.troubles.actions,
+            **self.game.actions,
             "undo": lambda: self.earlier.undo(self.playback),
             "redo": lambda: self.earlier.redo(self.playback),
             "pause": lambda: self.playback.toggle_pause(),
@@ -291,7 +297,7 @@ class PlayScreen:
             "record": files.toggle_recording,
             "save": files.save_scene,
             "save_recording": files.save_run,
-            "press": lambda: stage.press_cursor(pygame.key.get_mods()),
+            "press": self._press,
             "next_particle": lambda: stage.visit_particle(1),
             "previous_particle": lambda: stage.visit_particle(-1),
             "panel": self._toggle_panel,
@@ -374,7 +380,25 @@ class PlayScreen:
         self.choose_strength(name)
         self.say(line)
 
+    def _let_go(self) -> None:
+        if not self.game.keep_watching():
+            self.stage.let_go()
+
+    def _press(self) -> None:
+        if self.game.card is not None:
+            self.game.card.press()
+        else:
+            self.stage.press_cursor(pygame.key.get_mods())
+
     def _reset(self) -> None:
+        """Go back to the last checkpoint, or else to the beginning."""
+        if self.game.go_back():
+            self._keys = DriveKeys(self.playback)
+        else:
+            self.restart()
+
+    def restart(self) -> None:
+        """Begin the run again from its beginning."""
         self._app.end_messages(self)
         self._stop()
         left = self._app.scenes.set_aside(self.playback, self.source)
@@ -395,6 +419,7 @@ class PlayScreen:
     def _follow_run(self) -> None:
         """Let troubles, replay bar, kept runs and panel be about the run that is shown now."""
         self.troubles.begin()
+        self.game.begin()
         self._app.show_replay_progress(self.playback, self.can_cancel)
         self._app.scenes.begin(self.playback, self.source)
         if self.panel is not None:
@@ -465,7 +490,10 @@ class PlayScreen:
         self._app.scenes.follow(self.playback, self.source, frame_time)
         self._measure(self.playback.session.tick - before, profile)
         self._tell()
+        self.game.update(frame_time, pointer)
         self.troubles.update()
+        if self.game.has_ghost != self._has_ghost:
+            self._app.rebuild()
         self._show_again()
         if self.panel is not None:
             self.panel.refresh()
@@ -492,6 +520,7 @@ class PlayScreen:
                 self._app.chosen["sound"] == "on",
                 self.time.is_shown,
                 self.graphs.is_shown,
+                self.game.shows_ghost,
             )
         )
 
@@ -523,6 +552,7 @@ class PlayScreen:
         self.troubles.draw(surface)
         draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
+        self.game.draw(surface)
         surface.set_clip(None)
         self.graphs.draw(surface)
         surface.set_clip(self.viewport)
@@ -537,22 +567,8 @@ class PlayScreen:
 
     def status(self, figures: Figures) -> list[tuple[str, Colour]]:
         """State and recording of the run, and for who has opened the whole panel tick and figures."""
-        playback, current = self.playback, self.playback.current
-        parts: list[tuple[str, Colour]] = [(self._state(), ACCENT if not playback.clock.paused else WARNING)]
-        if playback.session.recording is not None:
-            parts.append((f"recording {playback.session.recording.name}", DANGER))
-        if playback.replay is not None:
-            parts.append((playback.outcome or f"recording, {playback.replay.ticks:,} ticks", TEXT))
-        world = playback.session.world
-        readings = motor_readings(world)
-        if readings and not SOLVERS[world.settings.solver].joints_bear_load:
-            parts.append((NO_LOADS, WARNING))
-        parts += warnings(self.stage.renderer.non_finite, playback.behind)
-        if not self.shape.open.get(MORE, False):
-            return parts
-        counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
-        parts.append((f"tick {playback.session.tick:,}", MUTED))
-        return [*parts, *motor_parts(readings), *counted_parts(*counts), *rate_parts(figures)]
+        shown = figures if self.shape.open.get(MORE, False) else None
+        return run_parts(self.playback, self._state(), self.stage.renderer.non_finite, shown)
 
     def _state(self) -> str:
         """The state of the run in a word, as status line and window title show it."""
@@ -564,7 +580,7 @@ class PlayScreen:
         return self.playback.level.name
 
     def states(self) -> list[str]:
-        """State words for the window's title: tick, speed, hands, recording, replay."""
+        """State words for the window's title: tick, speed, hands, recording, replay, outcome."""
         words = [f"tick {self.playback.session.tick}", self._state()]
         if self.stage.drag.holds:
             words.append(f"holding {len(self.stage.drag.holds)}")
@@ -572,4 +588,6 @@ class PlayScreen:
             words.append("recording")
         if self.playback.replay is not None:
             words.append(self.playback.outcome or "watching")
+        if (result := self.game.result) is not None:
+            words.append("won" if result.is_won else "lost")
         return words

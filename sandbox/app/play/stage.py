@@ -55,6 +55,8 @@ class Stage:
         self.cursor: tuple[float, float] | None = None
         self.pressed_by_key = False
         self._hovered: int | None = None
+        # An earlier run at the same tick, which is seen behind this one; None: none is.
+        self.earlier: Snapshot | None = None
         # Springs (m,) that are pointed at in a panel; None: nothing is.
         self.lit: NDArray[np.bool_] | None = None
         # What the wheel made of the parts and the ring [m]; 0: nothing yet.
@@ -321,7 +323,7 @@ class Stage:
         playback = self.playback
         tool = self.tool
         overlay = Overlay(self._hovered, tool.trail, self.cursor, self.pulls(), lit=self.lit)
-        overlay.ghost, overlay.is_refused = tool.ghost, not tool.fits
+        overlay.ghost, overlay.is_refused, overlay.earlier = tool.ghost, not tool.fits, self.earlier
         if tool.place is not None and tool.preview is not None:
             picture = self._ghost.picture(tool.preview, self.camera.zoom, self.renderer)
             if picture is not None:

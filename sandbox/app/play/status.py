@@ -8,9 +8,12 @@ import pygame
 from sandbox.app.contracts.screen import Figures, NoticesPlace, Pixel
 from sandbox.app.draw.colours import ACCENT, DANGER, LINE, MUTED, NOTICE, SURFACE, TEXT, WARNING, Colour, mixed
 from sandbox.app.panel.readings import number
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.analysis.motor_readings import MotorReading
+from sandbox.physics.analysis.motor_readings import MotorReading, motor_readings
+from sandbox.physics.analysis.query import shown_particles, shown_springs
+from sandbox.physics.solvers import SOLVERS
 
 # Sizes in layout units.
 STATUS_HEIGHT = 30.0
@@ -233,3 +236,26 @@ def motor_parts(readings: list[MotorReading]) -> list[tuple[str, Colour]]:
         else:
             parts.append((f"motor {reading.name}: it turns freely", WARNING))
     return parts
+
+
+def run_parts(playback: Playback, state: str, non_finite: int, figures: Figures | None) -> list[tuple[str, Colour]]:
+    """Parts of the status line about a run: its state in a word, its recording, what goes wrong.
+
+    non_finite: how many particles are nowhere. figures: those of the loop, told with tick, motors and counts; None =
+    none of that is.
+    """
+    parts: list[tuple[str, Colour]] = [(state, ACCENT if not playback.clock.paused else WARNING)]
+    if playback.session.recording is not None:
+        parts.append((f"recording {playback.session.recording.name}", DANGER))
+    if playback.replay is not None:
+        parts.append((playback.outcome or f"recording, {playback.replay.ticks:,} ticks", TEXT))
+    world, current = playback.session.world, playback.current
+    readings = motor_readings(world)
+    if readings and not SOLVERS[world.settings.solver].joints_bear_load:
+        parts.append((NO_LOADS, WARNING))
+    parts += warnings(non_finite, playback.behind)
+    if figures is None:
+        return parts
+    counts = int(shown_particles(current).sum()), int(shown_springs(current).sum())
+    parts.append((f"tick {playback.session.tick:,}", MUTED))
+    return [*parts, *motor_parts(readings), *counted_parts(*counts), *rate_parts(figures)]

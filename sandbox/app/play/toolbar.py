@@ -1,6 +1,6 @@
 """Toolbar: the bar at the top with tools, time and files; what has no room there is in a menu."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -37,6 +37,7 @@ RIGHT = (
     ("share", "share"),
     ("toy", "toy"),
     ("graphs", "graphs"),
+    ("ghost", "ghost"),
     ("compare", "compare"),
     ("gallery", "levels"),
     ("sound", "sound"),
@@ -52,6 +53,7 @@ WIDE_WORDS = {**WORDS, "share": "Share"}
 LEAVING = (
     "toy",
     "compare",
+    "ghost",
     "graphs",
     "settings",
     "timeline",
@@ -88,6 +90,7 @@ class BarState:
     sound: bool
     timeline: bool
     graphs: bool
+    ghost: bool
 
 
 def fitting(actions: Sequence[str], width: float, is_wide: bool = False) -> list[str]:
@@ -110,15 +113,15 @@ def _width(action: str, is_wide: bool = False) -> float:
 
 
 class Toolbar:
-    """Buttons for every action of the bar; `press` starts an action by its name."""
+    """Buttons for every action of the bar but those in `without`; `press` starts an action by its name."""
 
-    def __init__(self, ui: Ui, press: Callable[[str], None], of_document: bool = False) -> None:
+    def __init__(self, ui: Ui, press: Callable[[str], None], without: Set[str] = frozenset()) -> None:
         self._ui, self._press = ui, press
         self._state: BarState | None = None
         width = ui.units[0]
         self.back = ui.panel(ui.rect(0, 0, width, BAR_HEIGHT))
         self._pictures = dict(entry for group in (*LEFT, RIGHT) for entry in group)
-        wanted = [action for action in self._pictures if action != "keep" or of_document]
+        wanted = [action for action in self._pictures if action not in without]
         is_wide = self._is_wide = width >= ROOM_FOR_NAME
         shown = fitting(wanted, width - 2 * MARGIN, is_wide)
         self.left_out = [action for action in wanted if action not in shown]
@@ -160,7 +163,7 @@ class Toolbar:
         self._picture("pause", "play" if state.paused else "pause", ACCENT if state.paused else None)
         self._picture("record", "stop" if state.recording else "record", DANGER)
         self._picture("sound", "sound" if state.sound else "muted", None if state.sound else DISABLED)
-        for name in ("panel", "palette", "timeline", "graphs"):
+        for name in ("panel", "palette", "timeline", "graphs", "ghost"):
             self._mark(name, getattr(state, name))
         self._mark("record", state.recording)
         self._mark("slow", state.speed != 1.0)

@@ -29,6 +29,7 @@ from sandbox.app.gallery.sections import FIRST
 from sandbox.app.play.melt_lesson import MeltLesson
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.status import NOTICES, STATUS_HEIGHT, Notice, StatusLine
+from sandbox.app.run.best_keeping import BestKeeping
 from sandbox.app.run.playback import Playback
 from sandbox.app.run.scene_keeping import SceneKeeping
 from sandbox.app.settings.chosen import Chosen
@@ -77,6 +78,7 @@ class App:
         self._seen: Screen | None = None
         self.input = Input(self)
         self.scenes = SceneKeeping()
+        self.best = BestKeeping()
         self.files = FileActions(self)
         self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
@@ -294,6 +296,7 @@ class App:
         """Close the window; whatever ended the loop, a recording gets its last line."""
         if self.screen is not None:
             self.screen.leave()
+        self.best.close()
         self.sounds.close()
         self.sharing.close()
         self.documents.close()
@@ -350,6 +353,7 @@ class App:
         with self.profile.part("ui"):
             self.status.update(frame_time)
             self.documents.update()
+            self.best.update()
             if fault := self.scenes.fault():
                 self.say(fault)
             if self.gallery is not None:
@@ -372,7 +376,7 @@ class App:
     @property
     def moves(self) -> bool:
         """Whether something in the window changes by itself, or works in its frames at what it will show."""
-        parts = (self.screen, self.gallery, self.status, self.guide, self.sharing)
+        parts = (self.screen, self.gallery, self.status, self.guide, self.sharing, self.best)
         return any(part is not None and part.moves for part in parts)
 
     @property

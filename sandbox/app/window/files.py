@@ -1,8 +1,10 @@
 """FileActions: opening levels and replays, recording, saving."""
 
+import json
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from sandbox.app.base.recordings import (
     SUFFIX,
@@ -15,13 +17,15 @@ from sandbox.app.base.recordings import (
     told_time,
 )
 from sandbox.app.contracts.application import Application
+from sandbox.app.gallery.sections import in_sections
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.document import UNTITLED
 from sandbox.editor.storage.recent import remember_played
+from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.writing import refusal_of, write_file
-from sandbox.level.reading.files import load_level, read_level, shipped_folder
+from sandbox.level.reading.files import load_level, read_bytes, read_level, shipped_folder, shipped_levels
 from sandbox.session.commands import CommandError
 from sandbox.session.replay.reader import begins_as_replay, read_replay
 from sandbox.session.replay.recording import ReplayError
@@ -33,6 +37,8 @@ from sandbox.session.transaction import Interrupted
 
 # How the name of a sweep's table ends.
 TABLE = ".csv"
+# Of a folder so many files are looked at for the next level.
+MOST_LEVELS = 300
 
 
 class FileActions:
@@ -70,6 +76,21 @@ class FileActions:
         self.app.start(playback, None if shipped else Path(path))
         remember_played(path)
         return True
+
+    def next_level(self, level: Level, source: Path | None) -> tuple[Path, bool] | None:
+        """The next level with rules after one that was won, and whether it is shipped; None: there is none.
+
+        source: the file of that one: the next is in its folder, by name. Else it is the next one of the gallery.
+        """
+        if source is not None:
+            paths = sorted(source.parent.glob("*.json"), key=lambda path: path.name.casefold())[:MOST_LEVELS]
+            here = [path for path in paths if path.name == source.name]
+        else:
+            paths = [path for _, found in in_sections(shipped_levels()) for path in found]
+            here = [path for path in paths if _head_of(path).get("name") == level.name]
+        after = paths[paths.index(here[0]) + 1 :] if here else []
+        found = next((path for path in after if _head_of(path).get("rules")), None)
+        return None if found is None else (found, source is None)
 
     def open_sweep(self, path: Path) -> bool:
         """Show a table of `sandbox sweep` behind the pad, if it is of the level that runs."""
@@ -284,6 +305,15 @@ class FileActions:
             for told in (_saved, _in_my_levels):
                 self.app.take_back(told(path))
             self.app.say(f"Removed {path.name}.")
+
+
+def _head_of(path: Path) -> dict[str, Any]:
+    """What a file says whose level is not checked yet; nothing where it is none."""
+    try:
+        data = json.loads(read_bytes(path))
+    except (LevelError, ValueError, RecursionError):
+        return {}
+    return data if isinstance(data, dict) else {}
 
 
 def _recording(path: Path) -> str:

@@ -11,6 +11,7 @@ from sandbox.app.draw.colours import packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.things.frame import Frame, Seen
+from sandbox.level.document.model import Level
 from sandbox.physics.analysis.contact_points import contact_points
 from sandbox.physics.analysis.energy import spring_forces
 from sandbox.physics.snapshot import Snapshot
@@ -19,8 +20,17 @@ Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-# Those that can be shown, each with a key; "lattice" is drawn by the renderer, in place of faces.
-NAMES = ("lattice", "particles", "contacts", "forces", "velocities", "stability")
+# Those that can be shown, each with a key; "lattice" is drawn by the renderer, in place of faces, and so is "zones", in
+# levels that have some.
+ZONES = "zones"
+NAMES = ("lattice", "particles", "contacts", "forces", "velocities", "stability", ZONES)
+
+
+def names_for(level: Level) -> tuple[str, ...]:
+    """The overlays that show something in a level."""
+    return tuple(name for name in NAMES if name != ZONES or level.zones)
+
+
 # Sizes [pixels at scale 1]: of dots, normals, the arrow and the bar that stand for the scale, what surrounds them.
 DOT, NORMAL, HEAD, HALO = 2.4, 15.0, 6.5, 1.3
 ARROW, LONGEST_ARROW = 40.0, 120.0

@@ -1,0 +1,314 @@
+"""Game: the goal of a level while it is played: score, endings, checkpoints, the best run and its ghost."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+import pygame
+
+from sandbox.app.base.shortcuts import shortcuts, spoken
+from sandbox.app.contracts.application import Application
+from sandbox.app.contracts.screen import Pixel
+from sandbox.app.draw.views.overlays import ZONES
+from sandbox.app.play.goals.result_card import Ending, ResultCard, star_times
+from sandbox.app.play.goals.score import chips_of
+from sandbox.app.play.goals.score_view import CHIP, TOP, ScoreView
+from sandbox.app.play.goals.zone_names import draw_zone_names
+from sandbox.app.play.stage import Stage
+from sandbox.app.run.ghost_run import GhostRun
+from sandbox.app.run.playback import Playback
+from sandbox.app.sound.signals import STAR_RISE, STAR_STEP
+from sandbox.app.widgets.dialogs import Choice
+from sandbox.app.widgets.ui import Ui
+from sandbox.editor.storage.best_runs import Result, best_recording, best_result
+from sandbox.editor.storage.preferences import preference, set_preference
+from sandbox.session.outcome import Outcome, last_checkpoint, outcome
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.recording import ReplayError
+
+# How long the goal is shown at the start [s], and in how much of that it fades.
+GOAL_SECONDS, FADING = 6.0, 0.5
+# A restart so soon after one from a checkpoint [s] goes to the beginning.
+TWICE = 1.5
+# Under what it is remembered whether the ghost is wanted.
+GHOST = "ghost"
+CHECKPOINT = "Checkpoint. {} comes back to here."
+BACK_AT_CHECKPOINT = "Back at the checkpoint. {} once more goes to the beginning."
+NO_ZONES = "This level has no zones."
+NO_GHOST = "There is no best run yet: win this level first, then its ghost can run along."
+
+
+class Played(Protocol):
+    """What a game asks of the screen that it is on."""
+
+    of_document: bool
+    source: Path | None
+
+    def say(self, text: str) -> None:
+        """Show a line about the run."""
+        ...
+
+    def restart(self) -> None:
+        """Begin the run again from its beginning."""
+        ...
+
+
+class Game:
+    """What rules make of a run on a stage; is_on: whether the run is one to be won or lost, and not one of a pair."""
+
+    def __init__(self, app: Application, screen: Played, stage: Callable[[], Stage], is_on: bool) -> None:
+        self._app, self._screen, self._stage = app, screen, stage
+        level = stage().playback.level
+        self._has_rules = bool(level.rules)
+        self._is_on = is_on
+        self.score = ScoreView()
+        self.card: ResultCard | None = None
+        self._ending: Ending | None = None
+        # The tick at whose end the run was won or lost and paused, while it still stands because of that.
+        self._ended_at: int | None = None
+        self._since = self._goal_left = 0.0
+        self._goal_fades = self._is_recording = False
+        self._went_back: tuple[Playback, int] | None = None
+        self._ghost: GhostRun | None = None
+        self.has_ghost = False
+        self.begin()
+        self.actions: dict[str, Callable[[], object]] = {
+            "restart": screen.restart, "ghost": self._toggle_ghost, ZONES: self._toggle_zones
+        }  # fmt: skip
+
+    @property
+    def _playback(self) -> Playback:
+        return self._stage().playback
+
+    def begin(self) -> None:
+        """Be about the run that is on the stage now."""
+        self.close()
+        if self._ended_at is not None:
+            # It was its end that let the run before pause.
+            self._playback.clock.paused, self._ended_at = False, None
+        self._playback.pauses_at_end = self._is_on
+        self._goal_left = GOAL_SECONDS
+        self._went_back = None
+        self._ghost = None
+        self._stage().earlier = None
+        self._find_ghost()
+
+    def _find_ghost(self) -> None:
+        """Look for the best run of the level, and let its ghost go along where it is wanted."""
+        self.has_ghost = self._keeps_best and best_recording(self._playback.level) is not None
+        if self.has_ghost and preference(GHOST) is True:
+            self._load_ghost()
+
+    @property
+    def _keeps_best(self) -> bool:
+        """Whether the best run of the level is kept: not of what is being edited, which is another one every time."""
+        return self._is_on and self._has_rules and not self._screen.of_document
+
+    @property
+    def shows_ghost(self) -> bool:
+        """Whether the ghost of the best run goes along."""
+        return self._ghost is not None
+
+    @property
+    def moves(self) -> bool:
+        """Whether something of it changes by itself."""
+        return self._goal_fades or (self.card is not None and self.card.moves)
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether something that is seen of it goes on while nothing in the run moves."""
+        return self._ghost is not None and not self._playback.clock.paused
+
+    @property
+    def result(self) -> Outcome | None:
+        """The outcome of the run as it is on the screen."""
+        return outcome(self._playback.level, self._playback.current) if self._has_rules else None
+
+    # Restarting.
+
+    def go_back(self) -> bool:
+        """Go back to the last checkpoint of the run, if there is one to go back to; whether there is."""
+        playback = self._playback
+        if not self._is_on or playback.watching or playback.session.recording is not None:
+            return False
+        playback.apply_pending()
+        tick = last_checkpoint(playback.level, playback.session.world)
+        if tick is None or self._is_second(playback, tick):
+            return False
+        # Where the way there is cancelled, the run stays where it is.
+        if playback.begin_again_from(tick):
+            self._let_go_on()
+            self._went_back = playback, tick
+            self._screen.say(BACK_AT_CHECKPOINT.format(_restart_key()))
+        return True
+
+    def _is_second(self, playback: Playback, tick: int) -> bool:
+        """Whether the run has just gone back to a checkpoint of that tick."""
+        soon = TWICE * playback.session.world.settings.tick_rate
+        return self._went_back == (playback, tick) and playback.session.tick - tick <= soon
+
+    def _let_go_on(self) -> None:
+        self.close()
+        self._playback.clock.paused = False
+
+    # The card.
+
+    def close(self) -> bool:
+        """Take the card away; whether there was one."""
+        if self.card is None:
+            return False
+        self.card.remove()
+        self.card = self._ending = None
+        return True
+
+    def keep_watching(self) -> bool:
+        """Take the card away and let the run go on; whether there was a card."""
+        if self.card is None:
+            return False
+        self._let_go_on()
+        return True
+
+    def build(self, ui: Ui) -> None:
+        """Lay out again what is open."""
+        self._ui = ui
+        if self.card is not None and self._ending is not None:
+            self._since = self.card.since
+            self._open_card(self._ending)
+
+    def _open_card(self, ending: Ending) -> None:
+        self._ending = ending
+        self.card = ResultCard(self._ui, ending, self._choices(ending), self._room, self._since)
+
+    def _choices(self, ending: Ending) -> list[Choice]:
+        """The buttons of a card: at first what most people want next."""
+        again: list[Choice] = [("Again", self._screen.restart)]
+        if not ending.outcome.is_won and last_checkpoint(self._playback.level, self._playback.current) is not None:
+            again = [("Checkpoint", self.go_back), ("Beginning", self._screen.restart)]
+        following = None
+        if ending.outcome.is_won and not self._screen.of_document:
+            following = self._app.files.next_level(self._playback.level, self._screen.source)
+        ahead: list[Choice] = []
+        if following is not None:
+            path, is_shipped = following
+            ahead = [("Next level", lambda: self._app.files.open_level(path, is_shipped))]
+        return [*ahead, *again, ("Keep watching", self.keep_watching)]
+
+    def _end(self, result: Outcome) -> None:
+        """Tell how the run ended, and keep it if it is the best one."""
+        playback, rate = self._playback, self._playback.level.settings.tick_rate
+        before, is_best = None, False
+        if result.is_won and self._keeps_best:
+            before = best_result(playback.level)
+            try:
+                is_best = self._is_recording = self._app.best.note(playback, Result(result.stars, result.tick, rate))
+            except OSError as error:
+                self._screen.say(f"The best result cannot be kept: {error.strerror or error}.")
+        self._since, self._ended_at = 0.0, result.tick
+        self._open_card(Ending(result, rate, None if before is None else before.seconds, is_best))
+        self._app.sounds.signal("won" if result.is_won else "lost")
+        for number, time in enumerate(star_times(result.stars)):
+            self._app.sounds.signal("star", STAR_STEP + STAR_RISE * number, time)
+
+    def _toggle_zones(self) -> None:
+        if self._playback.level.zones:
+            self._stage().toggle_view(ZONES)
+        else:
+            self._screen.say(NO_ZONES)
+
+    # The ghost.
+
+    def _toggle_ghost(self) -> None:
+        if self._ghost is not None:
+            self._ghost = None
+            self._stage().earlier = None
+            set_preference(GHOST, None)
+            return
+        set_preference(GHOST, True)
+        self._find_ghost()
+        if not self.has_ghost:
+            self._screen.say(NO_GHOST)
+
+    def _load_ghost(self) -> None:
+        path = best_recording(self._playback.level)
+        if path is None:
+            return
+        try:
+            self._ghost = GhostRun(read_replay(path))
+        except ReplayError as error:
+            self._screen.say(f"The best run cannot be shown: {error.faults[0]}")
+
+    # A frame.
+
+    def update(self, frame_time: float, pointer: Pixel | None) -> None:
+        """Take in what the ticks of a frame of frame_time [s] brought; pointer: where the mouse is over the world."""
+        playback = self._playback
+        self._tell_fired(playback)
+        if not playback.clock.paused:
+            self._ended_at = None
+            self.close()
+        elif self.card is not None and self._ending is not None:
+            if self.result == self._ending.outcome:
+                self.card.update(frame_time, self._app.chosen["motion"] == "less")
+            else:
+                # What was undone did not happen, and the run goes on; who goes through time stays where he is.
+                playback.clock.paused = self._ended_at != playback.session.tick
+                self.close()
+        self._follow_goal(frame_time, pointer)
+        if self._is_recording and not self._app.best.moves:
+            self._is_recording = False
+            self._find_ghost()
+        if self._ghost is not None:
+            self._ghost.follow(playback.session.tick)
+            self._stage().earlier = self._ghost.state
+
+    def _tell_fired(self, playback: Playback) -> None:
+        actions, ended = playback.fired.take()
+        for action in actions:
+            if action.say is not None:
+                self._screen.say(action.say)
+            if action.sound is not None:
+                self._app.sounds.signal(action.sound)
+            if action.checkpoint and not playback.watching:
+                self._screen.say(CHECKPOINT.format(_restart_key()))
+        result = self.result if ended else None
+        if result is not None and self._is_on and not playback.watching:
+            self._end(result)
+
+    def _follow_goal(self, frame_time: float, pointer: Pixel | None) -> None:
+        before, is_asked = (
+            self._goal_left,
+            self._playback.clock.paused or (pointer is not None and self.score.place.collidepoint(pointer)),
+        )
+        if not self._playback.level.goal:
+            self._goal_left = 0.0
+        elif is_asked and self.card is None:
+            self._goal_left = max(self._goal_left, FADING)
+        else:
+            self._goal_left = max(self._goal_left - frame_time, 0.0)
+        self._goal_fades = self._goal_left != before
+
+    @property
+    def _room(self) -> pygame.Rect:
+        return pygame.Rect(self._stage().camera.viewport)
+
+    @property
+    def height(self) -> float:
+        """The room that a row of chips takes at the top of the world [layout units]."""
+        return TOP + CHIP if self._is_on else 0.0
+
+    def draw(self, surface: pygame.Surface) -> None:
+        """Draw score and goal, and the names of zones that are shown."""
+        stage = self._stage()
+        if ZONES in stage.renderer.overlays.shown:
+            draw_zone_names(surface, self._ui, stage.camera, stage.playback.level.zones, stage.renderer.theme)
+        if not self._is_on:
+            return
+        playback = self._playback
+        chips = chips_of(playback.level, playback.current, self.result)
+        goal = playback.level.goal if self.card is None else ""
+        self.score.draw(surface, self._ui, chips, goal, self._goal_left / FADING, self._room)
+
+
+def _restart_key() -> str:
+    """The keys that go back to a checkpoint, as a part of a sentence."""
+    return spoken(next(entry.keys for entry in shortcuts("play") if entry.action == "reset"))
