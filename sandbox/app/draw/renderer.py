@@ -22,14 +22,10 @@ from sandbox.app.draw.themes import THEMES, Theme, theme_now
 from sandbox.app.draw.things.drawables import Drawables
 from sandbox.app.draw.things.frame import Frame, strain_of
 from sandbox.app.draw.things.level_slots import LevelSlots, joined_slots, level_slots_of, whole_triangles
-<<<<<<< HEAD
 from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads, mark_treads
-from sandbox.app.draw.views.overlays import DASHES, Overlays, part_of
-from sandbox.app.draw.water import Pools
-=======
 from sandbox.app.draw.views.overlays import DASHES, ZONES, Overlays, part_of
 from sandbox.app.draw.views.zone_outlines import mark_zones
->>>>>>> 9b39cbee5ced0d998de12dadb1a87885828c0f5a
+from sandbox.app.draw.water import Pools
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.pulls import Pull
@@ -109,11 +105,8 @@ class Renderer:
         self._painter = Painter()
         self._backdrop = Backdrop()
         self._still = Still()
-<<<<<<< HEAD
         self._pools = Pools(level)
-=======
         self._shade: Shade | None = None
->>>>>>> 9b39cbee5ced0d998de12dadb1a87885828c0f5a
         # The terrain that was drawn last, and how many there have been: arrays cannot be compared as a key is.
         self._ground: Terrain | None = None
         self._grounds = 0
