@@ -28,13 +28,12 @@ from sandbox.physics.water.pools import HULL, SPRING, TURNED
 
 # Columns of `load` of a particle: force [N] (2), resistance [kg/s] xx, xy, yy, and that times the flow [N] (2).
 FX, FY, RXX, RXY, RYY, DX, DY, LOADS = range(8)
-# Columns of `body`, at the label of a body: mass [kg], force and weight [N] (2), resistance [kg/s] xx, xy, yy; about
-# its first particle the sums of m r [kg m] (2), of m r^2 [kg m^2], and the torque [N m]; present drag [N] (2), and what
-# it took from the particles [kg m/s] (2); whether a pin, a hand or a contact holds it. And what follows: its turning
-# acceleration [rad/s^2], and the change of its velocity [m/s] (2).
-MASS, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y, HELD, TURN, CX, CY, SUMS = (
-    range(19)
-)
+# Columns of `body`, at the label of a body: mass [kg], momentum [kg m/s] (2), force and weight [N] (2); resistance
+# [kg/s] xx, xy, yy; about its first particle the sums of m r [kg m] (2), of m r^2 [kg m^2], and the torque [N m]; the
+# drag of its motion as a whole [N] (2), and what that takes from the particles [kg m/s] (2); whether a pin, a hand or a
+# contact holds it. And what follows: its turning acceleration [rad/s^2], and the change of its velocity [m/s] (2).
+MASS, PX, PY, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y = range(16)
+HELD, TURN, CX, CY, SUMS = range(16, 21)
 
 
 class Water(NamedTuple):

@@ -49,6 +49,8 @@ from sandbox.physics.water.displacers import (
     MY,
     NET_X,
     NET_Y,
+    PX,
+    PY,
     RXX,
     RXY,
     RYY,
@@ -64,6 +66,9 @@ from sandbox.physics.water.wet_parts import PI, clipped, disc_area_below, wet_sh
 # Places at which what passes the surface is looked at, in the time of a step. With one, energy changes by up to
 # h^2 v^2 U'' / 12 whenever something passes; with n, by a part in n^2 of that.
 PASSES = 4
+# What is held and is lifted by more than this in a step [m/s] is a hundred times lighter than its water: what holds it
+# may let it go in the next step, and it would be shot into the air. Less lets light boats sink deeper under their loads.
+HARDEST_LIFT = 15.0
 # Below this share of its moment of inertia about its first particle, that about its centre is rounding.
 LEAST_INERTIA = 1e-9
 
@@ -281,12 +286,16 @@ def _push(water: Water, state: State, start: FloatRows, label: Slots, h: float) 
         dx, dy = per * (yy * rx - xy * ry), per * (xx * ry - xy * rx)
         velocity[p, 0] += dx + h * load[p, FX] / mass[p]
         velocity[p, 1] += dy + h * load[p, FY] / mass[p]
+        # The same of the motion of the body as a whole. That of its parts beside each other is theirs alone.
         g = label[p]
-        if g >= 0:
+        if g >= 0 and body[g, MASS] > 0.0:
+            u, v = body[g, PX] / body[g, MASS], body[g, PY] / body[g, MASS]
+            rx = load[p, DX] - load[p, RXX] * u - load[p, RXY] * v
+            ry = load[p, DY] - load[p, RXY] * u - load[p, RYY] * v
             body[g, DRAG_X] += rx
             body[g, DRAG_Y] += ry
-            body[g, TOOK_X] += mass[p] * dx
-            body[g, TOOK_Y] += mass[p] * dy
+            body[g, TOOK_X] += mass[p] * per * (yy * rx - xy * ry)
+            body[g, TOOK_Y] += mass[p] * per * (xx * ry - xy * rx)
 
 
 @inner_kernel
@@ -319,7 +328,7 @@ def _find_held(water: Water, state: State, label: Slots, kept: KeptContacts, cou
 
 
 @inner_kernel
-def _sum_bodies(water: Water, state: State, label: Slots, numbers: Floats) -> None:
+def _sum_bodies(water: Water, state: State, start: FloatRows, label: Slots, numbers: Floats) -> None:
     load, body, mass = water.load, water.body, state.mass
     for p in range(body.shape[0]):
         for column in range(HELD):
@@ -331,6 +340,8 @@ def _sum_bodies(water: Water, state: State, label: Slots, numbers: Floats) -> No
             continue
         weight = mass[p] * state.gravity_scale[p]
         body[g, MASS] += mass[p]
+        body[g, PX] += mass[p] * start[p, 0]
+        body[g, PY] += mass[p] * start[p, 1]
         body[g, NET_X] += load[p, FX] + weight * numbers[GRAVITY_X]
         body[g, NET_Y] += load[p, FY] + weight * numbers[GRAVITY_Y]
         body[g, BXX] += load[p, RXX]
@@ -355,18 +366,24 @@ def _sum_bodies(water: Water, state: State, label: Slots, numbers: Floats) -> No
 @inner_kernel
 def _slow_bodies(water: Water, state: State, label: Slots, h: float) -> None:
     # What nothing holds moves as one, v += (m + h D)^-1 h (F - D (start - flow)) of all of it. Its particles get the
-    # same change, so that no spring is strained.
+    # same change, so that no spring is strained. Of what is held that is done to what F adds beyond HARDEST_LIFT.
     body = water.body
     for g in range(body.shape[0]):
         m = body[g, MASS]
         body[g, CX], body[g, CY] = 0.0, 0.0
-        if not (body[g, BXX] + body[g, BYY] > 0.0 and m > 0.0) or body[g, HELD] > 0.0:
+        if not (body[g, BXX] + body[g, BYY] > 0.0 and m > 0.0):
             continue
+        share, ax, ay = 1.0, h * body[g, NET_X] / m, h * body[g, NET_Y] / m
+        fx, fy, tx, ty = body[g, DRAG_X], body[g, DRAG_Y], body[g, TOOK_X] / m, body[g, TOOK_Y] / m
+        if body[g, HELD] > 0.0:
+            added = math.sqrt(ax * ax + ay * ay)
+            share = 1.0 - HARDEST_LIFT / added if added > HARDEST_LIFT else 0.0
+            fx, fy, tx, ty = 0.0, 0.0, 0.0, 0.0
+        fx, fy = body[g, NET_X] + fx, body[g, NET_Y] + fy
         xx, xy, yy = m + h * body[g, BXX], h * body[g, BXY], m + h * body[g, BYY]
-        fx, fy = body[g, NET_X] + body[g, DRAG_X], body[g, NET_Y] + body[g, DRAG_Y]
         per = h / (xx * yy - xy * xy)
-        body[g, CX] = per * (yy * fx - xy * fy) - (h * body[g, NET_X] + body[g, TOOK_X]) / m
-        body[g, CY] = per * (xx * fy - xy * fx) - (h * body[g, NET_Y] + body[g, TOOK_Y]) / m
+        body[g, CX] = share * (per * (yy * fx - xy * fy) - ax - tx)
+        body[g, CY] = share * (per * (xx * fy - xy * fx) - ay - ty)
     for p in range(body.shape[0]):
         if label[p] >= 0 and state.particle_active[p] and state.inverse_mass[p] > 0.0:
             state.velocity[p, 0] += body[label[p], CX]
@@ -386,12 +403,12 @@ def push_by_water(
     # Gravity that points upwards makes no pressure. What nothing holds moves as in free_contacts.py.
     g, early = max(0.0, -numbers[GRAVITY_Y]), 0.5 * (h - h / small_steps(h)) if touches else 0.0
     _load(water, state, start, g, early)
-    _sum_bodies(water, state, label, numbers)
+    _sum_bodies(water, state, start, label, numbers)
     _find_held(water, state, label, kept, count)
     for k in range(water.pool.shape[0]):
         for i in range(water.triangle.shape[0]):
             _lift_passing(water, k, i, state, start, label, g, h)
-    _sum_bodies(water, state, label, numbers)
+    _sum_bodies(water, state, start, label, numbers)
     _push(water, state, start, label, h)
     _slow_bodies(water, state, label, h)
     for k in range(water.pool.shape[0]):
