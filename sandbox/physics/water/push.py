@@ -4,7 +4,7 @@ Lift is the gradient of U of all that water cannot enter (wet_parts.py): calm wa
 
     triangle  density g A times the integral of each corner's shape function over what is wet; A = the area that its
               constraint wants, so that soft bodies are not crushed by the depth
-    hull      the pressure on each edge, integrated between its ends
+    hull      as triangles from its middle to each edge, with the area that it is to have
     disc      density g times the area that is wet
 
 Drag of a side of length L and normal n that moves at u through the water, and that of a disc:
@@ -67,7 +67,7 @@ from sandbox.physics.water.wet_parts import PI, clipped, disc_area_below, wet_sh
 # h^2 v^2 U'' / 12 whenever something passes; with n, by a part in n^2 of that.
 PASSES = 4
 # What is held and is lifted by more than this in a step [m/s] is a hundred times lighter than its water: what holds it
-# may let it go in the next step, and it would be shot into the air. Less lets light boats sink deeper under their loads.
+# may let it go in the next step, and it would be shot into the air. Less lets light boats sink deeper under loads.
 HARDEST_LIFT = 15.0
 # Below this share of its moment of inertia about its first particle, that about its centre is rounding.
 LEAST_INERTIA = 1e-9
@@ -85,8 +85,8 @@ def _resist(water: Water, k: int, p: int, xx: float, xy: float, yy: float) -> No
 
 
 @inner_kernel
-def wet_part(water: Water, k: int, a: int, b: int, position: FloatRows) -> tuple[float, float]:
-    """The part of the way from a to b that lies in pool k; empty where the second is not above the first."""
+def _wet_part(water: Water, k: int, a: int, b: int, position: FloatRows) -> tuple[float, float]:
+    # The part of the way from a to b that lies in pool k; empty where the second is not above the first.
     pool = water.pool
     dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
     s0, s1 = clipped(position[a, 0], dx, pool[k, LEFT], pool[k, RIGHT], 0.0, 1.0)
@@ -161,38 +161,43 @@ def _lift_passing(
 
 
 @inner_kernel
-def _press_edge(water: Water, k: int, a: int, b: int, position: FloatRows, weight: float, top: float) -> None:
-    # F_b = -n L int p(s) s ds,  F_a = -n L int p(s) (1 - s) ds,  p = weight (top - y)
-    load = water.load
-    dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
-    s0, s1 = wet_part(water, k, a, b, position)
-    if not s0 < s1:
-        return
-    p0 = weight * (top - position[a, 1] - s0 * dy)
-    p1 = weight * (top - position[a, 1] - s1 * dy)
-    whole = 0.5 * (s1 - s0) * (p0 + p1)
-    at_b = (s1 - s0) / 6.0 * (p0 * (2.0 * s0 + s1) + p1 * (s0 + 2.0 * s1))
-    # Times the outer normal and the length: (dy, -dx).
-    load[a, FX] -= dy * (whole - at_b)
-    load[a, FY] += dx * (whole - at_b)
-    load[b, FX] -= dy * at_b
-    load[b, FY] += dx * at_b
-    water.wet[a] = water.wet[b] = True
+def middle_of(water: Water, o: int, position: FloatRows) -> tuple[float, float]:
+    """The mean of the corners of hull o [m]."""
+    first, last, x, y = water.shell_start[o], water.shell_start[o + 1], 0.0, 0.0
+    for e in range(first, last):
+        x += position[water.shell_a[e], 0]
+        y += position[water.shell_a[e], 1]
+    return x / (last - first), y / (last - first)
 
 
 @inner_kernel
-def _press_shell(water: Water, k: int, o: int, position: FloatRows, g: float) -> None:
-    # Pressure is counted from the hull's highest corner, where that is below the surface: what comes on top of it
-    # would squeeze the hull and lift nothing. Where it is turned inside out, it acts from the other side.
-    area, highest = 0.0, -math.inf
-    for e in range(water.shell_start[o], water.shell_start[o + 1]):
+def area_of(water: Water, o: int, state: State) -> float:
+    """What hull o displaces when it is all wet [m^2]."""
+    k = water.shell_constraint[o]
+    return abs(state.constraint_rest[k, 0]) if k >= 0 else water.shell_area[o]
+
+
+@inner_kernel
+def _lift_shell(water: Water, k: int, o: int, state: State, g: float) -> None:
+    # Triangles from the middle to each edge; what lifts the middle lifts all corners alike.
+    pool, y, load = water.pool, state.position, water.load
+    middle_x, middle_y = middle_of(water, o, y)
+    if not (pool[k, LEFT] <= middle_x and middle_x <= pool[k, RIGHT] and pool[k, BOTTOM] <= middle_y):
+        return
+    first, last, top = water.shell_start[o], water.shell_start[o + 1], pool[k, TOP]
+    weight, at_middle, is_wet = pool[k, DENSITY] * g * area_of(water, o, state), 0.0, False
+    for e in range(first, last):
         a, b = water.shell_a[e], water.shell_b[e]
-        area += position[a, 0] * position[b, 1] - position[b, 0] * position[a, 1]
-        highest = max(highest, position[a, 1])
-    weight = water.pool[k, DENSITY] * g * (1.0 if area >= 0.0 else -1.0)
-    top = min(water.pool[k, TOP], highest)
-    for e in range(water.shell_start[o], water.shell_start[o + 1]):
-        _press_edge(water, k, water.shell_a[e], water.shell_b[e], position, weight, top)
+        at_c, at_a, at_b = wet_shares(top - middle_y, top - y[a, 1], top - y[b, 1])
+        part = weight * water.shell_share[e]
+        load[a, FY] += part * at_a
+        load[b, FY] += part * at_b
+        at_middle += part * at_c
+        is_wet = is_wet or at_c + at_a + at_b > 0.0
+    if is_wet:
+        for e in range(first, last):
+            load[water.shell_a[e], FY] += at_middle / (last - first)
+            water.wet[water.shell_a[e]] = True
 
 
 @inner_kernel
@@ -200,7 +205,7 @@ def _drag_edge(water: Water, k: int, i: int, state: State, start: FloatRows) -> 
     # The resistance of what is wet of it is shared by its ends as its length is.
     pool, x, s = water.pool, state.position, water.edge[i]
     a, b = state.particle_a[s], state.particle_b[s]
-    s0, s1 = wet_part(water, k, a, b, x)
+    s0, s1 = _wet_part(water, k, a, b, x)
     dx, dy = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1]
     length = math.sqrt(dx * dx + dy * dy)
     if not (s0 < s1 and length > 0.0):
@@ -265,7 +270,7 @@ def _load(water: Water, state: State, start: FloatRows, g: float, early: float) 
         for i in range(water.triangle.shape[0]):
             _lift_triangle(water, k, i, state, g)
         for o in range(water.shell_start.shape[0] - 1):
-            _press_shell(water, k, o, state.position, g)
+            _lift_shell(water, k, o, state, g)
         for i in range(water.edge.shape[0]):
             _drag_edge(water, k, i, state, start)
         for i in range(water.disc.shape[0]):
