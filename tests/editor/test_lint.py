@@ -1,5 +1,6 @@
 """Lint: what it finds, what it leaves in peace, and that it pauses."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +34,9 @@ from sandbox.level.kinds.jelly import BoxShape, JellyDef
 from sandbox.level.kinds.rope import RopeDef
 from sandbox.level.kinds.wheel import WheelDef
 from sandbox.level.reading.files import read_level
+from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.stability import report, spring_loads
+from tests.support.pools import pool
 from tests.support.zoo import zoo
 
 LEVELS = sorted((Path(__file__).resolve().parents[2] / "levels").glob("*.json"))
@@ -485,3 +488,17 @@ def test_a_column_of_jelly_boxes_that_lie_on_one_another_is_found_as_one():
     assert not buckling(level_of(bodies=tuple(boxes), materials=materials))
     apart = tuple(cube(f"box {k}", 0.0, 0.5 + 2.5 * k) for k in range(6))
     assert not buckling(level_of(bodies=apart, materials=materials, contacts=ContactsDef()))
+
+
+def test_what_is_over_water_does_not_fall_for_ever_and_water_in_water_is_told():
+    ball = {"id": "ball", "position": [0, 2], "mass": 0.1, "radius": 0.2}
+    pools = [pool((-5, -5, 5, 0)), pool((3, -5, 9, -1)) | {"id": "other"}, pool((9, -5, 12, 0)) | {"id": "beside"}]
+    head = {"format": "spring-sandbox/level", "version": 3, "name": "w", "particles": [ball]}
+    for zones, lines in (
+        ([], ["ball"]),
+        (pools[:1], []),
+        (pools, ['the water of "pool" and "other" overlaps, and lifts twice there; part them']),
+    ):
+        level = parse_level(json.dumps(head | {"zones": zones}).encode(), "w")
+        found = [each.text for each in findings(level, make_scene(level)) if each is not None]
+        assert len(found) == len(lines) and all(line in text for line, text in zip(lines, found, strict=True))

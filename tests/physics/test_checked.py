@@ -21,7 +21,10 @@ def read(values: Floats, k: int) -> float:
 
 @kernel
 def doubled(count: int) -> int:
-    return count + count
+    total = 0
+    for each in (count, count):
+        total += each
+    return total
 """
 SCRIPT = """
 import sys

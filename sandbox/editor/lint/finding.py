@@ -158,6 +158,9 @@ def falling_particles(level: Level, scene: Scene) -> Generator[None, None, tuple
     if level.settings.gravity == (0.0, 0.0):
         pulled[:] = False
     falls = pulled & ~held
+    if level.has_water and falls.any():
+        yield None
+        falls &= ~_over_water(level, scene, part)
     if level.has_contacts and falls.any():
         yield None
         falls &= ~_caught(level, scene, part)
@@ -169,6 +172,17 @@ def _scales(level: Level, scene: Scene) -> NDArray[np.float64]:
     """How many times gravity pulls at each particle (n,)."""
     scales = [part.gravity_scale for parts in (level.bodies, level.particles) for part in parts]
     return np.array(scales, dtype=np.float64)[scene.particle_item]
+
+
+def _over_water(level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
+    """Whether each part, by its label (n,), is in water or above some."""
+    above = np.zeros(len(part), dtype=np.bool_)
+    x, y = scene.position.T
+    for zone in level.zones:
+        if zone.water is not None and zone.box is not None:
+            left, bottom, right, _ = zone.box
+            above[part[(x > left) & (x < right) & (y > bottom)]] = True
+    return above
 
 
 def _caught(level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:

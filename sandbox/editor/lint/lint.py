@@ -15,6 +15,7 @@ from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles
 from sandbox.editor.lint.looks import unknown_looks
 from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
+from sandbox.editor.lint.pools import water_in_water
 from sandbox.editor.lint.remedies import GROUND, deletion
 from sandbox.editor.lint.solver import springs_past_limits
 from sandbox.editor.scene import Scene
@@ -39,6 +40,7 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         overlapping_discs(level, scene),
         turning_in_vain(level, scene),
         buckling_columns(level, scene),
+        water_in_water(level),
     )
     return itertools.chain.from_iterable(listed(rule) for rule in rules)
 

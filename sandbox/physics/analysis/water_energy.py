@@ -11,7 +11,7 @@ from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
 from sandbox.physics.state import State, state_of
 from sandbox.physics.water.displacers import Water, lay_out_water
 from sandbox.physics.water.pools import BOTTOM, DENSITY, LEFT, RIGHT, TOP
-from sandbox.physics.water.push import wet_part
+from sandbox.physics.water.push import area_of, middle_of
 from sandbox.physics.water.wet_parts import PI, disc_depth, mean_depth
 from sandbox.physics.world import World
 
@@ -46,18 +46,14 @@ def _of_triangle(water: Water, k: int, i: int, state: State) -> float:
 
 @inner_kernel
 def _of_shell(water: Water, k: int, o: int, state: State) -> float:
-    # The integral of the depth over what is enclosed is that of depth^2 / 2 dx along the outline (Green).
-    x, area, total = state.position, 0.0, 0.0
+    pool, y, total = water.pool, state.position, 0.0
+    middle_x, middle_y = middle_of(water, o, y)
+    if not (pool[k, LEFT] <= middle_x and middle_x <= pool[k, RIGHT] and pool[k, BOTTOM] <= middle_y):
+        return 0.0
     for e in range(water.shell_start[o], water.shell_start[o + 1]):
-        a, b = water.shell_a[e], water.shell_b[e]
-        area += x[a, 0] * x[b, 1] - x[b, 0] * x[a, 1]
-        s0, s1 = wet_part(water, k, a, b, x)
-        if s0 < s1:
-            dx, dy = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1]
-            d0 = water.pool[k, TOP] - x[a, 1] - s0 * dy
-            d1 = water.pool[k, TOP] - x[a, 1] - s1 * dy
-            total += dx * (s1 - s0) * (d0 * d0 + d0 * d1 + d1 * d1) / 6.0
-    return total if area >= 0.0 else -total
+        a, b, top = water.shell_a[e], water.shell_b[e], pool[k, TOP]
+        total += water.shell_share[e] * mean_depth(top - middle_y, top - y[a, 1], top - y[b, 1])
+    return area_of(water, o, state) * total
 
 
 @inner_kernel

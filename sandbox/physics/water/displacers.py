@@ -28,13 +28,12 @@ from sandbox.physics.water.pools import HULL, SPRING, TURNED
 
 # Columns of `load` of a particle: force [N] (2), resistance [kg/s] xx, xy, yy, and that times the flow [N] (2).
 FX, FY, RXX, RXY, RYY, DX, DY, LOADS = range(8)
-# Columns of `body`, at the label of a body: mass [kg], force and weight [N] (2), resistance [kg/s] xx, xy, yy; about
-# its first particle the sums of m r [kg m] (2), of m r^2 [kg m^2], and the torque [N m]; present drag [N] (2), and what
-# it took from the particles [kg m/s] (2); whether a pin, a hand or a contact holds it. And what follows: its turning
-# acceleration [rad/s^2], and the change of its velocity [m/s] (2).
-MASS, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y, HELD, TURN, CX, CY, SUMS = (
-    range(19)
-)
+# Columns of `body`, at the label of a body: mass [kg], momentum [kg m/s] (2), force and weight [N] (2); resistance
+# [kg/s] xx, xy, yy; about its first particle the sums of m r [kg m] (2), of m r^2 [kg m^2], and the torque [N m]; the
+# drag of its motion as a whole [N] (2), and what that takes from the particles [kg m/s] (2); whether a pin, a hand or a
+# contact holds it. And what follows: its turning acceleration [rad/s^2], and the change of its velocity [m/s] (2).
+MASS, PX, PY, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y = range(16)
+HELD, TURN, CX, CY, SUMS = range(16, 21)
 
 
 class Water(NamedTuple):
@@ -47,6 +46,9 @@ class Water(NamedTuple):
     shell_start: Slots  # edges of whole hull o: shell_start[o]:shell_start[o + 1]
     shell_a: Slots  # what is enclosed lies on the left of the way from a to b
     shell_b: Slots
+    shell_share: Floats  # by edge: of what the hull enclosed when it was created, the part between edge and middle
+    shell_area: Floats  # [m^2] (o,): what it enclosed then
+    shell_constraint: Slots  # (o,): the constraint that says how large it is to be; -1: there is none
     edge: Slots  # springs that are dragged
     sides: Floats  # how many sides of each are wet: 2 of a line
     disc: Slots
@@ -134,7 +136,33 @@ def _list_shells(state: State, water: Water, work: WaterScratch) -> tuple[int, i
         water.shell_b[count] = state.particle_a[s] if turned else state.particle_b[s]
         count += 1
     water.shell_start[shells] = count
+    for o in range(shells):
+        _measure_shell(state, water, o)
     return shells, count
+
+
+@inner_kernel
+def _measure_shell(state: State, water: Water, o: int) -> None:
+    # A hull as triangles from its middle to each edge; those of a hollow count negative.
+    first, last, origin = water.shell_start[o], water.shell_start[o + 1], state.origin
+    x, y, area = 0.0, 0.0, 0.0
+    for e in range(first, last):
+        x += origin[water.shell_a[e], 0] / (last - first)
+        y += origin[water.shell_a[e], 1] / (last - first)
+    for e in range(first, last):
+        a, b = water.shell_a[e], water.shell_b[e]
+        part = (origin[a, 0] - x) * (origin[b, 1] - y) - (origin[b, 0] - x) * (origin[a, 1] - y)
+        water.shell_share[e] = 0.5 * part
+        area += 0.5 * part
+    for e in range(first, last):
+        water.shell_share[e] = water.shell_share[e] / area if area > 0.0 else 0.0
+    water.shell_area[o] = max(area, 0.0)
+    water.shell_constraint[o] = -1
+    for k in range(state.constraint_kind.shape[0]):
+        is_area = state.constraint_kind[k] == AREA and state.constraint_active[k]
+        begins = is_area and state.corner_particle[state.constraint_first[k]] == water.shell_a[first]
+        if begins and state.constraint_corners[k] == last - first:
+            water.shell_constraint[o] = k
 
 
 @inner_kernel
@@ -193,6 +221,9 @@ def _make_lists_as_long_as(triangles: int, hulls: int, edges: int, springs: int,
     set_field(water, "shell_start", water.shell_start[: hulls + 1])
     set_field(water, "shell_a", water.shell_a[:edges])
     set_field(water, "shell_b", water.shell_b[:edges])
+    set_field(water, "shell_share", water.shell_share[:edges])
+    set_field(water, "shell_area", water.shell_area[:hulls])
+    set_field(water, "shell_constraint", water.shell_constraint[:hulls])
     set_field(water, "edge", water.edge[:springs])
     set_field(water, "sides", water.sides[:springs])
     set_field(water, "disc", water.disc[:discs])
@@ -212,6 +243,9 @@ def lay_out_water(state: State, arena: Arena, water: Water) -> None:
     set_field(water, "shell_start", new_slots(arena, water.hull.shape[0] + 1))
     set_field(water, "shell_a", new_slots(arena, water.hull.shape[0]))
     set_field(water, "shell_b", new_slots(arena, water.hull.shape[0]))
+    set_field(water, "shell_share", new_floats(arena, water.hull.shape[0]))
+    set_field(water, "shell_area", new_floats(arena, water.hull.shape[0]))
+    set_field(water, "shell_constraint", new_slots(arena, water.hull.shape[0]))
     set_field(water, "edge", new_slots(arena, springs))
     set_field(water, "sides", new_floats(arena, springs))
     set_field(water, "disc", new_slots(arena, particles))

@@ -4,7 +4,7 @@ Lift is the gradient of U of all that water cannot enter (wet_parts.py): calm wa
 
     triangle  density g A times the integral of each corner's shape function over what is wet; A = the area that its
               constraint wants, so that soft bodies are not crushed by the depth
-    hull      the pressure on each edge, integrated between its ends
+    hull      as triangles from its middle to each edge, with the area that it is to have
     disc      density g times the area that is wet
 
 Drag of a side of length L and normal n that moves at u through the water, and that of a disc:
@@ -49,6 +49,8 @@ from sandbox.physics.water.displacers import (
     MY,
     NET_X,
     NET_Y,
+    PX,
+    PY,
     RXX,
     RXY,
     RYY,
@@ -64,6 +66,9 @@ from sandbox.physics.water.wet_parts import PI, clipped, disc_area_below, wet_sh
 # Places at which what passes the surface is looked at, in the time of a step. With one, energy changes by up to
 # h^2 v^2 U'' / 12 whenever something passes; with n, by a part in n^2 of that.
 PASSES = 4
+# What is held and is lifted by more than this in a step [m/s] is a hundred times lighter than its water: what holds it
+# may let it go in the next step, and it would be shot into the air. Less lets light boats sink deeper under loads.
+HARDEST_LIFT = 15.0
 # Below this share of its moment of inertia about its first particle, that about its centre is rounding.
 LEAST_INERTIA = 1e-9
 
@@ -80,8 +85,8 @@ def _resist(water: Water, k: int, p: int, xx: float, xy: float, yy: float) -> No
 
 
 @inner_kernel
-def wet_part(water: Water, k: int, a: int, b: int, position: FloatRows) -> tuple[float, float]:
-    """The part of the way from a to b that lies in pool k; empty where the second is not above the first."""
+def _wet_part(water: Water, k: int, a: int, b: int, position: FloatRows) -> tuple[float, float]:
+    # The part of the way from a to b that lies in pool k; empty where the second is not above the first.
     pool = water.pool
     dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
     s0, s1 = clipped(position[a, 0], dx, pool[k, LEFT], pool[k, RIGHT], 0.0, 1.0)
@@ -156,38 +161,43 @@ def _lift_passing(
 
 
 @inner_kernel
-def _press_edge(water: Water, k: int, a: int, b: int, position: FloatRows, weight: float, top: float) -> None:
-    # F_b = -n L int p(s) s ds,  F_a = -n L int p(s) (1 - s) ds,  p = weight (top - y)
-    load = water.load
-    dx, dy = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
-    s0, s1 = wet_part(water, k, a, b, position)
-    if not s0 < s1:
-        return
-    p0 = weight * (top - position[a, 1] - s0 * dy)
-    p1 = weight * (top - position[a, 1] - s1 * dy)
-    whole = 0.5 * (s1 - s0) * (p0 + p1)
-    at_b = (s1 - s0) / 6.0 * (p0 * (2.0 * s0 + s1) + p1 * (s0 + 2.0 * s1))
-    # Times the outer normal and the length: (dy, -dx).
-    load[a, FX] -= dy * (whole - at_b)
-    load[a, FY] += dx * (whole - at_b)
-    load[b, FX] -= dy * at_b
-    load[b, FY] += dx * at_b
-    water.wet[a] = water.wet[b] = True
+def middle_of(water: Water, o: int, position: FloatRows) -> tuple[float, float]:
+    """The mean of the corners of hull o [m]."""
+    first, last, x, y = water.shell_start[o], water.shell_start[o + 1], 0.0, 0.0
+    for e in range(first, last):
+        x += position[water.shell_a[e], 0]
+        y += position[water.shell_a[e], 1]
+    return x / (last - first), y / (last - first)
 
 
 @inner_kernel
-def _press_shell(water: Water, k: int, o: int, position: FloatRows, g: float) -> None:
-    # Pressure is counted from the hull's highest corner, where that is below the surface: what comes on top of it
-    # would squeeze the hull and lift nothing. Where it is turned inside out, it acts from the other side.
-    area, highest = 0.0, -math.inf
-    for e in range(water.shell_start[o], water.shell_start[o + 1]):
+def area_of(water: Water, o: int, state: State) -> float:
+    """What hull o displaces when it is all wet [m^2]."""
+    k = water.shell_constraint[o]
+    return abs(state.constraint_rest[k, 0]) if k >= 0 else water.shell_area[o]
+
+
+@inner_kernel
+def _lift_shell(water: Water, k: int, o: int, state: State, g: float) -> None:
+    # Triangles from the middle to each edge; what lifts the middle lifts all corners alike.
+    pool, y, load = water.pool, state.position, water.load
+    middle_x, middle_y = middle_of(water, o, y)
+    if not (pool[k, LEFT] <= middle_x and middle_x <= pool[k, RIGHT] and pool[k, BOTTOM] <= middle_y):
+        return
+    first, last, top = water.shell_start[o], water.shell_start[o + 1], pool[k, TOP]
+    weight, at_middle, is_wet = pool[k, DENSITY] * g * area_of(water, o, state), 0.0, False
+    for e in range(first, last):
         a, b = water.shell_a[e], water.shell_b[e]
-        area += position[a, 0] * position[b, 1] - position[b, 0] * position[a, 1]
-        highest = max(highest, position[a, 1])
-    weight = water.pool[k, DENSITY] * g * (1.0 if area >= 0.0 else -1.0)
-    top = min(water.pool[k, TOP], highest)
-    for e in range(water.shell_start[o], water.shell_start[o + 1]):
-        _press_edge(water, k, water.shell_a[e], water.shell_b[e], position, weight, top)
+        at_c, at_a, at_b = wet_shares(top - middle_y, top - y[a, 1], top - y[b, 1])
+        part = weight * water.shell_share[e]
+        load[a, FY] += part * at_a
+        load[b, FY] += part * at_b
+        at_middle += part * at_c
+        is_wet = is_wet or at_c + at_a + at_b > 0.0
+    if is_wet:
+        for e in range(first, last):
+            load[water.shell_a[e], FY] += at_middle / (last - first)
+            water.wet[water.shell_a[e]] = True
 
 
 @inner_kernel
@@ -195,7 +205,7 @@ def _drag_edge(water: Water, k: int, i: int, state: State, start: FloatRows) -> 
     # The resistance of what is wet of it is shared by its ends as its length is.
     pool, x, s = water.pool, state.position, water.edge[i]
     a, b = state.particle_a[s], state.particle_b[s]
-    s0, s1 = wet_part(water, k, a, b, x)
+    s0, s1 = _wet_part(water, k, a, b, x)
     dx, dy = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1]
     length = math.sqrt(dx * dx + dy * dy)
     if not (s0 < s1 and length > 0.0):
@@ -260,7 +270,7 @@ def _load(water: Water, state: State, start: FloatRows, g: float, early: float) 
         for i in range(water.triangle.shape[0]):
             _lift_triangle(water, k, i, state, g)
         for o in range(water.shell_start.shape[0] - 1):
-            _press_shell(water, k, o, state.position, g)
+            _lift_shell(water, k, o, state, g)
         for i in range(water.edge.shape[0]):
             _drag_edge(water, k, i, state, start)
         for i in range(water.disc.shape[0]):
@@ -281,12 +291,16 @@ def _push(water: Water, state: State, start: FloatRows, label: Slots, h: float) 
         dx, dy = per * (yy * rx - xy * ry), per * (xx * ry - xy * rx)
         velocity[p, 0] += dx + h * load[p, FX] / mass[p]
         velocity[p, 1] += dy + h * load[p, FY] / mass[p]
+        # The same of the motion of the body as a whole. That of its parts beside each other is theirs alone.
         g = label[p]
-        if g >= 0:
+        if g >= 0 and body[g, MASS] > 0.0:
+            u, v = body[g, PX] / body[g, MASS], body[g, PY] / body[g, MASS]
+            rx = load[p, DX] - load[p, RXX] * u - load[p, RXY] * v
+            ry = load[p, DY] - load[p, RXY] * u - load[p, RYY] * v
             body[g, DRAG_X] += rx
             body[g, DRAG_Y] += ry
-            body[g, TOOK_X] += mass[p] * dx
-            body[g, TOOK_Y] += mass[p] * dy
+            body[g, TOOK_X] += mass[p] * per * (yy * rx - xy * ry)
+            body[g, TOOK_Y] += mass[p] * per * (xx * ry - xy * rx)
 
 
 @inner_kernel
@@ -319,7 +333,7 @@ def _find_held(water: Water, state: State, label: Slots, kept: KeptContacts, cou
 
 
 @inner_kernel
-def _sum_bodies(water: Water, state: State, label: Slots, numbers: Floats) -> None:
+def _sum_bodies(water: Water, state: State, start: FloatRows, label: Slots, numbers: Floats) -> None:
     load, body, mass = water.load, water.body, state.mass
     for p in range(body.shape[0]):
         for column in range(HELD):
@@ -331,6 +345,8 @@ def _sum_bodies(water: Water, state: State, label: Slots, numbers: Floats) -> No
             continue
         weight = mass[p] * state.gravity_scale[p]
         body[g, MASS] += mass[p]
+        body[g, PX] += mass[p] * start[p, 0]
+        body[g, PY] += mass[p] * start[p, 1]
         body[g, NET_X] += load[p, FX] + weight * numbers[GRAVITY_X]
         body[g, NET_Y] += load[p, FY] + weight * numbers[GRAVITY_Y]
         body[g, BXX] += load[p, RXX]
@@ -355,18 +371,24 @@ def _sum_bodies(water: Water, state: State, label: Slots, numbers: Floats) -> No
 @inner_kernel
 def _slow_bodies(water: Water, state: State, label: Slots, h: float) -> None:
     # What nothing holds moves as one, v += (m + h D)^-1 h (F - D (start - flow)) of all of it. Its particles get the
-    # same change, so that no spring is strained.
+    # same change, so that no spring is strained. Of what is held that is done to what F adds beyond HARDEST_LIFT.
     body = water.body
     for g in range(body.shape[0]):
         m = body[g, MASS]
         body[g, CX], body[g, CY] = 0.0, 0.0
-        if not (body[g, BXX] + body[g, BYY] > 0.0 and m > 0.0) or body[g, HELD] > 0.0:
+        if not (body[g, BXX] + body[g, BYY] > 0.0 and m > 0.0):
             continue
+        share, ax, ay = 1.0, h * body[g, NET_X] / m, h * body[g, NET_Y] / m
+        fx, fy, tx, ty = body[g, DRAG_X], body[g, DRAG_Y], body[g, TOOK_X] / m, body[g, TOOK_Y] / m
+        if body[g, HELD] > 0.0:
+            added = math.sqrt(ax * ax + ay * ay)
+            share = 1.0 - HARDEST_LIFT / added if added > HARDEST_LIFT else 0.0
+            fx, fy, tx, ty = 0.0, 0.0, 0.0, 0.0
+        fx, fy = body[g, NET_X] + fx, body[g, NET_Y] + fy
         xx, xy, yy = m + h * body[g, BXX], h * body[g, BXY], m + h * body[g, BYY]
-        fx, fy = body[g, NET_X] + body[g, DRAG_X], body[g, NET_Y] + body[g, DRAG_Y]
         per = h / (xx * yy - xy * xy)
-        body[g, CX] = per * (yy * fx - xy * fy) - (h * body[g, NET_X] + body[g, TOOK_X]) / m
-        body[g, CY] = per * (xx * fy - xy * fx) - (h * body[g, NET_Y] + body[g, TOOK_Y]) / m
+        body[g, CX] = share * (per * (yy * fx - xy * fy) - ax - tx)
+        body[g, CY] = share * (per * (xx * fy - xy * fx) - ay - ty)
     for p in range(body.shape[0]):
         if label[p] >= 0 and state.particle_active[p] and state.inverse_mass[p] > 0.0:
             state.velocity[p, 0] += body[label[p], CX]
@@ -386,12 +408,12 @@ def push_by_water(
     # Gravity that points upwards makes no pressure. What nothing holds moves as in free_contacts.py.
     g, early = max(0.0, -numbers[GRAVITY_Y]), 0.5 * (h - h / small_steps(h)) if touches else 0.0
     _load(water, state, start, g, early)
-    _sum_bodies(water, state, label, numbers)
+    _sum_bodies(water, state, start, label, numbers)
     _find_held(water, state, label, kept, count)
     for k in range(water.pool.shape[0]):
         for i in range(water.triangle.shape[0]):
             _lift_passing(water, k, i, state, start, label, g, h)
-    _sum_bodies(water, state, label, numbers)
+    _sum_bodies(water, state, start, label, numbers)
     _push(water, state, start, label, h)
     _slow_bodies(water, state, label, h)
     for k in range(water.pool.shape[0]):

@@ -42,10 +42,8 @@ class Trial:
 
     def holds_for(self, level: Level) -> bool:
         """Whether its results are those of a level: only what runs has to be the same."""
-        parts = (
-            "bodies", "particles", "springs", "welds", "materials", "settings", "contacts", "walls", "terrain", "zones",
-            "counters", "rules",
-        )  # fmt: skip
+        things = ("bodies", "particles", "springs", "welds", "walls", "terrain", "zones", "counters", "rules")
+        parts = (*things, "materials", "settings", "contacts")
         return all(getattr(level, part) is getattr(self.level, part) for part in parts)
 
     def wait(self) -> None:

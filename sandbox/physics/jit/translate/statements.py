@@ -307,7 +307,8 @@ class Body(Expressions):
         name = spelled(target.id)
         if isinstance(statement.iter, ast.Tuple):
             items = ", ".join(f"int64_t({self.scalar(item).text})" for item in statement.iter.elts)
-            return [f"{indent}for (const int64_t {name} : {{{items}}}) {{", *body, f"{indent}}}"]
+            head = f"for (const int64_t {name}_of[] = {{{items}}}; const int64_t {name} : {name}_of) {{"
+            return [f"{indent}{head}", *body, f"{indent}}}"]
         if not isinstance(statement.iter, ast.Call) or ast.unparse(statement.iter.func) != "range":
             raise self.refuse(statement, "a loop runs over a range, or over a tuple that is written there")
         first, last, step = self._range(statement.iter)
