@@ -37,6 +37,9 @@ ARGUMENTS = {
     "set_gravity": ("gravity", "duration"),
     "set_air": ("wind", "drag", "duration"),
     "set_drive": ("part", "value"),
+    "firm_springs": ("springs", "constraints", "stiffness", "damping", "lowest_mode", "duration"),
+    "firm_constraints": ("springs", "constraints", "stiffness", "damping", "lowest_mode", "duration"),
+    "hold_key": ("key",),
     "push": ("place", "impulse", "outward", "radius"),
     "shake": ("acceleration",),
 }

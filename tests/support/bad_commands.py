@@ -41,12 +41,9 @@ POINTS = (
     None, "ab", np.zeros((2, 2)), NAN,
 )  # fmt: skip
 FAR_LISTS = ([0, 13], [-1], [10**30], 0, None, "01", NAN, np.array([0.0]))
-FIRMNESSES = (
-    *((each, 0.5, 0.1) for each in SHARES), *((0.5, each, 0.1) for each in SHARES),
-    *((0.5, 0.5, each) for each in NOT_BELOW_0), (0.5, 0.5), 0.5, None,
-)  # fmt: skip
 KEYS = (1, 2, *_BEYOND, *_NO_WHOLE_NUMBER)
 DURATIONS = (-1, 1_000_001, 10**30, *_NO_WHOLE_NUMBER)
+FIRMNESS = (FAR_LISTS, FAR_LISTS, (*SHARES, None), (*SHARES, None), NOT_BELOW_0, DURATIONS)
 _GIVEN_POINTS, _GIVEN_NUMBERS = (tuple(each for each in values if each is not None) for values in (POINTS, NOT_BELOW_0))
 # Of every kind: the method of World, or a function of one, arguments that are right, and for each of these what is
 # wrong in its place.
@@ -66,8 +63,8 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "set_gravity": ("set_gravity", ((1.0, 0.0), 3), (POINTS, DURATIONS)),
     "set_air": ("set_air", ((1.0, 0.0), 0.5, 3), (_GIVEN_POINTS, _GIVEN_NUMBERS, DURATIONS)),
     "set_drive": ("drive", (0, 0.5), (PARTS, DRIVES)),
-    "firm_springs": (set_rows, ([0, 1], [], (0.5, 0.5, 0.1), 3), (FAR_LISTS, FAR_LISTS, FIRMNESSES, DURATIONS)),
-    "firm_constraints": (set_rows, ([], [], (0.5, 0.5, 0.1), 3), (FAR_LISTS, FAR_LISTS, FIRMNESSES, DURATIONS)),
+    "firm_springs": (set_rows, ([0, 1], [], 0.5, 0.5, 0.1, 3), FIRMNESS),
+    "firm_constraints": (set_rows, ([], [], 0.5, 0.5, 0.1, 3), FIRMNESS),
     "hold_key": ("hold_key", (0, True), (KEYS,)),
     "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),
     "shake": ("shake", ((1.0, 0.0),), (POINTS,)),

@@ -188,11 +188,7 @@ class Renderer:
                     self._draw_treads(self._ground_treads, at, frame, camera, springs)
             with profile.part("things"):
                 if self.level is not None:
-                    if overlay.earlier is not None:
-                        self._shade = self._shade or Shade(self.level)
-                        self._shade.draw(painter, overlay.earlier, camera, self.theme, frame.tiles, self.scale)
-                    drawables = self._drawables_of(frame, current, particles, springs)
-                    self._draw_things(drawables, frame, camera)
+                    self._draw_things_of(self.level, frame, current, camera, overlay)
                 self._draw_treads(self._body_treads, pixels, frame, camera, springs)
             self._draw_water(frame, current, camera)
             with profile.part("marks"):
@@ -210,6 +206,14 @@ class Renderer:
             self._draw_lit(Canvas(surface, self.compiled), pixels, current, overlay.lit)
         self._draw_overlay(Canvas(surface, self.compiled), camera, pixels, overlay)
         self._still.keep(surface, place)
+
+    def _draw_things_of(self, level: Level, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
+        """What is in a level, and before it the shade of an earlier run."""
+        if overlay.earlier is not None:
+            self._shade = self._shade or Shade(level)
+            self._shade.draw(self._painter, overlay.earlier, camera, self.theme, frame.tiles, self.scale)
+        drawables = self._drawables_of(frame, current, shown_particles(current), shown_springs(current))
+        self._draw_things(drawables, frame, camera)
 
     def _follow(self, frame: Frame, current: Snapshot, camera: Camera, overlay: Overlay) -> None:
         """Note what this picture is drawn from, so that one of the same need not be drawn again."""

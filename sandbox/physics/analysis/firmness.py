@@ -171,7 +171,7 @@ def give_firmness(world: World, body: FirmBody, stiffness: float, damping: float
     """Give a body of a world, or a piece of one, Cs and Cd as `set_firmness` does. Raises ValueError."""
     stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
     damping = arguments.number("damping", damping, 0.0, 1.0)
-    set_rows(world, body.springs, body.constraints, values_of(body, stiffness, damping), duration)
+    set_rows(world, body.springs, body.constraints, *values_of(body, stiffness, damping), duration)
 
 
 def values_of(body: FirmBody, stiffness: float, damping: float) -> tuple[float, float, float]:

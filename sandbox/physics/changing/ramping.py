@@ -1,6 +1,5 @@
 """Ramping: begins ramps (ramps.py) of the bodies of a world, and of everything in it."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -15,11 +14,16 @@ from sandbox.physics.world import World
 
 # Cs and Cd from which what is made whole firms up: soft, and so damped that it creeps to its form rather than leaps.
 SOFT_STIFFNESS, SOFT_DAMPING = 0.05, 0.9
-_HIGHEST = (("stiffness", 1.0), ("damping", 1.0), ("lowest_mode", math.inf))
 
 
 def set_rows(
-    world: World, springs: Slots, constraints: Slots, values: tuple[float, float, float], duration: int = 0
+    world: World,
+    springs: Slots,
+    constraints: Slots,
+    stiffness: float,
+    damping: float,
+    lowest_mode: float,
+    duration: int = 0,
 ) -> None:
     """Set Cs, Cd and lowest mode of springs and constraints of a body, to be in force in so many ticks; 0: at once.
 
@@ -27,9 +31,12 @@ def set_rows(
     """
     springs = arguments.slots("springs", springs, arguments.SPRINGS, world.spring_count)
     constraints = arguments.slots("constraints", constraints, arguments.CONSTRAINTS, world.constraint_count)
-    given: dict[str, Any] = {"duration": arguments.ticks("duration", duration)}
-    for (name, highest), value in zip(_HIGHEST, arguments.listed("values", values), strict=True):
-        given[name] = arguments.number(name, value, 0.0, highest)
+    given: dict[str, Any] = {
+        "stiffness": arguments.number("stiffness", stiffness, 0.0, 1.0),
+        "damping": arguments.number("damping", damping, 0.0, 1.0),
+        "lowest_mode": arguments.number("lowest_mode", lowest_mode, 0.0),
+        "duration": arguments.ticks("duration", duration),
+    }
     pointer = lend(state_of(world), good_of(world), np.array(world.settings.numbers))
     carry_out(pointer, "firm_springs", given | {"springs": springs}, world)
     carry_out(pointer, "firm_constraints", given | {"constraints": constraints}, world)
