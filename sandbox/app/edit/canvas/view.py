@@ -10,11 +10,13 @@ from sandbox.app.draw.camera import Box, Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.canvas import Part, ScenePainter, SelectionMasks, moved_by
 from sandbox.app.edit.canvas.edited_terrain import Ground
+from sandbox.app.edit.canvas.edited_zones import Areas, draw_zone_names
 from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_box, draw_cursor, draw_label, draw_spot
 from sandbox.app.edit.canvas.pointer import SelectTool
+from sandbox.app.edit.canvas.rule_links import draw_links, rules_of
 from sandbox.app.edit.canvas.trails import draw_attempts, draw_trails
-from sandbox.editor.items import Item, Selection
+from sandbox.editor.items import Item, Selection, keys
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.scene import Scene, make_scene
 
@@ -36,6 +38,8 @@ class View:
         # The box [m] of what a panel shows, and the items that are pointed at in it.
         self.shown_box: Box | None = None
         self.pointed: Selection = frozenset()
+        # The rule that a panel shows, by its index.
+        self.shown_rule: int | None = None
         # Of the values that are tried the one whose way stands out.
         self.chosen_attempt: int | None = None
 
@@ -81,6 +85,7 @@ class View:
             scene = moved_by(scene, chosen, matrix)
             self._painter.paint_moved(surface, screen.camera, scene, chosen)
         self._marks.draw(surface, screen.camera, scene, chosen)
+        draw_zone_names(surface, screen.ui, screen.camera, Areas(scene, ~chosen.hidden_items))
 
     def _draw_forecast(self, surface: pygame.Surface) -> None:
         scene, position = self._screen.scene, self._screen.watch.hanging
@@ -107,6 +112,7 @@ class View:
         walls = ghost.level.walls
         if walls is not None and walls is not screen.document.level.walls:
             self._painter.paint_walls(surface, screen.camera, walls.box, ACCENT)
+        self._painter.paint_zones(surface, screen.camera, Areas(drawn, drawn.chosen(new), ACCENT))
         self._painter.paint_ground(surface, screen.camera, Ground(drawn, drawn.chosen(new), ghost=True))
         self._painter.paint_ghost(surface, screen.camera, Part(drawn, drawn.particles_of(new), drawn.springs_of(new)))
 
@@ -128,6 +134,10 @@ class View:
             self._painter.paint_hovered(surface, screen.camera, screen.scene, pointed)
         if self.shown_box is not None:
             draw_box(surface, screen.camera, self.shown_box)
+        if tool.transform is None:
+            zones = frozenset(str(key) for key in keys(screen.document.selection, "zone"))
+            rules = rules_of(screen.scene, self.shown_rule, zones)
+            draw_links(surface, screen.camera, screen.scene, rules, screen.scale)
         tool.draw(surface)
         named = self._name_of(under)
         if named and screen.pointer is not None and not tool.measure:
