@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sandbox.editor.items import Item, Kind, Selection, keys
+from sandbox.editor.items import PARTS, Item, Kind, Selection, keys
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.messages import worded
 from sandbox.level.document.model import ContactsDef, Level, NissenMaterial, TerrainDef, WallsDef
@@ -72,10 +72,8 @@ def select(document: Document, selection: Selection) -> Document:
     """Select those of the items that the level has."""
     level = document.level
     known: dict[Kind, Sequence[str | int]] = {
-        "body": [body.id for body in level.bodies],
-        "particle": [particle.id for particle in level.particles],
-        "spring": range(len(level.springs)),
-        "terrain": [piece.id for piece in level.terrain],
+        kind: range(len(level.springs)) if kind == "spring" else [part.id for part in getattr(level, parts)]
+        for kind, parts in PARTS.items()
     }
     if sum(sum(map(keys(selection, kind).__contains__, known[kind])) for kind in known) < len(selection):
         selection = selection.intersection(Item(kind, key) for kind in known for key in known[kind])
@@ -106,12 +104,13 @@ def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
             rules=(),
             checks=(),
             terrain=(),
+            zones=(),
         )
     )
 
 
 def check_terrain(level: Level) -> None:
-    """Raise EditError where the terrain of a level, were it alone, could not be saved."""
+    """Raise EditError where the terrain and zones of a level, were they alone, could not be saved."""
     checked(replaced(level, bodies=(), particles=(), springs=(), welds=(), counters=(), rules=(), checks=()))
 
 
@@ -135,7 +134,7 @@ def all_validated(definitions: Sequence[Described]) -> tuple[Described, ...]:
         # An object inside would be taken over unseen.
         rows.append({name: dict(value.__dict__) if isinstance(value, Description) else value for name, value in fields})
     first = rows[0] if rows else {}
-    marks = {"bodies": "type", "terrain": "polyline", "particles": "id", "springs": "a"}
+    marks = {"bodies": "type", "terrain": "polyline", "zones": "circle", "particles": "id", "springs": "a"}
     part = next((part for part, mark in marks.items() if mark in first), "springs")
     try:
         level = Level.model_validate({"format": FORMAT, "version": VERSION, "name": "-", part: tuple(rows)})

@@ -4,16 +4,20 @@ import functools
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, NamedTuple
 
-from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef, ZoneDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
 
-Kind = Literal["body", "particle", "spring", "terrain"]
-Definition = AnyBody | ParticleDef | SpringDef | TerrainDef
+Kind = Literal["body", "particle", "spring", "terrain", "zone"]
+Definition = AnyBody | ParticleDef | SpringDef | TerrainDef | ZoneDef
+# The part of a level that holds the items of each kind.
+PARTS: dict[Kind, str] = {
+    "body": "bodies", "particle": "particles", "spring": "springs", "terrain": "terrain", "zone": "zones",
+}  # fmt: skip
 
 
 class Item(NamedTuple):
-    """A body, loose particle, loose spring or piece of terrain; key: its id, of a spring its index in `springs`."""
+    """A body, loose particle, loose spring, piece of terrain or zone; key: its id, of a spring its index."""
 
     kind: Kind
     key: str | int
@@ -23,18 +27,24 @@ Selection = frozenset[Item]
 
 
 def items_of(level: Level) -> tuple[Item, ...]:
-    """Every item of a level: bodies, loose particles, loose springs, terrain, each in file order."""
+    """Every item of a level: bodies, loose particles, loose springs, terrain, zones, each in file order."""
     return (
         *(Item("body", body.id) for body in level.bodies),
         *(Item("particle", particle.id) for particle in level.particles),
         *(Item("spring", index) for index in range(len(level.springs))),
         *(Item("terrain", piece.id) for piece in level.terrain),
+        *(Item("zone", zone.id) for zone in level.zones),
     )
 
 
 def definitions(level: Level) -> tuple[Definition, ...]:
     """What a level says of every item, in the order of `items_of`."""
-    return (*level.bodies, *level.particles, *level.springs, *level.terrain)
+    return (*level.bodies, *level.particles, *level.springs, *level.terrain, *level.zones)
+
+
+def group_of(part: Definition) -> str | None:
+    """The group that something is in; zones are in none."""
+    return None if isinstance(part, ZoneDef) else part.group
 
 
 def keys(selection: Selection, kind: Kind) -> frozenset[str | int]:
@@ -46,7 +56,7 @@ def keys(selection: Selection, kind: Kind) -> frozenset[str | int]:
 # comparing it with an equal one, hence the identity, which is compared first.
 @functools.lru_cache(maxsize=4)
 def _keys(_identity: int, selection: Selection) -> dict[Kind, frozenset[str | int]]:
-    found: dict[Kind, list[str | int]] = {"body": [], "particle": [], "spring": [], "terrain": []}
+    found: dict[Kind, list[str | int]] = {kind: [] for kind in PARTS}
     add = {kind: keys.append for kind, keys in found.items()}
     for kind, key in selection:
         add[kind](key)
@@ -81,6 +91,12 @@ def chosen_terrain(level: Level, selection: Selection) -> list[TerrainDef]:
     return [piece for piece in level.terrain if piece.id in wanted]
 
 
+def chosen_zones(level: Level, selection: Selection) -> list[ZoneDef]:
+    """The selected zones in file order."""
+    wanted = keys(selection, "zone")
+    return [zone for zone in level.zones if zone.id in wanted]
+
+
 def chosen_definitions(level: Level, selection: Selection) -> list[Definition]:
     """What the level says of the selected items, by kind and in file order."""
     return [
@@ -88,6 +104,7 @@ def chosen_definitions(level: Level, selection: Selection) -> list[Definition]:
         *chosen_particles(level, selection),
         *chosen_springs(level, selection),
         *chosen_terrain(level, selection),
+        *chosen_zones(level, selection),
     ]
 
 
@@ -97,19 +114,21 @@ def chosen_items(level: Level, selection: Selection) -> dict[Item, Definition]:
     found |= {Item("particle", particle.id): particle for particle in chosen_particles(level, selection)}
     springs = keys(selection, "spring")
     found |= {Item("spring", k): spring for k, spring in enumerate(level.springs) if k in springs}
-    return found | {Item("terrain", piece.id): piece for piece in chosen_terrain(level, selection)}
+    found |= {Item("terrain", piece.id): piece for piece in chosen_terrain(level, selection)}
+    return found | {Item("zone", zone.id): zone for zone in chosen_zones(level, selection)}
 
 
 def changed(level: Level, selection: Selection, change: Callable[[Definition], Definition]) -> Level:
     """The level with every selected item changed; what is not changed stays the same object."""
     bodies, particles, springs = (keys(selection, kind) for kind in ("body", "particle", "spring"))
-    terrain = keys(selection, "terrain")
+    terrain, zones = keys(selection, "terrain"), keys(selection, "zone")
     return with_same(
         level,
         bodies=tuple([change(body) if body.id in bodies else body for body in level.bodies]),
         particles=tuple([change(part) if part.id in particles else part for part in level.particles]),
         springs=tuple([change(part) if k in springs else part for k, part in enumerate(level.springs)]),
         terrain=tuple([change(part) if part.id in terrain else part for part in level.terrain]),
+        zones=tuple([change(part) if part.id in zones else part for part in level.zones]),
     )
 
 
@@ -119,13 +138,15 @@ def exchanged(
     bodies: Iterable[AnyBody],
     particles: Iterable[ParticleDef],
     terrain: Iterable[TerrainDef],
+    zones: Iterable[ZoneDef],
 ) -> Level:
-    """The level with other bodies, loose particles and terrain, in file order, for the selected ones."""
+    """The level with other bodies, loose particles, terrain and zones, in file order, for the selected ones."""
     return with_same(
         level,
         bodies=_exchanged(level.bodies, keys(selection, "body"), list(bodies)),
         particles=_exchanged(level.particles, keys(selection, "particle"), list(particles)),
         terrain=_exchanged(level.terrain, keys(selection, "terrain"), list(terrain)),
+        zones=_exchanged(level.zones, keys(selection, "zone"), list(zones)),
     )
 
 

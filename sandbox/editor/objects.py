@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 from sandbox.editor.document import Document
-from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, definitions, items_of
-from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, definitions, group_of, items_of
+from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef, ZoneDef
 from sandbox.level.kinds.body_def import BodyDef
 
 # Of more things than these nobody asks whether they are one group.
@@ -33,14 +33,14 @@ def object_lines(level: Level, wanted: str = "") -> list[ObjectLine]:
     groups: dict[str, list[ObjectLine]] = {}
     order: list[ObjectLine | str] = []
     for item, part in zip(items_of(level), definitions(level), strict=True):
-        line = ObjectLine(name_of(level, item), _kind(part), frozenset([item]), _material(part), part.group)
-        if part.group is None:
+        line = ObjectLine(name_of(level, item), _kind(part), frozenset([item]), _material(part), group_of(part))
+        if line.group is None:
             order.append(line)
             continue
-        if part.group not in groups:
-            groups[part.group] = []
-            order.append(part.group)
-        groups[part.group].append(line)
+        if line.group not in groups:
+            groups[line.group] = []
+            order.append(line.group)
+        groups[line.group].append(line)
     words = wanted.casefold().split()
     found: list[ObjectLine] = []
     for entry in order:
@@ -69,7 +69,7 @@ def called_together(document: Document) -> str:
         return f"{len(selection):,} things" if selection else ""
     if len(selection) == 1:
         return name_of(level, next(iter(selection)))
-    groups = {part.group for part in chosen_definitions(level, selection)}
+    groups = {group_of(part) for part in chosen_definitions(level, selection)}
     group = groups.pop() if len(groups) == 1 else None
     return group if group is not None else f"{len(selection)} things"
 
@@ -81,6 +81,8 @@ def _kind(part: Definition) -> str:
         return "pinned particle" if part.pinned else "particle"
     if isinstance(part, TerrainDef):
         return "terrain" if part.polygon is not None else "line of terrain"
+    if isinstance(part, ZoneDef):
+        return "zone" if part.water is None else "water"
     driven = "muscle" if part.drive is not None else "hydraulic" if part.hydraulic is not None else "spring"
     return driven
 

@@ -43,7 +43,7 @@ def spring_at(scene: Scene, point: Point, within: float, skip: Selection = froze
 
 
 def edge_at(scene: Scene, point: Point, within: float, skip: Selection = frozenset()) -> int | None:
-    """Index of the edge of terrain nearest to point [m], at most `within` [m] away and not of `skip`; None = none."""
+    """Index of the edge nearest to point [m], at most `within` [m] away and not of `skip`; None = none."""
     a, b = scene.corner[scene.edge[:, 0]], scene.corner[scene.edge[:, 1]]
     return _nearest_segment((a[:, 0], a[:, 1], b[:, 0], b[:, 1]), scene.chosen(skip)[scene.edge_item], point, within)
 
@@ -75,7 +75,7 @@ def _nearest_segment(ends: Ends, left_out: NDArray[np.bool_], point: Point, with
 
 
 def item_at(scene: Scene, point: Point, within: float, skip: Selection = frozenset()) -> Item | None:
-    """The item at point [m]: particles count before springs, then edges of terrain, insides of bodies and of terrain.
+    """The item at point [m]: particles count before springs, then edges, insides of bodies, and of terrain and zones.
 
     within [m]: how far beside a particle, spring or edge still counts. skip: items that do not count. A point is inside
     a body that has springs to its left and right, above and below; of several the one drawn last.
@@ -110,15 +110,15 @@ def items_at(scene: Scene, point: Point, within: float, skip: Selection, most: i
 
 
 def ground_around(scene: Scene, point: Point) -> list[int]:
-    """Indices of the solid pieces of terrain that a point [m] lies in."""
+    """Indices of the solid pieces of terrain and of the zones that a point [m] lies in."""
     a, b = scene.corner[scene.edge[:, 0]], scene.corner[scene.edge[:, 1]]
     crossing = np.flatnonzero((a[:, 1] > point[1]) != (b[:, 1] > point[1]))
     a, b = a[crossing], b[crossing]
     at = a[:, 0] + (b[:, 0] - a[:, 0]) * ((point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]))
     turns = np.bincount(scene.edge_item[crossing[at > point[0]]], minlength=len(scene.items))
-    first = len(scene.items) - len(scene.level.terrain)
+    first = scene.terrain_start
     solid = [first + k for k, piece in enumerate(scene.level.terrain) if piece.polygon is not None]
-    return [index for index in solid if turns[index] % 2]
+    return [index for index in (*solid, *range(scene.zone_start, len(scene.items))) if turns[index] % 2]
 
 
 def _ends(scene: Scene) -> Ends:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.editor.items import Item, Selection, items_of
+from sandbox.editor.zone_outline import outline_of
 from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.limits import BODY_RADIUS, DEFAULT_MATERIAL
 from sandbox.level.kinds.bodies import AnyBody, expansion
@@ -60,7 +61,7 @@ class _Links(NamedTuple):
 
 
 class _Ground(NamedTuple):
-    """Arrays of the terrain: corner [m] (c, 2), counts (t,), edge (e, 2) of corners, edge_counts (t,)."""
+    """Arrays of terrain, then of zones: corner [m] (c, 2), counts (t,), edge (e, 2) of corners, edge_counts (t,)."""
 
     corner: Floats
     counts: list[int]
@@ -103,6 +104,7 @@ class _Names:
             and (level.bodies is old.bodies or _alike(level.bodies, old.bodies))
             and (level.particles is old.particles or [part.id for part in level.particles] == self._particle_ids)
             and [piece.id for piece in level.terrain] == [piece.id for piece in old.terrain]
+            and [zone.id for zone in level.zones] == [zone.id for zone in old.zones]
         )
 
     @cached_property
@@ -135,7 +137,7 @@ class Scene:
     (n,), whether it or one it is welded to is held; particle_item (n,), spring_item (m,): indices into items;
     particle_a, particle_b (m,): particles; rest_length [m] (m,); number (m,): the k of the spring's name; material
     (m,): index into materials; welds (w, 2): particles; first_of_weld (n,): the first particle of each one's weld.
-    corner [m] (c, 2) of terrain, edge (e, 2): its ends; corner_item (c,), edge_item (e,): indices into items.
+    corner [m] (c, 2) of terrain and zones, edge (e, 2): its ends; corner_item (c,), edge_item (e,): indices into items.
     """
 
     level: Level
@@ -169,6 +171,16 @@ class Scene:
     @cached_property
     def _firsts(self) -> Slots:
         return np.cumsum([0, *self.parts.names.counts])
+
+    @property
+    def zone_start(self) -> int:
+        """Index into `items` of the first zone; all that follow are zones."""
+        return len(self.items) - len(self.level.zones)
+
+    @property
+    def terrain_start(self) -> int:
+        """Index into `items` of the first piece of terrain."""
+        return self.zone_start - len(self.level.terrain)
 
     def names(self, slot: int) -> str:
         """Name of a particle: `deck.20`, of a loose one its id."""
@@ -204,7 +216,7 @@ class Scene:
         return self.chosen(selection)[self.spring_item]
 
     def bounds(self, selection: Selection | None = None) -> Box | None:
-        """Left, bottom, right, top [m] of a selection (None = all): particles, ends of springs, corners of terrain."""
+        """Left, bottom, right, top [m] of a selection (None = all): particles, ends of springs, corners of outlines."""
         points, corners = self.position, self.corner
         if selection is not None:
             corners = corners[self.chosen(selection)[self.corner_item]]
@@ -283,14 +295,16 @@ def _parts(level: Level, before: Scene | None) -> _Parts:
     names = old.names if same_names else _Names(level, items_of(level), Plan(level, bodies.made))
     same_links = same_names and level.springs is before.level.springs and level.materials is before.level.materials
     links = old.links if same_links else _links(level, names)
-    ground = old.ground if level.terrain is before.level.terrain else _ground(level)
+    is_same_ground = level.terrain is before.level.terrain and level.zones is before.level.zones
+    ground = old.ground if is_same_ground else _ground(level)
     return _Parts(bodies, origin, forms, loose, names, links, ground)
 
 
 def _ground(level: Level) -> _Ground:
-    corners = [piece.polyline or piece.polygon or () for piece in level.terrain]
+    corners = [np.array(piece.polyline or piece.polygon, dtype=np.float64) for piece in level.terrain]
+    corners += map(outline_of, level.zones)
     counts = [len(points) for points in corners]
-    closed = [piece.polygon is not None for piece in level.terrain]
+    closed = [*(piece.polygon is not None for piece in level.terrain), *(True for _ in level.zones)]
     edges = [np.zeros((0, 2), dtype=np.int64)]
     first = 0
     for count, is_closed in zip(counts, closed, strict=True):
@@ -298,7 +312,7 @@ def _ground(level: Level) -> _Ground:
         edges.append(np.stack([along, np.roll(along, -1)], axis=1)[: count if is_closed else count - 1])
         first += count
     return _Ground(
-        corner=np.array([point for points in corners for point in points], dtype=np.float64).reshape(-1, 2),
+        corner=np.concatenate([np.zeros((0, 2)), *corners]),
         counts=counts,
         edge=np.concatenate(edges),
         edge_counts=[len(edge) for edge in edges[1:]],

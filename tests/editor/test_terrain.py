@@ -73,7 +73,7 @@ def test_an_outline_that_crosses_itself_or_has_too_few_corners_is_refused():
     triangle = delete_corner(document, "ground", 0)
     with pytest.raises(EditError, match="3 corners or more"):
         delete_corner(triangle, "ground", 0)
-    with pytest.raises(EditError, match='no terrain "hill"'):
+    with pytest.raises(EditError, match='no terrain or zone "hill"'):
         delete_corner(document, "hill", 0)
     with pytest.raises(EditError, match="left and bottom"):
         set_walls(document, WallsDef(box=(1.0, 0.0, 0.0, 1.0)))

@@ -69,6 +69,8 @@ PARTICLE = Tone((226, 231, 239), (58, 68, 84))
 PINNED = Tone((94, 208, 178), (14, 124, 105))
 WELD = Tone((240, 214, 104), (168, 128, 0))
 DRIVE = Tone((255, 118, 186), (196, 32, 118))
+# Zones, which are not solid.
+ZONE = Tone((182, 148, 255), (106, 63, 192))
 TERRAIN = Tone((150, 138, 118), (134, 106, 70))
 TERRAIN_FILL = Tone((44, 42, 42), (226, 212, 188))
 

@@ -19,7 +19,6 @@ from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNI
 from sandbox.app.edit.actions import edit_actions
 from sandbox.app.edit.bar import Bar, Palette, palette_width
 from sandbox.app.edit.canvas.canvas import SNAP_STEP
-from sandbox.app.edit.canvas.edited_zones import box_of
 from sandbox.app.edit.canvas.overlay import draw_snap
 from sandbox.app.edit.canvas.picking import PickTool
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
@@ -37,6 +36,7 @@ from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import can_scale_unevenly, move
+from sandbox.editor.edits.rule_names import lost_rules
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.panel.field_info import Pick
@@ -155,10 +155,15 @@ class EditScreen:
         return True
 
     def apply(self, label: str, document: Document, merge: str | None = None) -> None:
-        """Take a document over as a step of the history."""
+        """Take a document over as a step of the history; rules that go with what they named are told of."""
         before = self.document.level
+        lost = lost_rules(before, document.level)
         self.history.apply(label, document, merge)
         self.level_changed(label, before)
+        if lost:
+            one = len(lost) == 1
+            names = f"{'Rule' if one else 'Rules'} {', '.join(lost)}"
+            self.say(f"{names} went too: what {'it names' if one else 'they name'} is gone. Undo brings it back.")
 
     def level_changed(self, label: str, before: object) -> None:
         """Let the autosave keep the level, where it is another than before."""
@@ -302,7 +307,7 @@ class EditScreen:
         """Show the level's view and the particles about it; again, or without a view: all, terrain and walls too."""
         level, scene, before = self.document.level, self.scene, (self.camera.centre, self.camera.zoom)
         if level.view is not None:
-            about = scene.bounds(frozenset(item for item in scene.items if item.kind != "terrain"))
+            about = scene.bounds(frozenset(item for item in scene.items if item.kind not in ("terrain", "zone")))
             self._fit_to(level.view, about if about is not None and _is_about(about, level.view) else None)
         if level.view is None or before == (self.camera.centre, self.camera.zoom):
             self._fit_to(level.view, self.whole_box)
@@ -310,9 +315,8 @@ class EditScreen:
     @property
     def whole_box(self) -> Box | None:
         """The box [m] around all that there is, walls and zones too; None where there is nothing."""
-        walls, zones = self.document.level.walls, self.document.level.zones
+        walls = self.document.level.walls
         boxes = [box for box in (self.scene.bounds(), None if walls is None else walls.box) if box is not None]
-        boxes += map(box_of, zones)
         return union(*boxes) if boxes else None
 
     def _fit_to(self, *boxes: Box | None) -> None:

@@ -11,10 +11,10 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import change_items
 from sandbox.editor.items import Definition, Item
 from sandbox.editor.scene import Scene, make_scene
-from sandbox.level.document.model import Level, ParticleDef, SpringDef
+from sandbox.level.document.model import Level, ParticleDef, SpringDef, WaterDef, ZoneDef
 from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef, MuscleDef
 from sandbox.level.format.limits import TORQUE_LIMIT
-from sandbox.level.format.look import BodyLook, ParticleLook
+from sandbox.level.format.look import BodyLook, ParticleLook, ZoneLook
 from sandbox.level.format.quantities import significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BendingDef, FirmnessDef
@@ -82,8 +82,10 @@ def _hydraulic(part: Definition, scene: Scene | None) -> HydraulicDef:
     return HydraulicDef(shortest=shortest, longest=longest, rate=significant(longest - shortest, DIGITS))
 
 
-def _look(part: Definition, _: Scene | None) -> BodyLook | ParticleLook:
+def _look(part: Definition, _: Scene | None) -> BodyLook | ParticleLook | ZoneLook:
     # All of it is automatic at first.
+    if isinstance(part, ZoneDef):
+        return ZoneLook()
     return ParticleLook() if isinstance(part, ParticleDef) else BodyLook()
 
 
@@ -98,4 +100,5 @@ _FIRST: dict[str, Callable[[Definition, Scene | None], Any]] = {
     "bending": partial(_same, BendingDef()),
     "firmness": partial(_same, SOFT),
     "look": _look,
+    "water": partial(_same, WaterDef()),
 }

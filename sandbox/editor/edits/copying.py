@@ -1,7 +1,7 @@
 """Copies of what is selected: as text, pasted, duplicated, in a row and in a circle.
 
-A fragment is a level of its own: selected bodies, loose particles and terrain, loose springs and welds between them,
-the materials that they are made of, and the tick rate that these are for.
+A fragment is a level of its own: selected bodies, loose particles, terrain and zones, loose springs and welds between
+them, the materials that they are made of, and the tick rate that these are for.
 """
 
 from collections.abc import Iterable
@@ -12,7 +12,16 @@ from sandbox.editor.edits.grouping import taken_groups
 from sandbox.editor.edits.moving import move, rotate
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, rewired, taken_ids
 from sandbox.editor.edits.retime import set_rate_in_pace
-from sandbox.editor.items import Item, Selection, chosen_bodies, chosen_particles, chosen_terrain, items_of, keys
+from sandbox.editor.items import (
+    Item,
+    Selection,
+    chosen_bodies,
+    chosen_particles,
+    chosen_terrain,
+    chosen_zones,
+    items_of,
+    keys,
+)
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import Level, Material, NissenMaterial, ParticleDef, Settings, SpringDef
@@ -32,13 +41,13 @@ def paste(document: Document, text: str, at: Point | None = None) -> Document:
     """Add what a text holds, a fragment or a whole level, and select it; at [m]: its middle, None = where it was.
 
     Ids become free ones; materials of the same name and values are shared, others get a name of their own. Settings
-    and checks of a whole level are not taken. Raises EditError for a text that is no level, or is too large.
+    checks and rules of a whole level are not taken. Raises EditError for a text that is no level, or is too large.
     """
     try:
         found = parse_level(text.encode("utf-8", "replace"), "what was copied")
     except LevelError as error:
         raise EditError(error.faults[0]) from None
-    if not (found.bodies or found.particles or found.terrain):
+    if not (found.bodies or found.particles or found.terrain or found.zones):
         raise EditError("the copied level is empty")
     box = make_scene(found).bounds()
     if at is not None and box is not None:
@@ -68,8 +77,8 @@ def fragment(document: Document) -> Level:
     """What is selected as a level of its own. Raises EditError where that is nothing, or springs alone."""
     level, selection = document.level, document.selection
     bodies, particles = chosen_bodies(level, selection), chosen_particles(level, selection)
-    terrain = chosen_terrain(level, selection)
-    if not (bodies or particles or terrain):
+    terrain, zones = chosen_terrain(level, selection), chosen_zones(level, selection)
+    if not (bodies or particles or terrain or zones):
         raise EditError("select something to copy; for springs, select their ends too")
     owners = keys(selection, "body") | keys(selection, "particle")
     inside = tuple(spring for spring in level.springs if _inside(owners, spring.a, spring.b))
@@ -81,6 +90,7 @@ def fragment(document: Document) -> Level:
         settings=Settings(tick_rate=level.settings.tick_rate),
         materials={name: material for name, material in level.materials.items() if name in used},
         terrain=tuple(terrain),
+        zones=tuple(zones),
         bodies=tuple(bodies),
         particles=tuple(particles),
         springs=inside,
@@ -136,7 +146,7 @@ def inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
     bodies, particles, springs, welds = (
         list(part) for part in (level.bodies, level.particles, level.springs, level.welds)
     )
-    terrain = list(level.terrain)
+    terrain, zones = list(level.terrain), list(level.zones)
     materials = dict(level.materials)
     selection: set[Item] = set()
     for copy in copies:
@@ -146,7 +156,9 @@ def inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
         selection |= {Item("particle", particle.id) for particle in copy.particles}
         selection |= {Item("spring", len(springs) + index) for index in range(len(copy.springs))}
         selection |= {Item("terrain", piece.id) for piece in copy.terrain}
+        selection |= {Item("zone", zone.id) for zone in copy.zones}
         terrain += copy.terrain
+        zones += copy.zones
         bodies += copy.bodies
         particles += copy.particles
         springs += copy.springs
@@ -155,6 +167,7 @@ def inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
         level,
         materials=materials,
         terrain=tuple(terrain),
+        zones=tuple(zones),
         bodies=tuple(bodies),
         particles=tuple(particles),
         springs=tuple(springs),
@@ -165,12 +178,12 @@ def inserted(level: Level, copies: Iterable[Level]) -> tuple[Level, Selection]:
 
 def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, Material]) -> Level:
     """A level with free ids and groups, made of `materials`; all three grow by what it brings."""
-    old = [part.id for items in (copy.bodies, copy.particles, copy.terrain) for part in items]
+    old = [part.id for items in (copy.bodies, copy.particles, copy.terrain, copy.zones) for part in items]
     names = dict(zip(old, free_ids(ids, old), strict=True))
     parts = sorted(taken_groups(copy))
     group_names: dict[str | None, str | None] = {None: None, **dict(zip(parts, free_ids(groups, parts), strict=True))}
     used = {name: _material(copy, name, materials) for name in sorted(_used([*copy.bodies, *copy.springs]))}
-    copy, _ = rewired(replaced(copy, checks=()), renamed(names))
+    copy, _ = rewired(replaced(copy, checks=(), rules=()), renamed(names))
 
     def particle(part: ParticleDef) -> ParticleDef:
         return replaced(part, id=names[part.id], group=group_names[part.group])
@@ -178,6 +191,7 @@ def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, 
     return replaced(
         copy,
         terrain=tuple(replaced(piece, id=names[piece.id], group=group_names[piece.group]) for piece in copy.terrain),
+        zones=tuple(replaced(zone, id=names[zone.id]) for zone in copy.zones),
         bodies=tuple(
             replaced(body, id=names[body.id], group=group_names[body.group], material=used[body.material])
             for body in copy.bodies

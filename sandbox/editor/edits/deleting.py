@@ -6,6 +6,7 @@ from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.collision_groups import without_lost_groups
 from sandbox.editor.edits.grouping import taken_groups
 from sandbox.editor.edits.names import free_ids, owner_of, rewired, taken_ids
+from sandbox.editor.edits.rule_names import with_springs_followed
 from sandbox.editor.items import Item, chosen_bodies, keys
 from sandbox.editor.scene import make_scene
 from sandbox.level.document.model import ParticleDef, SpringDef
@@ -20,19 +21,23 @@ SAME_LENGTH = 1e-12
 
 
 def delete(document: Document) -> Document:
-    """Delete what is selected, with the springs, welds and checks that hang on it."""
+    """Delete what is selected, with the springs, welds, checks and rules that hang on it."""
     level, selection = document.level, document.selection
     if not selection:
         return document
     bodies, particles, springs = keys(selection, "body"), keys(selection, "particle"), keys(selection, "spring")
+    terrain, zones = keys(selection, "terrain"), keys(selection, "zone")
+    kept = [index for index in range(len(level.springs)) if index not in springs]
     level = replaced(
         level,
         bodies=tuple(body for body in level.bodies if body.id not in bodies),
         particles=tuple(particle for particle in level.particles if particle.id not in particles),
-        springs=tuple(spring for index, spring in enumerate(level.springs) if index not in springs),
-        terrain=tuple(piece for piece in level.terrain if piece.id not in keys(selection, "terrain")),
+        springs=tuple(level.springs[index] for index in kept),
+        terrain=tuple(piece for piece in level.terrain if piece.id not in terrain),
+        zones=tuple(zone for zone in level.zones if zone.id not in zones),
     )
-    gone = bodies | particles
+    level = with_springs_followed(level, level.rules, kept)
+    gone = bodies | particles | terrain | zones
     if gone:
         level, _ = rewired(level, lambda reference: None if owner_of(reference) in gone else reference)
     return Document(without_lost_groups(level))
@@ -76,7 +81,7 @@ def break_apart(document: Document) -> Document:
     gone = {body.id for body in bodies}
     kept = tuple(body for body in level.bodies if body.id not in gone)
     apart = replaced(level, bodies=kept, particles=tuple(particles), springs=tuple(springs))
-    apart, _ = rewired(apart, lambda reference: names.get(reference, reference))
+    apart, _ = rewired(apart, lambda reference: names.get(reference, None if reference in gone else reference))
     selection = {Item("particle", part.id) for part in particles[len(level.particles) :]}
     selection |= {Item("spring", index) for index in range(len(level.springs), len(springs))}
     return replace(document, level=checked(apart), selection=frozenset(selection))

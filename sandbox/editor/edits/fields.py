@@ -9,14 +9,25 @@ from pydantic import ValidationError
 from sandbox.editor.document import Document, EditError, checked, first_fault, subject, validated
 from sandbox.editor.edits.names import renamed, rewired, taken_ids
 from sandbox.editor.edits.remap import rebuilt
-from sandbox.editor.items import Definition, Item, Selection, changed, chosen_bodies, chosen_particles, chosen_terrain
+from sandbox.editor.edits.rule_names import with_things_followed
+from sandbox.editor.items import (
+    Definition,
+    Item,
+    Selection,
+    changed,
+    chosen_bodies,
+    chosen_particles,
+    chosen_terrain,
+    chosen_zones,
+)
 from sandbox.editor.kinds.table import EDITING, editing
-from sandbox.level.document.model import Level, ParticleDef, TerrainDef
+from sandbox.level.document.model import Level, ParticleDef, TerrainDef, ZoneDef
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.limits import VERSION
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.rules.question import WALLS
 
 # Fields of bodies that their form does not depend on; a change of any other may take pins, cuts and references along.
 _FORMLESS = frozenset(BodyDef.model_fields).union(*(each.formless for each in EDITING.values()))
@@ -90,7 +101,7 @@ def _settled(document: Document, chosen: Selection, field: str, change: Callable
 
 
 def rename(document: Document, item: Item, new_id: str) -> Document:
-    """Give a body, loose particle or piece of terrain another id, wherever it is named. Raises EditError."""
+    """Give a body, loose particle, piece of terrain or zone another id, wherever it is named. Raises EditError."""
     level = document.level
     part = _named_part(level, item)
     if new_id == item.key:
@@ -101,7 +112,7 @@ def rename(document: Document, item: Item, new_id: str) -> Document:
         fault = str(error).partition(": id: ")[2]
         raise EditError(f"{shown(part.id)} cannot be called {shown(new_id)}: the name {fault}") from None
     if new_id in taken_ids(level):
-        raise EditError(f"{shown(new_id)} is taken; each body, particle and piece of terrain needs its own name")
+        raise EditError(f"{shown(new_id)} is taken; each body, particle, piece of terrain and zone needs its own name")
 
     def with_id(_: Definition) -> Definition:
         return new
@@ -128,7 +139,11 @@ def set_level_field(document: Document, field: str, value: Any) -> Document:
     new = getattr(_read(data, 0), field)
     if new == getattr(level, field):
         return document
-    return replace(document, level=checked(replaced(level, **{field: new})))
+    level = replaced(level, **{field: new})
+    if field == "walls" and new is None:
+        # What asks for a touch of the walls goes with them.
+        level = with_things_followed(level, lambda name: None if name == WALLS else name)
+    return replace(document, level=checked(level))
 
 
 def set_setting(document: Document, field: str, value: Any) -> Document:
@@ -159,10 +174,11 @@ def _with_field(part: Definition, field: str, value: Any) -> Definition:
     return validated(new) if len(changes) > 1 else new
 
 
-def _named_part(level: Level, item: Item) -> AnyBody | ParticleDef | TerrainDef:
+def _named_part(level: Level, item: Item) -> AnyBody | ParticleDef | TerrainDef | ZoneDef:
     selection: Selection = frozenset([item])
-    parts: list[AnyBody | ParticleDef | TerrainDef] = [
+    parts: list[AnyBody | ParticleDef | TerrainDef | ZoneDef] = [
         *chosen_bodies(level, selection), *chosen_particles(level, selection), *chosen_terrain(level, selection),
+        *chosen_zones(level, selection),
     ]  # fmt: skip
     if not parts:
         raise EditError("a loose spring has no id" if item.kind == "spring" else f"there is no {shown(item.key)}")

@@ -6,18 +6,21 @@ from typing import Literal
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_field
 from sandbox.editor.edits.names import free_ids
+from sandbox.editor.edits.rule_names import with_springs_followed
 from sandbox.editor.items import (
+    PARTS,
     Definition,
     Item,
     Selection,
     changed,
     definitions,
+    group_of,
     items_of,
     kept_springs,
     keys,
     with_same,
 )
-from sandbox.level.document.model import Level
+from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.quantities import replaced
 
@@ -26,8 +29,8 @@ Place = Literal["front", "back", "forward", "backward"]
 
 def group(document: Document, name: str = "group") -> Document:
     """Make one new group of everything selected, by a free name. Raises EditError for less than two things."""
-    if len(document.selection) < 2:
-        raise EditError("select two things or more to group them")
+    if len(document.selection) - len(keys(document.selection, "zone")) < 2:
+        raise EditError("select two things or more to group them; zones are in no group")
     return _grouped(document, free_ids(taken_groups(document.level), [name])[0])
 
 
@@ -38,7 +41,9 @@ def ungroup(document: Document) -> Document:
 
 def groups_of(level: Level) -> dict[Item, str]:
     """The names of groups by the items that are in one."""
-    return {item: part.group for item, part in zip(items_of(level), definitions(level), strict=True) if part.group}
+    return {
+        item: name for item, part in zip(items_of(level), definitions(level), strict=True) if (name := group_of(part))
+    }
 
 
 def with_groups(level: Level, selection: Selection) -> Selection:
@@ -50,14 +55,14 @@ def with_groups(level: Level, selection: Selection) -> Selection:
 
 def taken_groups(level: Level) -> set[str]:
     """Names of the groups of a level."""
-    return {part.group for part in definitions(level) if part.group is not None}
+    return {name for part in definitions(level) if (name := group_of(part)) is not None}
 
 
 def reorder(document: Document, to: Place) -> Document:
     """Draw what is selected last ("front"), first ("back"), or one place later or earlier among its kind."""
     level, selection = document.level, document.selection
     bodies, particles, springs = keys(selection, "body"), keys(selection, "particle"), keys(selection, "spring")
-    terrain = keys(selection, "terrain")
+    terrain, zones = keys(selection, "terrain"), keys(selection, "zone")
     order = _order([index in springs for index in range(len(level.springs))], to)
     level = with_same(
         level,
@@ -65,7 +70,9 @@ def reorder(document: Document, to: Place) -> Document:
         particles=tuple(level.particles[index] for index in _order([p.id in particles for p in level.particles], to)),
         springs=tuple(level.springs[index] for index in order),
         terrain=tuple(level.terrain[index] for index in _order([piece.id in terrain for piece in level.terrain], to)),
+        zones=tuple(level.zones[index] for index in _order([zone.id in zones for zone in level.zones], to)),
     )
+    level = with_springs_followed(level, level.rules, order)
     return Document(level, kept_springs(selection, order))
 
 
@@ -109,15 +116,17 @@ def _moved_beside(document: Document, other: Item, after: bool) -> Document:
     stay = [index for index, item in enumerate(items) if item not in selection]
     place = stay.index(items.index(other)) + after
     order = [*stay[:place], *moved, *stay[place:]]
-    field = {"body": "bodies", "particle": "particles", "spring": "springs", "terrain": "terrain"}[other.kind]
+    field = PARTS[other.kind]
     parts = getattr(level, field)
     level = with_same(level, **{field: tuple(parts[index] for index in order)})
-    return Document(level, kept_springs(selection, order) if other.kind == "spring" else selection)
+    if other.kind != "spring":
+        return Document(level, selection)
+    return Document(with_springs_followed(level, level.rules, order), kept_springs(selection, order))
 
 
 def _grouped(document: Document, name: str | None) -> Document:
     def regrouped(part: Definition) -> Definition:
-        return part if part.group == name else replaced(part, group=name)
+        return part if isinstance(part, ZoneDef) or part.group == name else replaced(part, group=name)
 
     level = changed(document.level, document.selection, regrouped)
     return Document(level, document.selection)

@@ -73,7 +73,7 @@ def assign(document: Document, material: str) -> Document:
     """Make every selected body and spring of a material. Raises EditError."""
     if material != DEFAULT_MATERIAL:
         _exists(document.level, material)
-    if all(item.kind in ("particle", "terrain") for item in document.selection):
+    if all(item.kind in ("particle", "terrain", "zone") for item in document.selection):
         raise EditError("select a body or a spring to give it a material")
 
     def assigned(part: Definition) -> Definition:

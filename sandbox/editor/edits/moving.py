@@ -19,6 +19,7 @@ from sandbox.editor.edits.placement import (
     without_dust,
 )
 from sandbox.editor.edits.remap import rebuilt
+from sandbox.editor.edits.zones import mapped_zone, shifted_zone
 from sandbox.editor.items import (
     Definition,
     Item,
@@ -27,7 +28,9 @@ from sandbox.editor.items import (
     chosen_bodies,
     chosen_particles,
     chosen_terrain,
+    chosen_zones,
     exchanged,
+    group_of,
     keys,
 )
 from sandbox.editor.kinds.motion import Motion, stretch
@@ -69,7 +72,9 @@ def scale_exactly(document: Document, factor: float) -> Document:
 
 def can_scale_unevenly(document: Document) -> bool:
     """Whether everything selected can be made longer without being made higher as much."""
-    return all(editing(body).can_stretch() for body in chosen_bodies(document.level, document.selection))
+    level, selection = document.level, document.selection
+    is_round = any(zone.circle is not None for zone in chosen_zones(level, selection))
+    return not is_round and all(editing(body).can_stretch() for body in chosen_bodies(level, selection))
 
 
 def mirror(document: Document, axis: Axis, centre: Point) -> Document:
@@ -107,7 +112,7 @@ def distribute(document: Document, axis: Axis) -> Document:
 
 
 def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
-    """Move each selected body, loose particle and piece of terrain by what is asked for their ids [m] (k, 2)."""
+    """Move each selected thing that has an id by what is asked for their ids [m] (k, 2)."""
     level = document.level
     bodies = chosen_bodies(level, document.selection)
     particles = chosen_particles(level, document.selection)
@@ -120,11 +125,14 @@ def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
     terrain = chosen_terrain(level, document.selection)
     ways = zip(terrain, by([piece.id for piece in terrain]).tolist(), strict=True)
     ground = [_within(without_dust(shifted(piece, dx, dy))) for piece, (dx, dy) in ways]
+    zones = chosen_zones(level, document.selection)
+    aside = zip(zones, by([zone.id for zone in zones]).tolist(), strict=True)
+    areas = all_validated([without_dust(shifted_zone(zone, dx, dy)) for zone, (dx, dy) in aside])
     check_places(moved)
     rows = zip(particles, zip(*places.T.tolist(), strict=True), strict=True)
     placed = [replaced(particle, position=place) for particle, place in rows]
-    level = exchanged(level, document.selection, moved, placed, ground)
-    if ground:
+    level = exchanged(level, document.selection, moved, placed, ground, areas)
+    if ground or areas:
         check_terrain(level)
     return replace(document, level=level)
 
@@ -161,10 +169,11 @@ def _mapped(document: Document, motion: Motion, tidy: Callable[[Any], Any] = wit
     loose, ground = chosen_particles(level, selection), chosen_terrain(level, selection)
     particles = all_validated([tidy(mapped_particle(part, motion)) for part in loose])
     terrain = all_validated([tidy(mapped_terrain(piece, motion)) for piece in ground])
-    moved = exchanged(level, selection, chosen, particles, terrain)
+    zones = all_validated([tidy(mapped_zone(zone, motion)) for zone in chosen_zones(level, selection)])
+    moved = exchanged(level, selection, chosen, particles, terrain, zones)
     if motion.factor != 1.0 or not motion.is_even:
         moved = _stretched(level, moved, _placed(selection), motion, tidy)
-    if terrain:
+    if terrain or zones:
         check_terrain(moved)
     return replace(document, level=rebuilt(moved, bodies, images) if bodies else moved)
 
@@ -213,12 +222,12 @@ def _placed(selection: Selection) -> Selection:
 
 def _boxes(document: Document) -> tuple[dict[str, int], Points, Points]:
     """What is lined up as one, by the ids in it: a group, or an item in none; lowest and highest corners [m] (k, 2)."""
-    placed = (chosen_bodies, chosen_particles, chosen_terrain)
-    chosen = [part for found in placed for part in found(document.level, document.selection)]
+    placed = (chosen_bodies, chosen_particles, chosen_terrain, chosen_zones)
+    chosen: list[Any] = [part for found in placed for part in found(document.level, document.selection)]
     numbers: dict[tuple[bool, str], int] = {}
     parts = {
-        part.id: numbers.setdefault((part.group is None, part.id if part.group is None else part.group), len(numbers))
-        for part in chosen
+        part.id: numbers.setdefault((group is None, part.id if group is None else group), len(numbers))
+        for part, group in zip(chosen, map(group_of, chosen), strict=True)
     }
     scene = make_scene(document.level)
     part_of_item = np.array([parts.get(str(item.key), 0) for item in scene.items], dtype=np.int64)

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable
 
+from sandbox.editor.edits.rule_names import with_springs_followed, with_things_followed
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import TEXT_LIMIT
 from sandbox.level.format.quantities import replaced
@@ -15,7 +16,7 @@ Rewire = Callable[[str], str | None]
 
 
 def taken_ids(level: Level) -> set[str]:
-    """Ids of a level's bodies, loose particles and terrain."""
+    """Ids of a level's bodies, loose particles, terrain and zones."""
     return {part.id for parts in (level.bodies, level.particles, level.terrain, level.zones) for part in parts}
 
 
@@ -42,7 +43,7 @@ def free_ids(taken: set[str], wanted: Iterable[str]) -> list[str]:
 
 
 def owner_of(reference: str) -> str:
-    """Id of the body or loose particle that a reference speaks of."""
+    """Id of what a reference speaks of: of a particle its body."""
     return reference.partition(".")[0]
 
 
@@ -53,12 +54,15 @@ def with_owner(reference: str, owner: str) -> str:
 
 
 def renamed(ids: dict[str, str]) -> Rewire:
-    """References to bodies and loose particles by their new ids."""
+    """References to bodies, loose particles, terrain and zones by their new ids."""
     return lambda reference: with_owner(reference, ids.get(owner_of(reference), owner_of(reference)))
 
 
 def rewired(level: Level, change: Rewire) -> tuple[Level, list[int]]:
-    """Change every reference of springs, welds, checks and the camera; also the indices of the springs that stay."""
+    """Change every reference of springs, welds, checks, rules and the camera; what refers to what is gone goes too.
+
+    Also the old indices of the springs that stay.
+    """
     springs, kept = [], []
     for index, spring in enumerate(level.springs):
         a, b = change(spring.a), change(spring.b)
@@ -79,6 +83,7 @@ def rewired(level: Level, change: Rewire) -> tuple[Level, list[int]]:
         elif None not in new.values():
             checks.append(replaced(check, **new))
     level = replaced(level, springs=tuple(springs), welds=tuple(welds), checks=tuple(checks))
+    level = with_things_followed(with_springs_followed(level, level.rules, kept), change)
     return _with_companion(level, change), kept
 
 

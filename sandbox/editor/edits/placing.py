@@ -6,6 +6,7 @@ from dataclasses import replace
 from sandbox.editor.document import Document, EditError, checked, validated
 from sandbox.editor.edits.names import free_id
 from sandbox.editor.edits.pins import pins_of, with_pins
+from sandbox.editor.edits.rule_names import with_springs_followed
 from sandbox.editor.items import Item, kept_springs, with_same
 from sandbox.editor.scene import Scene, make_scene
 from sandbox.level.document.model import Level, ParticleDef, SpringDef
@@ -128,7 +129,7 @@ def without_springs(document: Document, cut: dict[str, set[int]], gone: set[int]
     )
     kept = [index for index in range(len(level.springs)) if index not in gone]
     springs = tuple(level.springs[index] for index in kept)
-    level = with_same(level, bodies=bodies, springs=springs)
+    level = with_springs_followed(with_same(level, bodies=bodies, springs=springs), level.rules, kept)
     return Document(level, kept_springs(document.selection, kept))
 
 

@@ -52,7 +52,7 @@ def rebuilt(level: Level, bodies: Mapping[str, AnyBody], images: Mapping[str, Po
 
     def follow(reference: str) -> str:
         owner, _, part = reference.partition(".")
-        return f"{owner}.{parts[owner][part]}" if owner in parts else reference
+        return f"{owner}.{parts[owner][part]}" if part and owner in parts else reference
 
     level = replaced(level, bodies=tuple(fitted))
     return checked(rewired(level, follow)[0] if parts else level)
@@ -65,7 +65,7 @@ def _used(level: Level, bodies: Mapping[str, AnyBody]) -> dict[str, dict[str, in
 
     def note(reference: str) -> str:
         owner, _, part = reference.partition(".")
-        if owner in used:
+        if part and owner in used:
             used[owner][part] = named[owner][part] if part in named[owner] else int(part)
         return reference
 

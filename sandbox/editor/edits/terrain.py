@@ -2,32 +2,33 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import ValidationError
 
 from sandbox.editor.document import Document, EditError, check_terrain, checked, first_fault, validated
 from sandbox.editor.edits.names import free_id
 from sandbox.editor.items import Definition, Item, Selection, changed
-from sandbox.level.document.model import Level, TerrainDef, WallsDef
+from sandbox.level.document.model import Level, TerrainDef, WallsDef, ZoneDef
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.quantities import Point, replaced
 
 Corners = tuple[Point, ...]
+Outlined = TerrainDef | ZoneDef
 Form = Literal["line", "solid"]
 FORMS: tuple[Form, ...] = ("line", "solid")
 # Fewest corners of each.
 FEWEST = {"line": 2, "solid": 3}
 
 
-def form_of(piece: TerrainDef) -> Form:
-    """Whether a piece is a line with two sides or a solid shape."""
+def form_of(piece: Outlined) -> Form:
+    """Whether a piece is a line with two sides or a closed shape."""
     return "line" if piece.polygon is None else "solid"
 
 
-def corners_of(piece: TerrainDef) -> Corners:
-    """Corners [m] of a piece."""
-    return piece.polyline or piece.polygon or ()
+def corners_of(piece: Outlined) -> Corners:
+    """Corners [m] of a piece, or of a zone that is a polygon."""
+    return getattr(piece, "polyline", None) or piece.polygon or ()
 
 
 def with_corners(piece: TerrainDef, corners: Sequence[Point], form: Form | None = None) -> TerrainDef:
@@ -58,7 +59,7 @@ def set_walls(document: Document, walls: WallsDef | None) -> Document:
 
 
 def move_corner(document: Document, name: str, index: int, point: Point) -> Document:
-    """Move a corner of a piece, by its index, to a point [m]. Raises EditError."""
+    """Move a corner of a piece or a zone, by its index, to a point [m]. Raises EditError."""
     return _outlined(document, name, lambda corners: (*corners[:index], point, *corners[index + 1 :]))
 
 
@@ -72,27 +73,26 @@ def delete_corner(document: Document, name: str, index: int) -> Document:
     piece = piece_of(document.level, name)
     form = form_of(piece)
     if len(corners_of(piece)) <= FEWEST[form]:
-        what = "line" if form == "line" else "solid shape"
+        what = "line" if form == "line" else "closed shape"
         raise EditError(f"a {what} has {FEWEST[form]} corners or more; delete the whole piece instead")
     return _outlined(document, name, lambda corners: (*corners[:index], *corners[index + 1 :]))
 
 
-def piece_of(level: Level, name: str) -> TerrainDef:
-    """The piece of terrain of that id. Raises EditError."""
-    found = next((piece for piece in level.terrain if piece.id == name), None)
+def piece_of(level: Level, name: str) -> Outlined:
+    """The piece of terrain or the zone of that id. Raises EditError."""
+    pieces: tuple[Outlined, ...] = (*level.terrain, *level.zones)
+    found = next((piece for piece in pieces if piece.id == name), None)
     if found is None:
-        raise EditError(f"there is no terrain {shown(name)}")
+        raise EditError(f"there is no terrain or zone {shown(name)}")
     return found
 
 
-def outlined(document: Document, pieces: Selection, change: Callable[[TerrainDef], TerrainDef]) -> Document:
-    """Change the outlines of pieces of terrain. Raises EditError."""
+def outlined(document: Document, pieces: Selection, change: Callable[[Any], Outlined]) -> Document:
+    """Change the outlines of pieces of terrain or of zones. Raises EditError."""
 
     def with_outline(piece: Definition) -> Definition:
-        assert isinstance(piece, TerrainDef)
         new = change(piece)
-        same = (new.polyline, new.polygon) == (piece.polyline, piece.polygon)
-        return piece if same else validated(new)
+        return piece if new == piece else validated(new)
 
     level = changed(document.level, pieces, with_outline)
     if level is document.level:
@@ -102,6 +102,9 @@ def outlined(document: Document, pieces: Selection, change: Callable[[TerrainDef
 
 
 def _outlined(document: Document, name: str, change: Callable[[Corners], Corners]) -> Document:
-    piece_of(document.level, name)
-    piece = frozenset([Item("terrain", name)])
-    return outlined(document, piece, lambda piece: with_corners(piece, change(corners_of(piece))))
+    def with_change(piece: Outlined) -> Outlined:
+        corners = change(corners_of(piece))
+        return replaced(piece, polygon=corners) if isinstance(piece, ZoneDef) else with_corners(piece, corners)
+
+    item = Item("zone" if isinstance(piece_of(document.level, name), ZoneDef) else "terrain", name)
+    return outlined(document, frozenset([item]), with_change)

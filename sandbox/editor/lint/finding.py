@@ -195,7 +195,7 @@ def _caught(level: Level, scene: Scene, part: Slots) -> NDArray[np.bool_]:
     turned = _turned(level)
     low, high = _spans(scene.position[touches] @ turned, part[touches], len(part))
     corners = scene.corner @ turned
-    for index in np.unique(scene.corner_item).tolist():
+    for index in np.unique(scene.corner_item[scene.corner_item < scene.zone_start]).tolist():
         mine = corners[scene.corner_item == index]
         caught |= _is_above(low, high, mine.min(axis=0), mine.max(axis=0))
     return caught

@@ -13,24 +13,24 @@ from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.terrain import FORMS, Form, corners_of, form_of, outlined, with_corners
 from sandbox.editor.items import Definition, Item, Selection, chosen_definitions, chosen_items
 from sandbox.editor.panel.extra_values import extras_properties
-from sandbox.editor.panel.field_info import FieldInfo, fields_of
+from sandbox.editor.panel.field_info import FieldInfo, Pick, fields_of
 from sandbox.editor.panel.firmness import firmness_properties
 from sandbox.editor.panel.property import MIXED, Property, Section, part_properties, same, with_axes
 from sandbox.editor.panel.typed import number_text
-from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef
+from sandbox.level.document.model import Level, ParticleDef, SpringDef, TerrainDef, ZoneDef
 from sandbox.level.document.schema import TITLES
 from sandbox.level.format.quantities import Point
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import file_order
 from sandbox.level.kinds.jelly import SHAPES, BoxShape, CircleShape, JellyDef, PolygonShape, Shape
 
-# Fields of terrain of which one is null.
-_OUTLINES = ("polyline", "polygon")
+# Fields of terrain and of zones of which one has the outline.
+_OUTLINES = ("polyline", "polygon", "box", "circle")
 # Sections of the fields that are not of a body's form, in their order.
 _SECTIONS = {
     "Springs": ("material", "firmness", "rest_length"),
     "Drive": ("drive", "hydraulic", "motor"),
-    "Look": ("look",),
+    "Look": ("look", "water"),
     "Contact": (
         "particle_radius",
         "friction",
@@ -76,6 +76,8 @@ def properties(document: Document) -> tuple[Section, ...]:
         made = [*facts, *made] if isinstance(parts[0], SpringDef) else [*made, *facts]
     if all(isinstance(part, TerrainDef) for part in parts):
         made += _outline_properties(selection, [part for part in parts if isinstance(part, TerrainDef)])
+    if len(parts) == 1 and isinstance(parts[0], ZoneDef):
+        made += _zone_properties(selection, parts[0])
     by_section: dict[str, list[Property]] = {"": [], **{title: [] for title in _SECTIONS}}
     for each in made:
         by_section[_section_of(each.field)].append(each)
@@ -206,7 +208,7 @@ def _facts(level: Level, item: Item, part: Definition) -> list[Property]:
     facts = []
     if isinstance(part, SpringDef):
         facts.append(("number", "Number", f":{item.key}", "The spring's name in commands and recordings."))
-    elif not isinstance(part, ParticleDef | TerrainDef):
+    elif not isinstance(part, ParticleDef | TerrainDef | ZoneDef):
         particles, springs = expansion(part).count
         facts.append(
             (
@@ -245,6 +247,23 @@ def _outline_properties(selection: Selection, pieces: Sequence[TerrainDef]) -> l
         Property("form", kind, same(form_of(piece) for piece in pieces), choose),
         Property("corners", about, same(corners_of(piece) for piece in pieces), write),
     ]
+
+
+def _zone_properties(selection: Selection, zone: ZoneDef) -> list[Property]:
+    """Where a zone is."""
+    name = next(name for name in ("box", "circle", "polygon") if getattr(zone, name) is not None)
+    titles = {"box": "Box", "circle": "Circle", "polygon": "Corners"}
+    tips = {
+        "box": "Left, bottom, right, top.", "circle": "x and y of its centre, and its radius.",
+        "polygon": "Corners in order.",
+    }  # fmt: skip
+    pick: Pick = "box" if name == "box" else ""
+    about = replace(fields_of(ZoneDef)[name], title=titles[name], tooltip=tips[name], optional=False, pick=pick)
+
+    def write(document: Document, value: Any) -> Document:
+        return set_field(document, selection, name, value)
+
+    return [Property(name, about, getattr(zone, name), write)]
 
 
 # The shape of a jelly.

@@ -8,6 +8,7 @@ from sandbox.editor.tools.drawing_part import PART
 from sandbox.editor.tools.drawing_particles import PARTICLE, PIN, SPRING
 from sandbox.editor.tools.drawing_terrain import GROUND, LINE, WALLS
 from sandbox.editor.tools.drawing_wave import WAVE
+from sandbox.editor.tools.drawing_zone import ZONE
 from sandbox.editor.tools.selecting import LASSO, SELECT
 
 # The tools by the groups that a person sees, in their order.
@@ -16,6 +17,6 @@ TOOL_GROUPS = {
     "Points": (PARTICLE, SPRING, PIN),
     "Bodies": BODY_TOOLS,
     "Machines": (PART, CHASSIS, AXLE, HANGERS, WAVE),
-    "Ground": (GROUND, LINE, WALLS),
+    "Ground": (GROUND, LINE, WALLS, ZONE),
 }
 TOOLS = {tool.name: tool for tools in TOOL_GROUPS.values() for tool in tools}

@@ -112,6 +112,9 @@ def _ground(scene: Scene, point: Point, within: float, grid: float | None, skip:
     if within <= 0.0 or not len(scene.corner):
         return None
     left_out = scene.chosen(skip)
+    left_out[scene.zone_start :] = True
+    if left_out[scene.terrain_start :].all():
+        return None
     corner = np.where(left_out[scene.corner_item, None], np.inf, scene.corner)
     distance = np.hypot(*(corner - np.array(point)).T)
     nearest = int(distance.argmin())

@@ -35,7 +35,7 @@ from sandbox.app.draw.renderer import (
     THINNEST_SPRING,
 )
 from sandbox.app.edit.canvas.edited_terrain import Ground, paint_ground, paint_walls
-from sandbox.app.edit.canvas.edited_zones import paint_zone
+from sandbox.app.edit.canvas.edited_zones import Areas, paint_zones
 from sandbox.app.edit.canvas.flesh import ALPHA, Flesh
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
@@ -174,10 +174,10 @@ class ScenePainter:
         canvas = Canvas(layer, self.compiled)
         if scene.level.walls is not None:
             paint_walls(canvas, camera, scene.level.walls.box, self.scale)
-        for zone in scene.level.zones:
-            paint_zone(canvas, camera, zone, self.scale)
+        paint_zones(canvas, camera, Areas(scene, ~(items | chosen.hidden_items)), self.scale)
         paint_ground(canvas, camera, Ground(scene, ~(items | chosen.hidden_items)), self.scale)
         if not hidden:
+            paint_zones(canvas, camera, Areas(scene, items, ACCENT), self.scale)
             paint_ground(canvas, camera, Ground(scene, items, ACCENT), self.scale)
         away = springs | hanging_springs(scene, particles) if hidden else springs
         # What moves is drawn elsewhere.
@@ -201,6 +201,7 @@ class ScenePainter:
     def paint_moved(self, surface: pygame.Surface, camera: Camera, moved: Scene, chosen: SelectionMasks) -> None:
         """Draw the selection in a scene where it has been moved, and the springs of others that hang on it."""
         particles, springs, items = chosen[:3]
+        self.paint_zones(surface, camera, Areas(moved, items, ACCENT))
         self.paint_ground(surface, camera, Ground(moved, items, ACCENT))
         nobody = np.zeros(len(particles), dtype=np.bool_)
         hanging = hanging_springs(moved, particles) & ~(springs | chosen.hidden_springs)
@@ -210,6 +211,7 @@ class ScenePainter:
     def paint_hovered(self, surface: pygame.Surface, camera: Camera, scene: Scene, pointed: Selection) -> None:
         """Draw what a click would select, brighter; of large bodies only the springs."""
         particles, springs, items = SelectionMasks.of(scene, pointed)[:3]
+        self.paint_zones(surface, camera, Areas(scene, items, HOVERED))
         self.paint_ground(surface, camera, Ground(scene, items, HOVERED))
         if np.count_nonzero(springs) > PLAIN_FROM:
             particles = np.zeros(len(particles), dtype=np.bool_)
@@ -218,6 +220,10 @@ class ScenePainter:
     def paint_ground(self, surface: pygame.Surface, camera: Camera, ground: Ground) -> None:
         """Draw terrain."""
         paint_ground(Canvas(surface, self.compiled), camera, ground, self.scale)
+
+    def paint_zones(self, surface: pygame.Surface, camera: Camera, areas: Areas) -> None:
+        """Shade zones."""
+        paint_zones(Canvas(surface, self.compiled), camera, areas, self.scale)
 
     def paint_walls(self, surface: pygame.Surface, camera: Camera, box: Box, colour: Colour) -> None:
         """Draw walls."""

@@ -34,7 +34,7 @@ class Ground:
 def paint_ground(canvas: Canvas, camera: Camera, ground: Ground, scale: float) -> None:
     """Draw terrain; scale: pixels per layout unit."""
     scene = ground.scene
-    edges = scene.edge[ground.items[scene.edge_item]]
+    edges = scene.edge[ground.items[scene.edge_item] & (scene.edge_item < scene.zone_start)]
     if not len(edges):
         return
     pixels = camera.project(scene.corner)
@@ -44,8 +44,7 @@ def paint_ground(canvas: Canvas, camera: Camera, ground: Ground, scale: float) -
         fill = mixed(fill, ground.tint, TINT_SHARE)
     if ground.ghost:
         line, fill = mixed(line, BACKGROUND, GHOST_SHARE), mixed(fill, BACKGROUND, GHOST_SHARE)
-    first = len(scene.items) - len(scene.level.terrain)
-    for index, piece in enumerate(scene.level.terrain, first):
+    for index, piece in enumerate(scene.level.terrain, scene.terrain_start):
         if ground.items[index] and piece.polygon is not None:
             fill_solid(canvas.surface, pixels[scene.corner_item == index], fill)
     ends = np.ascontiguousarray(np.concatenate([pixels[edges[:, 0]], pixels[edges[:, 1]]], axis=1))

@@ -97,10 +97,12 @@ class SelectTool:
 
     @property
     def piece(self) -> Item | None:
-        """The piece of terrain that is selected, if nothing else is."""
-        selection = self._screen.document.selection
-        only = next(iter(selection)) if len(selection) == 1 else None
-        return only if only is not None and only.kind == "terrain" else None
+        """The piece of terrain, or the zone with corners of its own, that is selected, if nothing else is."""
+        document = self._screen.document
+        only = next(iter(document.selection)) if len(document.selection) == 1 else None
+        if only is None or only.kind not in ("terrain", "zone"):
+            return None
+        return only if corners_of(piece_of(document.level, str(only.key))) else None
 
     @property
     def corner(self) -> int | None:
@@ -186,10 +188,10 @@ class SelectTool:
             screen.select(combined(selection, self._taken(frozenset({item})), pick_mode(modifiers, True)))
 
     def _inside_ground(self, item: Item, point: Point) -> bool:
-        """Whether a point is amid ground, where a click selects it, but a drag begins a box: ground is large."""
+        """Whether a point is amid ground or a zone, where a click selects it, but a drag begins a box: it is large."""
         screen = self._screen
         on_edge = edge_at(screen.scene, point, screen.reach, screen.visibility.closed) is not None
-        return item.kind == "terrain" and not on_edge
+        return item.kind in ("terrain", "zone") and not on_edge
 
     def _take_corner(self, pixel: Point) -> bool:
         """Begin to drag a corner of the piece that is selected, or a new one, where a press is on one."""

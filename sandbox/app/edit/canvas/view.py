@@ -10,6 +10,7 @@ from sandbox.app.draw.camera import Box, Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.canvas import Part, ScenePainter, SelectionMasks, moved_by
 from sandbox.app.edit.canvas.edited_terrain import Ground
+from sandbox.app.edit.canvas.edited_zones import Areas, draw_zone_names
 from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_box, draw_cursor, draw_label, draw_spot
 from sandbox.app.edit.canvas.pointer import SelectTool
@@ -81,6 +82,7 @@ class View:
             scene = moved_by(scene, chosen, matrix)
             self._painter.paint_moved(surface, screen.camera, scene, chosen)
         self._marks.draw(surface, screen.camera, scene, chosen)
+        draw_zone_names(surface, screen.ui, screen.camera, Areas(scene, ~chosen.hidden_items))
 
     def _draw_forecast(self, surface: pygame.Surface) -> None:
         scene, position = self._screen.scene, self._screen.watch.hanging
@@ -107,6 +109,7 @@ class View:
         walls = ghost.level.walls
         if walls is not None and walls is not screen.document.level.walls:
             self._painter.paint_walls(surface, screen.camera, walls.box, ACCENT)
+        self._painter.paint_zones(surface, screen.camera, Areas(drawn, drawn.chosen(new), ACCENT))
         self._painter.paint_ground(surface, screen.camera, Ground(drawn, drawn.chosen(new), ghost=True))
         self._painter.paint_ghost(surface, screen.camera, Part(drawn, drawn.particles_of(new), drawn.springs_of(new)))
 
