@@ -250,6 +250,10 @@ class Editing(Protocol):
         """Draw the box [m] of what a panel shows on the sheet; None = none."""
         ...
 
+    def show_rule(self, index: int | None) -> None:
+        """Draw what a rule of the level is about on the sheet; None = of no rule that a panel shows."""
+        ...
+
     def light_up(self, items: Selection) -> None:
         """Draw items brighter on the sheet, as a panel points at them."""
         ...

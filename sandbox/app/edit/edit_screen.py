@@ -204,6 +204,10 @@ class EditScreen:
         """Draw the box [m] of what a panel shows on the sheet; None = none."""
         self.view.shown_box = box
 
+    def show_rule(self, index: int | None) -> None:
+        """Draw what a rule of the level is about on the sheet; None = of no rule that a panel shows."""
+        self.view.shown_rule = index
+
     def light_up(self, items: Selection) -> None:
         """Draw items brighter on the sheet, as a panel points at them."""
         self.view.pointed = items

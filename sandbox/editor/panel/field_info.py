@@ -32,8 +32,8 @@ Kind = Literal[
     "thing",
 ]
 
-# What can be picked on the sheet in place of typing it.
-Pick = Literal["", "particle", "body", "box"]
+# What can be picked on the sheet in place of typing it: a mover is a body or a loose particle, a thing terrain too.
+Pick = Literal["", "particle", "body", "box", "zone", "mover", "thing"]
 
 _KEYS = ("key", "reverse_key")
 # The unit of angles in a file, and what people read and type.
@@ -93,7 +93,9 @@ class FieldInfo:
 @cache
 def fields_of(model: type[BaseModel]) -> dict[str, FieldInfo]:
     """A description of every field of a model, by name, in the model's order."""
-    fields = model.model_json_schema(by_alias=False)["properties"]
+    schema = model.model_json_schema(by_alias=False)
+    # A model that holds others of its own kind is a definition of its own.
+    fields = (schema if "properties" in schema else schema["$defs"][model.__name__])["properties"]
     return {name: _about(name, fields[name], _part(field.annotation)) for name, field in model.model_fields.items()}
 
 

@@ -12,14 +12,25 @@ from sandbox.app.edit.canvas.overlay import draw_box
 from sandbox.editor.document import Document
 from sandbox.editor.items import Item
 from sandbox.editor.panel.field_info import Pick
-from sandbox.editor.pick import item_at
+from sandbox.editor.pick import items_at
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap, snap
 
 _HINTS = {
     "particle": "Click the particle you mean; Escape cancels",
     "body": "Click the body you mean; Escape cancels",
+    "zone": "Click the zone you mean; Escape cancels",
+    "mover": "Click the body or loose particle you mean; Escape cancels",
+    "thing": "Click the thing you mean; Escape cancels",
     "box": "Drag the box from corner to corner; Escape cancels",
 }
+
+
+# What of several things at a point counts, by the kind of the pick, and how many are looked at.
+_KINDS = {
+    "body": ("body",), "zone": ("zone",), "mover": ("body", "particle"), "thing": ("body", "particle", "terrain"),
+}  # fmt: skip
+_NAMES = {"mover": "body or loose particle"}
+MOST_UNDER = 20
 
 
 class PickTool:
@@ -62,8 +73,9 @@ class PickTool:
         if self._kind == "particle":
             self._snap = snap(screen.scene, point, screen.reach, skip=screen.visibility.hidden)
             return self._snap.name
-        self.hovered = item_at(screen.scene, point, screen.reach, screen.visibility.hidden)
-        return str(self.hovered.key) if self.hovered is not None and self.hovered.kind == "body" else None
+        under = items_at(screen.scene, point, screen.reach, screen.visibility.hidden, MOST_UNDER)
+        self.hovered = next((item for item in under if item.kind in _KINDS[self._kind]), None)
+        return str(self.hovered.key) if self.hovered is not None else None
 
     def down(self, point: Point, modifiers: int, clicks: int) -> None:
         """Pick the particle or body at a point [m], or begin the box there."""
@@ -73,7 +85,7 @@ class PickTool:
             return
         found = self._found(point)
         if found is None:
-            self._screen.say(f"There is no {self._kind} there.")
+            self._screen.say(f"There is no {_NAMES.get(self._kind, self._kind)} there.")
             return
         self.is_over = True
         self._then(found)

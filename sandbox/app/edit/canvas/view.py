@@ -14,8 +14,9 @@ from sandbox.app.edit.canvas.edited_zones import Areas, draw_zone_names
 from sandbox.app.edit.canvas.marks import DriveMarks
 from sandbox.app.edit.canvas.overlay import SPOT_SECONDS, draw_box, draw_cursor, draw_label, draw_spot
 from sandbox.app.edit.canvas.pointer import SelectTool
+from sandbox.app.edit.canvas.rule_links import draw_links, rules_of
 from sandbox.app.edit.canvas.trails import draw_attempts, draw_trails
-from sandbox.editor.items import Item, Selection
+from sandbox.editor.items import Item, Selection, keys
 from sandbox.editor.panel.typed import number_text
 from sandbox.editor.scene import Scene, make_scene
 
@@ -37,6 +38,8 @@ class View:
         # The box [m] of what a panel shows, and the items that are pointed at in it.
         self.shown_box: Box | None = None
         self.pointed: Selection = frozenset()
+        # The rule that a panel shows, by its index.
+        self.shown_rule: int | None = None
         # Of the values that are tried the one whose way stands out.
         self.chosen_attempt: int | None = None
 
@@ -131,6 +134,10 @@ class View:
             self._painter.paint_hovered(surface, screen.camera, screen.scene, pointed)
         if self.shown_box is not None:
             draw_box(surface, screen.camera, self.shown_box)
+        if tool.transform is None:
+            zones = frozenset(str(key) for key in keys(screen.document.selection, "zone"))
+            rules = rules_of(screen.scene, self.shown_rule, zones)
+            draw_links(surface, screen.camera, screen.scene, rules, screen.scale)
         tool.draw(surface)
         named = self._name_of(under)
         if named and screen.pointer is not None and not tool.measure:

@@ -46,6 +46,8 @@ TEXT_LENGTH = 600
 # Choices of at most this many letters in all, and this many of them, stand side by side, others in a menu.
 SIDE_BY_SIDE = 14
 MOST_SIDE_BY_SIDE = 4
+# What a pick is of, where its kind is no word for people.
+PICKED = {"mover": "body or particle"}
 SQUARED = {"m/s^2": "m/s²"}
 # What the button of an object says while some have one, all or none.
 OBJECT_TEXTS = {True: "Remove", False: "Add", MIXED: "Add to the others"}
@@ -263,11 +265,17 @@ class Form:
             room = PICK_WIDTH + GAP if about.pick else 0.0
             self.fields[each.field] = (self._entry(each, LABEL_WIDTH, width - room, 0),)
             if about.pick:
-                press = partial(self._screen.pick, about.pick, partial(self._set, each.field))
-                place = self._rect(self._inside - PICK_WIDTH, PICK_WIDTH)
-                tip = "Drag it on the sheet" if about.pick == "box" else f"Click the {about.pick} on the sheet"
-                self._keep(ui.button(place, "Pick", press, content, style="segment", tip=tip), f"{each.field} pick")
+                self._add_pick(each)
         self._y += ROW + GAP
+
+    def _add_pick(self, each: Property) -> None:
+        """A button that lets the value be picked on the sheet."""
+        pick = each.about.pick
+        press = partial(self._screen.pick, pick, partial(self._set, each.field))
+        place = self._rect(self._inside - PICK_WIDTH, PICK_WIDTH)
+        tip = "Drag it on the sheet" if pick == "box" else f"Click the {PICKED.get(pick, pick)} on the sheet"
+        button = self._ui.button(place, "Pick", press, self._holder, style="segment", tip=tip)
+        self._keep(button, f"{each.field} pick")
 
     def _add_label(self, each: Property) -> None:
         about, place = each.about, self._rect(0, LABEL_WIDTH - 4)
@@ -307,7 +315,10 @@ class Form:
 
     def _add_choice(self, each: Property, width: float) -> None:
         about, content = each.about, self._holder
-        few = len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and not about.optional
+        few = len(about.choices) in range(1, MOST_SIDE_BY_SIDE + 1) and not (about.optional or about.pick)
+        if about.pick:
+            width -= PICK_WIDTH + GAP
+            self._add_pick(each)
         if few and sum(map(len, about.choices)) <= SIDE_BY_SIDE:
             options = [(value, value, about.tooltip) for value in about.choices]
             row = self._ui.choice(self._rect(LABEL_WIDTH, width), options, partial(self._choose, each.field), content)

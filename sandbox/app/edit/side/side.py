@@ -15,6 +15,7 @@ from sandbox.app.edit.side.materials import MaterialsPage
 from sandbox.app.edit.side.objects import ObjectsPage
 from sandbox.app.edit.side.properties import PropertiesPage
 from sandbox.app.edit.side.range_page import RangePage
+from sandbox.app.edit.side.rules import RulesPage
 from sandbox.app.edit.side.settings import SettingsPage
 from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.button import Button
@@ -36,12 +37,13 @@ PAGES: dict[str, tuple[str, str, Callable[[Editing, pygame.Rect, Any], SidePage]
     "parts": ("Parts", "Ready parts and your own, to put on the sheet", CataloguePage),
     "level": ("Level", "Name, author, view, time and solver", SettingsPage),
     "checks": ("Checks", "What must be true when the level runs", ChecksPage),
+    "rules": ("Rules", "Goals, scores and what happens when: what the level asks and does", RulesPage),
     "history": ("History", "All steps; click one to go back to it", HistoryPage),
     "findings": ("Findings", "Problems that you may have overlooked", FindingsPage),
 }
 # Pages without a tab: an action shows them.
 UNLISTED: dict[str, Callable[[Editing, pygame.Rect, Any], SidePage]] = {"range": RangePage}
-COLUMNS = 4
+COLUMNS = 3
 
 
 class Side:
