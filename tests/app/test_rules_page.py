@@ -1,5 +1,7 @@
 """The page of rules by mouse: templates, words from menus and from the sheet, dotted lines, what goes with what."""
 
+import json
+
 import pygame
 import pytest
 
@@ -7,6 +9,7 @@ from sandbox.app.draw.colours import ZONE
 from sandbox.app.edit.side.rules import RulesPage
 from sandbox.editor.items import Item
 from sandbox.editor.rule_text import rule_text
+from sandbox.level.reading.parse import parse_level
 from tests.app.conftest import small_level
 
 PARTS = {
@@ -170,3 +173,34 @@ def test_a_zone_is_drawn_moved_and_scaled_by_mouse(edit):
     assert zone.box == pytest.approx((2.0, 2.0, 5.0, 4.0), abs=0.01)
     driver.key(pygame.K_d, pygame.KMOD_CTRL)
     assert len(driver.editor.document.level.zones) == 2
+
+
+GROUND_BASKET = {
+    "format": "spring-sandbox/level", "version": 3, "name": "Fall", "view": [-4.0, -1.0, 4.0, 5.0],
+    "terrain": [{"id": "floor", "polyline": [[-4, 0], [4, 0]]}],
+    "zones": [{"id": "basket", "box": [-1.0, 0.0, 1.0, 1.0]}],
+    "particles": [{"id": "ball", "position": [0.0, 3.0], "radius": 0.2}],
+    "rules": [GOAL],
+}  # fmt: skip
+
+
+def test_after_a_run_the_page_says_when_rules_fired_and_when_changed_ones_would_have(edit):
+    driver = edit(parse_level(json.dumps(GROUND_BASKET).encode(), "fall"))
+    driver.editor.side.choose("rules")
+    driver.frames(2)
+    assert driver.editor.side.page.list.rows[0].detail == "goal"
+    driver.key(pygame.K_e)
+    driver.frames(180)
+    world = driver.world
+    won = int(world.rule_last[0]) / 60
+    assert 0.5 < won < 3.0
+    driver.key(pygame.K_e)
+    driver.frames(120)
+    page = driver.editor.side.page
+    assert page.list.rows[0].detail == f"goal: fired at {won:.1f} s"
+    page.form._set("for_seconds", 1.5)
+    driver.frames(120)
+    assert page.list.rows[0].detail == f"goal: fired at {won + 1.0:.1f} s"
+    page.form._set("for_seconds", 30.0)
+    driver.frames(120)
+    assert page.list.rows[0].detail == "goal: did not fire in the last run"

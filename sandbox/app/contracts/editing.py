@@ -12,6 +12,7 @@ from sandbox.app.contracts.screen import Pixel, Pointer
 from sandbox.app.draw.camera import Box, Camera, Point
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document
+from sandbox.editor.firing import Firing
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import Finding
@@ -78,6 +79,8 @@ class Watching(Protocol):
     # Whether it is shown where everything will hang, and where things will go.
     forecasts: bool
     trails: bool
+    # When the rules would have fired in the run before; None = there was none, or it is not known yet.
+    firing: Firing | None
     # Values of a number that are tried; None = none are.
     range_trial: RangeTrial | None
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.contracts.editing import Editing
 from sandbox.editor.edits.bake import begin_at_rest
+from sandbox.editor.firing import Deeds, Firing, deeds_of
 from sandbox.editor.forecast import Forecast
 from sandbox.editor.lint.lint import Finding, findings
 from sandbox.editor.range_trial import RangeTrial
@@ -36,6 +37,9 @@ class Watch:
         self.trails = False
         self.trail: Trail | None = None
         self.last_trail: Trail | None = None
+        # When the rules would have fired in the run before, with the level as it is now; what was done in that run.
+        self.firing: Firing | None = None
+        self._deeds: tuple[Deeds, int] | None = None
         # Values of a number that are tried.
         self.range_trial: RangeTrial | None = None
         self._level: Level | None = None
@@ -111,10 +115,11 @@ class Watch:
 
     def let_go(self) -> None:
         """Drop all that can be worked out again, while another screen is shown."""
-        self.trail = self.last_trail = self.range_trial = self.forecast = self._lint = self._level = None
+        self.trail = self.last_trail = self.range_trial = self.forecast = self._lint = self._level = self.firing = None
 
     def remember(self, run: Session) -> None:
-        """Show where things went in a run of the level, beside where they will go."""
+        """Show where things went in a run of the level, beside where they will go, and when its rules fired."""
+        self._deeds, self._level = deeds_of(run), None
         if self.trails:
             self.last_trail = Trail(run.level, run.retold(0))
 
@@ -122,19 +127,26 @@ class Watch:
     def moves(self) -> bool:
         """Whether findings, forecast or trails are still to be worked out."""
         level, forecast = self._screen.document.level, self.forecast
+        is_firing = self.firing is not None and not self.firing.is_done
         is_waiting = level is not self._level or self._since < PATIENCE
         is_trying = self.range_trial is not None and not self.range_trial.is_done
         is_drawing = is_trying or any(
             trail is not None and not trail.is_done for trail in (self.trail, self.last_trail)
         )
-        return is_waiting or self._lint is not None or is_drawing or (forecast is not None and not self._is_told)
+        return (
+            is_waiting
+            or is_firing
+            or self._lint is not None
+            or is_drawing
+            or (forecast is not None and not self._is_told)
+        )
 
     def update(self, frame_time: float) -> None:
         """Let frame_time [s] pass, and work for a moment at findings, forecast, trails and tried values."""
         level = self._screen.document.level
         if level is not self._level:
             self._level, self._since = level, 0.0
-            self._lint = self.forecast = self.trail = None
+            self._lint = self.forecast = self.trail = self.firing = None
         if self.range_trial is not None and not self.range_trial.is_done:
             self.range_trial.advance(TRYING)
         before, self._since = self._since, self._since + frame_time
@@ -145,8 +157,11 @@ class Watch:
             self._is_told = False
             self.forecast = Forecast(level) if self.forecasts and self._screen.scene.items else None
             self.trail = Trail(level) if self.trails and self._screen.scene.items else None
+            self.firing = Firing(level, *self._deeds) if self._deeds is not None and level.rules else None
         self._look()
         self._follow()
+        if self.firing is not None and not self.firing.is_done:
+            self.firing.advance(SLICE)
         if self.forecast is not None and self.forecast.advance(SLICE) and not self._is_told:
             self._is_told = True
             if self._is_wanted:

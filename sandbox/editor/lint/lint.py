@@ -17,6 +17,7 @@ from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint.pools import water_in_water
 from sandbox.editor.lint.remedies import GROUND, deletion
+from sandbox.editor.lint.rules import hopeless_rules, idle_counters
 from sandbox.editor.lint.solver import springs_past_limits
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
@@ -29,6 +30,8 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
     rules = (
         hopeless_checks(level, scene),
         checks_without_hands(level, scene),
+        hopeless_rules(level, scene),
+        idle_counters(level),
         springs_past_limits(level, scene),
         falling_parts(level, scene),
         idle_items(scene),

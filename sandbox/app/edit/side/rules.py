@@ -12,12 +12,15 @@ from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.rows import Row
 from sandbox.editor.edits.rules import Template, delete_rule, templates, why_not
+from sandbox.editor.firing import Firing
 from sandbox.editor.panel.rule_form import rule_properties
 from sandbox.editor.rule_text import rule_text
 from sandbox.level.rules.rule import RuleDef
 
 # Part of the page that the list takes.
 LIST_PART = 0.3
+# Times that are named of a rule that fired more often.
+TIMES = 3
 NOTHING = "No rules yet. A rule is a sentence: when the ball is inside the basket, win. Add one."
 
 
@@ -40,12 +43,13 @@ class RulesPage(SidePage):
 
     def refresh(self) -> None:
         """Show the rules as they are now."""
-        level = self._screen.document.level
-        fresh = (level, self.chosen)
-        if fresh[0] is not (self._shown or (None,))[0] or fresh[1:] != self._shown[1:]:
+        level, firing = self._screen.document.level, self._screen.watch.firing
+        fired = firing if firing is not None and firing.is_done and firing.level is level else None
+        fresh = (level, self.chosen, fired)
+        if not self._shown or fresh[0] is not self._shown[0] or fresh[1:] != self._shown[1:]:
             self._shown = fresh
             self.chosen = min(max(self.chosen, 0), max(len(level.rules) - 1, 0))
-            rows = [Row(rule_text(rule), rule.id, colour=_colour(rule)) for rule in level.rules]
+            rows = [Row(rule_text(rule), _detail(rule, fired), colour=_colour(rule)) for rule in level.rules]
             self.list.show_rows(rows, self.chosen if rows else None, reveal=True)
             self.buttons["Delete"].is_enabled = bool(rows)
             self.form.show(rule_properties(self._screen.document, self.chosen))
@@ -72,6 +76,19 @@ class RulesPage(SidePage):
     def close(self) -> None:
         """Take the page away."""
         self._screen.show_rule(None)
+
+
+def _detail(rule: RuleDef, fired: Firing | None) -> str:
+    """The name of a rule, and when it fires in the run that was played last."""
+    if fired is None:
+        return rule.id
+    if fired.fault:
+        return f"{rule.id}: {fired.fault}"
+    times = fired.times[rule.id]
+    if not times:
+        return f"{rule.id}: did not fire in the last run"
+    more = f" and {len(times) - TIMES} more times" if len(times) > TIMES else ""
+    return f"{rule.id}: fired at {', '.join(f'{time:.1f}' for time in times[:TIMES])} s{more}"
 
 
 def _colour(rule: RuleDef) -> Colour:
