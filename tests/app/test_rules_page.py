@@ -10,6 +10,7 @@ from sandbox.app.edit.side.rules import RulesPage
 from sandbox.editor.items import Item
 from sandbox.editor.rule_text import rule_text
 from sandbox.level.reading.parse import parse_level
+from sandbox.session.outcome import outcome
 from tests.app.conftest import small_level
 
 PARTS = {
@@ -204,3 +205,24 @@ def test_after_a_run_the_page_says_when_rules_fired_and_when_changed_ones_would_
     page.form._set("for_seconds", 30.0)
     driver.frames(120)
     assert page.list.rows[0].detail == "goal: did not fire in the last run"
+
+
+def test_a_level_with_ground_a_ball_a_basket_and_a_goal_is_made_by_mouse_and_won(edit):
+    driver = edit()
+    driver.key(pygame.K_d)
+    for corner in ((-5, -2), (5, -2), (5, -2.8), (-5, -2.8), (-5, -2)):
+        driver.click_at(*corner)
+    driver.key(pygame.K_a)
+    driver.editor.pointer_tool.drawing.set_option("radius", 0.3)
+    driver.click_at(0, 2)
+    driver.key(pygame.K_z, pygame.KMOD_SHIFT)
+    driver.drag((-1, -2), (0, -1), (1, 0))
+    driver.editor.side.choose("rules")
+    driver.frames(2)
+    driver.click_widget(driver.editor.side.page.buttons["Add"])
+    driver.frames(2)
+    driver.choose("Goal: particle is inside zone")
+    driver.key(pygame.K_e)
+    driver.frames(180)
+    won = outcome(driver.playback.session.level, driver.world)
+    assert won is not None and won.is_won

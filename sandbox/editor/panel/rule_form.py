@@ -7,7 +7,7 @@ from typing import Any
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
-from sandbox.editor.edits.rules import (
+from sandbox.editor.edits.rule_edits import (
     FIRST_KEY,
     LOST,
     WON,
