@@ -10,6 +10,7 @@ from sandbox.app.edit.side.rules import RulesPage
 from sandbox.editor.items import Item
 from sandbox.editor.rule_text import rule_text
 from sandbox.level.reading.parse import parse_level
+from sandbox.session.outcome import outcome
 from tests.app.conftest import small_level
 
 PARTS = {
@@ -85,13 +86,24 @@ def test_every_question_and_every_action_can_be_asked_for_and_saved(page):
     rules.form._press_object("more")
     driver.frames(2)
     assert len(driver.editor.document.level.rules[0].then) == 2
-    for label in ("lose", "say", "count", "checkpoint", "cut", "pin", "unpin", "make soft", "gravity", "wind", "win"):
+    for label in ("lose", "say", "count", "checkpoint", "cut", "pin", "unpin", "gravity", "wind", "win"):
         choose_row(rules, "then.1", label)
         driver.frames(2)
         assert rules.form.pickers["then.1"].shown.text == label, driver.notices
-    choose_row(rules, "then.1", "drive")
+    for label, said in (("drive", "nothing is driven"), ("make soft", "no body here can be made soft")):
+        choose_row(rules, "then.1", label)
+        driver.frames(2)
+        assert any(said in notice.lower() for notice in driver.notices)
+
+
+def test_of_several_bodies_one_is_made_soft_that_can_be(page):
+    jelly = {"type": "jelly", "id": "pudding", "shape": {"box": [1.0, 1.0]}, "position": [2.0, 3.0], "spacing": 0.5}
+    rope = {"type": "rope", "id": "rope", "start": [0, 0], "end": [4, 0], "segments": 4}
+    driver, rules = page(rules=[GOAL], bodies=[rope, jelly], settings={"solver": "direct"})
+    choose_row(rules, "then.0", "make soft")
     driver.frames(2)
-    assert any("nothing is driven" in notice.lower() for notice in driver.notices)
+    action = driver.editor.document.level.rules[0].then[0]
+    assert (action.body, action.sag) == ("pudding", 0.2), driver.notices
 
 
 def test_every_metric_that_rules_ask_for_can_be_chosen(page):
@@ -198,9 +210,30 @@ def test_after_a_run_the_page_says_when_rules_fired_and_when_changed_ones_would_
     driver.frames(120)
     page = driver.editor.side.page
     assert page.list.rows[0].detail == f"goal: fired at {won:.1f} s"
-    page.form._set("for_seconds", 1.5)
+    page.form._set("for_seconds", 0.2)
     driver.frames(120)
-    assert page.list.rows[0].detail == f"goal: fired at {won + 1.0:.1f} s"
+    assert page.list.rows[0].detail == f"goal: fired at {won - 0.3:.1f} s"
     page.form._set("for_seconds", 30.0)
     driver.frames(120)
     assert page.list.rows[0].detail == "goal: did not fire in the last run"
+
+
+def test_a_level_with_ground_a_ball_a_basket_and_a_goal_is_made_by_mouse_and_won(edit):
+    driver = edit()
+    driver.key(pygame.K_d)
+    for corner in ((-5, -2), (5, -2), (5, -2.8), (-5, -2.8), (-5, -2)):
+        driver.click_at(*corner)
+    driver.key(pygame.K_a)
+    driver.editor.pointer_tool.drawing.set_option("radius", 0.3)
+    driver.click_at(0, 2)
+    driver.key(pygame.K_z, pygame.KMOD_SHIFT)
+    driver.drag((-1, -2), (0, -1), (1, 0))
+    driver.editor.side.choose("rules")
+    driver.frames(2)
+    driver.click_widget(driver.editor.side.page.buttons["Add"])
+    driver.frames(2)
+    driver.choose("Goal: particle is inside zone")
+    driver.key(pygame.K_e)
+    driver.frames(180)
+    won = outcome(driver.playback.session.level, driver.world)
+    assert won is not None and won.is_won

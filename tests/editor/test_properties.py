@@ -104,6 +104,8 @@ def test_every_field_of_the_level_and_its_settings_can_be_reached(level):
         "springs",
         "welds",
         "checks",
+        "counters",
+        "rules",
     }
     shown = {each.field.partition(".")[0] for section in (first, third, fourth) for each in section.properties}
     assert shown == set(Level.model_fields) - parts - {"terrain", "zones"}
@@ -213,7 +215,7 @@ def test_lists_are_typed_with_and_without_brackets(level):
         ("rope", "pinned", "start", 'Held particles: "start" is not a list such as 0, 4, 5'),
         ("rope", "pinned", "[" * 3000, None),
         ("mesh", "particles", "[0, 0], 7", None),
-        ("rope", "id", "deck", '"deck" is taken; each body, particle and piece of terrain needs its own name'),
+        ("rope", "id", "deck", '"deck" is taken; each body, particle, piece of terrain and zone needs its own name'),
         ("rope", "id", "a.b", None),
         ("wheel", "thickness", "2", '"wheel": thickness: 2.0 is not below the radius, 2.0'),
         ("box", "firmness.sag", "-1", '"box": firmness.sag: -0.01 is below the limit 0'),

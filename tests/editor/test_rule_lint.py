@@ -2,7 +2,7 @@
 
 import pytest
 
-from sandbox.editor.lint.rules import hopeless_rules, idle_counters
+from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters
 from sandbox.editor.scene import make_scene
 from tests.editor.test_rule_names import document
 

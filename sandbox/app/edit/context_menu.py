@@ -24,7 +24,8 @@ OVER_THINGS = (
 )  # fmt: skip
 OVER_NOTHING = ("paste", "select_all", "find", "hide", "lock", "fit")
 SHORT = {
-    "paste": "Paste here", "group": "Group", "ungroup": "Ungroup", "forward": "One forward", "backward": "One backward",
+    "delete": "Delete", "paste": "Paste here",
+    "group": "Group", "ungroup": "Ungroup", "forward": "One forward", "backward": "One backward",
     "array": "Several copies...", "mirror": "Mirror...", "keep_part": "Keep as a part...", "fit": "Fit to view",
     "trail": "Trail: where it will go", "try_range": "Try a range of a number...", "hide": "Hide", "lock": "Lock",
 }  # fmt: skip

@@ -12,6 +12,7 @@ from sandbox.editor.lint.checks import checks_without_hands, hopeless_checks
 from sandbox.editor.lint.columns import buckling_columns
 from sandbox.editor.lint.contacts import buried_particles, overlapping_discs, turning_in_vain
 from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
+from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters
 from sandbox.editor.lint.looks import unknown_looks
 from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles

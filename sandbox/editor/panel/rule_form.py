@@ -7,7 +7,7 @@ from typing import Any
 
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
-from sandbox.editor.edits.rules import (
+from sandbox.editor.edits.rule_edits import (
     FIRST_KEY,
     LOST,
     WON,
@@ -41,6 +41,8 @@ _DOES = {
     "wind": "wind",
 }  # fmt: skip
 ANYTHING = "anything"
+# How soft a body becomes at first: the part of its height by which it sags.
+SOFT = 0.2
 _Data = dict[str, Any]
 
 
@@ -363,11 +365,23 @@ def _set_value(index: int, number: int, field: str, document: Document, value: A
 def _set_does(index: int, number: int, document: Document, value: Any) -> Document:
     if value == "count" and not document.level.counters:
         document = add_counter(document)
+    if value == "sag":
+        return _softened(document, index, number)
+    return _set_action(document, index, number, _first_action(document.level, value))
 
-    def change(level: Level, then: list[_Data]) -> list[_Data]:
-        return [_first_action(level, value) if k == number else each for k, each in enumerate(then)]
 
-    return _acting(index, document, change)
+def _set_action(document: Document, index: int, number: int, action: _Data) -> Document:
+    return _acting(index, document, lambda _, then: [action if k == number else each for k, each in enumerate(then)])
+
+
+def _softened(document: Document, index: int, number: int) -> Document:
+    """Let an action make soft the first body that can be."""
+    for body in document.level.bodies:
+        try:
+            return _set_action(document, index, number, {"sag": SOFT, "body": body.id})
+        except EditError:
+            continue
+    raise EditError("no body here can be made soft: draw a jelly first")
 
 
 def _add_action(document: Document, index: int) -> Document:
@@ -399,8 +413,8 @@ def _first_action(level: Level, does: str) -> _Data:
             raise EditError("draw a particle first")
         return {does: things[0]}
     if not level.bodies:
-        raise EditError("draw a body first: rules cut and soften bodies")
-    return {"cut": level.bodies[0].id} if does == "cut" else {"sag": 0.2, "body": level.bodies[0].id}
+        raise EditError("draw a body first, for the rule to cut")
+    return {"cut": level.bodies[0].id}
 
 
 # Counters.

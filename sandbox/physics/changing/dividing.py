@@ -14,6 +14,6 @@ def part_bodies(world: World, springs: Sequence[int]) -> None:
 
     Raises IndexError for a spring that is not there or not in use.
     """
-    pointer = lend(state_of(world), good_of(world), np.array(world.settings.numbers))
+    pointer = lend(state_of(world), good_of(world), np.array(world.settings.numbers, np.float64))
     carry_out(pointer, "part_bodies", {"springs": springs}, world)
     world.topology_version += 1

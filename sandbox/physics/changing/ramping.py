@@ -37,7 +37,7 @@ def set_rows(
         "lowest_mode": arguments.number("lowest_mode", lowest_mode, 0.0),
         "duration": arguments.ticks("duration", duration),
     }
-    pointer = lend(state_of(world), good_of(world), np.array(world.settings.numbers))
+    pointer = lend(state_of(world), good_of(world), np.array(world.settings.numbers, np.float64))
     carry_out(pointer, "firm_springs", given | {"springs": springs}, world)
     carry_out(pointer, "firm_constraints", given | {"constraints": constraints}, world)
 

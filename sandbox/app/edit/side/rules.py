@@ -11,7 +11,7 @@ from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.rows import Row
-from sandbox.editor.edits.rules import Template, delete_rule, templates, why_not
+from sandbox.editor.edits.rule_edits import Template, delete_rule, templates, why_not
 from sandbox.editor.firing import Firing
 from sandbox.editor.panel.rule_form import rule_properties
 from sandbox.editor.rule_text import rule_text
