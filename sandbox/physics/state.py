@@ -236,6 +236,8 @@ BY_STORED: dict[str, Column] = {column.stored: column for column in COLUMNS}
 FAMILIES: dict[Family, tuple[Column, ...]] = {
     family: tuple(column for column in COLUMNS if column.family is family) for family in Family
 }
+# Rows that follow from the rules of a level, and never grow.
+OF_RULES: frozenset[Family] = frozenset({Family.RULE, Family.COUNTER, Family.PROBE, Family.STILL, Family.KEY})
 # Those that no state goes without.
 ALWAYS_STORED: frozenset[str] = frozenset(column.stored for column in COLUMNS if not column.sparse)
 # Those from which solvers and collision derive, which a tick seldom changes, and all others.

@@ -1,6 +1,7 @@
 """A page takes and refuses the same commands as the desktop, in the same words, and to the same bits."""
 
 import dataclasses
+import json
 import math
 import random
 from collections import Counter
@@ -11,6 +12,7 @@ import pytest
 from sandbox import load_level
 from sandbox.commands import COMMAND_TYPES, CommandError, apply, from_record
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.rules.rule import RuleDef
 from sandbox.page.about import is_done_by_pages
 from sandbox.physics.command import KINDS
 from sandbox.physics.snapshot import restore, state_hash, take
@@ -44,6 +46,7 @@ GOOD: dict[str, dict[str, Any]] = {
     "cut_springs": {"springs": ["SPRING.1", "SPRING.2", "SPRING.1"]},
     "set_coefficients": {"stiffness": 0.25, "damping": 0.75, "material": "MATERIAL.0", "duration": 7},
     "set_drive": {"part": "PART.1", "value": -1},
+    "hold_key": {"key": "g", "down": True},
     "push": {"position": [0, 0], "radius": 500, "impulse": [1, 2], "outward": 3},
     "shake": {"acceleration": [1, -2]},
     "set_gravity": {"gravity": [0, -3], "duration": 5},
@@ -71,6 +74,12 @@ BAD: dict[str, list[dict[str, Any]]] = {
     ],
     "break_springs": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
     "part_bodies": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
+    "firm_springs": [{"springs": value} for value in (["SPRING.1"], ["no"], [0], "SPRING.1", None, [None], NAN, [])],
+    "firm_constraints": [{"constraints": value} for value in ([0], ["no"], [-1], "a", None, [None], NAN, [])],
+    "hold_key": [
+        *({"key": value} for value in ("h", 0, -1, None, NAN, True, [], {})),
+        *({"down": value} for value in (1, 0, NAN, None, "true", [], {}, 0.5)),
+    ],
     "set_coefficients": [
         *({"stiffness": value} for value in (5, -1, NAN, INF, "1", True, [], 1.0000001)),
         *({"damping": value} for value in (5, -1, NAN, INF, "1", True, {}, -1e-300)),
@@ -103,8 +112,12 @@ assert BAD.keys() == KINDS.keys()
 needs_node = pytest.mark.skipif(NODE is None, reason="node is not installed")
 
 
+RULE = {"id": "key", "when": {"key": "g"}, "then": [{"say": "pressed"}]}
+
+
 def world_of() -> World:
-    return build_world(load_level(LEVEL))
+    level = load_level(LEVEL)
+    return build_world(level.model_copy(update={"rules": (RuleDef.model_validate_json(json.dumps(RULE)),)}))
 
 
 def names_in(value: Any, world: World) -> Any:
@@ -235,6 +248,12 @@ def test_the_kernel_itself_refuses_slots_that_are_not_there_in_pages(tmp_path):
             for kind in ("cut_springs", "break_springs", "part_bodies")
             for slot in (-1, world.grab_spring, world.spring_count, 10**6)
         ),
+        *(
+            {"type": f"firm_{rows}", rows: [0, slot], "stiffness": 0.5, "damping": 0.5, "lowest_mode": 0, "duration": 0}
+            for rows in ("springs", "constraints")
+            for slot in (-1, 10**6)
+        ),
+        *({"type": "hold_key", "key": key, "down": 1} for key in (-1, 1, 10**6)),
         {"type": "shake", "acceleration": [NAN, 0]},
         {"type": "push", "position": [0, 0], "radius": INF, "impulse": [0, 0], "outward": 0},
         {"type": "set_coefficients", "stiffness": NAN},
@@ -255,4 +274,6 @@ def test_each_command_that_pages_carry_out_is_tried_with_each_of_its_fields():
 
 def test_there_are_eight_bad_values_and_more_of_every_kind():
     assert all(len(each) >= 8 for each in BAD.values())
-    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {"break_springs", "part_bodies"}
+    assert {kind for kind in BAD if kind not in COMMAND_TYPES} == {
+        "break_springs", "part_bodies", "firm_springs", "firm_constraints",
+    }  # fmt: skip

@@ -36,7 +36,7 @@ def test_slots_are_appended_and_named():
 def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
     world.add_constraints(AREA, [[0, 1, 2, 3]])
-    counts = (5 + GRAB_COUNT, 4 + GRAB_COUNT, 1, 4, 0, 0, GRAB_COUNT, 6)
+    counts = (5 + GRAB_COUNT, 4 + GRAB_COUNT, 1, 4, 0, 0, GRAB_COUNT, 6, 0, 0, 0, 0, 0)
     for family, count in zip(Family, counts, strict=True):
         for column in FAMILIES[family]:
             array = getattr(world, column.name)

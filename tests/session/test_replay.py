@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.state import BY_STORED, FAMILIES, Family
+from sandbox.physics.state import BY_STORED, FAMILIES, OF_RULES, Family
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands import AddParticle, AddSpring, CutSprings, Grab, MoveGrab, Pin, Release
 from sandbox.session.replay.reader import read_replay
@@ -127,7 +127,8 @@ def _outcome(replay, start: int) -> str | None:
 
 # Of another topology a world is no longer the same machine; driven parts and contacts: see test_touching.py.
 SPARED = {"particle_a", "particle_b", "law", "element_kind", "element_first", "element_corners", "corner_particle"}
-SPARED |= {column.stored for family in (Family.ACTUATOR, Family.CONTACT, Family.SETTING) for column in FAMILIES[family]}
+_FEW = (Family.ACTUATOR, Family.CONTACT, Family.SETTING, *OF_RULES)
+SPARED |= {column.stored for family in _FEW for column in FAMILIES[family]}
 
 
 @pytest.mark.parametrize("array", [name for name in BY_STORED if name not in SPARED])

@@ -18,7 +18,6 @@ from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
 from sandbox.editor.lint.pools import water_in_water
 from sandbox.editor.lint.remedies import GROUND, deletion
-from sandbox.editor.lint.rules import hopeless_rules, idle_counters
 from sandbox.editor.lint.solver import springs_past_limits
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level

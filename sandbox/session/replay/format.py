@@ -36,7 +36,7 @@ from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.settings import NUMBER_COUNT
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.state import ALWAYS_STORED, BY_STORED, FAMILIES, Column, Family
+from sandbox.physics.state import ALWAYS_STORED, BY_STORED, FAMILIES, OF_RULES, Column, Family
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.world import World, WorldSettings
 from sandbox.session.commands.adding import name_slots_to
@@ -109,12 +109,11 @@ def encode_state(state: World | Snapshot, names: Iterable[str] = tuple(BY_STORED
     return {"state": arrays, "settings": asdict(state.settings)} | ({"joined": joined} if joined else {})
 
 
-def _equipment(level: Level, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int]) -> Equipment:
-    """The equipment of a level's world that bodies of a state line have joined; grabs: where hands have their slots.
+def _equipment(world: World, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int]) -> Equipment:
+    """The equipment of a level's world once bodies of a state line have joined it; grabs: where hands have their slots.
 
     Raises ValueError.
     """
-    world = build_world(level)
     world.grab_particle, world.grab_spring = grabs
     for each in joined:
         particles, springs = each["particle"] - world.particle_count, each["spring"] - world.spring_count
@@ -135,9 +134,13 @@ def decode_state(
     if not ALWAYS_STORED <= set(state) <= set(BY_STORED):
         raise ValueError(f"state: the arrays are {', '.join(BY_STORED)}")
     arrays = {name: decode_array(BY_STORED[name], text) for name, text in state.items()}
+    world = build_world(level)
     for family in Family:
         names = [column.stored for column in FAMILIES[family]]
         counts = {len(arrays[name]) for name in names if name in arrays}
+        if family in OF_RULES:
+            # The level says how many there are, also where a file is older than they.
+            counts.add(len(getattr(world, FAMILIES[family][0].name)))
         if len(counts) != 1:
             raise ValueError(f"state: {', '.join(names)} are not equally long")
         # What a file does not have yet is as usual.
@@ -172,7 +175,7 @@ def decode_state(
         grab_particle=grab_particle,
         grab_spring=grab_spring,
         terrain=NO_TERRAIN,
-        equipment=_equipment(level, joined, (grab_particle, grab_spring)),
+        equipment=_equipment(world, joined, (grab_particle, grab_spring)),
     )
 
 
