@@ -27,6 +27,9 @@ SECTIONS = (
         "catapult": "Hold D and let fly",
         "curtain": "Tug a corner, unpin a hook",
     }),
+    GallerySection("Puzzles", "Each can be won. The first ones are easy.", {
+        "squeeze": "Soft, then firm again",
+    }),
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",
         "trampoline": "Pull the bed down and let go",
