@@ -29,6 +29,7 @@ SECTIONS = (
     }),
     GallerySection("Puzzles", "Each can be won. The first ones are easy.", {
         "squeeze": "Soft, then firm again",
+        "basket_throw": "Swing the ball, then let go",
     }),
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",
