@@ -30,6 +30,7 @@ SECTIONS = (
     GallerySection("Puzzles", "Each can be won. The first ones are easy.", {
         "squeeze": "Soft, then firm again",
         "basket_throw": "Swing the ball, then let go",
+        "sorting_belt": "D lifts the flap",
     }),
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",
