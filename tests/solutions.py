@@ -55,6 +55,7 @@ SOLUTIONS: dict[str, list[Gesture]] = {
     # Jelly passes the gap and stays where it falls; firm again, it rolls.
     "squeeze": [firmness(3.0, "ball", 0.25), firmness(10.0, "ball", 0.02)],
     "basket_throw": [drag("ball", (1.0, -5.0, 0.4), (2.0, -6.5, 1.0), (2.5, -6.5, 1.0), (3.0, -1.75, 6.0))],
+    "chain_of_events": [drag("marble", (1.0, -8.85, 6.15), (1.3, -8.4, 6.3), (1.5, -7.9, 6.2))],
     # The flap is up while blue crates pass.
     "sorting_belt": [drive(":0", 1.0, 4.9, 10.4), drive(":0", 1.0, 13.4, 16.6)],
 }  # fmt: skip

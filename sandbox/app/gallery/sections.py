@@ -28,6 +28,7 @@ SECTIONS = (
         "curtain": "Tug a corner, unpin a hook",
     }),
     GallerySection("Puzzles", "Each can be won. The first ones are easy.", {
+        "chain_of_events": "One push, and all follows",
         "squeeze": "Soft, then firm again",
         "basket_throw": "Swing the ball, then let go",
         "sorting_belt": "D lifts the flap",
