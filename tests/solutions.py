@@ -50,6 +50,13 @@ def material(time: float, name: str, **coefficients: float) -> Gesture:
     return [(time, {"type": "set_coefficients", "material": name, **coefficients, "duration": round(60 * RAMP)})]
 
 
+def lift(particle: str, start: float, x: float, over: float) -> Gesture:
+    """Carry a crate of `ferry` from its place to another, high enough over what lies between."""
+    times = (start + share for share in (0.0, 1.0, 2.5, 3.5))
+    places = ((x, 1.05), (x, 2.6), (over, 2.6), (over, 1.2))
+    return drag(particle, *((time, *place) for time, place in zip(times, places, strict=True)))
+
+
 # What wins each level.
 SOLUTIONS: dict[str, list[Gesture]] = {
     # Jelly passes the gap and stays where it falls; firm again, it rolls.
@@ -58,6 +65,12 @@ SOLUTIONS: dict[str, list[Gesture]] = {
     "chain_of_events": [drag("marble", (1.0, -8.85, 6.15), (1.3, -8.4, 6.3), (1.5, -7.9, 6.2))],
     # The flap is up while blue crates pass.
     "sorting_belt": [drive(":0", 1.0, 4.9, 10.4), drive(":0", 1.0, 13.4, 16.6)],
+    # The crates go in from the far end of the boat, and out from the near one.
+    "ferry": [
+        lift("crate 3.4", 1.0, -6.6, -3.8), lift("crate 2.4", 5.0, -7.9, -2.65), lift("crate 1.4", 9.0, -9.2, -1.5),
+        drag("boat.21", (13.0, -2.7, 0.5), (21.0, 2.6, 0.5), (21.5, 2.6, 0.5)),
+        lift("crate 1.4", 22.0, 3.4, 9.2), lift("crate 2.4", 26.0, 2.3, 7.9), lift("crate 3.4", 30.0, 1.2, 6.5),
+    ],
 }  # fmt: skip
 
 

@@ -32,6 +32,7 @@ SECTIONS = (
         "squeeze": "Soft, then firm again",
         "basket_throw": "Swing the ball, then let go",
         "sorting_belt": "D lifts the flap",
+        "ferry": "Load the boat with care",
     }),
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",
