@@ -30,6 +30,7 @@ SECTIONS = (
     GallerySection("Puzzles", "Each can be won. The first ones are easy.", {
         "chain_of_events": "One push, and all follows",
         "squeeze": "Soft, then firm again",
+        "trampoline_basket": "Tune the bed, then press D",
         "basket_throw": "Swing the ball, then let go",
         "sorting_belt": "D lifts the flap",
         "ferry": "Load the boat with care",
