@@ -45,9 +45,9 @@ def press(key: str, start: float, end: float) -> Gesture:
     return [(time, {"type": "hold_key", "key": key, "down": down}) for time, down in ((start, True), (end, False))]
 
 
-def firmness(time: float, body: str, sag: float) -> Gesture:
-    """Make a body softer or firmer, by a word of the panel or a number."""
-    return [(time, {"type": "set_firmness", "body": body, "sag": sag, "duration": round(60 * RAMP)})]
+def firmness(time: float, body: str, hz: float) -> Gesture:
+    """Make a body softer or firmer by a word of the panel, which sends what the body then wobbles at."""
+    return [(time, {"type": "set_firmness", "body": body, "hz": hz, "duration": round(60 * RAMP)})]
 
 
 def material(time: float, name: str, **coefficients: float) -> Gesture:
@@ -64,8 +64,8 @@ def lift(particle: str, start: float, x: float, over: float) -> Gesture:
 
 # What wins each level.
 SOLUTIONS: dict[str, list[Gesture]] = {
-    # Jelly passes the gap and stays where it falls; firm again, it rolls.
-    "squeeze": [firmness(3.0, "ball", 0.25), firmness(10.0, "ball", 0.02)],
+    # The words are jelly and firm. Jelly passes the gap and stays where it falls; firm again, it rolls.
+    "squeeze": [firmness(3.0, "ball", 1.317), firmness(10.0, "ball", 5.69)],
     "trampoline_basket": [material(1.0, "bed", stiffness=0.4), press("d", 3.0, 3.2)],
     "basket_throw": [drag("ball", (1.0, -5.0, 0.4), (2.0, -6.5, 1.0), (2.5, -6.5, 1.0), (3.0, -1.75, 6.0))],
     "chain_of_events": [drag("marble", (1.0, -8.85, 6.15), (1.3, -8.4, 6.3), (1.5, -7.9, 6.2))],
