@@ -14,6 +14,8 @@ SHORTER = {
     "jelly_pile": 180, "quad_mesh": 60, "rope_bridge_wheel": 240,
     "spider_web": 180, "suspension_bridge": 240, "trampoline": 180, "truck_bridge": 240, "tumble_drum": 180,
     "wrecking_ball": 240, "wrecking_crane": 180,
+    "squeeze": 60, "basket_throw": 120, "trampoline_basket": 60, "chain_of_events": 60, "sorting_belt": 60,
+    "ferry": 60,
 }  # fmt: skip
 # From one stored state to the next. It is no multiple of a round of scenes, so that each begins in other scenes.
 STATE_TICKS = 1500

@@ -21,7 +21,7 @@ MOMENTS = {
     "beating_heart": 0.4, "breaking_bridge": 2.0, "catapult": 0.5, "curtain": 2.0, "dominoes": 1.6, "hourglass": 3.0,
     "jelly_pile": 1.0, "marble_mill": 4.0, "newtons_cradle": 0.9, "pinball": 1.5, "quad_mesh": 2.0, "rope": 0.8,
     "rope_bridge_wheel": 5.0, "side_by_side": 0.3, "suspension_car": 3.5, "truck_bridge": 3.0, "trampoline": 1.3,
-    "tumble_drum": 3.0, "walker": 3.0, "wrecking_ball": 2.7, "wrecking_crane": 1.9,
+    "sorting_belt": 3.0, "tumble_drum": 3.0, "walker": 3.0, "wrecking_ball": 2.7, "wrecking_crane": 1.9,
 }  # fmt: skip
 LIGHT = frozenset({
     "truck_bridge", "balloons", "pinball", "curtain", "catapult", "walker", "beating_heart", "suspension_car",

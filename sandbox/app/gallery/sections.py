@@ -27,6 +27,14 @@ SECTIONS = (
         "catapult": "Hold D and let fly",
         "curtain": "Tug a corner, unpin a hook",
     }),
+    GallerySection("Puzzles", "Each can be won. The first ones are easy.", {
+        "chain_of_events": "One push, and all follows",
+        "squeeze": "Soft, then firm again",
+        "trampoline_basket": "Tune the bed, then press D",
+        "basket_throw": "Swing the ball, then let go",
+        "sorting_belt": "D lifts the flap",
+        "ferry": "Load the boat with care",
+    }),
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",
         "trampoline": "Pull the bed down and let go",

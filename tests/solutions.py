@@ -1,0 +1,124 @@
+"""Records the solutions of shipped levels: python -m tests.solutions [LEVEL ...]        (default: all of them)
+
+Each is what a person does in the window, by times [s] and places [m]. Record them again after a change of what a tick
+computes (a new physics version), or of a level.
+"""
+
+import sys
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from sandbox.level.reading.files import load_level, shipped_levels
+from sandbox.physics.analysis.query import grip_radius
+from sandbox.session.commands.records import from_record
+from sandbox.session.outcome import outcome, outcome_text
+from sandbox.session.session import Session
+from sandbox.session.solution import solution_of
+
+# Records of commands, each with its time [s], that are one gesture.
+Gesture = list[tuple[float, dict[str, Any]]]
+# From one move of a hand to the next, how long the window takes to make a body softer or firmer, and how long a run
+# goes on that nobody wins [s].
+MOVE, RAMP, LONGEST = 0.05, 1.25, 300.0
+
+
+def drag(particle: str, *path: tuple[float, float, float], strength: float = 100.0) -> Gesture:
+    """Take a particle at the first of the points (time, x, y), pull it from each straight to the next, and let go."""
+    (start, *place), end = path[0], path[-1][0]
+    found: Gesture = [(start, {"type": "grab", "grab": 0, "particle": particle, "target": place, "strength": strength})]
+    for (begin, *here), (then, *there) in pairwise(path):
+        steps = max(round((then - begin) / MOVE), 1)
+        for share in ((step + 1) / steps for step in range(steps)):
+            target = [round(a + share * (b - a), 4) for a, b in zip(here, there, strict=True)]
+            found.append((begin + share * (then - begin), {"type": "move_grab", "grab": 0, "target": target}))
+    return [*found, (end, {"type": "release", "grab": 0})]
+
+
+def drive(part: str, value: float, start: float, end: float) -> Gesture:
+    """Hold the key of a motor or a hydraulic."""
+    return [(time, {"type": "set_drive", "part": part, "value": one}) for time, one in ((start, value), (end, 0.0))]
+
+
+def press(key: str, start: float, end: float) -> Gesture:
+    """Hold a key that a rule asks for."""
+    return [(time, {"type": "hold_key", "key": key, "down": down}) for time, down in ((start, True), (end, False))]
+
+
+def firmness(time: float, body: str, hz: float) -> Gesture:
+    """Make a body softer or firmer by a word of the panel, which sends what the body then wobbles at."""
+    return [(time, {"type": "set_firmness", "body": body, "hz": hz, "duration": round(60 * RAMP)})]
+
+
+def material(time: float, name: str, **coefficients: float) -> Gesture:
+    """Type Cs or Cd of a material."""
+    return [(time, {"type": "set_coefficients", "material": name, **coefficients, "duration": round(60 * RAMP)})]
+
+
+def lift(particle: str, start: float, x: float, over: float) -> Gesture:
+    """Carry a crate of `ferry` from its place to another, high enough over what lies between."""
+    times = (start + share for share in (0.0, 1.0, 2.5, 3.5))
+    places = ((x, 1.05), (x, 2.6), (over, 2.6), (over, 1.2))
+    return drag(particle, *((time, *place) for time, place in zip(times, places, strict=True)))
+
+
+# What wins each level.
+SOLUTIONS: dict[str, list[Gesture]] = {
+    # The words are jelly and firm. Jelly passes the gap and stays where it falls; firm again, it rolls.
+    "squeeze": [firmness(3.0, "ball", 1.317), firmness(10.0, "ball", 5.69)],
+    "trampoline_basket": [material(1.0, "bed", stiffness=0.4), press("d", 3.0, 3.2)],
+    "basket_throw": [drag("ball", (1.0, -5.0, 0.4), (2.0, -6.5, 1.0), (2.5, -6.5, 1.0), (3.0, -1.75, 6.0))],
+    "chain_of_events": [drag("marble", (1.0, -8.85, 6.15), (1.3, -8.4, 6.3), (1.5, -7.9, 6.2))],
+    # The flap is up while blue crates pass.
+    "sorting_belt": [drive(":0", 1.0, 4.9, 10.4), drive(":0", 1.0, 13.4, 16.6)],
+    # The crates go in from the far end of the boat, and out from the near one.
+    "ferry": [
+        lift("crate 3.4", 1.0, -6.6, -3.8), lift("crate 2.4", 5.0, -7.9, -2.65), lift("crate 1.4", 9.0, -9.2, -1.5),
+        drag("boat.21", (13.0, -2.7, 0.5), (21.0, 2.6, 0.5), (21.5, 2.6, 0.5)),
+        lift("crate 1.4", 22.0, 3.4, 9.2), lift("crate 2.4", 26.0, 2.3, 7.9), lift("crate 3.4", 30.0, 1.2, 6.5),
+    ],
+}  # fmt: skip
+
+
+def play(session: Session, gestures: list[Gesture]) -> None:
+    """Do all of it, until the level is won or lost."""
+    rate = session.level.settings.tick_rate
+    lines = sorted(
+        ((round(time * rate), number, record) for number, each in enumerate(gestures) for time, record in each),
+        key=lambda line: line[:2],
+    )
+    numbers = [session.new_gesture() for _ in gestures]
+    while outcome(session.level, session.world) is None and session.tick < LONGEST * rate:
+        while lines and lines[0][0] == session.tick:
+            _, number, record = lines.pop(0)
+            if record["type"] == "grab":
+                slot = session.world.particle_slot(record["particle"])
+                record = {**record, "radius": grip_radius(session.world, slot)}
+            session.submit(from_record(record, session.world), numbers[number])
+        session.advance()
+
+
+def record(path: Path, gestures: list[Gesture]) -> str:
+    """Record a level's solution beside its file; how it ended, in words. Raises ValueError if it does not win."""
+    session = Session(load_level(path.stem))
+    part = path.with_name("part.replay.gz")
+    session.record_to(part)
+    play(session, gestures)
+    session.stop_recording()
+    found = outcome(session.level, session.world)
+    if session.messages or found is None or not found.is_won:
+        part.unlink()
+        raise ValueError(f"{path.stem}: not won: {[found and found.text, *session.messages]}")
+    part.replace(solution_of(path))
+    return outcome_text(found, session.level.settings.tick_rate)
+
+
+def main(names: list[str]) -> None:
+    """Record the solutions of the levels of these names, of all where there are none."""
+    paths = {path.stem: path for path in shipped_levels()}
+    for name in names or SOLUTIONS:
+        print(name, record(paths[name], SOLUTIONS[name]), flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
