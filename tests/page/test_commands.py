@@ -187,9 +187,9 @@ def any_records(count: int) -> list[Any]:
     return found
 
 
-def tried_on_the_desktop(before: list[Any], tried: list[Any]) -> list[tuple[str, str]]:
-    """What comes of each record, after others and a tick: words and hash."""
-    world, said = world_of(), []
+def tried_on_the_desktop(world: World, before: list[Any], tried: list[Any]) -> list[tuple[str, str]]:
+    """What comes of each record in a world, after others and a tick: words and hash."""
+    said = []
     for record in before:
         apply(world, from_record(record, world))
     step(world)
@@ -214,7 +214,7 @@ def test_a_page_takes_and_refuses_what_the_desktop_does_in_its_words(records, tm
     made = {"any": lambda: any_records(3_000), "bad": wrong_records, "one fault": records_with_one_fault}
     tried = names_in(made[records](), world)
     outcomes = Counter()
-    pages, desktop = tried_in_node(tmp_path, world, before, tried), tried_on_the_desktop(before, tried)
+    pages, desktop = tried_in_node(tmp_path, world, before, tried), tried_on_the_desktop(world_of(), before, tried)
     for record, page, (words, hashed) in zip(tried, pages, desktop, strict=True):
         name = record.get("type") if isinstance(record, dict) else None
         if isinstance(name, str) and name in COMMAND_TYPES and not is_done_by_pages(name):

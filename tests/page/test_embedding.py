@@ -10,6 +10,7 @@ import pytest
 
 from sandbox import Session, load_level
 from sandbox.cli import main
+from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.canonical import level_text
 from sandbox.level.reading.files import parse_level
 from sandbox.page.page import WEB
@@ -19,7 +20,7 @@ from tests.page.browser import Browser, Tab
 from tests.page.in_node import literal
 from tests.page.opened import READY, saved
 from tests.page.site_server import served
-from tests.page.test_commands import BEFORE, names_in, tried_on_the_desktop, world_of, wrong_records
+from tests.page.test_commands import BEFORE, names_in, tried_on_the_desktop, wrong_records
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "how-to-embed.md"
 HEARD = """(async () => {
@@ -191,13 +192,13 @@ def test_what_a_page_takes_the_desktop_verifies_also_what_it_was_not_told(
 
 def test_what_a_page_refuses_it_refuses_in_the_words_of_the_desktop(browser: Browser, address: str) -> None:
     tab = _opened(browser, address, "suspension_car")
-    world = world_of()
+    world = build_world(load_level("suspension_car"))
     before, tried = names_in(BEFORE, world), names_in(wrong_records(), world)
     tab.evaluate(f"toy.restart(); toy.pause(); {literal(before)}.forEach((record) => toy.command(record)); toy.tick()")
     trial = "try { toy.command(record); return 'taken' } catch (error) { return error.message }"
     hashed = tab.evaluate("toy.world.hash().whole")
     said = tab.evaluate(f"{literal(tried)}.map((record) => {{ {trial} }})")
-    assert [(words, hashed) for words in said] == tried_on_the_desktop(before, tried)
+    assert [(words, hashed) for words in said] == tried_on_the_desktop(world, before, tried)
     assert tab.evaluate("[toy.world.hash().whole, toy.run.commands.length]") == [hashed, len(before)]
     told = tab.evaluate("try { toy.command({ type: 'add_body' }) } catch (error) { error.message }")
     assert told.startswith("a page cannot do add_body; it can do cut_springs, set_drive, grab, move_grab, release, ")

@@ -14,7 +14,7 @@ from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.marks import LAW_NISSEN
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.state import FAMILIES, Family
+from sandbox.physics.state import BY_NAME, FAMILIES, Family
 from sandbox.physics.world import World
 
 
@@ -50,7 +50,7 @@ def _network(level: Level, scene: Scene) -> World:
     world.spring_active = np.ones(len(scene.rest_length), dtype=np.bool_)
     materials = {name: level.materials.get(name, NissenMaterial()) for name in scene.materials}
     for name, values in coefficients(scene.material, materials).items():
-        setattr(world, name, values)
+        setattr(world, name, values.astype(BY_NAME[name].dtype))
     for column in FAMILIES[Family.SPRING]:
         if column.sparse:
             setattr(world, column.name, np.full(len(scene.rest_length), column.usual, column.dtype))

@@ -157,7 +157,7 @@ def _action_faults(path: str, action: ActionDef, names: _RuleNames) -> Iterator[
         return
     does = action.done[0]
     for field, owners in BELONGS.items():
-        if field in action.model_fields_set and does not in owners:
+        if getattr(action, field) != ActionDef.model_fields[field].default and does not in owners:
             yield f"{path}.{field}", f"belongs to {' or '.join(owners)}, not to {does}; take it out"
     where = f"{path}.{does}"
     if action.count is not None:
