@@ -42,7 +42,7 @@ translation, platform = Translation(kernels), this_machine()
 entries = {kernel.name: entry_of(translation, kernel) for kernel in kernels}
 symbols = [symbol_of(kernel) for kernel in kernels]
 texts = {"tried.cpp": translation.text()}
-(here / platform.file).write_bytes(compiled(texts, symbols, platform, here / "kept", checked=True))
+(here / platform.file).write_bytes(compiled(texts, symbols, platform, here / "kept", True, True))
 library = Library(here / platform.file, entries)
 read, doubled, values = library.function("tried.read"), library.function("tried.doubled"), np.array([1.0, 2.0])
 print(read(values, 1), doubled(3), flush=True)

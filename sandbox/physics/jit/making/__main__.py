@@ -18,7 +18,7 @@ def _main(folder: Path, *checked: str) -> int:
     platform = this_machine()
     try:
         found = gathered(all_entries())
-        content = compiled(found.texts, found.symbols, platform, folder.parent / "zig", bool(checked))
+        content = compiled(found.texts, found.symbols, platform, folder.parent / "zig", bool(checked), bool(checked))
     except (Untranslatable, NotCompiled) as fault:
         print(fault)
         return 1

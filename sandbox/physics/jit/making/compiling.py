@@ -41,18 +41,18 @@ def _target(platform: Platform) -> list[str]:
     return ["-target", platform.target, "-mcpu", platform.processor, "-O", "ReleaseFast", "-fstrip"]
 
 
-def _compiling(unit: str, platform: Platform, checked: bool) -> list[str]:
+def _compiling(unit: str, platform: Platform, checked: bool, sanitized: bool) -> list[str]:
     """What zig is to do for an object file of a unit."""
     language = ("-std=c11",) if unit.endswith(".c") else ("-std=c++20", "-fno-exceptions", "-fno-rtti")
     position = () if platform.is_web else ("-fPIC",)
-    checks = (("-fsanitize-c=full",), ("-DKERNELS_CHECKED",)) if checked else ((), ())
-    flags = ("-cflags", *_OPTIONS, *checks[1], *language, "--")
-    return ["build-obj", *_target(platform), *position, *checks[0], f"-femit-bin={unit}.o", *flags, unit]
+    sanitizer = ("-fsanitize-c=full",) if sanitized else ()
+    flags = ("-cflags", *_OPTIONS, *("-DKERNELS_CHECKED",) * checked, *language, "--")
+    return ["build-obj", *_target(platform), *position, *sanitizer, f"-femit-bin={unit}.o", *flags, unit]
 
 
-def _linking(units: Sequence[str], symbols: Sequence[str], platform: Platform, checked: bool) -> list[str]:
+def _linking(units: Sequence[str], symbols: Sequence[str], platform: Platform, sanitized: bool) -> list[str]:
     """What zig is to do for a library of object files, with what compilers take for granted, such as memset."""
-    runtime = ("-fcompiler-rt", "-fubsan-rt") if checked else ("-fcompiler-rt",)
+    runtime = ("-fcompiler-rt", "-fubsan-rt") if sanitized else ("-fcompiler-rt",)
     linked = (*_target(platform), *runtime, f"-femit-bin={platform.file}", *(f"{unit}.o" for unit in units))
     if platform.is_web:
         return ["build-exe", *linked, *_WEB, *(f"--export={symbol}" for symbol in symbols)]
@@ -60,12 +60,17 @@ def _linking(units: Sequence[str], symbols: Sequence[str], platform: Platform, c
 
 
 def compiled(
-    texts: Mapping[str, str], symbols: Sequence[str], platform: Platform, kept: Path, checked: bool = False
+    texts: Mapping[str, str],
+    symbols: Sequence[str],
+    platform: Platform,
+    kept: Path,
+    checked: bool = False,
+    sanitized: bool = False,
 ) -> bytes:
     """The library of a platform: entries of kernels, with what calls them from Python; always the same bytes.
 
     texts: C++ by the names of its files. symbols: of the entries. kept: a folder for what zig makes once. checked:
-    it is to end the process, and say where, at an index out of range and at what C++ leaves undefined.
+    it is to end the process, and say where, at an index out of range; sanitized: at what C++ leaves undefined.
 
     Raises:
         NotCompiled: with what zig says.
@@ -80,6 +85,6 @@ def compiled(
             (folder / _CALLING.name).write_bytes(_CALLING.read_bytes())
             units.append(_CALLING.name)
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            list(pool.map(lambda unit: _zig(folder, kept, _compiling(unit, platform, checked)), units))
-        _zig(folder, kept, _linking(units, symbols, platform, checked))
+            list(pool.map(lambda unit: _zig(folder, kept, _compiling(unit, platform, checked, sanitized)), units))
+        _zig(folder, kept, _linking(units, symbols, platform, sanitized))
         return (folder / platform.file).read_bytes()
