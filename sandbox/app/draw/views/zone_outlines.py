@@ -1,6 +1,5 @@
 """Zone outlines: where the zones of a level are, in dashes, and places for their names."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,37 +9,26 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import Theme
+from sandbox.editor.zone_outline import outline_of
 from sandbox.level.document.model import ZoneDef
 
 # Sizes [pixels at scale 1]: half width of a dash and of what surrounds it, length of a dash and of the gap behind it.
 HALF, HALO, DASH, SPACE = 0.9, 1.2, 8.0, 5.0
-# A circle is drawn with so many sides; of an outline at most so many dashes, longer ones where it is long.
-SIDES, MOST_DASHES = 72, 400
+# Of an outline at most so many dashes, longer ones where it is long.
+MOST_DASHES = 400
 
 Floats = NDArray[np.float64]
 
 
-def corners_of(zone: ZoneDef) -> Floats:
-    """Corners (k, 2) [m] of a zone, in order; of a circle many."""
-    if zone.box is not None:
-        left, bottom, right, top = zone.box
-        return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
-    if zone.circle is not None:
-        x, y, radius = zone.circle
-        turn = np.linspace(0.0, 2.0 * math.pi, SIDES, endpoint=False)
-        return np.stack([x + radius * np.cos(turn), y + radius * np.sin(turn)], axis=1)
-    return np.array(zone.polygon or (), dtype=np.float64)
-
-
 def name_place(zone: ZoneDef) -> tuple[float, float]:
     """Where the name of a zone stands [m]: at the middle of its top."""
-    corners = corners_of(zone)
+    corners = outline_of(zone)
     return float(corners[:, 0].min() + corners[:, 0].max()) / 2, float(corners[:, 1].max())
 
 
 def mark_zones(marks: MarkList, zones: Sequence[ZoneDef], camera: Camera, theme: Theme, scale: float) -> None:
     """Draw the outlines of zones; scale: pixels per layout unit."""
-    dashes = [_dashes(camera.project(corners_of(zone)), scale) for zone in zones]
+    dashes = [_dashes(camera.project(outline_of(zone)), scale) for zone in zones]
     if dashes:
         ends = np.concatenate(dashes)
         marks.strokes(ends, (HALF + HALO) * scale, packed(theme.card), 0.6)
