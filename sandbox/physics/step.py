@@ -41,5 +41,5 @@ def step(world: World) -> None:
         code = BROKE if find_broken(block.pointer) else code
     if code == BROKE:
         world.break_springs(block.given.limits.broken[: block.given.progress[BROKEN]].copy())
-    if len(world.rules.term):
+    if world.rule_due.size:
         judge(block.pointer)

@@ -33,7 +33,7 @@ class RuleActions:
 
         One that cannot be done, as what it names is gone, does nothing.
         """
-        for rule in np.flatnonzero(world.rule_due).tolist() if self._level.rules else ():
+        for rule in np.flatnonzero(world.rule_due).tolist():
             world.rule_due[rule] = False
             for action in self._level.rules[rule].then:
                 if action.win is not None and not world.rule_stars[rule]:

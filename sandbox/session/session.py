@@ -458,7 +458,8 @@ class Session:
     def _step(self, order: int) -> None:
         """One tick; order: of the next command to come."""
         self.world.contained.clear()
-        self._actions.act(self.world)
+        if self.level.rules:
+            self._actions.act(self.world)
         step(self.world)
         if len(self.world.broken):
             self.history.breaks.add(self.tick)
