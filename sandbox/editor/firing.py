@@ -1,12 +1,12 @@
 """Firing: when the rules of a level would have fired in a run that was played, stepped again with the same commands."""
 
-import time
 from collections import deque
 from collections.abc import Iterator
 
 import numpy as np
 
 from sandbox.editor.forecast import LARGEST
+from sandbox.editor.slices import work_for
 from sandbox.level.document.model import Level
 from sandbox.session.commands import Command
 from sandbox.session.session import Session
@@ -36,12 +36,8 @@ class Firing:
 
     def advance(self, seconds: float) -> bool:
         """Work for about that long, at least one tick; whether it is done."""
-        end = time.perf_counter() + seconds
-        for _ in self._work:
-            if time.perf_counter() >= end:
-                return False
-        self.is_done = True
-        return True
+        self.is_done = work_for(self._work, seconds)
+        return self.is_done
 
     def _run(self, deeds: deque[tuple[int, int, Command]], last_tick: int) -> Iterator[None]:
         session = Session(self.level)

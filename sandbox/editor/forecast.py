@@ -5,7 +5,6 @@ it is near an equilibrium of most of its motion, and is stopped there. The level
 run, so that where it ends is where playing would end.
 """
 
-import time
 from collections.abc import Generator, Iterator
 
 import numpy as np
@@ -15,6 +14,7 @@ from sandbox.editor.actuators import driven_items
 from sandbox.editor.items import Selection
 from sandbox.editor.lint.finding import called, falling_particles
 from sandbox.editor.scene import make_scene
+from sandbox.editor.slices import work_for
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.step import step
@@ -69,12 +69,7 @@ class Forecast:
 
     def advance(self, seconds: float) -> bool:
         """Work for about that long, at least one step; whether it is done. Building and one tick are not divided."""
-        # The clock says when to pause, never what comes out.
-        end = time.perf_counter() + seconds
-        for _ in self._work:
-            if time.perf_counter() >= end:
-                break
-        return self.at_rest is not None
+        return work_for(self._work, seconds)
 
     def _run(self, level: Level) -> Iterator[None]:
         scene = make_scene(level)

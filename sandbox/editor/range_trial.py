@@ -1,6 +1,5 @@
 """RangeTrial: one number of a level tried with several values: where things go, and which checks hold."""
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -13,6 +12,7 @@ from sandbox.editor.panel.field_info import fields_of
 from sandbox.editor.panel.level_properties import level_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
+from sandbox.editor.slices import work_for
 from sandbox.editor.trail import Trail
 from sandbox.level.checks import CheckResult
 from sandbox.level.document.model import Level, Material
@@ -77,10 +77,7 @@ class RangeTrial:
 
     def advance(self, seconds: float) -> None:
         """Work for about that long, at least one tick."""
-        end = time.perf_counter() + seconds
-        for _ in self._work:
-            if time.perf_counter() >= end:
-                return
+        work_for(self._work, seconds)
 
     def _run(self) -> Iterator[None]:
         for attempt in self.attempts:

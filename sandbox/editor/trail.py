@@ -3,7 +3,6 @@
 Nobody presses a key but those that the first check holds that holds some.
 """
 
-import time
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -13,6 +12,7 @@ from sandbox.editor.edits.grouping import groups_of
 from sandbox.editor.forecast import LARGEST
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene, make_scene
+from sandbox.editor.slices import work_for
 from sandbox.level.document.model import Level
 from sandbox.session.held_keys import HeldKeys
 from sandbox.session.session import Session
@@ -43,12 +43,8 @@ class Trail:
 
     def advance(self, seconds: float) -> bool:
         """Work for about that long, at least one tick; whether it is done."""
-        end = time.perf_counter() + seconds
-        for _ in self._work:
-            if time.perf_counter() >= end:
-                return False
-        self.is_done = True
-        return True
+        self.is_done = work_for(self._work, seconds)
+        return self.is_done
 
     def _run(self, run: Session | None) -> Iterator[None]:
         scene = self.scene

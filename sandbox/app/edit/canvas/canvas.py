@@ -1,6 +1,5 @@
 """Painter of the scene that is edited: a layer that is kept while nothing changes, and what moves drawn over it."""
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -39,6 +38,7 @@ from sandbox.app.edit.canvas.edited_zones import Areas, paint_zones
 from sandbox.app.edit.canvas.flesh import ALPHA, Flesh
 from sandbox.editor.items import Selection
 from sandbox.editor.scene import Scene
+from sandbox.editor.slices import work_for
 from sandbox.level.format.limits import BODY_RADIUS
 
 # Distance of the points that the pointer snaps to, at least [pixels at scale 1].
@@ -157,11 +157,8 @@ class ScenePainter:
     def _refine(self) -> None:
         """Go on with the smooth picture for a moment."""
         assert self._work is not None
-        end = time.perf_counter() + SLICE
-        for _ in self._work:
-            if time.perf_counter() > end:
-                return
-        self._work, self._layer = None, self._finer
+        if work_for(self._work, SLICE):
+            self._work, self._layer = None, self._finer
 
     def _layer_work(
         self, layer: pygame.Surface, camera: Camera, scene: Scene, chosen: SelectionMasks, hidden: bool, plain: bool
