@@ -10,8 +10,10 @@ from sandbox.level.checks import CheckResult
 from sandbox.level.reading.files import LevelError, level_path, read_level
 from sandbox.physics.analysis.stability import report
 from sandbox.session.check_run import run_checks
+from sandbox.session.golden import SUFFIX, GoldenError, differences, read_golden
 from sandbox.session.outcome import outcome_data
 from sandbox.session.probe import finite
+from sandbox.session.replay.recording import ReplayError
 from sandbox.session.solution import try_goal
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
@@ -30,7 +32,9 @@ class LevelReport:
 
 
 def check_level(name: str) -> LevelReport:
-    """Validate a level file or a shipped level of that name, report its stability and run its checks."""
+    """Validate a level file or a shipped level, report its stability and run its checks; of a golden file compare."""
+    if name.endswith(SUFFIX):
+        return _check_golden(name)
     try:
         path = level_path(name)
         level = read_level(path)
@@ -55,6 +59,18 @@ def check_level(name: str) -> LevelReport:
         won = outcome_data(goal.outcome, level.settings.tick_rate)
         data["goal"] = {"passed": goal.passed, "outcome": won, "text": goal.text}
     return LevelReport(finite(data), lines, passed=passed)
+
+
+def _check_golden(name: str) -> LevelReport:
+    """Run a golden file, and compare within its tolerances."""
+    try:
+        golden = read_golden(Path(name))
+        found = differences(golden.file, golden.measured())
+    except (GoldenError, LevelError, ReplayError) as error:
+        return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
+    data = {"file": name, "result": "failed" if found else "passed", "level": golden.level.name, "differences": found}
+    lines = [f"  FAILS      {line}" for line in found] or ["  all is within its tolerance"]
+    return LevelReport(data, (f"{name}: {golden.level.name}", *lines), passed=not found)
 
 
 def _told(result: CheckResult) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import pytest
 RECORDINGS = (".replay.jsonl", ".replay.gz", ".replay.jsonl.gz")
 # What follows the name of a level in that of a recording that solves it.
 SOLUTION = ".solution.replay.gz"
+GOLDEN = ".golden.json"
 LEVEL_FORMAT = "spring-sandbox/level"
 # A level file is no longer [bytes], see docs/level-format.md.
 LONGEST = 8 * 2**20
@@ -18,6 +19,11 @@ _LEVELS = pytest.StashKey[frozenset[Path]]()
 def is_recording(path: Path) -> bool:
     """Whether a file is called as recordings are."""
     return path.name.endswith(RECORDINGS)
+
+
+def is_golden(path: Path) -> bool:
+    """Whether a file is called as golden files are."""
+    return path.name.endswith(GOLDEN)
 
 
 def level_files(config: pytest.Config) -> frozenset[Path]:

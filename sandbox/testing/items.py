@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sandbox.level.document.model import Level
 
 
-class _Told(pytest.Item):
+class ToldItem(pytest.Item):
     """A test whose failures are told in lines."""
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
@@ -36,7 +36,7 @@ class RecordingTest(pytest.File):
         yield ReplayItem.from_parent(self, name="replay")
 
 
-class ReplayItem(_Told):
+class ReplayItem(ToldItem):
     """A recording runs again, bit for bit."""
 
     def runtest(self) -> None:
@@ -79,7 +79,7 @@ class LevelTests(pytest.File):
         return level_of(self.path)
 
 
-class LevelItem(_Told):
+class LevelItem(ToldItem):
     """A level is read and built without a fault."""
 
     def runtest(self) -> None:
@@ -90,7 +90,7 @@ class LevelItem(_Told):
         build_world(self.parent.level())
 
 
-class CheckItem(_Told):
+class CheckItem(ToldItem):
     """A check of a level holds."""
 
     def __init__(self, *, number: int, **given: Any) -> None:
@@ -105,7 +105,7 @@ class CheckItem(_Told):
             raise Failed(result.text)
 
 
-class GoalItem(_Told):
+class GoalItem(ToldItem):
     """The solution beside a level wins it."""
 
     def runtest(self) -> None:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from sandbox.testing.files import is_recording, level_files, names_a_level
+from sandbox.testing.files import is_golden, is_recording, level_files, names_a_level
+from sandbox.testing.goldens import GoldenTest
 from sandbox.testing.items import LevelTests, RecordingTest
 
 if TYPE_CHECKING:
@@ -48,9 +49,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """Recordings by their names; JSON files that the setting names, or the command line, and that are levels."""
+    """Recordings and golden files by names; levels that the setting names, or the command line."""
     if is_recording(file_path):
         return RecordingTest.from_parent(parent, path=file_path)
+    if is_golden(file_path):
+        return GoldenTest.from_parent(parent, path=file_path)
     if file_path.suffix != ".json":
         return None
     asked = parent.session.isinitpath(file_path) or file_path in level_files(parent.config)

@@ -75,7 +75,7 @@ def _parse(data: bytes, source: str) -> Level:
     if len(data) > FILE_LIMIT:
         raise LevelError(source, [("", f"is larger than {FILE_LIMIT // 1024 // 1024} MiB; make it smaller")])
     data = data.removeprefix(codecs.BOM_UTF8)
-    raw = _load(data, source)
+    raw = json_value(data, source)
     if not isinstance(raw, dict):
         raise LevelError(source, [("", f"a level is an object {{...}}; this is {shown(raw)}")])
     kind = None if "format" in raw else foreign_keys(raw)
@@ -104,8 +104,8 @@ def _parse(data: bytes, source: str) -> Level:
         raise LevelError(source, _library_faults(error, raw)) from None
 
 
-def _load(data: bytes, source: str) -> Any:
-    """The plain JSON value of the bytes. Raises LevelError for text that is not JSON, and for repeated keys."""
+def json_value(data: bytes, source: str) -> Any:
+    """The plain JSON value of a file's bytes. Raises LevelError for what is no JSON, and for repeated keys."""
     fault = _not_text(data) or scan(data)
     if fault:
         raise LevelError(source, [fault])
