@@ -20,7 +20,7 @@ from tests.support.wants import skip_without
 
 pytestmark = pytest.mark.skipif(not jit.COMPILED, reason="interpreted kernels take minutes")
 SEEDS, TICKS = range(4), 30
-CHEAP = ("library", "undone", "saved")
+CHEAP = ("library", "undone", "saved", "cramped")
 
 
 @pytest.fixture(scope="module")
@@ -48,8 +48,7 @@ def test_seeds_make_every_solver_body_and_command(recorded):
     }  # fmt: skip
     assert {level.has_contacts for level in levels} == {False, True}
     types = {line.record["type"] for seed in range(8) for line in recorded[1](seed, 60).script}
-    # Random levels have no rules, and so no keys that rules ask for.
-    assert types == set(COMMAND_TYPES) - {"hold_key"}
+    assert types == set(COMMAND_TYPES)
 
 
 def test_the_first_ticks_of_a_longer_recording_are_those_of_a_shorter_one(recorded):

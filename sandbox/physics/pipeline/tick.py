@@ -66,7 +66,7 @@ from sandbox.physics.solvers.single_pass import apply_explicit
 from sandbox.physics.solvers.single_pass import solve as solve_single_pass
 from sandbox.physics.substeps import choose_substeps, drag_factor_of, kept_by, limit_rings, turn_into_substep
 from sandbox.physics.untangling.triangle_clamp import clamp_world
-from sandbox.physics.water.push import push_by_water
+from sandbox.physics.water.push import push_by_water, slow_spins
 
 # What a tick says at its end. It has changed nothing where something that it begins with is not sound, and goes on
 # where it was, once there is more room. Something that it has moved is not sound; springs broke.
@@ -96,6 +96,8 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
         if not _find_contacts(world, touches, has_joints, h):
             _take_back_forces(world)
             return NO_ROOM
+        # Behind the last step that is made again with more room, where velocities alone are taken back.
+        slow_spins(world.water, state, h)
         if touches:
             separate_overlaps(state, start, collisions)
             prepare_contacts(state, start, collisions, h)

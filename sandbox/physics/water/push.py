@@ -416,6 +416,11 @@ def push_by_water(
     _sum_bodies(water, state, start, label, numbers)
     _push(water, state, start, label, h)
     _slow_bodies(water, state, label, h)
+
+
+@inner_kernel
+def slow_spins(water: Water, state: State, h: float) -> None:
+    """Slow the turning of discs in water down, in a step of h [s]; after push_by_water, which finds those."""
     for k in range(water.pool.shape[0]):
         for i in range(water.disc.shape[0]):
             _slow_spin(water, k, i, state, h)

@@ -7,6 +7,7 @@ Each seed gives a level and commands, which are recorded: the reference. Then th
 library      in another session, with the kernels of the reference
 undone       with gestures undone and redone, time taken back, and other futures that are left again
 saved        verified whole, from the middle, and continued where it was cut off; with its level written and read
+cramped      with the room that a step needs found anew in every tick
 web          with the calls of kernels made in WebAssembly too, by node
 interpreted  with interpreted kernels, for a few ticks
 generic      with the library that every processor of this kind runs

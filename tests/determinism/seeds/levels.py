@@ -1,4 +1,4 @@
-"""Random levels, as the text of level files: every kind of body, every solver, with and without contacts."""
+"""Random levels, as the text of level files: every kind of body, every solver, with and without contacts and rules."""
 
 import json
 import random
@@ -8,6 +8,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.settings import AUTO
+from tests.determinism.seeds.answers import answers
 from tests.support.parts import CART, SKIN, placed, placed_cart
 
 Part = dict[str, Any]
@@ -54,6 +55,8 @@ def _level(chance: random.Random, name: str) -> Part:
         level["welds"] = [list(pair) for pair in CART["welds"]]
     if chance.random() < 0.65:
         level |= _surroundings(chance)
+    if chance.random() < 0.4:
+        level |= answers(chance, bodies, particles)
     return level
 
 

@@ -65,7 +65,7 @@ class Player:
             (0.05, self._coefficients), (0.03, self._firmness), (0.03, self._inflation), (0.06, self._drive),
             (0.06, self._push), (0.03, self._shake), (0.03, self._move), (0.02, self._remove), (0.02, self._free),
             (0.03, self._add_particle), (0.03, self._add_spring), (0.03, self._add_body), (0.03, self._weather),
-            (0.04, self._solver), (0.05, self._undo),
+            (0.04, self._solver), (0.05, self._undo), (0.08, self._key),
         )  # fmt: skip
         for share, act in acts:
             if self.chance.random() < share:
@@ -144,6 +144,12 @@ class Player:
     def _drive(self) -> None:
         name = self._chosen(self.session.world.actuators.names)
         self._do({"type": "set_drive", "part": name, "value": self.chance.choice([0.0, 1.0, -1.0, 0.3])})
+
+    def _key(self) -> None:
+        keys = self.session.world.rule_keys
+        if keys:
+            key = self.chance.choice(keys)
+            self._do({"type": "hold_key", "key": key, "down": self.chance.random() < 0.5})
 
     def _push(self) -> None:
         record = {"type": "push", "position": self._place(), "radius": number(self.chance, 0.3, 3.0)}

@@ -87,13 +87,23 @@ def _follow(watch: Watch, session: Session) -> None:
         watch.see(session.world)
 
 
+def cramped(watch: Watch, seed: int, folder: Path) -> None:
+    """With no room kept from one tick to the next: what is found to need more is made again. Raises Differs."""
+    session = Session(watch.replay.level, watch.replay.script)
+    watch.see(session.world)
+    while session.tick < watch.replay.ticks:
+        session.world._lasting.clear()
+        session.advance()
+        watch.see(session.world)
+
+
 def web(watch: Watch, seed: int, folder: Path) -> None:
     """The same calls of kernels in WebAssembly, as a machine of its own makes them. Raises Differs."""
     run_elsewhere(watch, WEB)
 
 
 Way = Callable[[Watch, int, Path], None]
-WAYS: dict[str, Way] = {"library": library, "undone": undone, "saved": saved, "web": web}
+WAYS: dict[str, Way] = {"library": library, "undone": undone, "saved": saved, "cramped": cramped, "web": web}
 
 
 def failure(seed: int, way: str, ticks: int, error: Exception) -> Difference:
