@@ -396,7 +396,7 @@ COMMANDS = {
     "play": ["rope"], "toy": [], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "resume": ["x.jsonl"],
     "check": ["rope"], "diff": ["x.jsonl", "y.jsonl"], "bisect": ["x.json", "y.json"],
     "sweep": ["rope", "--cs", "0.1:1:2", "-o", "x.csv"], "render": ["rope", "-o", "x.png"],
-    "page": ["rope", "-o", "x.html"], "site": ["rope", "-o", "x"], "take-home": ["rope"],
+    "page": ["rope", "-o", "x.html"], "site": ["rope", "-o", "x"], "link": ["x.jsonl"], "take-home": ["rope"],
     "export": ["rope", "-o", "x.json"], "format": ["x.json"], "edit": [], "schema": [],
 }  # fmt: skip
 

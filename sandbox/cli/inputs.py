@@ -28,22 +28,24 @@ def level_of(name: str) -> "Level":
 
 
 def recording_of(name: str, partial: bool = False) -> "Replay":
-    """A recording; partial: also one that is cut off. Raises Refused."""
+    """A recording, of a file or of a link; partial: also one that is cut off. Raises Refused."""
+    from sandbox.session.link.scene_link import is_link, replay_of
     from sandbox.session.replay.reader import read_replay
     from sandbox.session.replay.recording import ReplayError
 
     try:
-        return read_replay(name, partial)
+        return replay_of(name) if is_link(name) else read_replay(name, partial)
     except ReplayError as error:
         raise Refused(*error.faults) from None
 
 
 def is_replay(name: str) -> bool:
-    """Whether a file's first bytes are a recording's, plain or compressed; anything else is taken for a level."""
+    """Whether a file's first bytes are a recording's, or a link's letters; anything else is taken for a level."""
+    from sandbox.session.link.scene_link import is_link
     from sandbox.session.replay.reader import begins_as_replay
 
     try:
-        return begins_as_replay(name)
+        return is_link(name) or begins_as_replay(name)
     except OSError:
         return False
 

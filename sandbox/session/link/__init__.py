@@ -1,0 +1,1 @@
+"""Links: a run in the fragment of an address."""

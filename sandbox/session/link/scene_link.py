@@ -1,0 +1,168 @@
+"""Links: a run in the fragment of an address, which no browser sends to a server.
+
+    https://example.org/toys/#scene=eNq...
+
+It holds the level, or the name of a shipped one, the commands of the run, its length and the hash of its last state:
+JSON, deflated, in the letters of base64 that addresses may have.
+"""
+
+import base64
+import binascii
+import hashlib
+import json
+import re
+import zlib
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sandbox.level.document.canonical import level_data
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.format.scan import scan
+from sandbox.level.reading.files import load_level, parse_level, shipped_levels
+from sandbox.physics.state import BY_STORED
+from sandbox.physics.step import PHYSICS_VERSION
+from sandbox.session.commands.faults import plain_fault
+from sandbox.session.link.packing import PackingError, pack, unpack
+from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
+
+VERSION = 1
+# What comes before the packed run in a fragment.
+MARK = "scene="
+# A longer link is cut by programs that pass it on [characters]; a longer run goes into a file.
+LONGEST = 32_000
+# What a link may unpack to [bytes], and ticks of its run: an hour at 60 a second.
+_UNPACKED = 4 * 2**20
+_TICKS = 216_000
+_DIGEST = 8
+
+_LINK = re.compile(rf"(?:^|#){MARK}(\S*)$")
+_NO_HASHES = TickHashes("", ("",) * len(BY_STORED))
+
+
+class _LinkedRun(BaseModel):
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+    v: Literal[1]
+    physics: int
+    level: dict[str, Any] | Annotated[str, Field(max_length=80)]
+    digest: Annotated[str, Field(max_length=_DIGEST)] = ""
+    ticks: Annotated[int, Field(ge=0, le=_TICKS)]
+    hash: Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
+    commands: list[Any]
+
+
+def is_link(text: str) -> bool:
+    """Whether a text is a link, of any site or of none."""
+    return _LINK.search(text.strip()) is not None
+
+
+def fragment_of(replay: Replay) -> str:
+    """The fragment of a link to a recorded run.
+
+    Raises ReplayError for a recording that is cut off, and for one that is too long for a link.
+    """
+    if replay.end_hash is None:
+        raise ReplayError(f"{replay.source}: is cut off; a link holds the hash of its end")
+    if replay.ticks > _TICKS:
+        raise ReplayError(f"{replay.source}: {replay.ticks:,} ticks are too long for a link; send the file")
+    whole = {
+        "v": VERSION, "physics": PHYSICS_VERSION, **_level_record(replay.level), "ticks": replay.ticks,
+        "hash": replay.end_hash, "commands": pack(replay.script),
+    }  # fmt: skip
+    data = json.dumps(whole, separators=(",", ":"), ensure_ascii=False).encode()
+    packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
+    text = MARK + base64.urlsafe_b64encode(packer.compress(data) + packer.flush()).decode().rstrip("=")
+    if len(data) > _UNPACKED or len(text) > LONGEST:
+        raise ReplayError(
+            f"{replay.source}: a link to it would have {len(text):,} characters, where {LONGEST:,} are the most; "
+            "send the file"
+        )
+    return text
+
+
+def _level_record(level: Level) -> dict[str, Any]:
+    for path in shipped_levels():
+        if load_level(path) == level:
+            return {"level": path.stem, "digest": _digest(level)}
+    return {"level": level_data(level)}
+
+
+def _digest(level: Level) -> str:
+    text = json.dumps(level_data(level), sort_keys=True)
+    return hashlib.blake2b(text.encode(), digest_size=_DIGEST // 2).hexdigest()
+
+
+def replay_of(link: str) -> Replay:
+    """The run of a link, as a recording that knows the hash of its end alone.
+
+    Raises ReplayError, in one line, for a link that is broken, of another version, or not one of ours.
+    """
+    found = _LINK.search(link.strip())
+    if found is None:
+        raise ReplayError(f"the link holds no run: it has no #{MARK}...")
+    packed = _unpacked(found[1])
+    try:
+        script = unpack(packed.commands)
+    except PackingError as error:
+        raise ReplayError(f"the link is broken: {error}") from None
+    if any(line.tick > packed.ticks for line in script[-1:]):
+        raise ReplayError("the link is broken: it goes on after its end")
+    level = _level_of(packed)
+    hashes = (_NO_HASHES,) * (packed.ticks + 1)
+    return Replay("link", level, script, hashes, {}, packed.hash)
+
+
+def _unpacked(text: str) -> _LinkedRun:
+    """What a fragment holds. Raises ReplayError."""
+    if len(text) > LONGEST:
+        raise ReplayError(f"the link is longer than {LONGEST:,} characters")
+    try:
+        data = base64.b64decode(text + "=" * (-len(text) % 4), altchars=b"-_", validate=True)
+        opener = zlib.decompressobj(-zlib.MAX_WBITS)
+        plain = opener.decompress(data, _UNPACKED)
+    except (binascii.Error, ValueError, zlib.error):
+        raise ReplayError("the link is damaged: copy it again, whole") from None
+    if opener.unconsumed_tail:
+        raise ReplayError(f"the link unpacks to more than {_UNPACKED // 2**20} MiB")
+    if not opener.eof:
+        raise ReplayError("the link is cut off: copy it again, whole")
+    if fault := scan(plain):
+        raise ReplayError(f"the link is damaged: {fault[1]}")
+    try:
+        values = json.loads(plain)
+    except (ValueError, RecursionError):
+        raise ReplayError("the link is damaged: copy it again, whole") from None
+    if isinstance(values, dict):
+        _check_versions(values)
+    try:
+        return _LinkedRun.model_validate(values)
+    except ValidationError as error:
+        raise ReplayError(f"the link is broken: {plain_fault(error)}") from None
+
+
+def _check_versions(values: dict[str, Any]) -> None:
+    if values.get("v") != VERSION:
+        raise ReplayError(f"the link is of version {str(values.get('v'))[:20]}; this program reads {VERSION}")
+    if values.get("physics") != PHYSICS_VERSION:
+        raise ReplayError(
+            f"the link was made with physics version {str(values.get('physics'))[:20]}; this program has "
+            f"{PHYSICS_VERSION}, whose bits differ"
+        )
+
+
+def _level_of(packed: _LinkedRun) -> Level:
+    """The level of a link. Raises ReplayError."""
+    try:
+        if isinstance(packed.level, dict):
+            return parse_level(json.dumps(packed.level).encode(), "the level of the link")
+        shipped = {path.stem: path for path in shipped_levels()}
+        if packed.level not in shipped:
+            raise ReplayError(f"the link is to a level that is not here: {packed.level!r}")
+        level = load_level(shipped[packed.level])
+    except LevelError as error:
+        raise ReplayError(*error.faults) from None
+    if _digest(level) != packed.digest:
+        raise ReplayError(f"the link is to another edition of {packed.level!r}")
+    return level
