@@ -67,7 +67,8 @@ def _verify(name: str, partial: bool, level: "Level | None", report: Path | None
         ended, rate = outcome(played, worlds[0]) if worlds else None, played.settings.tick_rate
         said = "" if ended is None else f", {outcome_text(ended, rate)}"
         data = {"outcome": outcome_data(ended, rate)} if played.rules else {}
-        text = f"equal, {replay.ticks} ticks{cut}{said}"
+        at_end = "" if replay.compared == "every tick" else " at its end"
+        text = f"equal{at_end}, {replay.ticks} ticks{cut}{said}"
         return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text, **data}
     if report is not None:
         write_report(found, report)

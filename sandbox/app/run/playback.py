@@ -17,7 +17,7 @@ from sandbox.app.run.stopped import Stopped
 from sandbox.app.run.travel import Travel
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
-from sandbox.physics.snapshot import Snapshot, state_hash
+from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.step import precompute
 from sandbox.physics.world import World
 from sandbox.session.breaks import break_lines
@@ -446,7 +446,7 @@ class Playback:
         assert self.replay is not None
         tick = self.session.tick
         if self._equal and tick <= self.replay.ticks:
-            self._equal = self.replay.hashes[tick].fits(state_hash(self.session.world))
+            self._equal = self.replay.fits(self.session.world)
             if not self._equal:
                 self.messages.append(f"The run differs from the recording at tick {tick}; `sandbox replay` says where.")
 
@@ -460,7 +460,7 @@ class Playback:
             self.clock.paused = True
             return True
         cut = " (the file is cut off there)" if self.replay.end_hash is None else ""
-        whole = "some were passed over, all others" if self._passed_over else "every tick"
+        whole = "some were passed over, all others" if self._passed_over else self.replay.compared
         outcome = f"verified: {whole} equal bit for bit" if self._equal else "NOT equal to the recording"
         self._end_watching(f"{self.replay.ticks:,} ticks{cut}, {outcome}")
         return True

@@ -8,6 +8,7 @@ from sandbox.level.document.model import Level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.state import BY_STORED
+from sandbox.physics.world import World
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import decode_state
 
@@ -67,6 +68,17 @@ class Replay:
     def ticks(self) -> int:
         """Ticks recorded."""
         return len(self.hashes) - 1
+
+    @property
+    def compared(self) -> str:
+        """What of a run is compared with it: every tick, or of a link, which has no hashes of ticks, its end."""
+        return "every tick" if self.hashes[0].whole else "its end"
+
+    def fits(self, world: World) -> bool:
+        """Whether a run of it is as recorded, by the hashes that there are of its tick."""
+        present = state_hash(world)
+        ends = world.tick == self.ticks and self.end_hash is not None
+        return self.hashes[world.tick].fits(present) and (not ends or present == self.end_hash)
 
     def state(self, tick: int) -> Snapshot:
         """The stored state of a tick. Raises ReplayError where there is none, or one that its own hash belies."""
