@@ -53,6 +53,14 @@ class Session:
         self._pending: deque[tuple[Command, int]] = deque()
         self._recorder: Recorder | None = None
 
+    def __repr__(self) -> str:
+        """What it is, in a line."""
+        past = f" of {self.last_tick}" if self.tick < self.last_tick else ""
+        recorded = "" if self.recording is None else f", recorded to {self.recording}"
+        count = len(self.history.done)
+        gestures = f"{count} gesture" if count == 1 else f"{count} gestures"
+        return f"<Session of {self.level.name!r} at tick {self.tick}{past}: {gestures}{recorded}>"
+
     @property
     def tick(self) -> int:
         """Ticks since the level's start."""
