@@ -77,6 +77,10 @@ class ContactListener:
         self._last: dict[Pair, int] = {}
         self._tick = -1
 
+    def last_touch(self, tick: int) -> int:
+        """The last tick in which pairs touched that an update at a tick tells to have parted."""
+        return max(tick - self._patience - 1, 0)
+
     def update(self, world: World) -> ContactEvents:
         """What changed since the last call. In a world that went back in time all contacts are over, and begin anew."""
         tick, now = world.tick, touching_pairs(world)
