@@ -14,6 +14,9 @@ from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RI
 from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.world import World
 
+# The colour of terrain and walls.
+GROUND_COLOUR = 0x5B6477
+
 
 @dataclass(frozen=True, eq=False)
 class ThingOutline:
@@ -22,7 +25,7 @@ class ThingOutline:
     name: id of the thing. points (k, 2) [m]: in order, counter-clockwise about what is solid, so that a hole runs
     clockwise. closed: whether the last is joined to the first. solid: whether it encloses something, that of a hole
     not. particles (k,): slots of the points; of terrain there are none. colour: 0xRRGGBB, that of the level or one of
-    the palette.
+    the palette; terrain is grey.
     """
 
     name: str
@@ -69,7 +72,7 @@ class _Rims:
 
 def _rims(world: World) -> _Rims:
     things, colours = ThingNames.of(world), _colours(world)
-    return _Rims(list(_bodies(world, things)), list(_terrain(world, things, colours)), colours)
+    return _Rims(list(_bodies(world, things)), list(_terrain(world, things)), colours)
 
 
 def _bodies(world: World, things: ThingNames) -> Iterator[_Rim]:
@@ -157,7 +160,7 @@ def _turns_left(points: Floats) -> bool:
     return bool(signed_area(points, np.roll(points, -1, axis=0)) > 0.0)
 
 
-def _terrain(world: World, things: ThingNames, colours: list[int]) -> Iterator[ThingOutline]:
+def _terrain(world: World, things: ThingNames) -> Iterator[ThingOutline]:
     terrain = world.terrain
     for chain in np.unique(terrain.chain).tolist():
         edges = np.flatnonzero(terrain.chain == chain)
@@ -165,7 +168,7 @@ def _terrain(world: World, things: ThingNames, colours: list[int]) -> Iterator[T
         corners = terrain.edge_a[edges] if closed else np.append(terrain.edge_a[edges], terrain.edge_b[edges[-1]])
         points, thing = terrain.vertex[corners], int(things.of_terrain[edges[0]])
         solid = closed and bool(terrain.solid[edges[0]]) and _turns_left(points)
-        yield ThingOutline(things.names[thing], points, closed, solid, np.zeros(0, np.int64), colours[thing])
+        yield ThingOutline(things.names[thing], points, closed, solid, np.zeros(0, np.int64), GROUND_COLOUR)
 
 
 def _colours(world: World) -> list[int]:
