@@ -20,7 +20,7 @@ def happenings(run: Session, watch: TouchWatch | None = None) -> list[Happening]
     watch: one that watched all its ticks; None: without who touched whom and who was in which zone.
     """
     entries = [entry for entry in run.history.timeline if entry.in_effect and entry.tick <= run.tick]
-    found = [*deeds_in(script_of(entries, run.world)), *_of_moments(run)]
+    found = [*deeds_in(script_of(entries, run.world)), *told_moments(run, run.tick)]
     if watch is not None:
         found += _of_watch(watch, run.tick)
     return sorted(found, key=lambda each: each.tick)
@@ -46,20 +46,28 @@ def watched_story(
     return story(run, watch)
 
 
-def _of_moments(run: Session) -> Iterator[Happening]:
-    names, ended = run.world.spring_names, outcome(run.level, run.world)
+def told_moments(run: Session, last: int) -> Iterator[Happening]:
+    """What a run itself keeps of its ticks until a tick, which may lie ahead of the present one, in order."""
+    names, known = run.world.spring_names, outcome(run.level, run.world)
+    end = None if known is None else known.tick
     for tick, moment in sorted(run.history.moments.items()):
-        if tick > run.tick:
+        if tick > last:
             break
         for slot in moment.broken:
             yield Happening(tick, tick, "break", (thing_of_spring(names[slot]),), f"{names[slot]} broke")
         for name in moment.frozen:
             yield Happening(tick, tick, "freeze", (name,), f"{name} went out of bounds and was frozen")
-        yield from _of_rules(run.level, tick, moment, None if ended is None else ended.tick)
+        for each in _of_rules(run.level, tick, moment):
+            if each.kind in ("win", "lose"):
+                # What ended first counts, and of one tick what stands first.
+                if end is not None and end != tick:
+                    continue
+                end = tick - 1
+            yield each
 
 
-def _of_rules(level: Level, tick: int, moment: KeptMoment, end: int | None) -> Iterator[Happening]:
-    """What the rules that fired in a tick do; end: the tick in which the run was won or lost."""
+def _of_rules(level: Level, tick: int, moment: KeptMoment) -> Iterator[Happening]:
+    """What the rules that fired in a tick do."""
     values = dict(zip((counter.id for counter in level.counters), moment.counters, strict=False))
     for number in moment.rules:
         rule = level.rules[number]
@@ -69,9 +77,8 @@ def _of_rules(level: Level, tick: int, moment: KeptMoment, end: int | None) -> I
                 text = f"{action.count} is {values[action.count]:g}"
                 yield Happening(tick, tick, "count", (action.count, rule.id), text)
             elif action.win is not None or action.fail is not None:
-                if tick == end:
-                    kind, words = ("win", "won") if action.win is not None else ("lose", "lost")
-                    yield Happening(tick, tick, kind, (rule.id,), f"{words}: {action.win or action.fail or rule.id}")
+                kind, words = ("win", "won") if action.win is not None else ("lose", "lost")
+                yield Happening(tick, tick, kind, (rule.id,), f"{words}: {action.win or action.fail or rule.id}")
             elif action.checkpoint:
                 yield Happening(tick, tick, "checkpoint", (rule.id,), f"checkpoint ({rule.id})")
             else:
