@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from sandbox.cli.command import Subcommand, length_in_seconds, length_in_ticks
-from sandbox.cli.inputs import EXIT_OK, Refused, level_or_replay
+from sandbox.cli.inputs import EXIT_OK, Refused, is_replay, level_of
 from sandbox.cli.options import arguments, flag
 from sandbox.terminal import Progress, interrupted_between_ticks
 
@@ -34,7 +34,8 @@ class InfoOptions:
 def info(options: InfoOptions) -> int:
     """Tell what recordings hold, and what happened in them when. Raises Refused."""
     for number, name in enumerate(options.files):
-        level, replay = level_or_replay(name)
+        replay = _recording(name) if is_replay(name) else None
+        level = level_of(name) if replay is None else replay.level
         run, ticks, found = _told(options, name, level, replay)
         if options.json:
             print(json.dumps(_data(name, run, replay, found)))
@@ -43,6 +44,17 @@ def info(options: InfoOptions) -> int:
             print()
         print("\n".join([*_header(name, run, replay, ticks), *_list(options, run, found)]))
     return EXIT_OK
+
+
+def _recording(name: str) -> "Replay":
+    """A recording, also one that is cut off or of another physics version. Raises Refused."""
+    from sandbox.session.replay.reader import read_replay
+    from sandbox.session.replay.recording import ReplayError
+
+    try:
+        return read_replay(name, partial=True, retold=True)
+    except ReplayError as error:
+        raise Refused(*error.faults) from None
 
 
 def _told(
@@ -81,7 +93,8 @@ def _header(name: str, run: "Session", replay: "Replay | None", ticks: int) -> l
         f"solver      {level.settings.solver}, {rate} ticks a second, "
         + ('substeps "auto"' if steps == "auto" else f"{steps} substeps" if steps != 1 else "1 substep"),
         f"length      {ticks:,} ticks, {ticks / rate:.2f} s"
-        + ("" if replay is None or ticks == replay.ticks else f" of {replay.ticks / rate:.2f} s"),
+        + ("" if replay is None or ticks == replay.ticks else f" of {replay.ticks / rate:.2f} s")
+        + ("" if replay is None or replay.end_hash is not None else ", where the file is cut off"),
     ]
     if replay is not None:
         counts = _commands(replay)

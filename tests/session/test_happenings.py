@@ -96,7 +96,7 @@ def test_counting_zones_checkpoints_and_winning_are_told():
     told = watched_story(run, 90)
     entered = run.world.rule_first[0]
     assert lines_of(told, ["enter", "count", "checkpoint", "win", "lose", "rule"]) == [
-        (entered, "score is 2"), (entered, "checkpoint (in)"), (entered, "ball entered basket"),
+        (entered, "ball entered basket"), (entered, "score is 2"), (entered, "checkpoint (in)"),
         (entered + 1, "won: Well done"), (60, "rule late: say Over"),
     ]  # fmt: skip
 
@@ -178,6 +178,23 @@ def test_info_tells_of_a_recording_its_header_and_what_happened(tmp_path, capsys
     data = json.loads(capsys.readouterr().out)
     assert data["equal"] is True and data["ticks"] == 60 and data["commands"] == {"grab": 1, "release": 1}
     assert [(each["kind"], each["names"], each["seconds"]) for each in data["happened"]] == [("grab", ["ball"], 0.0)]
+
+
+def test_info_tells_of_a_recording_that_is_cut_off_or_steps_differently_and_says_so(tmp_path, capsys):
+    path, run = tmp_path / "run.replay.jsonl", Session(level_of(particles=[BALL]))
+    run.record_to(path)
+    for _ in range(60):
+        run.advance()
+    run.abandon_recording()
+    assert main(["info", str(path)]) == 0
+    assert "length      60 ticks, 1.00 s, where the file is cut off\n" in capsys.readouterr().out
+    run.record_to(path)
+    run.world.velocity[0] += 1.0
+    for _ in range(60):
+        run.advance()
+    run.stop_recording()
+    assert main(["info", str(path)]) == 0
+    assert "steps it differently" in capsys.readouterr().out
 
 
 def test_info_of_a_level_runs_it_and_of_what_is_neither_says_so(tmp_path, capsys):

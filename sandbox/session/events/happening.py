@@ -50,8 +50,10 @@ class Happening:
 def listed(names: Iterable[str]) -> str:
     """Names in a sentence: the first ones, and how many more."""
     known = list(dict.fromkeys(names))
-    shown, more = known[:NAMED], len(known) - NAMED
-    if more > 0:
+    more = len(known) - NAMED
+    # The name of one more is no longer than saying so.
+    shown = known if more == 1 else known[:NAMED]
+    if more > 1:
         return f"{', '.join(shown)} and {more} more"
     return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
 
@@ -60,13 +62,18 @@ def grouped(happenings: Sequence[Happening], rate: int) -> list[Happening]:
     """In the order of time, many that are alike and soon after each other as one; rate: ticks in a second."""
     gap = round(SOON * rate)
     by_kind: dict[str, list[Happening]] = {}
-    for each in sorted(happenings, key=_when):
+    for each in in_order(happenings):
         by_kind.setdefault(each.kind, []).append(each)
     told: list[Happening] = []
     for kind, those in by_kind.items():
         many = _MANY.get(kind)
         told += those if many is None else _joined(those, gap, many)
-    return sorted(told, key=_when)
+    return in_order(told)
+
+
+def in_order(happenings: Iterable[Happening]) -> list[Happening]:
+    """In the order of time, and of causes within a tick."""
+    return sorted(happenings, key=_when)
 
 
 def shortened(happenings: Sequence[Happening], most: int = MOST_LINES) -> tuple[list[Happening], int]:
@@ -77,8 +84,10 @@ def shortened(happenings: Sequence[Happening], most: int = MOST_LINES) -> tuple[
     return [each for each in happenings if each not in left_out], len(dropped)
 
 
-def _when(happening: Happening) -> tuple[int, int]:
-    return happening.tick, happening.last
+def _when(happening: Happening) -> tuple[int, int, int]:
+    """By the tick; in one tick what was done before what came of it, and what rules ask before what they do."""
+    kind = happening.kind
+    return happening.tick, KINDS.index(kind) if kind in KINDS else -1, happening.last
 
 
 def _joined(those: list[Happening], gap: int, many: Callable[[str, list[Happening]], str]) -> Iterator[Happening]:

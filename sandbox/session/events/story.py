@@ -7,7 +7,7 @@ from sandbox.level.rules.action import ActionDef
 from sandbox.level.things.names import thing_of_spring
 from sandbox.session.commands.records import script_of
 from sandbox.session.events.deeds import deeds_in
-from sandbox.session.events.happening import Happening, grouped
+from sandbox.session.events.happening import Happening, grouped, in_order
 from sandbox.session.events.moments import KeptMoment
 from sandbox.session.events.touch_watch import Meeting, TouchWatch
 from sandbox.session.outcome import outcome
@@ -23,7 +23,7 @@ def happenings(run: Session, watch: TouchWatch | None = None) -> list[Happening]
     found = [*deeds_in(script_of(entries, run.world)), *told_moments(run, run.tick)]
     if watch is not None:
         found += _of_watch(watch, run.tick)
-    return sorted(found, key=lambda each: each.tick)
+    return in_order(found)
 
 
 def story(run: Session, watch: TouchWatch | None = None) -> list[Happening]:
