@@ -145,7 +145,7 @@ class _Pushing:
         if not len(kept):
             return cls((), none, none, none)
         things = ThingNames.of(world)
-        touched = _touched(world, things, world.contact_feature[kept])
+        touched = _touched(world, world.contact_feature[kept])
         there = touched >= 0
         kept = kept[there]
         return cls(things.names, kept, things.of_particle[world.contact_particle[kept]], touched[there])
@@ -170,20 +170,34 @@ class _Pushing:
         return _Pushing(self.names, self.kept[chosen], self.of_particle[chosen], self.touched[chosen])
 
 
-def _touched(world: World, things: ThingNames, feature: Slots) -> Slots:
+@dataclass(frozen=True, eq=False)
+class _Features:
+    """The things of all that a contact may be with: of particles, edges of terrain and springs, one after the other.
+
+    first, count (KINDS,): where those that a kind of feature names begin, and how many they are.
+    """
+
+    thing: Slots
+    first: Slots
+    count: Slots
+
+    @classmethod
+    def of(cls, world: World) -> "_Features":
+        """Those of a world as it is now."""
+        things = ThingNames.of(world)
+        parts = {DISC: things.of_particle, TERRAIN: things.of_terrain}
+        found = [parts.get(kind, things.of_spring) for kind in range(KINDS)]
+        count = np.array([len(part) for part in found])
+        return cls(np.concatenate(found), np.cumsum(count) - count, count)
+
+
+def _touched(world: World, feature: Slots) -> Slots:
     """The things that contacts are with, -1: with something that is gone."""
-    kind, number = feature % KINDS, feature // KINDS
-    touched = np.full(len(kind), -1, np.int64)
-    discs, ground = kind == DISC, kind == TERRAIN
-    spring = np.where(kind == TIP, number % TIP_SHIFT, number)
-    for mask, index, of in (
-        (discs, number, things.of_particle),
-        (ground, number, things.of_terrain),
-        (~(discs | ground), spring, things.of_spring),
-    ):
-        known = mask & (index < len(of))
-        touched[known] = of[index[known]]
-    return touched
+    features = world.derived(_Features.of, of_hands=False)
+    number, kind = np.divmod(feature, KINDS)
+    number = np.where(kind == TIP, number % TIP_SHIFT, number)
+    known = number < features.count[kind]
+    return np.where(known, features.thing[np.where(known, number + features.first[kind], 0)], -1)
 
 
 def _with_contacts(world: World, kept: Slots) -> World:
