@@ -14,6 +14,12 @@ _HOME = {
     "LevelError": "sandbox.level.format.level_error",
     "load_level": "sandbox.level.reading.files",
     "build_world": "sandbox.level.assembly.build_world",
+    "Contact": "sandbox.level.things.contacts",
+    "ContactEvents": "sandbox.level.things.contacts",
+    "ContactListener": "sandbox.level.things.contacts",
+    "contacts": "sandbox.level.things.contacts",
+    "ThingOutline": "sandbox.level.things.outlines",
+    "outlines": "sandbox.level.things.outlines",
     "Snapshot": "sandbox.physics.snapshot",
     "World": "sandbox.physics.world",
     "WorldSettings": "sandbox.physics.settings",
@@ -24,16 +30,22 @@ _HOME = {
     "Replay": "sandbox.session.replay.recording",
 }
 __all__ = [
+    "Contact",
+    "ContactEvents",
+    "ContactListener",
     "Level",
     "LevelError",
     "Replay",
     "Session",
     "Snapshot",
+    "ThingOutline",
     "World",
     "WorldSettings",
     "__version__",
     "build_world",
+    "contacts",
     "load_level",
+    "outlines",
     "run_checks",
     "state_hash",
     "step",
@@ -44,6 +56,8 @@ if TYPE_CHECKING:
     from sandbox.level.document.model import Level
     from sandbox.level.format.level_error import LevelError
     from sandbox.level.reading.files import load_level
+    from sandbox.level.things.contacts import Contact, ContactEvents, ContactListener, contacts
+    from sandbox.level.things.outlines import ThingOutline, outlines
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.snapshot import Snapshot, state_hash
     from sandbox.physics.step import step

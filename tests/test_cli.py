@@ -393,7 +393,8 @@ def test_an_error_without_a_file_is_not_blamed_on_standard_output(rope, monkeypa
 
 
 COMMANDS = {
-    "play": ["rope"], "toy": [], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "resume": ["x.jsonl"],
+    "play": ["rope"], "toy": [], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "info": ["x.jsonl"],
+    "resume": ["x.jsonl"],
     "check": ["rope"], "diff": ["x.jsonl", "y.jsonl"], "bisect": ["x.json", "y.json"],
     "sweep": ["rope", "--cs", "0.1:1:2", "-o", "x.csv"], "render": ["rope", "-o", "x.png"],
     "page": ["rope", "-o", "x.html"], "site": ["rope", "-o", "x"], "link": ["x.jsonl"], "take-home": ["rope"],

@@ -34,10 +34,13 @@ def watching(ticks: int) -> "Iterator[Watched]":
 def write_run(session: "Session", ticks: int, path: Path, name: str, replay: "Replay | None") -> str:
     """Write the page that plays one run, which has not begun; what was written."""
     from sandbox.session.player.page import PlayerPage
-    from sandbox.session.player.report import command_marks, played
+    from sandbox.session.player.report import command_marks, played, told_of, watches_of
 
+    runs = [session]
+    watches = watches_of(runs)
     with watching(ticks) as watched:
-        page = PlayerPage(name, *played([name], [session], ticks, watched=watched), marks=command_marks(replay))
+        reels = played([name], runs, ticks, watched=watched, watches=watches)
+        page = PlayerPage(name, *reels, marks=command_marks(replay), happened=told_of(runs, watches))
     page.write(path)
     return f"{ticks / session.world.settings.tick_rate:g} s, {len(page.reels[0].ticks)} pictures"
 

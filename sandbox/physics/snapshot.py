@@ -16,7 +16,7 @@ from sandbox.physics.terrain import Terrain
 from sandbox.physics.world import World
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Snapshot(StateArrays):
     """A read-only copy of a world's state: its arrays (see StateArrays), settings and tick; its equipment and terrain.
 

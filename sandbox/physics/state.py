@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.arrays import ArrayKind, Floats
+from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.terrain import Terrain
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -227,6 +228,15 @@ class StateArrays:
     still_ticks = _array("still_ticks", L, I32, "tick", "for how many ticks on end it has been still", sparse=True)
     key_down = _array("key_down", K, BOOL, "", "whether it is held", sparse=True)
     # fmt: on
+    tick: int
+
+    def __repr__(self) -> str:
+        """What it is, in a line; hands that hold are left out."""
+        hands = int(np.count_nonzero(self.spring_active & (self.material == GRAB_MATERIAL)))
+        particles, springs = (
+            int(np.count_nonzero(each)) - hands for each in (self.particle_active, self.spring_active)
+        )
+        return f"<{type(self).__name__} at tick {self.tick}: {particles:,} particles, {springs:,} springs>"
 
 
 # Every array of a world's state, in the order in which it is hashed and stored.

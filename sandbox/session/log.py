@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
+from sandbox.session.events.moments import Moments
 
 # States that are kept by their history: what an undo steps from and what a redo comes to, of some three gestures. Fewer
 # make undoing to and fro step more ticks again, more take memory.
@@ -32,25 +33,25 @@ class LogEntry:
 class Branch:
     """How a run went on from a tick (0..) before something else was done there; see Session.return_to.
 
-    history: its commands from the beginning; last_tick: how far it went; breaks: ticks in which springs broke.
+    history: its commands from the beginning; last_tick: how far it went; moments: what happened in its ticks.
     """
 
     tick: int
     history: tuple[LogEntry, ...]
     last_tick: int
-    breaks: frozenset[int]
+    moments: Moments
 
 
 @dataclass(frozen=True, eq=False)
 class Reached:
     """A state that a run had when this was its whole history. idle: the entries of it that had no effect.
 
-    breaks: ticks until then in which springs broke.
+    moments: what happened until then.
     """
 
     history: list[LogEntry]
     idle: list[LogEntry]
-    breaks: frozenset[int]
+    moments: Moments
     state: Snapshot
 
     def leads_to(self, history: list[LogEntry], tick: int) -> bool:

@@ -8,6 +8,7 @@ from sandbox.physics.snapshot import take
 from sandbox.physics.world import World
 from sandbox.session.commands import Command, Redo, Undo
 from sandbox.session.commands.records import ScriptLine
+from sandbox.session.events.moments import Moments, until
 from sandbox.session.keyframes import Keyframe, Keyframes
 from sandbox.session.log import Branch, LogEntry, Reached, ReachedStates
 
@@ -23,7 +24,7 @@ class RunHistory:
     count, in order, without undone gestures, Undo and Redo. done: gestures that count, by the order of their first
     command. undone: gestures that do not; redoable: those of them that Redo makes again, last first. hindered:
     gestures of which a command has or had no effect. last_tick: the furthest tick reached. next_order: of the next
-    entry. reached: states kept for undo and redo. breaks: ticks in which springs broke. branches: how the run went on
+    entry. reached: states kept for undo and redo. moments: what happened in which tick. branches: how the run went on
     before it was changed in the past. scripted: the next line of the script.
     """
 
@@ -40,7 +41,7 @@ class RunHistory:
     last_gesture: int = 0
     next_order: int = 0
     reached: ReachedStates = field(default_factory=ReachedStates)
-    breaks: set[int] = field(default_factory=set)
+    moments: Moments = field(default_factory=dict)
     branches: list[Branch] = field(default_factory=list)
 
     def copy(self) -> "RunHistory":
@@ -131,7 +132,7 @@ class RunHistory:
         if world.tick < self.last_tick:
             return
         idle = [entry for gesture in self.hindered for entry in self.entries[gesture] if not entry.in_effect]
-        self.reached.keep(Reached(list(self.timeline), idle, frozenset(self.breaks), take(world)))
+        self.reached.keep(Reached(list(self.timeline), idle, dict(self.moments), take(world)))
 
     def drop_states_after(self, order: int, tick: int) -> None:
         """Drop the states that no longer hold, as the timeline is another from an order on.
@@ -146,14 +147,14 @@ class RunHistory:
             self.place(nearest.order),
         ):
             reached.tell_effects()
-            self.breaks = set(reached.breaks)
+            self.moments = dict(reached.moments)
             self.keyframes.keep(Keyframe(self.order_at(len(reached.history)), reached.state, between=True))
         else:
-            self.forget_breaks(nearest.tick)
+            self.forget_moments(nearest.tick)
 
-    def forget_breaks(self, tick: int) -> None:
-        """Forget the breaks after a tick."""
-        self.breaks = {each for each in self.breaks if each <= tick}
+    def forget_moments(self, tick: int) -> None:
+        """Forget what happened after a tick."""
+        self.moments = until(self.moments, tick)
 
     # Places in the timeline.
 
@@ -178,7 +179,7 @@ class RunHistory:
         self._keep_branch(tick)
         self._go_by(self.until(tick), tick)
         self.keyframes.drop_beyond(tick)
-        self.forget_breaks(tick)
+        self.forget_moments(tick)
 
     def return_to(self, branch: Branch) -> int:
         """Take a branch as the future, and keep the present one as a branch; the tick at which the two part."""
@@ -195,7 +196,7 @@ class RunHistory:
         self._go_by(list(branch.history), branch.last_tick)
         self.keyframes.drop_after(min((entry.order for entry in following), default=self.next_order))
         self.keyframes.drop_beyond(tick)
-        self.breaks = set(branch.breaks)
+        self.moments = dict(branch.moments)
         return tick
 
     def onward(self, first: Keyframe) -> "RunHistory":
@@ -208,7 +209,7 @@ class RunHistory:
     def _keep_branch(self, tick: int) -> None:
         """Keep how the run goes on after a tick."""
         history = tuple(entry for entry in self.timeline if entry.in_effect)
-        self.branches.append(Branch(tick, history, self.last_tick, frozenset(self.breaks)))
+        self.branches.append(Branch(tick, history, self.last_tick, dict(self.moments)))
         del self.branches[:-BRANCH_LIMIT]
 
     def _go_by(self, history: list[LogEntry], last_tick: int) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands.records import ScriptLine, to_record
+from sandbox.session.events.moments import Moments, until
 from sandbox.session.log import LogEntry
 from sandbox.session.session import Session
 
@@ -27,13 +28,13 @@ class Standing:
 class RunScene:
     """How a run stands. script: the commands that count; standings: some states, of which the last is the present one.
 
-    breaks: ticks in which springs broke.
+    moments: what happened in which tick, as far as it is known.
     """
 
     level: Level
     script: tuple[ScriptLine, ...]
     standings: tuple[Standing, ...]
-    breaks: tuple[int, ...] = ()
+    moments: Moments = field(default_factory=dict)
 
     @property
     def state(self) -> Snapshot:
@@ -67,7 +68,7 @@ class RunScene:
         for standing in self.standings:
             session.come_to(standing.state, self.script[done : standing.commands])
             done = standing.commands
-        session.history.breaks = set(self.breaks)
+        session.history.moments = dict(self.moments)
         for entry in session.history.begun(session.tick):
             ending = entry.command.ending(session.world)
             if ending is not None:
@@ -98,8 +99,8 @@ class SceneTaker:
                     sum(entry.order < frame.order for entry in counting), frame.snapshot
                 )
         standings = [kept[key] for key in sorted(kept)]
-        breaks = tuple(tick for tick in session.breaks if tick <= session.tick)
-        return RunScene(session.level, script, (*standings, Standing(len(script), session.snapshot())), breaks)
+        moments = until(history.moments, session.tick)
+        return RunScene(session.level, script, (*standings, Standing(len(script), session.snapshot())), moments)
 
     def _line(self, entry: LogEntry) -> ScriptLine:
         if entry.order not in self._lines:

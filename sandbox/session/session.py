@@ -16,6 +16,7 @@ from sandbox.session.breaks import break_lines
 from sandbox.session.commands import Command, CommandError, Redo, Undo, apply
 from sandbox.session.commands.adding import name_added
 from sandbox.session.commands.records import ScriptLine, from_record, to_record
+from sandbox.session.events.moments import note_moment
 from sandbox.session.keyframes import Keyframe, Keyframes
 from sandbox.session.log import Branch, LogEntry
 from sandbox.session.replay.format import STATE_TICKS
@@ -52,6 +53,14 @@ class Session:
         self.history.scripted = next((line for line in self._script if line.tick >= self.tick), None)
         self._pending: deque[tuple[Command, int]] = deque()
         self._recorder: Recorder | None = None
+
+    def __repr__(self) -> str:
+        """What it is, in a line."""
+        past = f" of {self.last_tick}" if self.tick < self.last_tick else ""
+        recorded = "" if self.recording is None else f", recorded to {self.recording}"
+        count = len(self.history.done)
+        gestures = f"{count} gesture" if count == 1 else f"{count} gestures"
+        return f"<Session of {self.level.name!r} at tick {self.tick}{past}: {gestures}{recorded}>"
 
     @property
     def tick(self) -> int:
@@ -232,7 +241,7 @@ class Session:
     @property
     def breaks(self) -> tuple[int, ...]:
         """The ticks in which springs broke, in order."""
-        return tuple(sorted(self.history.breaks))
+        return tuple(sorted(tick for tick, moment in self.history.moments.items() if moment.broken))
 
     @property
     def gestures(self) -> tuple[LogEntry, ...]:
@@ -461,8 +470,7 @@ class Session:
         if self.level.rules:
             self._actions.act(self.world)
         step(self.world)
-        if len(self.world.broken):
-            self.history.breaks.add(self.tick)
+        note_moment(self.history.moments, self.world)
         self.history.keyframes.note_tick(self.world, order)
 
     def _report_progress(self, done: int, total: int) -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from sandbox.app.base.loop import BACKWARD_SPEEDS, TickClock
 from sandbox.physics.snapshot import state_hash
-from sandbox.session.commands import Grab, Pin
+from sandbox.session.commands import Grab, Pin, SetGravity
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify
 from tests.app.conftest import small_level
@@ -228,6 +228,7 @@ def test_runs_that_break_have_marks_where_they_broke(open_app):
     driver.frames(20)
     marks = driver.playback.travel.marks()
     assert marks and {mark.kind for mark in marks} == {"break"}
+    assert all("rope" in mark.label and mark.label.endswith("broke") for mark in marks)
     driver.key(pygame.K_COMMA, SHIFT)
     assert driver.playback.session.tick == marks[-1].tick
 
@@ -289,3 +290,16 @@ def test_a_replay_is_taken_over_in_the_middle_of_a_drag_and_the_hand_is_free(dri
     watching.frames(2)
     assert "took over" in playback.verdict and not any("holds" in text for text in watching.notices)
     assert list(watching.stage.drag.holds) == [0] and len(playback.session.going()) == 1
+
+
+def test_commands_and_goals_have_marks_in_words(open_app):
+    rules = [{"id": "late", "when": {"time": 0.2}, "then": [{"win": "Done"}]}]
+    driver = open_app(small_level(rules=rules, settings={}))
+    driver.playback.submit(SetGravity((0.0, -3.0)))
+    driver.frames(30)
+    assert [(mark.kind, mark.label) for mark in driver.playback.travel.marks()] == [
+        ("command", "gravity was set"),
+        ("goal", "won: Done"),
+    ]
+    driver.playback.seek(3)
+    assert driver.playback.travel.marks()[-1].kind == "goal"

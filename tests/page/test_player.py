@@ -45,3 +45,19 @@ def test_in_a_browser_keys_play_step_and_seek(browser: Browser, tmp_path: Path) 
     assert (tab.evaluate(PLAYING), tab.evaluate(TICK) > 0) == ("false", True)
     assert tab.evaluate("document.getElementById('now').textContent").endswith("m apart")
     assert tab.faults == []
+
+
+def test_in_a_browser_a_line_of_what_happened_goes_to_its_tick(browser: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "player.html"
+    file.write_text(rope_page().text(), encoding="utf-8")
+    tab = browser.tab().show(page_address(file))
+    lines = "[...document.querySelectorAll('#happened button')]"
+    assert tab.evaluate(f"{lines}.map((each) => each.textContent)") == [
+        "rope.3 was grabbed",
+        "only actual: rope:4 was cut",
+    ]
+    current = f"{lines}.map((each) => each.getAttribute('aria-current'))"
+    assert tab.evaluate(current) == ["false", "true"]
+    tab.evaluate(f"{lines}[0].click()")
+    assert tab.evaluate(TICK) == 0 and tab.evaluate(current) == ["true", "false"]
+    assert tab.faults == []

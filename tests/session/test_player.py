@@ -6,9 +6,13 @@ import re
 
 import numpy as np
 
-from sandbox.session.commands import AddParticle
+from sandbox.level.reading.files import load_level
+from sandbox.session.commands import AddParticle, CutSprings
 from sandbox.session.player.page import PlayerPage
 from sandbox.session.player.reel import NOWHERE, STEPS, Reel, shown_box, steps_between
+from sandbox.session.player.report import report_page, told_of, watches_of
+from sandbox.session.replay.reader import read_replay
+from sandbox.session.replay.verify import compare
 from sandbox.session.session import Session
 from tests.support.player_page import TICKS, rope_page
 from tests.support.rope_level import rope_level
@@ -62,3 +66,37 @@ def test_no_name_of_a_level_can_become_part_of_the_page():
     text = rope_page("</title><script>alert(1)</script>@DATA@", ["</script><script>alert(2)</script>"]).text()
     assert "<script>alert" not in text and text.count("@DATA@") == 2
     assert not re.search(r"https?://|<img|\bsrc=|<link(?! rel=\"icon\" href=\"data:,\")", text)
+
+
+def test_a_report_lists_what_happened_when_and_says_what_did_in_one_run_alone(tmp_path):
+    level = load_level("truck_bridge")
+    run = Session(level)
+    run.record_to(tmp_path / "run.replay.gz")
+    for _ in range(180):
+        run.advance()
+    run.stop_recording()
+    stronger = level.model_copy(update={"settings": level.settings.model_copy(update={"gravity": (0.0, -9.0)})})
+    found = compare(read_replay(tmp_path / "run.replay.gz"), level=stronger)
+    page = report_page(found)
+    told = data_of(page)["happened"]
+    assert [line[0] for line in told] == sorted(line[0] for line in told)
+    broke = [line for line in told if "broke" in line[1]]
+    assert broke and {line[2] for line in broke} <= {0, 1} and all("deck" in line[1] for line in broke)
+    runs = [Session(level), Session(stronger)]
+    for side, each in enumerate(runs):
+        while each.tick < 180:
+            each.advance()
+        happened = bool(each.breaks)
+        assert happened == any(line[2] in (side, None) for line in broke)
+
+
+def test_lines_that_two_runs_share_are_said_once():
+    level = rope_level()
+    runs = [Session(level), Session(level)]
+    watches = watches_of(runs)
+    for run in runs:
+        run.submit(CutSprings((3,)))
+        run.advance()
+    runs[1].submit(CutSprings((5,)))
+    runs[1].advance()
+    assert [(line.tick, line.side) for line in told_of(runs, watches)] == [(0, None), (1, 1)]

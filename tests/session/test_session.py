@@ -437,3 +437,21 @@ def test_what_redo_comes_back_to_has_the_breaks_and_the_effects_that_it_had(sess
     session.apply_pending()
     assert session.messages == ["nothing to redo"]
     assert session.world.inverse_mass[[3, -1]].tolist() == [0.0, 0.0]
+
+
+def test_a_session_its_world_and_a_snapshot_say_what_they_are_in_a_line(tmp_path):
+    session = Session(rope_level())
+    hand, sizes = (
+        Grab(0, 3, (1.0, 1.0)),
+        f"{session.world.grab_particle} particles, {session.world.grab_spring} springs",
+    )
+    assert repr(session) == "<Session of 'A rope' at tick 0: 0 gestures>".replace("A rope", session.level.name)
+    session.submit(hand)
+    session.advance()
+    assert repr(session.world) == f"<World at tick 1: {sizes}>"
+    assert repr(session.snapshot()) == f"<Snapshot at tick 1: {sizes}>"
+    session.seek(0)
+    assert "at tick 0 of 1: 1 gesture>" in repr(session)
+    session.record_to(tmp_path / "run.replay.gz")
+    assert repr(session).endswith("run.replay.gz>")
+    session.abandon_recording()

@@ -93,7 +93,9 @@ class TimeBar:
             self._app.rebuild()
             return
         session, travel = playback.session, playback.travel
-        state = (playback.revision, len(session.gestures), session.breaks, tuple(travel.bookmarks), session.branches)
+        moments = session.history.moments
+        events = len(moments), next(reversed(moments), None)
+        state = (playback.revision, len(session.gestures), events, tuple(travel.bookmarks), session.branches)
         if self._marks[0] != state:
             self._marks = state, travel.marks()
         track.show_run(session.tick, playback.length, session.last_tick, self._marks[1])

@@ -21,8 +21,8 @@ LEAP = 60
 class TimeTrack(Widget):
     """A rail from tick 0 to the last; go(tick) is called as the mouse drags on it, hold(held) as it takes and lets go.
 
-    With Shift held a drag chooses the range. Shapes tell marks apart: lines are commands, triangles breaks, flags
-    bookmarks, forks branches.
+    With Shift held a drag chooses the range. Shapes tell marks apart: lines are commands, triangles breaks, diamonds
+    goals, flags bookmarks, forks branches.
     """
 
     is_focusable = True
@@ -142,7 +142,7 @@ class TimeTrack(Widget):
         self._rail(surface, self.length, LINE)
         self._rail(surface, self.reached, mixed(LINE, MUTED, 0.6))
         self._rail(surface, self.tick, ACCENT)
-        for kind in ("command", "break", "branch", "bookmark"):
+        for kind in ("command", "break", "goal", "branch", "bookmark"):
             for x in sorted({round(self._x_of(mark.tick)) for mark in self.marks if mark.kind == kind}):
                 self._draw_mark(surface, kind, x, middle)
         if self.travel.target is not None:
@@ -165,6 +165,11 @@ class TimeTrack(Widget):
         elif kind == "break":
             top = middle + px(4)
             pygame.draw.polygon(surface, DANGER, [(x, top), (x - px(4), top + px(6)), (x + px(4), top + px(6))])
+        elif kind == "goal":
+            top, half = middle - px(14), px(4)
+            pygame.draw.polygon(
+                surface, ACCENT, [(x, top), (x + half, top + half), (x, top + 2 * half), (x - half, top + half)]
+            )
         elif kind == "branch":
             pygame.draw.lines(surface, TEXT, False, [(x, middle), (x, middle + px(5)), (x + px(5), middle + px(10))])
             pygame.draw.line(surface, TEXT, (x, middle + px(5)), (x - px(4), middle + px(10)))

@@ -1,8 +1,14 @@
 """Travel: where in its time a run is and can go: marks to jump to, a range that is played over and over."""
 
 import bisect
+import itertools
 from dataclasses import dataclass
 
+from sandbox.session.commands.records import script_of
+from sandbox.session.events.deeds import deeds_in
+from sandbox.session.events.happening import listed
+from sandbox.session.events.story import told_moments
+from sandbox.session.log import LogEntry
 from sandbox.session.replay.recording import Replay
 from sandbox.session.session import Session
 
@@ -12,7 +18,7 @@ SHORTEST_RANGE = 6
 
 @dataclass(frozen=True)
 class Mark:
-    """A tick worth going to, and why in a word or two; kind: "command", "break", "bookmark" or "branch"."""
+    """A tick worth going to, and why in a word or two; kind: "command", "break", "goal", "bookmark" or "branch"."""
 
     tick: int
     kind: str
@@ -30,6 +36,8 @@ class Travel:
         self.span: tuple[int, int] | None = None
         self.looping = False
         self.target: int | None = None
+        # What the first commands of gestures did, by their orders.
+        self._deeds: dict[int, str] = {}
 
     def length(self, watching: bool) -> int:
         """The last tick that can be gone to; watching: whether the replay is followed to its end."""
@@ -52,13 +60,27 @@ class Travel:
         return None
 
     def marks(self) -> list[Mark]:
-        """Marks of commands, breaks, bookmarks and branches, in the order of their ticks."""
+        """Marks of commands, breaks, goals, bookmarks and branches, in the order of their ticks."""
         session = self._session
-        commands = [Mark(entry.tick, "command", entry.command.type.replace("_", " ")) for entry in session.gestures]
-        breaks = [Mark(tick, "break", "break") for tick in session.breaks]
+        commands = [Mark(entry.tick, "command", self._deed(entry)) for entry in session.gestures]
+        breaks = []
+        told = list(told_moments(session, session.last_tick))
+        for tick, those in itertools.groupby((each for each in told if each.kind == "break"), lambda each: each.tick):
+            broken = list(those)
+            things = listed(each.names[0] for each in broken)
+            text = broken[0].text if len(broken) == 1 else f"{len(broken)} springs of {things} broke"
+            breaks.append(Mark(tick, "break", text))
+        goals = [Mark(each.tick, "goal", each.text) for each in told if each.kind in ("win", "lose", "checkpoint")]
         bookmarks = [Mark(tick, "bookmark", "bookmark") for tick in self.bookmarks]
         branches = [Mark(branch.tick, "branch", "the run was changed there") for branch in session.branches]
-        return sorted([*commands, *breaks, *bookmarks, *branches], key=lambda mark: mark.tick)
+        return sorted([*commands, *breaks, *goals, *bookmarks, *branches], key=lambda mark: mark.tick)
+
+    def _deed(self, entry: LogEntry) -> str:
+        """What a command did, in words."""
+        if entry.order not in self._deeds:
+            told = next(deeds_in(script_of([entry], self._session.world)), None)
+            self._deeds[entry.order] = entry.command.type.replace("_", " ") if told is None else told.text
+        return self._deeds[entry.order]
 
     def mark_beside(self, tick: int, by: int) -> Mark | None:
         """The first mark after a tick (by 1), or the last before it (by -1)."""

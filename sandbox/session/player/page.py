@@ -19,9 +19,18 @@ TEMPLATE = Path(__file__).with_name("player.html")
 
 
 @dataclass(frozen=True)
+class ToldLine:
+    """What happened at a tick, in a line; side: the reel in which alone it did, None: in each."""
+
+    tick: int
+    text: str
+    side: int | None = None
+
+
+@dataclass(frozen=True)
 class PlayerPage:
     """The content of a page. box [m]; rate: ticks a second; marks: ticks with a word to each; difference: the first
-    tick that differs, and the particle; lines: the text about it.
+    tick that differs, and the particle; lines: the text about it; happened: what happened when, each goes to its tick.
     """
 
     title: str
@@ -31,6 +40,7 @@ class PlayerPage:
     marks: Sequence[tuple[int, str]] = ()
     difference: tuple[int, int | None] | None = None
     lines: Sequence[str] = field(default=())
+    happened: Sequence[ToldLine] = field(default=())
 
     def text(self) -> str:
         """The page. Both sides have the ticks that both have."""
@@ -45,6 +55,7 @@ class PlayerPage:
             "first": None if self.difference is None else self.difference[0],
             "ring": None if self.difference is None else self.difference[1],
             "lines": list(self.lines),
+            "happened": [[line.tick, line.text, line.side] for line in self.happened],
             "colours": [f"#{colour:06x}" for colour in PALETTE.values()],
         }
         # "<" could end the script that holds the data.
