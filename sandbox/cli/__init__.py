@@ -22,6 +22,7 @@ from sandbox.cli import (
     resume,
     run,
     schema,
+    shrink,
     site,
     sweep,
     take_home,
@@ -35,8 +36,8 @@ from sandbox.terminal import give_up_output, missing_folder, prepare_streams, re
 COMMANDS: tuple[Subcommand[Any], ...] = tuple(
     module.COMMAND
     for module in (
-        play, toy, run, replay, resume, check, diff, bisect, sweep, render, page, site, take_home, export, format, edit,
-        schema,
+        play, toy, run, replay, resume, check, diff, bisect, shrink, sweep, render, page, site, take_home, export,
+        format, edit, schema,
     )
 )  # fmt: skip
 # What the program does where no command is named.
