@@ -72,11 +72,12 @@ def shrink(options: ShrinkOptions) -> int:
     started = time.monotonic()
     stopped = _work(shrinker, options)
     took = time.monotonic() - started
-    written = _write(shrinker, options, level, output)
+    written, place = _write(shrinker, options, level, output)
     if options.json:
         print(json.dumps(_data(shrinker, options, written, stopped)))
     else:
-        print("\n".join(_lines(shrinker, options, written, took, stopped)))
+        print("\n".join(_lines(shrinker, options, took, stopped)))
+        print(f"{written[0]}\n{written[1]}: the test runs on {place}")
     return EXIT_INTERRUPTED if stopped else EXIT_OK
 
 
@@ -167,8 +168,8 @@ def _work(shrinker: "Shrinker", options: ShrinkOptions) -> bool:
     return False
 
 
-def _write(shrinker: "Shrinker", options: ShrinkOptions, level: "Level | None", output: Path) -> list[Path]:
-    """Write the recording and its test."""
+def _write(shrinker: "Shrinker", options: ShrinkOptions, level: "Level | None", output: Path) -> tuple[list[Path], str]:
+    """Write the recording and its test; these, and which level the test runs on."""
     from sandbox.session.shrink.diverging import Diverges
     from sandbox.session.shrink.writing import seen_from, test_text, write_recording
 
@@ -183,7 +184,7 @@ def _write(shrinker: "Shrinker", options: ShrinkOptions, level: "Level | None", 
     levels: dict[str, str | None] = {"other" if isinstance(failure, Diverges) else "own": place}
     source = Path(options.file).name
     test.write_text(test_text(shrinker.smallest, failure, source, output, levels), encoding="utf-8")
-    return [output, test]
+    return [output, test], place or "the recorded level"
 
 
 def _present_level(shrinker: "Shrinker") -> Path | None:
@@ -213,7 +214,7 @@ def _identifier(name: str) -> str:
     return "".join(each if each.isascii() and each.isalnum() else "_" for each in name).strip("_").lower()
 
 
-def _lines(shrinker: "Shrinker", options: ShrinkOptions, written: list[Path], took: float, stopped: bool) -> list[str]:
+def _lines(shrinker: "Shrinker", options: ShrinkOptions, took: float, stopped: bool) -> list[str]:
     from sandbox.session.shrink.play import short_json
 
     assert shrinker.seen is not None
@@ -225,7 +226,6 @@ def _lines(shrinker: "Shrinker", options: ShrinkOptions, written: list[Path], to
         f"  {shrinker.seen}",
         *(f"  tick {line.tick:<5} {short_json(line.record)}" for line in shrinker.smallest.lines),
         *([] if shrinker.smallest.lines else ["  it fails by itself, without any command"]),
-        *map(str, written),
     ]
 
 
