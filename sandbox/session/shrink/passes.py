@@ -8,6 +8,7 @@ A pass is a generator. It gives candidates; it is sent the place of the first th
 of it, or None where none does.
 """
 
+import itertools
 from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
 from dataclasses import MISSING, fields
 from typing import Any
@@ -24,8 +25,10 @@ ROUND_TICKS = (60, 30, 10, 5)
 DECIMALS, SIGNIFICANT = (0, 1, 2), (1, 2, 3)
 # A run with rounder numbers may last longer by so much before it fails: by a part, and by so many ticks.
 LONGER_PART, LONGER_TICKS = 0.1, 10
-# Shares of an idle time that are left of it, the smallest first.
-LEFT_OF_IDLE = (0.0, 0.125, 0.25, 0.5, 0.75, 0.875)
+# Shares of an idle time that are left of it, the smallest first; and from how many ticks on one is long.
+LEFT_OF_IDLE, LONG_IDLE = (0.0, 0.5, 0.75, 0.875, 0.94, 0.97), 20
+# Where less than this share of an idle time goes, it is left as it is.
+LITTLE = 0.1
 # Of lists in commands those entries are taken out that are names.
 _NAMES = str
 
@@ -66,7 +69,7 @@ def _undone(play: Play) -> set[int]:
 def _pairs(play: Play) -> Iterator[set[int]]:
     """Neighbours in order, of which the second undoes or redoes."""
     kinds = {line.gesture: line.record.get("type") for line in play.lines}
-    for first, second in zip(play.gestures, play.gestures[1:], strict=False):
+    for first, second in itertools.pairwise(play.gestures):
         if kinds[second] in (Undo.type, Redo.type):
             yield {first, second}
 
@@ -121,23 +124,37 @@ def _joined(play: Play, place: int) -> Play | None:
     return None
 
 
+def long_idle_out(play: Play) -> Generator[Iterable[Play], Answer, None]:
+    """Without long times in which nothing is done, or with less of them: all else is tried in shorter runs then."""
+    yield from _idle_out(play, LONG_IDLE)
+
+
 def idle_out(play: Play) -> Generator[Iterable[Play], Answer, None]:
-    """Without the time in which nothing is done, or with less of it: the last one first."""
-    place = 0
+    """Without any time in which nothing is done, or with less of it."""
+    yield from _idle_out(play, 1)
+
+
+def _idle_out(play: Play, least: int) -> Generator[Iterable[Play], Answer, None]:
+    """The longest gap first. A gap is known by its place from the end, as those before it may go."""
+    tried: set[int] = set()
     while True:
         ticks = sorted({0, *(line.tick for line in play.lines), play.ticks}, reverse=True)
-        gaps = list(zip(ticks[1:], ticks, strict=False))
-        if place >= len(gaps):
+        gaps = [(end - first, place) for place, (end, first) in enumerate(itertools.pairwise(ticks))]
+        length, place = max((gap for gap in gaps if gap[1] not in tried), default=(0, 0))
+        if length < least:
             return
-        first, end = gaps[place]
-        counts = dict.fromkeys(end - first - round(share * (end - first)) for share in LEFT_OF_IDLE)
-        answer = yield [play.without_ticks(first, count) for count in counts if count > 0]
+        counts = dict.fromkeys(max(1, length - round(share * length)) for share in LEFT_OF_IDLE)
+        answer = yield [play.without_ticks(ticks[place + 1], count) for count in counts]
         if answer is None:
-            answer = yield [play.without_ticks(end - 1, 1)] if end - 1 > first else []
-        if answer is None:
-            place += 1
-        else:
-            play = answer[1]
+            tried.add(place)
+            continue
+        if answer[1].ticks < play.ticks - length or len(answer[1].lines) < len(play.lines):
+            # It fails earlier now: gaps behind that are gone.
+            tried.clear()
+        elif play.ticks - answer[1].ticks < LITTLE * length:
+            # More would go, little by little: that is not worth the runs.
+            tried.add(place)
+        play = answer[1]
 
 
 def ticks_round(play: Play) -> Generator[Iterable[Play], Answer, None]:
@@ -287,7 +304,9 @@ def _optional(record: dict[str, Any]) -> list[str]:
     return [each.name for each in described if each.name in record and each.default is not MISSING]
 
 
-# In this order, over and over; those first that make the runs shorter that the others try.
-PASSES: tuple[Pass, ...] = (
-    history, last_gestures, gestures_out, commands_out, moves_joined, idle_out, fields_out, numbers_round, ticks_round,
+# In this order; those first that make the runs shorter that the others try.
+SHORTER: tuple[Pass, ...] = (
+    history, last_gestures, gestures_out, long_idle_out, commands_out, moves_joined, idle_out,
 )  # fmt: skip
+# Of what is as short as it gets.
+ROUNDER: tuple[Pass, ...] = (fields_out, numbers_round, ticks_round)

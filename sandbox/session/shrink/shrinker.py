@@ -10,7 +10,7 @@ from dataclasses import replace
 from sandbox.level.document.model import Level
 from sandbox.session.replay.recording import Replay
 from sandbox.session.shrink.failure import Failure, Seen
-from sandbox.session.shrink.passes import PASSES, Answer
+from sandbox.session.shrink.passes import ROUNDER, SHORTER, Answer, Pass
 from sandbox.session.shrink.play import Play
 from sandbox.session.shrink.trials import Trials, Tried
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
@@ -46,10 +46,21 @@ class Shrinker:
             work = pickle.dumps((self.level, failure))
             while True:
                 before = self.smallest.size
-                for each in PASSES:
-                    yield from self._pass(each(self.smallest), workers, work, processes)
+                for passes in (SHORTER, ROUNDER):
+                    yield from self._repeated(passes, workers, work, processes)
                 if self.smallest.size == before:
                     return
+
+    def _repeated(
+        self, passes: Iterable[Pass], workers: ProcessPoolExecutor | None, work: bytes, processes: int
+    ) -> Iterator[None]:
+        """All of some passes, until none of them finds anything."""
+        while True:
+            before = self.smallest.size
+            for each in passes:
+                yield from self._pass(each(self.smallest), workers, work, processes)
+            if self.smallest.size == before:
+                return
 
     def _pass(
         self,
