@@ -8,7 +8,7 @@ from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.replay.verify import Comparison, compare, verify
 from sandbox.session.shrink.diverging import Diverges
-from sandbox.session.shrink.failure import Failure, FailureError, Seen, Watch
+from sandbox.session.shrink.failure import Failure, FailureError, FailureSeen, FailureWatch
 from sandbox.session.shrink.kinds import CheckFails, Crashes, EnergyGrows, Freezes, IsLost, Leaves
 from sandbox.session.shrink.shrinker import find_failure
 
@@ -21,13 +21,13 @@ __all__ = [
     "EnergyGrows",
     "Failure",
     "FailureError",
+    "FailureSeen",
+    "FailureWatch",
     "Freezes",
     "IsLost",
     "Leaves",
     "Replay",
     "ReplayError",
-    "Seen",
-    "Watch",
     "compare",
     "find_failure",
     "read_replay",

@@ -131,7 +131,7 @@ def _nothing(name: str, replay: "Replay", failure: "Failure", level: "Level") ->
     from sandbox.session.shrink.kinds import AnyOf, CheckFails
 
     looked = failure.failures if isinstance(failure, AnyOf) else (failure,)
-    lines = [f"{name}: nothing to shrink: in {replay.ticks} ticks it is not so that {failure}"]
+    lines = [f"{name}: nothing to shrink: in {replay.ticks} ticks this does not come: {failure}"]
     names = {each.name for each in looked if isinstance(each, CheckFails)}
     rate = level.settings.tick_rate
     lines += [

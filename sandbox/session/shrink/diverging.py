@@ -12,7 +12,7 @@ from sandbox.physics.state import BY_STORED
 from sandbox.session.commands.records import ScriptLine, to_record
 from sandbox.session.replay.divergence import first_difference
 from sandbox.session.session import Session
-from sandbox.session.shrink.failure import Failure, Seen, Watch
+from sandbox.session.shrink.failure import Failure, FailureSeen, FailureWatch
 from sandbox.session.shrink.trials import carried_out
 
 
@@ -33,11 +33,11 @@ class Diverges(Failure):
             return f"a particle comes more than {self.apart:g} m away from where it is on the other level"
         return f"the runs on both levels differ, first in {self.array or 'any array'}"
 
-    def watch(self, session: Session, kept: Any = None) -> Watch:
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         return _PairWatch(self, session, kept)
 
 
-class _PairWatch(Watch):
+class _PairWatch(FailureWatch):
     def __init__(self, failure: Diverges, session: Session, kept: tuple[Snapshot, frozenset[str]] | None) -> None:
         self._failure, self._session = failure, session
         self._other = Session(failure.level, start=kept[0] if kept else None)
@@ -59,7 +59,7 @@ class _PairWatch(Watch):
         self._other.advance()
         self._other.messages.clear()
 
-    def after(self) -> Seen | None:
+    def after(self) -> FailureSeen | None:
         if self._failure.apart is not None:
             return self._far_apart(self._failure.apart)
         found = next((name for name in self._differing() if name not in self._aside), None)
@@ -70,9 +70,9 @@ class _PairWatch(Watch):
             return None
         session, column = self._session, BY_STORED[found]
         told = first_difference(session.tick, found, getattr(session.world, column.name), self._other.world)
-        return Seen(Diverges(self._failure.level, found), f"diverged at {told}")
+        return FailureSeen(Diverges(self._failure.level, found), f"diverged at {told}")
 
-    def _far_apart(self, bound: float) -> Seen | None:
+    def _far_apart(self, bound: float) -> FailureSeen | None:
         ours, theirs = self._session.world, self._other.world
         count = min(ours.particle_count, theirs.particle_count)
         if ours.particle_names[:count] == theirs.particle_names[:count]:
@@ -91,7 +91,7 @@ class _PairWatch(Watch):
             return None
         slot = int(np.argmax(np.where(np.isnan(distance), np.inf, distance)))
         name = ours.particle_names[int(places[0][slot])]
-        return Seen(
+        return FailureSeen(
             self._failure, f"tick {ours.tick}: {name} is {distance[slot]:.3g} m from where it is on the other level"
         )
 

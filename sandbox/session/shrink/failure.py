@@ -12,7 +12,7 @@ class FailureError(ValueError):
 
 
 @dataclass(frozen=True, repr=False)
-class Seen:
+class FailureSeen:
     """A failure that was seen. failure: this very one, which smaller runs must have; text: what is wrong, a line."""
 
     failure: "Failure"
@@ -22,7 +22,7 @@ class Seen:
         return self.text
 
 
-class Watch:
+class FailureWatch:
     """Looks for a failure in one run. is_over: whether it cannot come any more, so that the run may end."""
 
     is_over = False
@@ -30,7 +30,7 @@ class Watch:
     def before(self) -> None:
         """Look at the state that the next tick begins with; its commands are carried out."""
 
-    def after(self) -> Seen | None:
+    def after(self) -> FailureSeen | None:
         """Look at the state that a tick has ended with; what has failed in it."""
         return None
 
@@ -48,12 +48,12 @@ class Failure(ABC):
     beyond = 0
 
     @abstractmethod
-    def watch(self, session: Session, kept: Any = None) -> Watch:
-        """Watch a run from its beginning, or from a state at which another watch gave what it kept.
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        """FailureWatch a run from its beginning, or from a state at which another watch gave what it kept.
 
         Raises FailureError where the level has nothing of the kind.
         """
 
-    def raised(self, error: Exception) -> Seen | None:
+    def raised(self, error: Exception) -> FailureSeen | None:
         """What has failed where a tick raises an exception; None: that is another failure than this one."""
         return None

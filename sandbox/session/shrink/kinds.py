@@ -13,7 +13,7 @@ from sandbox.physics.analysis.query import shown_particles
 from sandbox.session.check_run import CheckWatch
 from sandbox.session.outcome import outcome, outcome_text
 from sandbox.session.session import Session
-from sandbox.session.shrink.failure import Failure, FailureError, Seen, Watch
+from sandbox.session.shrink.failure import Failure, FailureError, FailureSeen, FailureWatch
 
 Box = tuple[float, float, float, float]
 
@@ -27,11 +27,11 @@ class CheckFails(Failure):
     def __str__(self) -> str:
         return f'the check "{self.name}" fails'
 
-    def watch(self, session: Session, kept: Any = None) -> Watch:
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         return _CheckWatch(self, session, kept)
 
 
-class _CheckWatch(Watch):
+class _CheckWatch(FailureWatch):
     def __init__(self, failure: CheckFails, session: Session, kept: Any) -> None:
         self._failure = failure
         names = [check.name for check in session.level.checks]
@@ -45,14 +45,14 @@ class _CheckWatch(Watch):
         else:
             self._watch.go_on(kept)
 
-    def _judge(self, decided: list[tuple[int, CheckResult]]) -> Seen | None:
+    def _judge(self, decided: list[tuple[int, CheckResult]]) -> FailureSeen | None:
         for _, result in decided:
             self.is_over = True
             if not result.passed:
-                return Seen(self._failure, result.text)
+                return FailureSeen(self._failure, result.text)
         return None
 
-    def after(self) -> Seen | None:
+    def after(self) -> FailureSeen | None:
         return self._judge(self._watch.look())
 
     def keep(self) -> Any:
@@ -70,15 +70,15 @@ class Crashes(Failure):
     def __str__(self) -> str:
         return f"it crashes: {self.where}" if self.where else "it crashes"
 
-    def watch(self, session: Session, kept: Any = None) -> Watch:
-        return Watch()
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        return FailureWatch()
 
-    def raised(self, error: Exception) -> Seen | None:
+    def raised(self, error: Exception) -> FailureSeen | None:
         last = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{type(error).__name__} in {last.name}"
         if self.where not in ("", where):
             return None
-        return Seen(Crashes(where), f"{where}, line {last.lineno} of {last.filename}: {str(error)[:200]}")
+        return FailureSeen(Crashes(where), f"{where}, line {last.lineno} of {last.filename}: {str(error)[:200]}")
 
 
 @dataclass(frozen=True)
@@ -90,18 +90,18 @@ class Freezes(Failure):
     def __str__(self) -> str:
         return f"particles freeze, by their {self.array}" if self.array else "particles freeze"
 
-    def watch(self, session: Session, kept: Any = None) -> Watch:
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         return _FrozenWatch(self, session)
 
 
-class _FrozenWatch(Watch):
+class _FrozenWatch(FailureWatch):
     def __init__(self, failure: Freezes, session: Session) -> None:
         self._failure, self._session = failure, session
 
-    def after(self) -> Seen | None:
+    def after(self) -> FailureSeen | None:
         for hit in self._session.world.contained:
             if hit.frozen and self._failure.array in ("", hit.array):
-                return Seen(Freezes(hit.array), str(hit))
+                return FailureSeen(Freezes(hit.array), str(hit))
         return None
 
 
@@ -114,18 +114,18 @@ class Leaves(Failure):
     def __str__(self) -> str:
         return "something leaves " + ("the level's view" if self.box is None else f"the box {list(self.box)}")
 
-    def watch(self, session: Session, kept: Any = None) -> Watch:
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         box = session.level.view if self.box is None else self.box
         if box is None:
             raise FailureError(f"{session.level.name}: the level has no view that could be left; give a box")
         return _BoxWatch(self, session, box)
 
 
-class _BoxWatch(Watch):
+class _BoxWatch(FailureWatch):
     def __init__(self, failure: Leaves, session: Session, box: Box) -> None:
         self._failure, self._world, self._box = failure, session.world, box
 
-    def after(self) -> Seen | None:
+    def after(self) -> FailureSeen | None:
         world, (left, bottom, right, top) = self._world, self._box
         inside = np.all((world.position >= (left, bottom)) & (world.position <= (right, top)), axis=1)
         outside = np.flatnonzero(~inside & shown_particles(world))
@@ -133,7 +133,7 @@ class _BoxWatch(Watch):
             return None
         slot = int(outside[0])
         x, y = world.position[slot].tolist()
-        return Seen(self._failure, f"{world.particle_names[slot]} is at ({x:.2f}, {y:.2f}) m")
+        return FailureSeen(self._failure, f"{world.particle_names[slot]} is at ({x:.2f}, {y:.2f}) m")
 
 
 @dataclass(frozen=True)
@@ -143,23 +143,23 @@ class IsLost(Failure):
     def __str__(self) -> str:
         return "the goal is lost"
 
-    def watch(self, session: Session, kept: Any = None) -> Watch:
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         if not any(action.fail is not None for rule in session.level.rules for action in rule.then):
             raise FailureError(f"{session.level.name}: no rule of the level loses it")
         return _GoalWatch(self, session)
 
 
-class _GoalWatch(Watch):
+class _GoalWatch(FailureWatch):
     def __init__(self, failure: IsLost, session: Session) -> None:
         self._failure, self._session = failure, session
 
-    def after(self) -> Seen | None:
+    def after(self) -> FailureSeen | None:
         found = outcome(self._session.level, self._session.world)
         if found is None:
             return None
         self.is_over = True
         rate = self._session.level.settings.tick_rate
-        return None if found.is_won else Seen(self._failure, f"{outcome_text(found, rate)}: {found.text}")
+        return None if found.is_won else FailureSeen(self._failure, f"{outcome_text(found, rate)}: {found.text}")
 
 
 @dataclass(frozen=True)
@@ -174,11 +174,11 @@ class EnergyGrows(Failure):
     def __str__(self) -> str:
         return f"the energy grows by more than {self.bound:g} J by itself"
 
-    def watch(self, session: Session, kept: Any = None) -> Watch:
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         return _EnergyWatch(self, session, kept)
 
 
-class _EnergyWatch(Watch):
+class _EnergyWatch(FailureWatch):
     def __init__(self, failure: EnergyGrows, session: Session, kept: float | None) -> None:
         self._failure, self._world = failure, session.world
         self._ticks = Dissipation()
@@ -189,13 +189,13 @@ class _EnergyWatch(Watch):
         self._ticks.energy = 0.0
         self._ticks.before(self._world)
 
-    def after(self) -> Seen | None:
+    def after(self) -> FailureSeen | None:
         self._ticks.after(self._world)
         self._grown = max(0.0, self._grown - self._ticks.energy)
         # What is not a number is no proof of anything.
         if not self._grown > self._failure.bound:
             return None
-        return Seen(self._failure, f"the energy has grown by {self._grown:.6g} J by itself")
+        return FailureSeen(self._failure, f"the energy has grown by {self._grown:.6g} J by itself")
 
     def keep(self) -> float:
         return self._grown
@@ -217,25 +217,25 @@ class AnyOf(Failure):
         return max(each.beyond for each in self.failures)
 
     def __str__(self) -> str:
-        return ", or ".join(map(str, self.failures))
+        return "; ".join(map(str, self.failures))
 
-    def watch(self, session: Session, kept: Any = None) -> Watch:
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
         given = kept or [None] * len(self.failures)
         return _Watches([each.watch(session, one) for each, one in zip(self.failures, given, strict=True)])
 
-    def raised(self, error: Exception) -> Seen | None:
+    def raised(self, error: Exception) -> FailureSeen | None:
         return next((seen for each in self.failures if (seen := each.raised(error)) is not None), None)
 
 
-class _Watches(Watch):
-    def __init__(self, watches: list[Watch]) -> None:
+class _Watches(FailureWatch):
+    def __init__(self, watches: list[FailureWatch]) -> None:
         self._watches = watches
 
     def before(self) -> None:
         for each in self._watches:
             each.before()
 
-    def after(self) -> Seen | None:
+    def after(self) -> FailureSeen | None:
         found = [each.after() for each in self._watches if not each.is_over]
         return next((seen for seen in found if seen is not None), None)
 

@@ -23,6 +23,8 @@ Pass = Callable[[Play], Generator[Iterable[Play], Answer, None]]
 ROUND_TICKS = (60, 30, 10, 5)
 # Digits behind the point that places are rounded to, two are centimetres; and digits in all of other numbers.
 DECIMALS, SIGNIFICANT = (0, 1, 2), (1, 2, 3)
+# Fields of commands that are places [m].
+PLACES = ("target", "position", "by")
 # A run with rounder numbers may last longer by so much before it fails: by a part, and by so many ticks.
 LONGER_PART, LONGER_TICKS = 0.1, 10
 # Shares of an idle time that are left of it, the smallest first; and from how many ticks on one is long.
@@ -185,7 +187,7 @@ def numbers_round(play: Play) -> Generator[Iterable[Play], Answer, None]:
         for path in list(_numbers(play.lines[place].record)):
             record = play.lines[place].record
             value = _at(record, path)
-            rounder = simpler(value, is_place=len(path) > 1)
+            rounder = simpler(value, path[0] in PLACES)
             answer = yield [_longer(play.with_record(place, _with(record, path, each))) for each in rounder]
             if answer is not None:
                 lines, play = len(play.lines), answer[1]
@@ -239,7 +241,7 @@ def _all_rounded(play: Play, level: int) -> Play:
         record = line.record
         for path in _numbers(record):
             value = _at(record, path)
-            rounded = _roundings(value, is_place=len(path) > 1)[level]
+            rounded = _roundings(value, path[0] in PLACES)[level]
             if _digits(rounded) < _digits(value):
                 record = _with(record, path, rounded)
         play = play.with_record(place, record)
@@ -247,8 +249,8 @@ def _all_rounded(play: Play, level: int) -> Play:
 
 
 def simpler(value: float, is_place: bool) -> list[float]:
-    """Rounder numbers near a number, the roundest first; is_place: of a place or another list, by digits behind the
-    point; else by digits in all. A whole number stays one.
+    """Rounder numbers near a number, the roundest first; is_place: by digits behind the point, else by digits in
+    all. A whole number stays one.
     """
     return [each for each in dict.fromkeys(_roundings(value, is_place)) if _digits(each) < _digits(value)]
 

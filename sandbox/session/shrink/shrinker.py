@@ -9,10 +9,10 @@ from dataclasses import replace
 
 from sandbox.level.document.model import Level
 from sandbox.session.replay.recording import Replay
-from sandbox.session.shrink.failure import Failure, Seen
+from sandbox.session.shrink.failure import Failure, FailureSeen
 from sandbox.session.shrink.passes import ROUNDER, SHORTER, Answer, Pass
 from sandbox.session.shrink.play import Play
-from sandbox.session.shrink.trials import Trials, Tried
+from sandbox.session.shrink.trials import Trials, TriedPlay
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
 
@@ -27,7 +27,7 @@ class Shrinker:
         self.level, self.original = level, play
         self._trials = Trials(level, failure)
         first = self._trials.run(replace(play, ticks=play.ticks + failure.beyond))
-        self.seen: Seen | None = first.seen
+        self.seen: FailureSeen | None = first.seen
         self.smallest = first.play
         self.tries = 1
         self._known: set[str] = set()
@@ -81,7 +81,7 @@ class Shrinker:
         self, batch: Iterable[Play], workers: ProcessPoolExecutor | None, work: bytes, processes: int
     ) -> Generator[None, None, Answer]:
         """Try candidates until one fails and is smaller; its place and what of it was done."""
-        waiting: deque[tuple[int, Play, Future[Tried] | None]] = deque()
+        waiting: deque[tuple[int, Play, Future[TriedPlay] | None]] = deque()
         numbered = ((place, play) for place, play in enumerate(batch) if self._is_worth(play))
         while True:
             while len(waiting) < processes and (following := next(numbered, None)) is not None:
@@ -105,7 +105,7 @@ class Shrinker:
     def _is_worth(self, play: Play) -> bool:
         return play.size < self.smallest.size and play.key not in self._known
 
-    def _begun(self, play: Play, workers: ProcessPoolExecutor | None, work: bytes) -> "Future[Tried] | None":
+    def _begun(self, play: Play, workers: ProcessPoolExecutor | None, work: bytes) -> "Future[TriedPlay] | None":
         if workers is None:
             return None
         with interrupts_ignored():
@@ -117,7 +117,7 @@ def shrinker_of(replay: Replay, failure: Failure, level: Level | None = None) ->
     return Shrinker(level or replay.level, Play(replay.script, replay.ticks), failure)
 
 
-def find_failure(replay: Replay, failure: Failure, level: Level | None = None) -> Seen | None:
+def find_failure(replay: Replay, failure: Failure, level: Level | None = None) -> FailureSeen | None:
     """Run a recording's commands, on its own level or on another, and say how they fail; None where they do not.
 
     Commands that cannot be carried out are left out. Raises FailureError where the level has nothing of the kind.
@@ -129,7 +129,7 @@ def find_failure(replay: Replay, failure: Failure, level: Level | None = None) -
 _work: list[tuple[bytes, Trials]] = []
 
 
-def try_play(work: bytes, play: Play) -> Tried:
+def try_play(work: bytes, play: Play) -> TriedPlay:
     """Run a play in a process of a pool; work: the level and the failure."""
     if not _work or _work[0][0] != work:
         _work[:] = [(work, Trials(*pickle.loads(work)))]

@@ -11,7 +11,7 @@ from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine, from_record
 from sandbox.session.session import Session
-from sandbox.session.shrink.failure import Failure, FailureError, Seen, Watch
+from sandbox.session.shrink.failure import Failure, FailureError, FailureSeen, FailureWatch
 from sandbox.session.shrink.play import Play
 
 # Plays whose states are kept, and states of each: more save ticks, and take memory, some 100 KB each in a large level.
@@ -21,10 +21,10 @@ LEAST_SPACING = 20
 
 
 @dataclass(frozen=True)
-class Tried:
+class TriedPlay:
     """What came of a play: what failed, None: not what was looked for; play: what of it was done until then."""
 
-    seen: Seen | None
+    seen: FailureSeen | None
     play: Play
 
 
@@ -44,7 +44,7 @@ class Trials:
         self._level, self._failure = level, failure
         self._marks: deque[tuple[Play, list[_Mark]]] = deque(maxlen=PLAYS_KEPT)
 
-    def run(self, play: Play) -> Tried:
+    def run(self, play: Play) -> TriedPlay:
         """Run a play until the failure shows, or to its end. A command that cannot be carried out is left out.
 
         Raises FailureError where the level has nothing of the kind of failure.
@@ -62,15 +62,15 @@ class Trials:
             except Exception as error:
                 seen = self._failure.raised(error)
                 if seen is None:
-                    return Tried(None, play)
+                    return TriedPlay(None, play)
                 # Shown in the tick after the last one.
-                return Tried(seen, Play(tuple(done), session.tick + 1))
+                return TriedPlay(seen, Play(tuple(done), session.tick + 1))
         self._marks.append((play, marks))
-        return Tried(seen, Play(tuple(done), session.tick))
+        return TriedPlay(seen, Play(tuple(done), session.tick))
 
     def _follow(
-        self, play: Play, session: Session, watch: Watch, marks: list[_Mark], done: list[ScriptLine]
-    ) -> Seen | None:
+        self, play: Play, session: Session, watch: FailureWatch, marks: list[_Mark], done: list[ScriptLine]
+    ) -> FailureSeen | None:
         """Run to the end, or until the failure shows; marks, done: what is added to."""
         lines = deque(line for line in play.lines if line.tick >= session.tick)
         spacing = max(LEAST_SPACING, play.ticks // STATES_KEPT)
