@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from sandbox.session.shrink.shrinker import Shrinker
 
 RECORDING = ".replay.gz"
-# The option group of what fails: one thing at a time.
-_FAILURE = "failure"
+# Commands that are printed, at most.
+MOST_SHOWN = 12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,16 +28,14 @@ class ShrinkOptions:
     """Which recording, what fails in it, and where the smallest goes."""
 
     file: str = argument(str, "FILE", "a recording, also one that is cut off")
-    check: str | None = option(str, metavar="NAME", group=_FAILURE, help="this check of the level fails")
+    check: str | None = option(str, metavar="NAME", help="this check of the level fails")
     crash: bool = flag("a tick ends in an exception")
     frozen: bool = flag("particles get impossible values and are frozen")
     lost: bool = flag("the goal of the level is lost")
     leaves: str | None = option(
-        str, metavar="BOX", group=_FAILURE, help="something leaves the level's `view`, or a box: left,bottom,right,top"
+        str, metavar="BOX", help="something leaves the level's `view`, or a box: left,bottom,right,top"
     )
-    energy: float | None = option(
-        float, metavar="J", group=_FAILURE, help="the energy grows by more than this while nothing works"
-    )
+    energy: float | None = option(float, metavar="J", help="the energy grows by more than this while nothing works")
     against: str | None = option(
         str,
         metavar="LEVEL",
@@ -158,11 +156,13 @@ def _nothing(name: str, replay: "Replay", failure: "Failure", level: "Level") ->
 def _work(shrinker: "Shrinker", options: ShrinkOptions) -> bool:
     """Make it as small as it gets; whether that was interrupted."""
     try:
-        with Progress(None, "run") as bar, closing(shrinker.steps(options.processes or cores())) as steps:
-            bar.note(shrinker.smallest.counts())
+        with Progress(None, " run") as bar, closing(shrinker.steps(options.processes or cores())) as steps:
+            told = None
             for _ in steps:
                 bar.update()
-                bar.note(shrinker.smallest.counts())
+                if shrinker.smallest is not told:
+                    told = shrinker.smallest
+                    bar.note(told.counts())
     except KeyboardInterrupt:
         return True
     return False
@@ -215,16 +215,18 @@ def _identifier(name: str) -> str:
 
 
 def _lines(shrinker: "Shrinker", options: ShrinkOptions, took: float, stopped: bool) -> list[str]:
-    from sandbox.session.shrink.play import short_json
+    from sandbox.session.shrink.play import counted, short_json
 
     assert shrinker.seen is not None
+    more = len(shrinker.smallest.lines) - MOST_SHOWN
     return [
         f"{options.file}: {shrinker.seen.failure}",
         f"  from  {shrinker.original.counts()}",
         f"  to    {shrinker.smallest.counts()}, by {shrinker.tries:,} runs in {took:.1f} s"
         + (", interrupted: more may go" if stopped else ""),
         f"  {shrinker.seen}",
-        *(f"  tick {line.tick:<5} {short_json(line.record)}" for line in shrinker.smallest.lines),
+        *(f"  tick {line.tick:<5} {short_json(line.record)}" for line in shrinker.smallest.lines[:MOST_SHOWN]),
+        *([f"  and {counted(more, 'command')} more"] if more > 0 else []),
         *([] if shrinker.smallest.lines else ["  it fails by itself, without any command"]),
     ]
 
