@@ -1,4 +1,4 @@
-"""Replays: recordings read back, and verified bit for bit.
+"""Replays: recordings read back, verified bit for bit, and searched for failures.
 
 `Session.record_to(path)` writes one; `docs/determinism.md` says what is promised of them.
 """
@@ -7,5 +7,29 @@ from sandbox.session.replay.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.replay.verify import Comparison, compare, verify
+from sandbox.session.shrink.diverging import Diverges
+from sandbox.session.shrink.failure import Failure, FailureError, FailureSeen, FailureWatch
+from sandbox.session.shrink.kinds import CheckFails, Crashes, EnergyGrows, Freezes, IsLost, Leaves
+from sandbox.session.shrink.shrinker import find_failure
 
-__all__ = ["Comparison", "Divergence", "Replay", "ReplayError", "compare", "read_replay", "verify"]
+__all__ = [
+    "CheckFails",
+    "Comparison",
+    "Crashes",
+    "Divergence",
+    "Diverges",
+    "EnergyGrows",
+    "Failure",
+    "FailureError",
+    "FailureSeen",
+    "FailureWatch",
+    "Freezes",
+    "IsLost",
+    "Leaves",
+    "Replay",
+    "ReplayError",
+    "compare",
+    "find_failure",
+    "read_replay",
+    "verify",
+]

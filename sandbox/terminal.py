@@ -160,7 +160,8 @@ def cores() -> int:
 class Progress:
     """A bar on standard error where a person looks at it."""
 
-    def __init__(self, total: int, unit: str = "tick") -> None:
+    def __init__(self, total: int | None, unit: str = "tick") -> None:
+        """total: None where nobody knows."""
         self.done = 0
         self._bar: Any = None
         if sys.stderr.isatty():
@@ -180,6 +181,11 @@ class Progress:
         self.done += count
         if self._bar is not None:
             self._bar.update(count)
+
+    def note(self, text: str) -> None:
+        """Show a few words behind the bar."""
+        if self._bar is not None:
+            self._bar.set_postfix_str(text)
 
     @contextmanager
     def aside(self) -> Iterator[None]:

@@ -29,6 +29,7 @@ from sandbox.session.outcome import outcome
 from sandbox.session.replay.script import read_script
 from sandbox.session.session import Session
 from tests.pictures import gallery, readme
+from tests.support.failing import put_failing
 from tests.support.wobbles import firm_world
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -56,6 +57,14 @@ def test_the_program_that_uses_the_package_prints_that_every_tick_is_equal(tmp_p
     (program,) = re.findall(r"```python\n(.*?)```", HEADLESS, re.DOTALL)
     exec(compile(program, "headless.md", "exec"), {})
     assert capsys.readouterr().out == "None\n"
+
+
+def test_the_program_that_finds_a_failure_finds_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    put_failing(tmp_path)
+    page = (ROOT / "docs" / "testing.md").read_text(encoding="utf-8")
+    (program,) = re.findall(r"```python\n(from sandbox\.replay .*?)```", page, re.DOTALL)
+    exec(compile(program, "testing.md", "exec"), {})
 
 
 def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_carried_out(tmp_path):

@@ -8,6 +8,7 @@ import shutil
 import pytest
 
 from sandbox.cli import main
+from tests.support.failing import put_failing
 from tests.support.person import HAS_A_SCREEN, VirtualScreen, needs_a_screen
 from tests.support.shell_lines import ROOT, Reader, ShellLine, lines_of, pages
 
@@ -65,6 +66,7 @@ def put_samples(folder):
         '{"tick": 12, "command": {"type": "pin", "particle": "rope.5"}}'
     ]
     (folder / "moves.jsonl").write_text("\n".join(commands) + "\n")
+    put_failing(folder)
     for name in ("run", "other"):
         assert main(["run", "rope", "--seconds", "20", "--record", str(folder / f"{name}.replay.gz")]) == 0
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED
 from sandbox.cli.options import arguments, flag, option
-from sandbox.terminal import Progress, cores, processes, tell
+from sandbox.terminal import Progress, cores, count, processes, tell
 
 # A process that checks levels takes as long to start as a few levels take; fewer for each are not worth one.
 LEVELS_PER_PROCESS = 4
@@ -20,6 +20,9 @@ class CheckOptions:
 
     levels: list[str] = arguments(str, "LEVEL")
     json: bool = flag("print one JSON object a level")
+    rollback: int | None = option(
+        count, metavar="N", help="let random hands play 10 s, go back N ticks at each, by a snapshot, and compare"
+    )
     processes: int | None = option(
         processes, metavar="N", help="check this many at a time; default: by cores and levels"
     )
@@ -32,7 +35,7 @@ def check(options: CheckOptions) -> int:
     worst = EXIT_OK
     names = options.levels
     at_once = min(options.processes or max(1, min(cores(), len(names) // LEVELS_PER_PROCESS)), len(names))
-    with Progress(len(names), "level") as bar, closing(check_levels(names, at_once)) as reports:
+    with Progress(len(names), "level") as bar, closing(check_levels(names, at_once, options.rollback)) as reports:
         for found in reports:
             with bar.aside():
                 for line in [json.dumps(found.data)] if options.json else found.lines:

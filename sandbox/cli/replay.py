@@ -10,11 +10,12 @@ from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
 from sandbox.cli.options import arguments, flag, option
 from sandbox.cli.pages import PAGE, write_report
-from sandbox.terminal import Progress, tell
+from sandbox.terminal import Progress, count, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
     from sandbox.physics.world import World
+    from sandbox.session.replay.divergence import Divergence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +27,9 @@ class ReplayOptions:
     partial: bool = flag("verify what there is of a recording that is cut off")
     report: Path | None = option(Path, metavar="OUT.html", help="where it diverges, play both side by side")
     against: str | None = option(str, metavar="LEVEL", help="run their commands on this level, not on the recorded one")
+    rollback: int | None = option(
+        count, metavar="N", help="at every tick also go back N ticks, by a snapshot, and compare when there again"
+    )
 
 
 def verify_files(options: ReplayOptions) -> int:
@@ -35,7 +39,7 @@ def verify_files(options: ReplayOptions) -> int:
     if options.report and (len(options.files) > 1 or options.report.suffix.lower() != PAGE):
         raise Refused("--report: is of one recording, into a file whose name ends in .html")
     for name in options.files:
-        code, outcome = _verify(name, options.partial, level, options.report)
+        code, outcome = _verify(name, options, level)
         worst = max(worst, code)
         if options.json:
             print(json.dumps(outcome))
@@ -46,19 +50,24 @@ def verify_files(options: ReplayOptions) -> int:
     return worst
 
 
-def _verify(name: str, partial: bool, level: "Level | None", report: Path | None) -> tuple[int, dict[str, Any]]:
+def _verify(name: str, options: ReplayOptions, level: "Level | None") -> tuple[int, dict[str, Any]]:
     from sandbox.session.outcome import outcome, outcome_data, outcome_text
-    from sandbox.session.probe import finite
     from sandbox.session.replay.recording import ReplayError
+    from sandbox.session.replay.rollback import roll_back
     from sandbox.session.replay.verify import compare
 
     try:
-        replay = recording_of(name, partial)
+        replay = recording_of(name, options.partial)
         worlds: deque[World] = deque(maxlen=1)
         with Progress(replay.ticks) as bar:
             found = compare(
                 replay, level=level, on_tick=worlds.append, progress=lambda done, total: bar.update(done - bar.done)
             )
+        if found is None and options.rollback:
+            with Progress(replay.ticks) as bar:
+                again = roll_back(replay, options.rollback, level, lambda done, total: bar.update(done - bar.done))
+            if again.found is not None:
+                return EXIT_FAILED, _told(name, again.found, f"rolled back {options.rollback} ticks, diverged")
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
     if found is None:
@@ -68,12 +77,20 @@ def _verify(name: str, partial: bool, level: "Level | None", report: Path | None
         said = "" if ended is None else f", {outcome_text(ended, rate)}"
         data = {"outcome": outcome_data(ended, rate)} if played.rules else {}
         at_end = "" if replay.compared == "every tick" else " at its end"
-        text = f"equal{at_end}, {replay.ticks} ticks{cut}{said}"
+        back = f", and again from {options.rollback} ticks before each" if options.rollback else ""
+        text = f"equal{at_end}, {replay.ticks} ticks{back}{cut}{said}"
         return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text, **data}
-    if report is not None:
-        write_report(found, report)
-    details = finite({**asdict(found.divergence), "text": f"diverged at {found.divergence}"})
-    return EXIT_FAILED, {"file": name, "result": "diverged", **details}
+    if options.report is not None:
+        write_report(found, options.report)
+    return EXIT_FAILED, _told(name, found.divergence, "diverged")
+
+
+def _told(name: str, found: "Divergence", how: str) -> dict[str, Any]:
+    """A difference for programs, with a line that tells it."""
+    from sandbox.session.probe import finite
+
+    details: dict[str, Any] = finite({**asdict(found), "text": f"{how} at {found}"})
+    return {"file": name, "result": "diverged", **details}
 
 
 COMMAND = Subcommand("replay", "run recordings again and compare every bit", ReplayOptions, verify_files)

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,14 +62,17 @@ def check_runs(level: Level) -> Iterator[CheckRun]:
 
 
 class CheckWatch:
-    """Holds some of a level's checks, by their places, against a run of it, from the first tick on."""
+    """Holds some of a level's checks, by their places, against a run of it, from the first tick on.
 
-    def __init__(self, level: Level, world: World, numbers: Sequence[int]) -> None:
+    at_once: what must always hold is decided at the first tick at which it does not, and not by the worst of all.
+    """
+
+    def __init__(self, level: Level, world: World, numbers: Sequence[int], at_once: bool = False) -> None:
         self._world = world
         checks = [level.checks[number] for number in numbers]
         self._gauge = _Gauge(world, checks)
         rate = level.settings.tick_rate
-        self._waiting = {number: _Waiting(level.checks[number], rate) for number in numbers}
+        self._waiting = {number: _Waiting(level.checks[number], rate, at_once) for number in numbers}
 
     @property
     def waiting(self) -> int:
@@ -84,14 +88,26 @@ class CheckWatch:
             del self._waiting[number]
         return decided
 
+    def keep(self) -> Any:
+        """All that it has measured until now, for a watch of another run of the level in the same state to go on."""
+        return self._gauge.keep(), {number: each.found for number, each in self._waiting.items()}
+
+    def go_on(self, kept: Any) -> None:
+        """Go on from what another watch of the same checks has kept."""
+        measured, waiting = kept
+        self._gauge.go_on(measured)
+        self._waiting = {number: each for number, each in self._waiting.items() if number in waiting}
+        for number, found in waiting.items():
+            self._waiting[number].found = found
+
 
 class _Waiting:
-    """A check that is not decided yet, with the value that decides it as far as is known, and when that was [s]."""
+    """A check that is not decided yet; found: the value that decides it as far as is known, and when that was [s]."""
 
-    def __init__(self, check: CheckDef, rate: int) -> None:
-        self._check, self._rate = check, rate
+    def __init__(self, check: CheckDef, rate: int, at_once: bool) -> None:
+        self._check, self._rate, self._at_once = check, rate, at_once
         self._first, self._last = (round(at * rate) for at in window_of(check))
-        self._found: tuple[float, float] | None = None
+        self.found: tuple[float, float] | None = None
 
     def look(self, tick: int, gauge: "_Gauge") -> CheckResult | None:
         """Measure, where it is time to; the result once it is known."""
@@ -100,15 +116,15 @@ class _Waiting:
             return None
         value, at = gauge.value(check), tick / self._rate
         beyond = excess(check, value)
-        before = None if self._found is None else excess(check, self._found[0])
+        before = None if self.found is None else excess(check, self.found[0])
         if before is None or (beyond < before if check.eventually else beyond > before):
-            self._found = value, at
-        decided = check.eventually is not None and beyond <= 0.0
+            self.found = value, at
+        decided = beyond <= 0.0 if check.eventually else self._at_once and beyond > 0.0
         if not decided and tick < self._last:
             return None
-        assert self._found is not None
+        assert self.found is not None
         once = not (check.always or check.eventually)
-        return judge(check, value) if once else judge(check, *self._found)
+        return judge(check, value) if once else judge(check, *self.found)
 
 
 class _Gauge:
@@ -120,12 +136,22 @@ class _Gauge:
         self._follows_strain = bool(metrics & {"max_strain", "rms_strain"})
         samples = max(1, round(STRAIN_WINDOW * world.settings.tick_rate))
         self._strains: deque[tuple[float, float, int]] = deque(maxlen=samples)
-        bodies = {check.body for check in checks}
-        self._particles = {body: _of_body(world.particle_names, body, ".") for body in bodies}
-        self._springs = {body: _of_body(world.spring_names, body, ":") for body in bodies}
+        # By body, as long as there are particles and springs: commands may add some.
+        self._particles: dict[str | None, NDArray[np.bool_]] = {}
+        self._springs: dict[str | None, NDArray[np.bool_]] = {}
         # For how many ticks each has been still.
         self._still = {check.body: -1 for check in checks if check.metric == "settled"}
         self._started = world.tick
+
+    def keep(self) -> Any:
+        """What it follows."""
+        return list(self._strains), dict(self._still), self._started
+
+    def go_on(self, kept: Any) -> None:
+        """Follow on from what another gauge has kept."""
+        strains, still, self._started = kept
+        self._strains.extend(strains)
+        self._still = dict(still)
 
     def look(self, world: World) -> None:
         """Follow one tick."""
@@ -140,8 +166,10 @@ class _Gauge:
         return float(_VALUES[check.metric](self, self._world, check))
 
     def _shown(self, body: str | None) -> NDArray[np.bool_]:
-        shown = shown_particles(self._world)
-        return shown & self._particles[body][: len(shown)]
+        return shown_particles(self._world) & _of_body(self._particles, self._world.particle_names, body, ".")
+
+    def _springs_of(self, body: str | None) -> NDArray[np.bool_]:
+        return _of_body(self._springs, self._world.spring_names, body, ":")
 
     def _max_strain(self, world: World, check: CheckDef) -> float:
         return float(np.max([largest for largest, _, _ in self._strains], initial=0.0))
@@ -151,7 +179,7 @@ class _Gauge:
         return float(np.sqrt(sum(squares for _, squares, _ in self._strains) / count)) if count else 0.0
 
     def _strain(self, world: World, check: CheckDef) -> float:
-        return float(np.max(np.abs(strain(world))[load_bearing(world) & self._springs[check.body]], initial=0.0))
+        return float(np.max(np.abs(strain(world))[load_bearing(world) & self._springs_of(check.body)], initial=0.0))
 
     def _energy(self, world: World, check: CheckDef) -> float:
         return kinetic_energy(world) + self._potential_energy(world, check)
@@ -167,7 +195,7 @@ class _Gauge:
         return int(np.count_nonzero(~np.isfinite(state).all(axis=1)))
 
     def _broken_springs(self, world: World, check: CheckDef) -> int:
-        of_body = self._springs[check.body]
+        of_body = self._springs_of(check.body)
         hands = np.array([world.is_grab_spring(slot) for slot in range(world.spring_count)], dtype=np.bool_)
         return int(np.count_nonzero(of_body & ~hands) - np.count_nonzero(shown_springs(world) & of_body))
 
@@ -219,6 +247,10 @@ _VALUES: dict[str, Callable[[_Gauge, World, CheckDef], float]] = {
 }
 
 
-def _of_body(names: list[str], body: str | None, sign: str) -> NDArray[np.bool_]:
-    """Which of these slots are a body's; all of them where it is None."""
-    return np.array([body is None or name.startswith(f"{body}{sign}") for name in names], dtype=np.bool_)
+def _of_body(
+    known: dict[str | None, NDArray[np.bool_]], names: list[str], body: str | None, sign: str
+) -> NDArray[np.bool_]:
+    """Which of these slots are a body's; all of them where it is None. What is known of other times is looked up."""
+    if body not in known or len(known[body]) != len(names):
+        known[body] = np.array([body is None or name.startswith(f"{body}{sign}") for name in names], dtype=np.bool_)
+    return known[body]

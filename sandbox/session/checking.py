@@ -14,6 +14,7 @@ from sandbox.session.golden import SUFFIX, GoldenError, differences, read_golden
 from sandbox.session.outcome import outcome_data
 from sandbox.session.probe import finite
 from sandbox.session.replay.recording import ReplayError
+from sandbox.session.replay.rollback import roll_back_level
 from sandbox.session.solution import try_goal
 from sandbox.session.worker_pool import interrupts_ignored, worker_pool
 
@@ -31,8 +32,11 @@ class LevelReport:
     passed: bool = False
 
 
-def check_level(name: str) -> LevelReport:
-    """Validate a level file or a shipped level, report its stability and run its checks; of a golden file compare."""
+def check_level(name: str, rollback: int | None = None) -> LevelReport:
+    """Validate a level file or a shipped level, report its stability and run its checks; of a golden file compare.
+
+    rollback: random hands play it besides, and it goes back so many ticks at each.
+    """
     if name.endswith(SUFFIX):
         return _check_golden(name)
     try:
@@ -42,6 +46,7 @@ def check_level(name: str) -> LevelReport:
         return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
     stability = report(build_world(level))
     results, goal = run_checks(level), try_goal(level, Path(path))
+    again = None if rollback is None else roll_back_level(level, rollback)
     lines = (
         f"{name}: valid: {level.name}",
         f"  stability  {stability.text}",
@@ -49,8 +54,10 @@ def check_level(name: str) -> LevelReport:
         f"{stability.estimated_limit:.3g} estimated, {stability.article_limit:.3g} by the article's 1/(n+1)",
         *(f"  check      {result.text}" for result in results),
         *([f"  goal       {goal.text}"] if goal else []),
+        *([f"  rollback   {again}"] if again else []),
     )
     passed = all(result.passed for result in results) and (goal is None or goal.passed)
+    passed = passed and (again is None or again.found is None)
     data: dict[str, Any] = {
         "file": name, "result": "passed" if passed else "failed", "level": level.name, "stability": asdict(stability),
         "checks": [_told(result) for result in results],
@@ -58,6 +65,8 @@ def check_level(name: str) -> LevelReport:
     if goal is not None:
         won = outcome_data(goal.outcome, level.settings.tick_rate)
         data["goal"] = {"passed": goal.passed, "outcome": won, "text": goal.text}
+    if again is not None:
+        data["rollback"] = {"passed": again.found is None, "ticks": again.ticks, "text": str(again)}
     return LevelReport(finite(data), lines, passed=passed)
 
 
@@ -82,16 +91,19 @@ def _told(result: CheckResult) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def check_levels(names: Sequence[str], processes: int) -> Generator[LevelReport, None, None]:
-    """The report on each level, in order, as soon as it is known; with one process, in this one.
+def check_levels(
+    names: Sequence[str], processes: int, rollback: int | None = None
+) -> Generator[LevelReport, None, None]:
+    """The report on each level, as `check_level` gives it, in order, as soon as it is known; with one process, in this
+    one.
 
     Close it if not all of them are wanted: processes would work on otherwise.
     Raises OSError where a process cannot be started, or is gone before it has answered.
     """
     if processes == 1:
-        yield from map(check_level, names)
+        yield from (check_level(name, rollback) for name in names)
         return
     with worker_pool(processes) as workers:
         with interrupts_ignored():
-            waiting = [workers.submit(check_level, name) for name in names]
+            waiting = [workers.submit(check_level, name, rollback) for name in names]
         yield from (each.result() for each in waiting)

@@ -224,6 +224,16 @@ class Session:
         self._enter(lines, [from_record(line.record, self.world) for line in lines])
         self.history.keyframes.keep(Keyframe(self.history.next_order, take(self.world)))
 
+    def step_again(self, state: Snapshot) -> None:
+        """Go back to a state that this run had at a tick, before its commands, and step to the present tick once more.
+
+        What comes of it is told by the world alone: no state is kept, and nothing is recorded.
+        """
+        tick = self.tick
+        self._put_back(state)
+        self.history.keyframes.note_return()
+        self._follow(self.history.first_of(state.tick), tick, sought=False)
+
     def retold(self, tick: int) -> "Session":
         """A run of its own with the same history, at the last keyframe at or before a tick; `advance` follows it from
         there to the last tick. Neither run changes the other.

@@ -85,9 +85,12 @@ class LevelItem(ToldItem):
     def runtest(self) -> None:
         """Run it. Raises Failed."""
         from sandbox.level.assembly.build_world import build_world
+        from sandbox.testing.smaller import check_rollback_of_level
 
         assert isinstance(self.parent, LevelTests)
-        build_world(self.parent.level())
+        level = self.parent.level()
+        build_world(level)
+        check_rollback_of_level(self.config, level)
 
 
 class CheckItem(ToldItem):

@@ -32,6 +32,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "own bits",
     )
     group.addoption("--replay-against", metavar="LEVEL", help="as the setting sandbox_against, before it")
+    group.addoption(
+        "--replay-shrink", action="store_true", help="of a recording that diverges on a level, write the smallest run"
+    )
+    group.addoption(
+        "--replay-rollback",
+        metavar="N",
+        type=int,
+        default=0,
+        help="at every tick of a recording, and of a level under random hands, also go back N ticks and compare",
+    )
     group.addoption("--replay-output", metavar="DIR", help="where pictures go; default: .pytest_cache/d/replays")
     parser.addini(
         "sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=["levels/*.json"]

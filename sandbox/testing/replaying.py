@@ -14,6 +14,7 @@ from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.replay.rerecord import record_again, with_settings
 from sandbox.session.replay.verify import Comparison, compare
 from sandbox.testing.failed import Failed
+from sandbox.testing.smaller import check_rollback, shrunk_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,11 +29,17 @@ def replay_test(config: pytest.Config, path: Path) -> str | None:
         if config.getoption("--replay-solver"):
             _run_twice(config, replay)
             return None
-        found = compare(replay, level=level_against(config, replay))
+        level = level_against(config, replay)
+        found = compare(replay, level=level)
+        if found is None:
+            check_rollback(config, replay, level)
     except ReplayError as error:
         raise Failed(*error.faults) from None
     if found is not None:
-        raise Failed(f"{path.name}: diverged: {found.divergence}", *found.lines(), *_drawn(config, found, path))
+        smallest = shrunk_lines(config, replay, level, lambda: output_folder(config) / output_name(config, path))
+        raise Failed(
+            f"{path.name}: diverged: {found.divergence}", *found.lines(), *_drawn(config, found, path), *smallest
+        )
     return None
 
 
@@ -112,8 +119,7 @@ def _drawn(config: pytest.Config, found: Comparison, path: Path) -> list[str]:
     from sandbox.app.share.evidence import write_motion, write_picture
     from sandbox.session.player.report import report_page
 
-    folder = _output(config)
-    name = "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name
+    folder, name = output_folder(config), output_name(config, path)
     lines = []
     kinds: list[tuple[str, str, Callable[[Comparison, Path], None]]] = [
         ("picture", "png", write_picture),
@@ -131,7 +137,7 @@ def _drawn(config: pytest.Config, found: Comparison, path: Path) -> list[str]:
     return lines
 
 
-def _output(config: pytest.Config) -> Path:
+def output_folder(config: pytest.Config) -> Path:
     """Where pictures go."""
     given = config.getoption("--replay-output")
     if given:
@@ -140,3 +146,8 @@ def _output(config: pytest.Config) -> Path:
         return folder
     cache = config.cache
     return cache.mkdir("replays") if cache is not None else Path(tempfile.mkdtemp(prefix="replays-"))
+
+
+def output_name(config: pytest.Config, path: Path) -> str:
+    """What is written of a file is called by its place."""
+    return "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name

@@ -1,0 +1,243 @@
+"""Kinds of failures: a check, an exception, frozen particles, something that leaves a box, a lost goal, energy."""
+
+import traceback
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sandbox.level.checks import CheckResult
+from sandbox.level.document.model import Level
+from sandbox.physics.analysis.energy import Dissipation
+from sandbox.physics.analysis.query import shown_particles
+from sandbox.session.check_run import CheckWatch
+from sandbox.session.outcome import outcome, outcome_text
+from sandbox.session.session import Session
+from sandbox.session.shrink.failure import Failure, FailureError, FailureSeen, FailureWatch
+
+Box = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class CheckFails(Failure):
+    """A check of the level, by its name, does not hold in a run. Keys that the check would hold are not pressed."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return f'the check "{self.name}" fails'
+
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        return _CheckWatch(self, session, kept)
+
+
+class _CheckWatch(FailureWatch):
+    def __init__(self, failure: CheckFails, session: Session, kept: Any) -> None:
+        self._failure = failure
+        names = [check.name for check in session.level.checks]
+        if failure.name not in names:
+            known = ", ".join(f'"{name}"' for name in names) or "none"
+            raise FailureError(f'{session.level.name}: there is no check "{failure.name}"; it has {known}')
+        number = names.index(failure.name)
+        self._watch = CheckWatch(session.level, session.world, [number], at_once=True)
+        if kept is None:
+            self._judge(self._watch.look())
+        else:
+            self._watch.go_on(kept)
+
+    def _judge(self, decided: list[tuple[int, CheckResult]]) -> FailureSeen | None:
+        for _, result in decided:
+            self.is_over = True
+            if not result.passed:
+                return FailureSeen(self._failure, result.text)
+        return None
+
+    def after(self) -> FailureSeen | None:
+        return self._judge(self._watch.look())
+
+    def keep(self) -> Any:
+        return self._watch.keep()
+
+
+@dataclass(frozen=True)
+class Crashes(Failure):
+    """A tick raises an exception: of this kind, out of this function; "": whichever comes."""
+
+    where: str = ""
+    # What has crashed is not recorded.
+    beyond = 1
+
+    def __str__(self) -> str:
+        return f"it crashes: {self.where}" if self.where else "it crashes"
+
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        return FailureWatch()
+
+    def raised(self, error: Exception) -> FailureSeen | None:
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{type(error).__name__} in {last.name}"
+        if self.where not in ("", where):
+            return None
+        return FailureSeen(Crashes(where), f"{where}, line {last.lineno} of {last.filename}: {str(error)[:200]}")
+
+
+@dataclass(frozen=True)
+class Freezes(Failure):
+    """Particles get values that no physics can give, and are frozen where they were; array: in which, "": in any."""
+
+    array: str = ""
+
+    def __str__(self) -> str:
+        return f"particles freeze, by their {self.array}" if self.array else "particles freeze"
+
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        return _FrozenWatch(self, session)
+
+
+class _FrozenWatch(FailureWatch):
+    def __init__(self, failure: Freezes, session: Session) -> None:
+        self._failure, self._session = failure, session
+
+    def after(self) -> FailureSeen | None:
+        for hit in self._session.world.contained:
+            if hit.frozen and self._failure.array in ("", hit.array):
+                return FailureSeen(Freezes(hit.array), str(hit))
+        return None
+
+
+@dataclass(frozen=True)
+class Leaves(Failure):
+    """A particle is outside a box [m]: left, bottom, right, top; None: outside the level's view."""
+
+    box: Box | None = None
+
+    def __str__(self) -> str:
+        return "something leaves " + ("the level's view" if self.box is None else f"the box {list(self.box)}")
+
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        box = session.level.view if self.box is None else self.box
+        if box is None:
+            raise FailureError(f"{session.level.name}: the level has no view that could be left; give a box")
+        return _BoxWatch(self, session, box)
+
+
+class _BoxWatch(FailureWatch):
+    def __init__(self, failure: Leaves, session: Session, box: Box) -> None:
+        self._failure, self._world, self._box = failure, session.world, box
+
+    def after(self) -> FailureSeen | None:
+        world, (left, bottom, right, top) = self._world, self._box
+        inside = np.all((world.position >= (left, bottom)) & (world.position <= (right, top)), axis=1)
+        outside = np.flatnonzero(~inside & shown_particles(world))
+        if not len(outside):
+            return None
+        slot = int(outside[0])
+        x, y = world.position[slot].tolist()
+        return FailureSeen(self._failure, f"{world.particle_names[slot]} is at ({x:.2f}, {y:.2f}) m")
+
+
+@dataclass(frozen=True)
+class IsLost(Failure):
+    """The goal of the level is lost."""
+
+    def __str__(self) -> str:
+        return "the goal is lost"
+
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        if not any(action.fail is not None for rule in session.level.rules for action in rule.then):
+            raise FailureError(f"{session.level.name}: no rule of the level loses it")
+        return _GoalWatch(self, session)
+
+
+class _GoalWatch(FailureWatch):
+    def __init__(self, failure: IsLost, session: Session) -> None:
+        self._failure, self._session = failure, session
+
+    def after(self) -> FailureSeen | None:
+        found = outcome(self._session.level, self._session.world)
+        if found is None:
+            return None
+        self.is_over = True
+        rate = self._session.level.settings.tick_rate
+        return None if found.is_won else FailureSeen(self._failure, f"{outcome_text(found, rate)}: {found.text}")
+
+
+@dataclass(frozen=True)
+class EnergyGrows(Failure):
+    """The energy of everything grows by more than a bound [J] while nothing works on it.
+
+    What commands change, and ticks in which a hand, a motor, the wind or a flow works, do not count, see Dissipation.
+    """
+
+    bound: float
+
+    def __str__(self) -> str:
+        return f"the energy grows by more than {self.bound:g} J by itself"
+
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        return _EnergyWatch(self, session, kept)
+
+
+class _EnergyWatch(FailureWatch):
+    def __init__(self, failure: EnergyGrows, session: Session, kept: float | None) -> None:
+        self._failure, self._world = failure, session.world
+        self._ticks = Dissipation()
+        # Since it was least.
+        self._grown = kept or 0.0
+
+    def before(self) -> None:
+        self._ticks.energy = 0.0
+        self._ticks.before(self._world)
+
+    def after(self) -> FailureSeen | None:
+        self._ticks.after(self._world)
+        self._grown = max(0.0, self._grown - self._ticks.energy)
+        # What is not a number is no proof of anything.
+        if not self._grown > self._failure.bound:
+            return None
+        return FailureSeen(self._failure, f"the energy has grown by {self._grown:.6g} J by itself")
+
+    def keep(self) -> float:
+        return self._grown
+
+
+def usual_failures(level: Level) -> tuple[Failure, ...]:
+    """What is looked for where nothing is named: a crash, a check that fails, frozen particles."""
+    return (Crashes(), *(CheckFails(name) for name in dict.fromkeys(check.name for check in level.checks)), Freezes())
+
+
+@dataclass(frozen=True)
+class AnyOf(Failure):
+    """The first of several failures that comes."""
+
+    failures: tuple[Failure, ...]
+
+    @property
+    def beyond(self) -> int:  # type: ignore[override]
+        return max(each.beyond for each in self.failures)
+
+    def __str__(self) -> str:
+        return "; ".join(map(str, self.failures))
+
+    def watch(self, session: Session, kept: Any = None) -> FailureWatch:
+        given = kept or [None] * len(self.failures)
+        return _Watches([each.watch(session, one) for each, one in zip(self.failures, given, strict=True)])
+
+    def raised(self, error: Exception) -> FailureSeen | None:
+        return next((seen for each in self.failures if (seen := each.raised(error)) is not None), None)
+
+
+class _Watches(FailureWatch):
+    def __init__(self, watches: list[FailureWatch]) -> None:
+        self._watches = watches
+
+    def before(self) -> None:
+        for each in self._watches:
+            each.before()
+
+    def after(self) -> FailureSeen | None:
+        found = [each.after() for each in self._watches if not each.is_over]
+        return next((seen for seen in found if seen is not None), None)
+
+    def keep(self) -> Any:
+        return [each.keep() for each in self._watches]
