@@ -15,6 +15,7 @@ from sandbox.terminal import Progress, tell
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
     from sandbox.physics.world import World
+    from sandbox.session.replay.verify import Comparison
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +26,7 @@ class ReplayOptions:
     json: bool = flag("print one JSON object a file")
     partial: bool = flag("verify what there is of a recording that is cut off")
     report: Path | None = option(Path, metavar="OUT.html", help="where it diverges, play both side by side")
+    to_end: bool = flag("where it diverges, go on to the end: how far apart, and does it heal or grow?")
     against: str | None = option(str, metavar="LEVEL", help="run their commands on this level, not on the recorded one")
 
 
@@ -35,7 +37,7 @@ def verify_files(options: ReplayOptions) -> int:
     if options.report and (len(options.files) > 1 or options.report.suffix.lower() != PAGE):
         raise Refused("--report: is of one recording, into a file whose name ends in .html")
     for name in options.files:
-        code, outcome = _verify(name, options.partial, level, options.report)
+        code, outcome = _verify(name, options, level)
         worst = max(worst, code)
         if options.json:
             print(json.dumps(outcome))
@@ -46,14 +48,14 @@ def verify_files(options: ReplayOptions) -> int:
     return worst
 
 
-def _verify(name: str, partial: bool, level: "Level | None", report: Path | None) -> tuple[int, dict[str, Any]]:
+def _verify(name: str, options: ReplayOptions, level: "Level | None") -> tuple[int, dict[str, Any]]:
     from sandbox.session.outcome import outcome, outcome_data, outcome_text
     from sandbox.session.probe import finite
     from sandbox.session.replay.recording import ReplayError
     from sandbox.session.replay.verify import compare
 
     try:
-        replay = recording_of(name, partial)
+        replay = recording_of(name, options.partial)
         worlds: deque[World] = deque(maxlen=1)
         with Progress(replay.ticks) as bar:
             found = compare(
@@ -70,10 +72,22 @@ def _verify(name: str, partial: bool, level: "Level | None", report: Path | None
         at_end = "" if replay.compared == "every tick" else " at its end"
         text = f"equal{at_end}, {replay.ticks} ticks{cut}{said}"
         return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text, **data}
-    if report is not None:
-        write_report(found, report)
-    details = finite({**asdict(found.divergence), "text": f"diverged at {found.divergence}"})
+    text = f"diverged at {found.divergence}"
+    if options.to_end:
+        found = _to_the_end(found)
+        text = "\n  ".join([text, *found.edits, *([*found.apart.told(), found.apart.verdict()] if found.apart else [])])
+    if options.report is not None:
+        write_report(found, options.report)
+    apart = {"apart": {**asdict(found.apart), "verdict": found.apart.verdict()}} if found.apart else {}
+    details = finite({**asdict(found.divergence), "text": text, **apart})
     return EXIT_FAILED, {"file": name, "result": "diverged", **details}
+
+
+def _to_the_end(found: "Comparison") -> "Comparison":
+    from sandbox.session.replay.verify import to_the_end
+
+    with Progress(found.replay.ticks) as bar:
+        return to_the_end(found, lambda done, total: bar.update(done - bar.done))
 
 
 COMMAND = Subcommand("replay", "run recordings again and compare every bit", ReplayOptions, verify_files)

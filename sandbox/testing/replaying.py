@@ -1,6 +1,7 @@
 """What the test of a recording does: run it again, tell and draw where it parts, or record it again."""
 
 import os
+import shlex
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,9 +11,9 @@ import pytest
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import LevelError, load_level
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError
 from sandbox.session.replay.rerecord import record_again, with_settings
-from sandbox.session.replay.verify import Comparison, compare
+from sandbox.session.replay.verify import Comparison, across_versions, compare, to_the_end
 from sandbox.testing.failed import Failed
 
 if TYPE_CHECKING:
@@ -29,11 +30,36 @@ def replay_test(config: pytest.Config, path: Path) -> str | None:
             _run_twice(config, replay)
             return None
         found = compare(replay, level=level_against(config, replay))
+    except OtherPhysicsError as error:
+        raise _of_other_physics(config, path, error) from None
     except ReplayError as error:
         raise Failed(*error.faults) from None
     if found is not None:
-        raise Failed(f"{path.name}: diverged: {found.divergence}", *found.lines(), *_drawn(config, found, path))
+        found = to_the_end(found)
+        raise _failed(config, f"{path.name}: diverged: {found.cause()}", found, path)
     return None
+
+
+def _of_other_physics(config: pytest.Config, path: Path, error: ReplayError) -> Failed:
+    """The failure of a recording of another physics version: how far its run has changed."""
+    try:
+        replay = read_replay(path, retold=True)
+        found = across_versions(replay, level_against(config, replay))
+    except ReplayError:
+        return Failed(*error.faults)
+    return _failed(config, error.faults[0], found, path)
+
+
+def _failed(config: pytest.Config, headline: str, found: Comparison, path: Path) -> Failed:
+    """A failure that says what was edited, how far the runs come apart, and how to accept it."""
+    return Failed(headline, *found.lines(), *_drawn(config, found, path), _acceptance(config, path))
+
+
+def _acceptance(config: pytest.Config, path: Path) -> str:
+    folder, given = config.invocation_params.dir, config.getoption("--replay-against")
+    name = path.relative_to(folder) if path.is_relative_to(folder) else path
+    words = ["pytest", "--replay-update", *([f"--replay-against={given}"] if given else []), str(name)]
+    return f"to accept: {shlex.join(words)}"
 
 
 def level_of(path: Path) -> Level:

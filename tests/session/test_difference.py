@@ -59,7 +59,7 @@ def test_a_level_runs_with_the_commands_of_a_recording_and_two_levels_alone(pair
     same, other = rope_level(), rope_level(settings={"solver": "iterative", "iterations": 11})
     assert difference(side(pair[0]), ComparedRun("same", same, None), 10**6).is_equal
     found = difference(ComparedRun("same", same, None), ComparedRun("other", other, None), 10)
-    assert found.level == ("level: settings.iterations: left out -> 11",)
+    assert found.level == ("level: settings.iterations: 10 (default) -> 11",)
     assert (found.divergence.tick, found.divergence.array) == (0, "settings")
 
 
@@ -114,7 +114,7 @@ def test_the_edits_that_make_a_check_fail_are_found_among_others():
         bodies__soft__segments=6, bodies__rope__particle_mass=2.0, settings__drag=0.01,
     )  # fmt: skip
     *tried, edits = deciding_edits(variant(), bad, checks_hold([]))
-    assert [str(edit) for edit in edits] == ["settings.gravity: left out -> [0.0, -40.0]"]
+    assert [str(edit) for edit in edits] == ["settings.gravity: [0.0, -9.81] (default) -> [0.0, -40.0]"]
     assert all(isinstance(each, Tried) for each in tried) and len(tried) < 12
 
 

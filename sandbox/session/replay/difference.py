@@ -6,19 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.level.document.model import Level
-from sandbox.level.reading.files import level_data
 from sandbox.physics.snapshot import hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.level_edits import edits_between
+from sandbox.session.level_edits import edit_lines
 from sandbox.session.replay.divergence import Divergence, first_difference
 from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
 from sandbox.session.replay.verify import recorded_run
 from sandbox.session.session import Session
-
-# Fields of levels that are listed as different, at most.
-MOST_LISTED = 10
 
 
 @dataclass(frozen=True)
@@ -69,22 +65,19 @@ def difference(
     for side in (first, second):
         if side.replay is not None:
             ticks = min(ticks, side.replay.ticks)
-    edits = edits_between(level_data(first.level), level_data(second.level))
-    told = [f"level: {edit}" for edit in edits[:MOST_LISTED]]
-    if len(edits) > MOST_LISTED:
-        told.append(f"level: and {len(edits) - MOST_LISTED} fields more")
+    told = edit_lines(first.level, second.level)
     commands = _command_lines(first, second, ticks)
     sides = (first, second)
     try:
         for tick, hashes, sessions in _in_step(sides, ticks):
             if hashes[0].whole[: len(hashes[1].whole)] != hashes[1].whole[: len(hashes[0].whole)]:
                 found = _located(sides, tick, hashes, sessions)
-                return RunDifference(tuple(told), commands, found[0], found[1], found[2], ticks)
+                return RunDifference(told, commands, found[0], found[1], found[2], ticks)
             if progress is not None:
                 progress(tick, ticks)
     except CommandError as error:
         raise ReplayError(*error.faults) from None
-    return RunDifference(tuple(told), commands, None, None, None, ticks)
+    return RunDifference(told, commands, None, None, None, ticks)
 
 
 _Pair = tuple[Session | None, Session | None]
