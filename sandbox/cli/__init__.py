@@ -23,6 +23,7 @@ from sandbox.cli import (
     resume,
     run,
     schema,
+    show,
     site,
     sweep,
     take_home,
@@ -36,8 +37,8 @@ from sandbox.terminal import give_up_output, missing_folder, prepare_streams, re
 COMMANDS: tuple[Subcommand[Any], ...] = tuple(
     module.COMMAND
     for module in (
-        play, toy, run, replay, resume, check, diff, bisect, sweep, render, page, site, link, take_home, export, format,
-        edit, schema,
+        play, toy, run, replay, resume, show, check, diff, bisect, sweep, render, page, site, link, take_home, export,
+        format, edit, schema,
     )
 )  # fmt: skip
 # What the program does where no command is named.

@@ -76,12 +76,12 @@ def level_edits(before: Level, after: Level) -> list[Edit]:
     return [replace(edit, usual=usual(edit)) for edit in edits]
 
 
-def edit_lines(before: Level, after: Level) -> tuple[str, ...]:
-    """The edits from one level to another, a line each, the first ten of them."""
+def edit_lines(before: Level, after: Level, name: str = "level") -> tuple[str, ...]:
+    """The edits from one level to another, which is called so, a line each, the first ten of them."""
     edits = level_edits(before, after)
-    told = [f"level: {edit}" for edit in edits[:MOST_LISTED]]
+    told = [f"{name}: {edit}" for edit in edits[:MOST_LISTED]]
     if len(edits) > MOST_LISTED:
-        told.append(f"level: and {len(edits) - MOST_LISTED} fields more")
+        told.append(f"{name}: and {len(edits) - MOST_LISTED} fields more")
     return tuple(told)
 
 

@@ -89,8 +89,8 @@ def test_an_edited_level_is_told_by_its_field_its_distance_and_what_accepts_it(p
     project.edit(materials__steel__stiffness=0.6, settings__gravity=[0.0, -14.0])
     code, told = project("pull.replay.jsonl")
     assert code == 1
-    assert "level: settings.gravity: [0.0, -9.81] (default) -> [0.0, -14.0]\n" in told
-    assert "level: materials.steel.stiffness: 0.8 -> 0.6\n" in told
+    assert "rope.json: settings.gravity: [0.0, -9.81] (default) -> [0.0, -14.0]\n" in told
+    assert "rope.json: materials.steel.stiffness: 0.8 -> 0.6\n" in told
     found = to_the_end(
         compare(
             read_replay(project.path / "pull.replay.jsonl"),
@@ -117,7 +117,7 @@ def test_an_edited_level_is_told_by_its_field_its_distance_and_what_accepts_it(p
 def test_other_counts_are_told_by_body(project):
     project.edit(bodies__rope__segments=10)
     _, told = project("pull.replay.jsonl")
-    assert "level: bodies.rope.segments: 11 -> 10\n" in told
+    assert "rope.json: bodies.rope.segments: 11 -> 10\n" in told
     assert "rope: 12 -> 11 particles, rope: 11 -> 10 springs\n" in told
     assert "1 particle is in one of the runs alone\n" in told
 
@@ -129,7 +129,7 @@ def test_a_recording_of_another_physics_version_is_measured_at_its_stored_states
     assert f"no particle is elsewhere at the stored states until tick {TICKS}\n" in told
     project.edit(settings__gravity=[0.0, -14.0])
     _, told = project("pull.replay.jsonl")
-    assert "level: settings.gravity: [0.0, -9.81] (default) -> [0.0, -14.0]\n" in told
+    assert "rope.json: settings.gravity: [0.0, -9.81] (default) -> [0.0, -14.0]\n" in told
     assert " apart at the stored states, " in told and "to accept: pytest --replay-update" in told
 
 
@@ -167,7 +167,7 @@ def test_to_the_end_says_whether_a_difference_grows_or_shrinks(project, capsys):
     assert main(["replay", *files, "--to-end"]) == 1
     told = capsys.readouterr().out.splitlines()
     assert told[0].endswith("at tick 0: settings: expected gravity [0.0, -9.81], got gravity [0.0, -14.0]")
-    assert told[1] == "  level: settings.gravity: [0.0, -9.81] (default) -> [0.0, -14.0]"
+    assert told[1] == "  rope.json: settings.gravity: [0.0, -9.81] (default) -> [0.0, -14.0]"
     assert told[-1].startswith("  it grows: ") and f"at tick {TICKS}" in told[-1]
     assert main(["replay", *files, "--to-end", "--json"]) == 1
     apart = json.loads(capsys.readouterr().out)["apart"]

@@ -29,7 +29,6 @@ VISIBLE = 1e-3
 # A run is told of at so many ticks, from the first that differs to the last.
 TOLD = 4
 
-Names = dict[str, str]
 # Called with the ticks done and those in all.
 Progress = Callable[[int, int], None]
 
@@ -101,14 +100,8 @@ def metres(distance: float) -> str:
     return f"{100 * distance:.2g} cm" if distance >= 1e-3 else f"{distance:.1e} m" if distance else "0 m"
 
 
-def apart_in_step(
-    expected: Session,
-    actual: Session,
-    ticks: int,
-    renamed: Names | None = None,
-    progress: Progress | None = None,
-) -> Apart:
-    """Step two runs that are at the same tick on to another, and measure; renamed: names of bodies, old to new.
+def apart_in_step(expected: Session, actual: Session, ticks: int, progress: Progress | None = None) -> Apart:
+    """Step two runs that are at the same tick on to another, and measure.
 
     From the first tick on, what both levels check is measured in both.
     """
@@ -132,14 +125,12 @@ def apart_in_step(
                 progress(actual.tick, ticks)
 
     with np.errstate(over="ignore", invalid="ignore"):
-        found = _measured(pairs(), renamed or {}, False)
+        found = _measured(pairs(), False)
     said = (*(watched.lines() if watched else ()), *_outcomes(expected, actual))
     return _with(found, stopped, said)
 
 
-def apart_from_stored(
-    replay: Replay, actual: Session, renamed: Names | None = None, progress: Progress | None = None
-) -> Apart:
+def apart_from_stored(replay: Replay, actual: Session, progress: Progress | None = None) -> Apart:
     """Step a run on to the end of a recording, and measure at those of its ticks whose states the recording stores."""
     stopped: list[str] = []
 
@@ -158,15 +149,15 @@ def apart_from_stored(
                 yield recorded, actual.world
 
     with np.errstate(over="ignore", invalid="ignore"):
-        found = _measured(pairs(), renamed or {}, True)
+        found = _measured(pairs(), True)
     return _with(found, stopped, ())
 
 
-def apart_as_stored(first: Replay, second: Replay, renamed: Names | None = None) -> Apart:
+def apart_as_stored(first: Replay, second: Replay) -> Apart:
     """Measure two recordings at the ticks whose states both store."""
     shared = sorted(first.states.keys() & second.states.keys())
     pairs = ((recorded_world(first, tick), recorded_world(second, tick)) for tick in shared)
-    return _measured(((a, b) for a, b in pairs if a is not None and b is not None), renamed or {}, True)
+    return _measured(((a, b) for a, b in pairs if a is not None and b is not None), True)
 
 
 def recorded_world(replay: Replay, tick: int) -> World | None:
@@ -199,8 +190,7 @@ def _placed(world: World, text: str, tick: int) -> World | None:
 class _SameParticles:
     """Which particles of two worlds are the same, found anew when their topology changes."""
 
-    def __init__(self, renamed: Names) -> None:
-        self._renamed = renamed
+    def __init__(self) -> None:
         self._slots: tuple[Slots, Slots] | None = None
         self._key: tuple[Any, ...] = ()
         self._away: NDArray[np.bool_] = np.zeros(0, dtype=np.bool_)
@@ -221,7 +211,7 @@ class _SameParticles:
         return squares, self._slots
 
     def _pair(self, a: World, b: World) -> None:
-        names = [renamed_name(name, self._renamed) for name in a.particle_names] if self._renamed else a.particle_names
+        names = a.particle_names
         if names == b.particle_names:
             self._slots = None
         else:
@@ -235,8 +225,8 @@ class _SameParticles:
         self.alone = int(sum(map(np.count_nonzero, shown)) - 2 * np.count_nonzero(both))
 
 
-def _measured(pairs: Iterable[tuple[World, World]], renamed: Names, stored: bool) -> Apart:
-    same = _SameParticles(renamed)
+def _measured(pairs: Iterable[tuple[World, World]], stored: bool) -> Apart:
+    same = _SameParticles()
     ticks: list[int] = []
     series: list[float] = []
     farthest, particle, both, tick = 0.0, "", (0, 0), 0
@@ -276,15 +266,6 @@ def _course(ticks: Sequence[int], series: Sequence[float], first: int) -> tuple[
 
 def _with(found: Apart, stopped: Sequence[str], lines: Iterable[str]) -> Apart:
     return replace(found, stopped="; ".join(stopped), lines=tuple(lines))
-
-
-def renamed_name(name: str, renamed: Names) -> str:
-    """A name of a body, or of a particle or spring of it, as it is after bodies were called otherwise."""
-    for sign in (".", ":"):
-        body, found, rest = name.rpartition(sign)
-        if found and body in renamed:
-            return f"{renamed[body]}{sign}{rest}"
-    return renamed.get(name, name)
 
 
 class _WatchedRuns:

@@ -8,9 +8,11 @@ import numpy as np
 from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
+from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.level_edits import edit_lines
+from sandbox.session.replay.apart import Apart, apart_as_stored, apart_from_stored
 from sandbox.session.replay.divergence import Divergence, first_difference
 from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
 from sandbox.session.replay.verify import recorded_run
@@ -25,6 +27,11 @@ class ComparedRun:
     level: Level
     replay: Replay | None
 
+    @property
+    def is_old(self) -> bool:
+        """Whether it is a recording of another physics version, which cannot be run here as it was."""
+        return self.replay is not None and not self.replay.is_of_this_physics
+
     def begin(self, other: "ComparedRun") -> Session:
         """A run of it from the beginning, where it has no commands with those of the other."""
         commands = self.replay or other.replay
@@ -36,6 +43,8 @@ class RunDifference:
     """Where two runs part. level, commands: lines, none where they are equal; divergence: None where no tick differs.
 
     left, right: the runs at that tick, None of a recording to whose state this build does not come. ticks: compared.
+    apart: how far particles are apart at the stored states, where a recording is of another physics version and no
+    bits are compared. versions: which, in a line.
     """
 
     level: tuple[str, ...]
@@ -44,15 +53,20 @@ class RunDifference:
     left: Session | None
     right: Session | None
     ticks: int
+    apart: Apart | None = None
+    versions: str = ""
 
     @property
     def is_equal(self) -> bool:
         """Whether nothing differs."""
-        return not self.level and not self.commands and self.divergence is None
+        is_apart = self.apart is not None and self.apart.first is not None
+        return not self.level and not self.commands and self.divergence is None and not is_apart
 
     def lines(self) -> list[str]:
         """All that differs, a line each."""
         found = [*self.level, *self.commands]
+        if self.apart is not None:
+            return [self.versions, *found, *self.apart.told()]
         if self.divergence is not None:
             return [*found, *self.divergence.lines("A", "B")]
         return [*found, f"equal in every bit of {self.ticks} ticks"]
@@ -68,6 +82,9 @@ def difference(
     told = edit_lines(first.level, second.level)
     commands = _command_lines(first, second, ticks)
     sides = (first, second)
+    if any(side.is_old for side in sides):
+        apart = _apart_across(first, second, progress)
+        return RunDifference(told, commands, None, None, None, ticks, apart, _versions(sides))
     try:
         for tick, hashes, sessions in _in_step(sides, ticks):
             if hashes[0].whole[: len(hashes[1].whole)] != hashes[1].whole[: len(hashes[0].whole)]:
@@ -78,6 +95,21 @@ def difference(
     except CommandError as error:
         raise ReplayError(*error.faults) from None
     return RunDifference(told, commands, None, None, None, ticks)
+
+
+def _apart_across(first: ComparedRun, second: ComparedRun, progress: Callable[[int, int], None] | None) -> Apart:
+    """How far two runs are apart at the states that the older recording stores, or that both do."""
+    if first.is_old and second.is_old:
+        assert first.replay is not None and second.replay is not None
+        return apart_as_stored(first.replay, second.replay)
+    old, other = (first, second) if first.is_old else (second, first)
+    assert old.replay is not None
+    return apart_from_stored(old.replay, other.begin(old), progress=progress)
+
+
+def _versions(sides: tuple[ComparedRun, ComparedRun]) -> str:
+    here = [side.replay.physics_version if side.replay else PHYSICS_VERSION for side in sides]
+    return f"physics version: {here[0]} -> {here[1]}; stored states are compared, not bits"
 
 
 _Pair = tuple[Session | None, Session | None]

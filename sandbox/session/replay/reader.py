@@ -13,7 +13,7 @@ from sandbox.level.document.model import Level, Settings
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.format.scan import scan
 from sandbox.level.plan.plan import Plan, kept_plan
-from sandbox.level.reading.files import LevelError, parse_level
+from sandbox.level.reading.files import LevelError, keep_file, parse_level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
@@ -21,11 +21,13 @@ from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import CHAIN_DIGITS, FORMAT, TICK_DIGITS, VERSION, level_digest, unseal
 from sandbox.session.replay.line_reader import GZIP_MAGIC, ReplayLines, kind_of
 from sandbox.session.replay.record import CommandLine, Digest, Line, Tick, checked, json_object
-from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError, StoredState, TickHashes, ByHand
+from sandbox.session.replay.recording import ByHand, OtherPhysicsError, Replay, ReplayError, StoredState, TickHashes
 
 # What a stored state may hold [bytes]: so much, and so much for each particle and spring. Shipped levels have up to 224
 # bytes a slot, and a third more as base64.
 STATE_BYTES, STATE_BYTES_A_SLOT = 2**20, 400
+# The longest name of a file that systems have [characters].
+FILE_NAME_LIMIT = 255
 # Lines that are read at a time, where somebody waits for what comes next.
 SLICE_LINES = 100
 
@@ -44,6 +46,7 @@ class FirstLine(Sealed):
     physics_version: int
     sandbox_version: Digest
     level_sha256: Digest
+    level_file: Annotated[str, Field(max_length=FILE_NAME_LIMIT)] = ""
     level: dict[str, Any]
 
 
@@ -203,6 +206,7 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
         raise ReplayError(f"{source}: the file is empty, not a replay")
     head, digest = _read_header(source, first, retold)
     level = level_of(source, head)
+    keep_file(level, head.level_file)
     gathered = _Gathered(head.version, slots_of(level), retold)
     number = 1
     lines.state_limit = gathered.state_limit
@@ -223,7 +227,7 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
     _check_end(source, gathered, number, lines.cut, partial)
     return Replay(
         source, level, tuple(gathered.script), tuple(gathered.hashes), gathered.states, gathered.end_hash,
-        head.physics_version, tuple(gathered.written),
+        head.physics_version, head.sandbox_version, tuple(gathered.written),
     )  # fmt: skip
 
 

@@ -76,7 +76,7 @@ class ByHand:
 class Replay:
     """A recorded run: hashes[t] is the state after t ticks; end_hash is None where the file is cut off.
 
-    physics_version: of the program that recorded it. written: what was written into its world by hand, tick by tick.
+    physics_version, sandbox_version: of the program that recorded it. written: what was written into its world by hand.
     """
 
     source: str
@@ -86,6 +86,7 @@ class Replay:
     states: dict[int, StoredState]
     end_hash: str | None
     physics_version: int = PHYSICS_VERSION
+    sandbox_version: str = ""
     written: tuple[ByHand, ...] = ()
 
     @property

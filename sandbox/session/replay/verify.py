@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from sandbox.level.document.model import Level
+from sandbox.level.reading.files import file_of
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
@@ -14,7 +15,7 @@ from sandbox.session.replay.apart import Apart, Progress, apart_from_stored, apa
 from sandbox.session.replay.divergence import Divergence, first_difference, settings_difference
 from sandbox.session.replay.format import decode_array
 from sandbox.session.replay.recorded_array import recorded_array
-from sandbox.session.replay.recording import Replay, ReplayError, ByHand
+from sandbox.session.replay.recording import ByHand, Replay, ReplayError
 from sandbox.session.session import Session
 
 # Ticks between two calls of verify's `progress`.
@@ -198,7 +199,8 @@ class _Run:
         stored = self.replay.states
         before = max((tick for tick in stored if tick < divergence.tick), default=None)
         after = min((tick for tick in stored if tick >= divergence.tick), default=None)
-        edits = edit_lines(self.replay.level, self.level) if self.level is not None else ()
+        level = self.level
+        edits = () if level is None else edit_lines(self.replay.level, level, file_of(level) or "level")
         by_hand = next((each for each in self.replay.written if each.tick < divergence.tick), None)
         return Comparison(divergence, self.replay, actual, expected, before, after, edits, by_hand)
 
