@@ -8,7 +8,7 @@ from sandbox.cli import main
 from sandbox.level.reading.files import level_data, parse_level
 from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edits, deciding_value
 from sandbox.session.commands import CutSprings, Pin
-from sandbox.session.level_edits import edits_between, with_value
+from sandbox.session.level_edits import edits_between, level_edits, with_value
 from sandbox.session.replay.difference import ComparedRun, difference
 from sandbox.session.replay.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
@@ -170,3 +170,13 @@ def test_what_cannot_be_bisected_is_said_in_a_line(tmp_path, capsys):
 )
 def test_the_owner_of_a_difference_is_told_by_kind_and_number(name, owner):
     assert Divergence(1, "position", 0, 1.0, 2.0, name).owner() == owner
+
+
+def test_what_a_side_leaves_out_is_told_by_its_default():
+    before = variant(materials__rubber__stiffness=0.95)
+    after = level_data(before)
+    after["materials"]["rubber"] = {"damping": 0.1}
+    after["bodies"].append({**after["bodies"][1], "id": "third", "start": [0, 9], "end": [2, 9]})
+    told = list(map(str, level_edits(before, parse_level(json.dumps(after).encode(), "after"))))
+    assert told[0] == "materials.rubber.stiffness: 0.95 -> 0.5 (default)"
+    assert told[1].startswith("bodies.third: left out -> {")

@@ -204,6 +204,8 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
     first = next(each, None)
     if first is None:
         raise ReplayError(f"{source}: the file is empty, not a replay")
+    if not first.endswith(b"\n"):
+        raise ReplayError(f"{source}: line 1: cut off before its end, or no recording")
     head, digest = _read_header(source, first, retold)
     level = level_of(source, head)
     keep_file(level, head.level_file)
