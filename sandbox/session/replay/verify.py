@@ -162,11 +162,17 @@ def across_versions(replay: Replay, level: Level | None = None, progress: Progre
 
 def recorded_run(replay: Replay, tick: int) -> Session | None:
     """A run of a recording at one of its ticks, None where this build does not come to the recorded state there."""
+    session = _run_anew(replay, tick)
+    fits = session is not None and replay.hashes[tick].fits(state_hash(session.world))
+    return session if fits else None
+
+
+def _run_anew(replay: Replay, tick: int) -> Session | None:
+    """A run of a recording at a tick, as this build steps it, None where a command fails before."""
     try:
-        session = _Run(replay, None).clean_session(tick)
+        return _Run(replay, None).clean_session(tick)
     except ReplayError:
         return None
-    return session if replay.hashes[tick].fits(state_hash(session.world)) else None
 
 
 @dataclass(frozen=True)
@@ -207,14 +213,15 @@ class _Run:
     def locate(self, actual: Session, array: str) -> Comparison:
         """Find index and values by stepping the recorded run again, undisturbed, from the last stored state."""
         replay, tick, world = self.replay, actual.tick, actual.world
-        expected = recorded_run(replay, tick)
+        anew = _run_anew(replay, tick)
+        expected = anew if anew is not None and replay.hashes[tick].fits(state_hash(anew.world)) else None
         if array == "settings":
             found = self._located_settings(expected, world)
         elif expected is not None:
             wanted = getattr(expected.world, BY_STORED[array].name)
             found = first_difference(tick, array, wanted, world, expected.world)
         else:
-            found = self._located_by_hash(actual, array) or self._located_later(tick, array)
+            found = self._located_by_hash(actual, array) or self._located_later(tick, array, anew)
         compared = self.comparison(actual, found, expected)
         if compared.by_hand is None or expected is not None:
             return compared
@@ -247,8 +254,11 @@ class _Run:
         found = first_difference(actual.tick, array, wanted, world)
         return replace(found, note=f"{_OTHERWISE}; what is expected is told by its hash")
 
-    def _located_later(self, tick: int, array: str) -> Divergence:
-        """The same from the next stored state, where this build does not come to the recorded one."""
+    def _located_later(self, tick: int, array: str, anew: Session | None) -> Divergence:
+        """The same from the next stored state, where this build does not come to the recorded one.
+
+        anew: the recording as this build steps it, at the tick, which is stepped on.
+        """
         replay = self.replay
         later = min((stored for stored in replay.states if stored >= tick), default=None)
         if later is None:
@@ -256,12 +266,22 @@ class _Run:
             return Divergence(tick, array, None, "unknown", "unknown", note=note)
         try:
             recorded = replay.state(later)
-            clean = _Run(replay, self.level).clean_session(later, tick - 1)
+            clean = None if self.level else self._stepped_on(anew, later)
+            clean = clean or self.clean_session(later, tick - 1)
         except ReplayError:
             note = f"{_OTHERWISE}, and cannot reach the next stored state, tick {later}, to show the values"
             return Divergence(tick, array, None, "unknown", "unknown", note=note)
         found = first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
         return replace(found, tick=tick, note=_OTHERWISE, seen=later)
+
+    def _stepped_on(self, session: Session | None, tick: int) -> Session | None:
+        """A session at a later tick, None where an undo reaches back behind its beginning."""
+        try:
+            while session is not None and session.tick < tick:
+                self.advance(session)
+        except ReplayError:
+            return None
+        return session
 
     def clean_session(self, tick: int, verified: int | None = None) -> Session:
         """A fresh session at a tick, begun from the last state stored up to the verified tick, the one before it.
