@@ -131,12 +131,10 @@ def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Compar
     """A failure that says what was edited, how far the runs come apart, and how to accept it."""
     path = golden.path
     told = [f"{path.name}: {headline}" if not headline.startswith(str(path)) else headline]
-    told += golden.renames_told()
-    if found is None:
-        told.append("with these names every bit is equal")
-    else:
-        told += [*found.lines(), *_drawn(config, found, path)]
-    return Failed(*told, _acceptance(config, path))
+    lines = [*golden.renames_told(), *(found.lines() if found else ["with these names every bit is equal"])]
+    # A single edit is in the headline already.
+    told += [line for line in lines if not told[0].endswith(f": {line}")]
+    return Failed(*told, *(_drawn(config, found, path) if found else []), _acceptance(config, path))
 
 
 def _acceptance(config: pytest.Config, path: Path) -> str:

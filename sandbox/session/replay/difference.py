@@ -12,7 +12,7 @@ from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.level_edits import edit_lines
-from sandbox.session.replay.apart import Apart, apart_as_stored, apart_from_stored
+from sandbox.session.replay.apart import Apart, apart_as_stored, apart_from_stored, apart_in_step
 from sandbox.session.replay.divergence import Divergence, first_difference
 from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
 from sandbox.session.replay.verify import recorded_run
@@ -43,8 +43,8 @@ class RunDifference:
     """Where two runs part. level, commands: lines, none where they are equal; divergence: None where no tick differs.
 
     left, right: the runs at that tick, None of a recording to whose state this build does not come. ticks: compared.
-    apart: how far particles are apart at the stored states, where a recording is of another physics version and no
-    bits are compared. versions: which, in a line.
+    apart: how far particles are apart, None where a run is not known. versions: where a recording is of another physics
+    version, so that stored states are compared and no bits, which ones, in a line; else "".
     """
 
     level: tuple[str, ...]
@@ -59,16 +59,17 @@ class RunDifference:
     @property
     def is_equal(self) -> bool:
         """Whether nothing differs."""
-        is_apart = self.apart is not None and self.apart.first is not None
-        return not self.level and not self.commands and self.divergence is None and not is_apart
+        is_apart = self.divergence is not None or (self.apart is not None and self.apart.first is not None)
+        return not self.level and not self.commands and not is_apart
 
     def lines(self) -> list[str]:
         """All that differs, a line each."""
         found = [*self.level, *self.commands]
-        if self.apart is not None:
-            return [self.versions, *found, *self.apart.told()]
+        apart = self.apart.told() if self.apart is not None else []
+        if self.versions:
+            return [self.versions, *found, *apart]
         if self.divergence is not None:
-            return [*found, *self.divergence.lines("A", "B")]
+            return [*found, *apart, *self.divergence.lines("A", "B")]
         return [*found, f"equal in every bit of {self.ticks} ticks"]
 
 
@@ -89,7 +90,10 @@ def difference(
         for tick, hashes, sessions in _in_step(sides, ticks):
             if hashes[0].whole[: len(hashes[1].whole)] != hashes[1].whole[: len(hashes[0].whole)]:
                 found = _located(sides, tick, hashes, sessions)
-                return RunDifference(told, commands, found[0], found[1], found[2], ticks)
+                known = found[1] is not None and found[2] is not None
+                # From the beginning: checks follow a run from its first tick.
+                both = apart_in_step(first.begin(second), second.begin(first), ticks) if known else None
+                return RunDifference(told, commands, *found, ticks, both)
             if progress is not None:
                 progress(tick, ticks)
     except CommandError as error:
