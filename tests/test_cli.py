@@ -394,8 +394,8 @@ def test_an_error_without_a_file_is_not_blamed_on_standard_output(rope, monkeypa
 
 COMMANDS = {
     "play": ["rope"], "toy": [], "run": ["rope", "--ticks", "1"], "replay": ["x.jsonl"], "info": ["x.jsonl"],
-    "resume": ["x.jsonl"],
-    "check": ["rope"], "diff": ["x.jsonl", "y.jsonl"], "bisect": ["x.json", "y.json"],
+    "resume": ["x.jsonl"], "show": ["x.jsonl"],
+    "check": ["rope"], "diff": ["x.jsonl", "y.jsonl"], "bisect": ["x.json", "y.json"], "shrink": ["x.jsonl"],
     "sweep": ["rope", "--cs", "0.1:1:2", "-o", "x.csv"], "render": ["rope", "-o", "x.png"],
     "page": ["rope", "-o", "x.html"], "site": ["rope", "-o", "x"], "link": ["x.jsonl"], "take-home": ["rope"],
     "export": ["rope", "-o", "x.json"], "format": ["x.json"], "edit": [], "schema": [],
@@ -425,9 +425,12 @@ def test_a_start_in_a_folder_that_is_gone_is_refused_in_one_line(command, tmp_pa
 def test_a_recording_that_breaks_off_on_a_full_disk_is_told_and_the_run_goes_on(rope, tmp_path, capsys, monkeypatch):
     from sandbox.session.replay.writer import Recorder
 
+    write = Recorder.write_tick
+
     def full(self, world):
         if world.tick == 2:
             raise OSError(28, "No space left on device")
+        write(self, world)
 
     monkeypatch.setattr(Recorder, "write_tick", full)
     replay = tmp_path / "run.jsonl"

@@ -24,6 +24,7 @@ from sandbox.cli import (
     resume,
     run,
     schema,
+    show,
     shrink,
     site,
     sweep,
@@ -38,8 +39,8 @@ from sandbox.terminal import give_up_output, missing_folder, prepare_streams, re
 COMMANDS: tuple[Subcommand[Any], ...] = tuple(
     module.COMMAND
     for module in (
-        play, toy, run, replay, info, resume, check, diff, bisect, shrink, sweep, render, page, site, link, take_home,
-        export,
+        play, toy, run, replay, info, resume, show, check, diff, bisect, shrink, sweep, render, page, site, link,
+        take_home, export,
         format, edit, schema,
     )
 )  # fmt: skip

@@ -38,7 +38,9 @@ def diff(options: DiffOptions) -> int:
     from sandbox.session.replay.recording import ReplayError
 
     _check_output(options.output)
-    first, second = (ComparedRun(name, *level_or_replay(name)) for name in (options.first, options.second))
+    first, second = (ComparedRun(name, *level_or_replay(name, retold=True)) for name in (options.first, options.second))
+    if options.output and (first.is_old or second.is_old):
+        raise Refused(f"{options.output}: a recording of another physics version cannot be played or drawn here")
     rate = first.level.settings.tick_rate
     known = [side.replay.ticks for side in (first, second) if side.replay]
     length = None if options.seconds is None else round(options.seconds * rate)
@@ -75,8 +77,9 @@ def _json(options: DiffOptions, found: "RunDifference") -> dict[str, Any]:
     from sandbox.session.probe import finite
 
     where = None if found.divergence is None else finite(asdict(found.divergence))
+    apart = {} if found.apart is None else {"apart": finite(asdict(found.apart))}
     return {"a": options.first, "b": options.second, "equal": found.is_equal, "level": list(found.level),
-            "commands": list(found.commands), "divergence": where, "lines": found.lines()}  # fmt: skip
+            "commands": list(found.commands), "divergence": where, "lines": found.lines(), **apart}  # fmt: skip
 
 
 def _draw_difference(sides: "tuple[ComparedRun, ComparedRun]", found: "RunDifference", path: Path) -> None:

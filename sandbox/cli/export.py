@@ -6,25 +6,27 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_OK, Refused, level_of
+from sandbox.cli.inputs import EXIT_OK, Refused, level_of, recording_of
 from sandbox.cli.options import flag, option, option_or, optional_argument
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
 
-FORMS = ("flat", "svg", "pymunk")
+COMMANDS = "commands"
+FORMS = ("flat", "svg", "pymunk", COMMANDS)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExportOptions:
     """Which level, in which form, and where it goes."""
 
-    level: str | None = optional_argument(str, "LEVEL")
+    level: str | None = optional_argument(str, "LEVEL", "a level; with --to commands a recording")
     to: str = option_or(
         "flat",
         str,
         choices=FORMS,
-        help="flat: particles and springs as JSON; svg: a picture; pymunk: a Python program that runs it; default flat",
+        help="flat: particles and springs as JSON; svg: a picture; pymunk: a Python program that runs it; "
+        "commands: those of a recording, as run --commands takes them; default flat",
     )
     schema: bool = flag("print the JSON Schema of flat levels instead")
     output: Path | None = option(Path, "-o", metavar="OUT", help="where to; default: it is printed")
@@ -39,13 +41,20 @@ def export(options: ExportOptions) -> int:
     if options.level is None:
         text = json.dumps(flat_schema(), indent=2) + "\n"
     else:
-        text = _text(level_of(options.level), options.to)
+        text = _commands(options.level) if options.to == COMMANDS else _text(level_of(options.level), options.to)
     if options.output is None:
         print(text, end="")
     else:
         options.output.write_text(text, encoding="utf-8", newline="\n")
         print(f"{options.output}: {len(text.encode()) / 1000:.1f} kB")
     return EXIT_OK
+
+
+def _commands(name: str) -> str:
+    """The commands of a recording, also of another physics version. Raises Refused."""
+    from sandbox.session.replay.text import commands_text
+
+    return commands_text(recording_of(name, retold=True))
 
 
 def _text(level: "Level", form: str) -> str:

@@ -27,14 +27,17 @@ def level_of(name: str) -> "Level":
         raise Refused(*error.faults) from None
 
 
-def recording_of(name: str, partial: bool = False) -> "Replay":
-    """A recording, of a file or of a link; partial: also one that is cut off. Raises Refused."""
+def recording_of(name: str, partial: bool = False, retold: bool = False) -> "Replay":
+    """A recording, of a file or of a link; partial: also one that is cut off; retold: or of another physics version.
+
+    Raises Refused.
+    """
     from sandbox.session.link.scene_link import is_link, replay_of
     from sandbox.session.replay.reader import read_replay
     from sandbox.session.replay.recording import ReplayError
 
     try:
-        return replay_of(name) if is_link(name) else read_replay(name, partial)
+        return replay_of(name) if is_link(name) else read_replay(name, partial, retold)
     except ReplayError as error:
         raise Refused(*error.faults) from None
 
@@ -50,7 +53,7 @@ def is_replay(name: str) -> bool:
         return False
 
 
-def level_or_replay(name: str) -> "tuple[Level, Replay | None]":
-    """What a file holds: a level, or a replay and the level that it is of. Raises Refused."""
-    replay = recording_of(name) if is_replay(name) else None
+def level_or_replay(name: str, retold: bool = False) -> "tuple[Level, Replay | None]":
+    """What a file holds: a level, or a replay and the level that it is of; retold: as for that. Raises Refused."""
+    replay = recording_of(name, retold=retold) if is_replay(name) else None
     return (replay.level if replay else level_of(name)), replay

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from sandbox.level.document.model import Level
     from sandbox.physics.world import World
     from sandbox.session.replay.divergence import Divergence
+    from sandbox.session.replay.verify import Comparison
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +27,7 @@ class ReplayOptions:
     json: bool = flag("print one JSON object a file")
     partial: bool = flag("verify what there is of a recording that is cut off")
     report: Path | None = option(Path, metavar="OUT.html", help="where it diverges, play both side by side")
+    to_end: bool = flag("where it diverges, go on to the end: how far apart, and does it heal or grow?")
     against: str | None = option(str, metavar="LEVEL", help="run their commands on this level, not on the recorded one")
     rollback: int | None = option(
         count, metavar="N", help="at every tick also go back N ticks, by a snapshot, and compare when there again"
@@ -67,7 +69,9 @@ def _verify(name: str, options: ReplayOptions, level: "Level | None") -> tuple[i
             with Progress(replay.ticks) as bar:
                 again = roll_back(replay, options.rollback, level, lambda done, total: bar.update(done - bar.done))
             if again.found is not None:
-                return EXIT_FAILED, _told(name, again.found, f"rolled back {options.rollback} ticks, diverged")
+                return EXIT_FAILED, _told(
+                    name, again.found, f"rolled back {options.rollback} ticks, diverged at {again.found}"
+                )
     except (Refused, ReplayError) as error:
         return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
     if found is None:
@@ -80,17 +84,29 @@ def _verify(name: str, options: ReplayOptions, level: "Level | None") -> tuple[i
         back = f", and again from {options.rollback} ticks before each" if options.rollback else ""
         text = f"equal{at_end}, {replay.ticks} ticks{back}{cut}{said}"
         return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text, **data}
+    text = f"diverged at {found.divergence}"
+    if options.to_end:
+        found = _to_the_end(found)
+        text = "\n  ".join([text, *found.edits, *([*found.apart.told(), found.apart.verdict()] if found.apart else [])])
     if options.report is not None:
         write_report(found, options.report)
-    return EXIT_FAILED, _told(name, found.divergence, "diverged")
+    apart = {"apart": {**asdict(found.apart), "verdict": found.apart.verdict()}} if found.apart else {}
+    return EXIT_FAILED, _told(name, found.divergence, text, **apart)
 
 
-def _told(name: str, found: "Divergence", how: str) -> dict[str, Any]:
-    """A difference for programs, with a line that tells it."""
+def _told(name: str, found: "Divergence", text: str, **more: Any) -> dict[str, Any]:
+    """A difference for programs, with a text that tells it."""
     from sandbox.session.probe import finite
 
-    details: dict[str, Any] = finite({**asdict(found), "text": f"{how} at {found}"})
+    details: dict[str, Any] = finite({**asdict(found), "text": text, **more})
     return {"file": name, "result": "diverged", **details}
+
+
+def _to_the_end(found: "Comparison") -> "Comparison":
+    from sandbox.session.replay.verify import to_the_end
+
+    with Progress(found.replay.ticks) as bar:
+        return to_the_end(found, lambda done, total: bar.update(done - bar.done))
 
 
 COMMAND = Subcommand("replay", "run recordings again and compare every bit", ReplayOptions, verify_files)

@@ -150,6 +150,29 @@ def state_hash(world: World | Snapshot, arrays: Mapping[str, str] | None = None)
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
 
 
+@dataclass(frozen=True, slots=True)
+class Left:
+    """A world's state as it was left: bytes of its arrays, as far as they are kept, their hashes, and the settings."""
+
+    kept: dict[str, tuple[bytes, str | None]]
+    hashes: Mapping[str, str]
+    settings: WorldSettings
+
+    def written(self, world: World) -> list[str]:
+        """The arrays, by their names in files, and `settings`, that are other in a world now."""
+        arrays, kept, found = vars(world), self.kept, []
+        for name, stored, column in _COLUMNS:
+            array = arrays[name]
+            if array.tobytes() != kept.get(stored, _NOTHING)[0] and _digest(column, array) != self.hashes.get(stored):
+                found.append(stored)
+        return found if world.settings == self.settings else [*found, "settings"]
+
+
+def leave(world: World, hashes: Mapping[str, str]) -> Left:
+    """Take note of a world that was hashed just now, to tell later what was written into it."""
+    return Left(world.derived(_hashed).copy(), hashes, world.settings)
+
+
 # Settings, which nobody writes to, that were hashed last, and their texts.
 _LAST_SETTINGS: list[tuple[WorldSettings, tuple[str, ...]]] = []
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.quantities import replaced
-from sandbox.level.reading.files import level_data
 from sandbox.session.check_run import checks_as_they_end
-from sandbox.session.level_edits import Edit, edited, edits_between, with_value
+from sandbox.session.level_edits import Edit, edited, level_edits, with_value
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.replay.verify import verify
 
@@ -65,7 +64,7 @@ def deciding_edits(good: Level, bad: Level, holds: Trial) -> Iterator[Tried | li
     are those of the bad level throughout. Raises BisectError where the good one fails or the bad one holds.
     """
     good = replaced(good, checks=bad.checks)
-    edits = edits_between(level_data(good), level_data(bad))
+    edits = level_edits(good, bad)
     if not edits:
         raise BisectError("the two levels do not differ in anything that runs")
     yield from _ends(good, bad, holds, "the first level", "the second level")

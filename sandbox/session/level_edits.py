@@ -3,7 +3,7 @@
 import copy
 import json
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sandbox.level.document.model import Level
@@ -12,20 +12,30 @@ from sandbox.level.reading.files import level_data, parse_level
 
 # What a place holds that is not there.
 ABSENT = object()
+# Fields that are listed as different, at most.
+MOST_LISTED = 10
 # Fields that say nothing about a run.
 SILENT = ("name", "description", "goal", "author", "licence", "tags", "view", "look", "extras", "checks")
 
 
 @dataclass(frozen=True)
 class Edit:
-    """A value of a level's data that is another: place by place from the top, names of parts where they have ids."""
+    """A value of a level's data that is another: place by place from the top, names of parts where they have ids.
+
+    usual: the default that counts on the side that leaves it out, ABSENT where there is none.
+    """
 
     path: tuple[str | int, ...]
     before: Any
     after: Any
+    usual: Any = ABSENT
 
     def __str__(self) -> str:
-        return f"{path_text(self.path)}: {_shown(self.before)} -> {_shown(self.after)}"
+        return f"{path_text(self.path)}: {self._side(self.before)} -> {self._side(self.after)}"
+
+    def _side(self, value: Any) -> str:
+        is_default = value is ABSENT and self.usual not in (ABSENT, None)
+        return f"{_shown(self.usual)} (default)" if is_default else _shown(value)
 
 
 def path_text(path: Sequence[str | int]) -> str:
@@ -48,6 +58,41 @@ def edits_between(before: Any, after: Any, path: tuple[str | int, ...] = ()) -> 
             return [edit for name in {**left, **right} for edit in
                     edits_between(left.get(name, ABSENT), right.get(name, ABSENT), (*path, name))]  # fmt: skip
     return [] if _equal(before, after) else [Edit(path, before, after)]
+
+
+def level_edits(before: Level, after: Level) -> list[Edit]:
+    """The edits that lead from one level to another, with the defaults of what one of the two leaves out."""
+    edits = edits_between(level_data(before), level_data(after))
+    whole: dict[bool, Any] = {}
+
+    def usual(edit: Edit) -> Any:
+        is_first = edit.before is ABSENT
+        if not is_first and edit.after is not ABSENT:
+            return ABSENT
+        if is_first not in whole:
+            whole[is_first] = (before if is_first else after).model_dump(mode="json")
+        return _at(whole[is_first], edit.path)
+
+    return [replace(edit, usual=usual(edit)) for edit in edits]
+
+
+def edit_lines(before: Level, after: Level, name: str = "level") -> tuple[str, ...]:
+    """The edits from one level to another, which is called so, a line each, the first ten of them."""
+    edits = level_edits(before, after)
+    told = [f"{name}: {edit}" for edit in edits[:MOST_LISTED]]
+    if len(edits) > MOST_LISTED:
+        told.append(f"{name}: and {len(edits) - MOST_LISTED} fields more")
+    return tuple(told)
+
+
+def _at(data: Any, path: Sequence[str | int]) -> Any:
+    """What a place of a level's data holds, ABSENT where there is no such place."""
+    for part in path:
+        inside = _named(data) if isinstance(data, list) else data
+        if not isinstance(inside, dict) or part not in inside:
+            return ABSENT
+        data = inside[part]
+    return data
 
 
 def edited(level: Level, edits: Iterable[Edit]) -> Level:

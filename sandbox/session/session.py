@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager, nullcontext, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
@@ -26,6 +26,8 @@ from sandbox.session.transaction import Interrupted, all_or_nothing
 
 # Ticks between two calls of `progress` while re-stepping: few, as a tick of a full world takes a tenth of a second.
 PROGRESS_TICKS = 4
+
+Recorded = TypeVar("Recorded")
 
 
 class Session:
@@ -117,6 +119,7 @@ class Session:
 
         True: something was due.
         """
+        self._note_written()
         due = bool(self._pending)
         while self.history.scripted is not None and self.history.scripted.tick == self.tick == self.history.last_tick:
             due = True
@@ -137,6 +140,13 @@ class Session:
             else:
                 self.history.scripted = None
         return due
+
+    def _note_written(self) -> None:
+        """Let a recording say what a program wrote into the world past the commands."""
+        if self._recorder is None:
+            return
+        written = self._record(self._recorder.note_written, self.world)
+        self.messages.extend([] if written is None else [f"this run's recording will not verify: {written}"])
 
     def advance(self) -> None:
         """One tick: apply what is due, then step. In the past that `seek` reached, the logged commands follow again."""
@@ -320,6 +330,7 @@ class Session:
 
     def stop_recording(self) -> Path | None:
         """Write the recording's last line and return its path; None where there is none or it cannot be written."""
+        self._note_written()
         recorder, self._recorder = self._recorder, None
         if recorder is None:
             return None
@@ -336,12 +347,14 @@ class Session:
         if recorder is not None:
             recorder.abandon()
 
-    def _record(self, write: Callable[..., None], *what: Any) -> None:
+    def _record(self, write: Callable[..., Recorded], *what: Any) -> Recorded | None:
+        """What writing gives; None where it fails, which ends the recording."""
         try:
-            write(*what)
+            return write(*what)
         except OSError as error:
             self.messages.append(f"{self.recording}: recording stopped at tick {self.tick}: {error.strerror}")
             self.abandon_recording()
+            return None
 
     def _apply(self, command: Command, gesture: int) -> None:
         """Apply a command now, log it and record it. Raises CommandError and changes nothing where it cannot be."""
@@ -363,7 +376,7 @@ class Session:
         self.history.last_gesture = max(self.history.last_gesture, gesture)
         self.history.note(command, gesture, self.world)
         if self._recorder is not None:
-            self._record(self._recorder.write_command, tick, gesture, to_record(command, self.world))
+            self._record(self._recorder.write_command, self.world, gesture, to_record(command, self.world))
 
     def _all_or_nothing(self, changes_history: bool = True) -> AbstractContextManager[None]:
         """Do something whole, or where `progress` gives it up not at all."""

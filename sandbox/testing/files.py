@@ -39,6 +39,15 @@ def level_files(config: pytest.Config) -> frozenset[Path]:
     return config.stash[_LEVELS]
 
 
+def given_renames(config: pytest.Config) -> dict[str, str]:
+    """The names that --replay-rename gives, old to new. Raises UsageError."""
+    pairs = [given.partition("=") for given in config.getoption("--replay-rename")]
+    for old, sign, new in pairs:
+        if not (old and sign and new):
+            raise pytest.UsageError(f"--replay-rename: {old + sign + new!r}: write OLD=NEW, as rope=chain")
+    return {old: new for old, _, new in pairs}
+
+
 def names_a_level(path: Path) -> bool:
     """Whether a JSON file says that it is a level; one that is damaged does where it holds those words."""
     try:

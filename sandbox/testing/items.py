@@ -45,7 +45,7 @@ class ReplayItem(ToldItem):
 
         updated = replay_test(self.config, self.path)
         if updated is not None:
-            self.user_properties.append(("sandbox_updated", f"{self.nodeid}: {updated}"))
+            self.user_properties.append(("sandbox_updated", updated.to_text()))
 
 
 class LevelTests(pytest.File):

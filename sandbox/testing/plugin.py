@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from sandbox.testing.files import is_golden, is_recording, level_files, names_a_level
+from sandbox.testing.files import given_renames, is_golden, is_recording, level_files, names_a_level
 from sandbox.testing.goldens import GoldenTest
 from sandbox.testing.items import LevelTests, RecordingTest
+from sandbox.testing.updates import grouped
 
 if TYPE_CHECKING:
     from sandbox.testing.driver import Driver
@@ -42,6 +43,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=0,
         help="at every tick of a recording, and of a level under random hands, also go back N ticks and compare",
     )
+    group.addoption(
+        "--replay-rename",
+        metavar="OLD=NEW",
+        action="append",
+        default=[],
+        help="a body that the level calls otherwise now, for --replay-update; may be given several times",
+    )
     group.addoption("--replay-output", metavar="DIR", help="where pictures go; default: .pytest_cache/d/replays")
     parser.addini(
         "sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=["levels/*.json"]
@@ -56,6 +64,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Refuse what cannot go together before anything runs."""
     if config.getoption("--replay-update") and config.getoption("--replay-solver"):
         raise pytest.UsageError("--replay-update records with each level's own solver: leave --replay-solver out")
+    given_renames(config)
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
@@ -95,6 +104,6 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Show what was recorded again."""
     if _updated:
         terminalreporter.section("recorded again")
-        for line in _updated:
+        for line in grouped(_updated):
             terminalreporter.write_line(line)
         _updated.clear()

@@ -1,58 +1,168 @@
 """What the test of a recording does: run it again, tell and draw where it parts, or record it again."""
 
+import functools
 import os
+import shlex
 import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from sandbox.level.document.model import Level
-from sandbox.level.reading.files import LevelError, load_level
+from sandbox.level.reading.files import LevelError, file_of, read_level
 from sandbox.session.replay.reader import read_replay
-from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError
+from sandbox.session.replay.renames import Renames, carried_over, guessed_renames, missing_names, new_names
 from sandbox.session.replay.rerecord import record_again, with_settings
-from sandbox.session.replay.verify import Comparison, compare
+from sandbox.session.replay.verify import Comparison, across_versions, compare, to_the_end
 from sandbox.testing.failed import Failed
+from sandbox.testing.files import given_renames
 from sandbox.testing.smaller import check_rollback, shrunk_lines
+from sandbox.testing.updates import Update, update_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+# Names that are told of those that a level does not have, and of those that are new there.
+MOST_NAMED = 5
 
-def replay_test(config: pytest.Config, path: Path) -> str | None:
+
+def replay_test(config: pytest.Config, path: Path) -> Update | None:
     """Run a recording again as the options say; what changed where it was recorded again. Raises Failed."""
     try:
+        golden = _golden(config, path)
         if config.getoption("--replay-update"):
-            return _update(config, path)
-        replay = read_replay(path)
+            return _update(golden)
+        if golden.refused:
+            raise _failed(config, golden, golden.refused, golden.differing())
         if config.getoption("--replay-solver"):
-            _run_twice(config, replay)
+            _run_twice(config, golden.replay)
             return None
-        level = level_against(config, replay)
-        found = compare(replay, level=level)
+        found = golden.differing()
         if found is None:
-            check_rollback(config, replay, level)
+            check_rollback(config, golden.replay, golden.level)
     except ReplayError as error:
         raise Failed(*error.faults) from None
+    if golden.is_renamed:
+        raise _failed(config, golden, golden.renames_told()[0], found)
     if found is not None:
-        smallest = shrunk_lines(config, replay, level, lambda: output_folder(config) / output_name(config, path))
-        raise Failed(
-            f"{path.name}: diverged: {found.divergence}", *found.lines(), *_drawn(config, found, path), *smallest
-        )
+        raise _failed(config, golden, f"diverged: {found.cause()}", found)
     return None
+
+
+@dataclass(frozen=True)
+class _Golden:
+    """A recording that is a test, and the level that it is to run on.
+
+    replay: with the level's names; recorded: as its file has it. level: None: its own. renames: names, old to new.
+    refused: why it cannot be verified, but recorded again, or "".
+    """
+
+    path: Path
+    recorded: Replay
+    replay: Replay
+    level: Level | None
+    renames: Renames
+    refused: str
+
+    @property
+    def is_renamed(self) -> bool:
+        """Whether its commands name bodies that are called otherwise now."""
+        return [line.record for line in self.replay.script] != [line.record for line in self.recorded.script]
+
+    def differing(self) -> Comparison | None:
+        """Where its run differs, measured to the end. Raises ReplayError."""
+        self._check_names()
+        if self.refused:
+            return across_versions(self.replay, self.level)
+        found = compare(self.replay, level=self.level)
+        return None if found is None else to_the_end(found)
+
+    def renames_told(self) -> list[str]:
+        """What is called otherwise, a line each."""
+        return [f"{self._level_name}: {old} is called {new} now" for old, new in self.renames.items()]
+
+    @property
+    def _level_name(self) -> str:
+        """How messages call the level that it runs on."""
+        return (file_of(self.level) if self.level is not None else "") or "level"
+
+    def moves_told(self) -> list[str]:
+        """Another title or file of its level, a line each."""
+        if self.level is None:
+            return []
+        pairs = {
+            "title": (self.recorded.level.name, self.level.name),
+            "file": (file_of(self.recorded.level), file_of(self.level)),
+        }
+        return [
+            f"{self._level_name}: {what}: {old} -> {new}"
+            for what, (old, new) in pairs.items()
+            if old and new and old != new
+        ]
+
+    def _check_names(self) -> None:
+        """Raises ReplayError, with a remedy, where the commands name what the level does not have."""
+        missing = [] if self.level is None else missing_names(self.replay, self.level)
+        if self.level is None or not missing:
+            return
+        fresh = new_names(self.replay.level, self.level)
+        known = f"; new there: {', '.join(fresh[:MOST_NAMED])}" if fresh else ""
+        example = shlex.quote(f"{missing[0]}=NEW")
+        raise ReplayError(
+            f"{self.path}: its commands name {', '.join(missing[:MOST_NAMED])}, which {self._level_name} lacks{known}",
+            f"if that is called otherwise now: pytest --replay-update --replay-rename {example} {self.path.name}",
+        )
+
+
+def _golden(config: pytest.Config, path: Path) -> _Golden:
+    """Read a recording and find its level. Raises ReplayError and Failed."""
+    refused = ""
+    try:
+        recorded = read_replay(path)
+    except OtherPhysicsError as error:
+        refused, recorded = error.faults[0], read_replay(path, retold=True)
+    level = level_against(config, recorded)
+    renames = {} if level is None else guessed_renames(recorded.level, level) | given_renames(config)
+    return _Golden(path, recorded, carried_over(recorded, renames), level, renames, refused)
+
+
+def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Comparison | None) -> Failed:
+    """A failure that says what was edited, how far the runs come apart, and how to accept it."""
+    path = golden.path
+    told = [f"{path.name}: {headline}" if not headline.startswith(str(path)) else headline]
+    lines = [*golden.renames_told(), *(found.lines() if found else ["with these names every bit is equal"])]
+    # A single edit is in the headline already.
+    told += [line for line in lines if not told[0].endswith(f": {line}")]
+    smaller: list[str] = []
+    if found and not golden.refused:
+        smaller = shrunk_lines(
+            config, golden.replay, golden.level, lambda: output_folder(config) / output_name(config, path)
+        )
+    return Failed(*told, *(_drawn(config, found, path) if found else []), *smaller, _acceptance(config, path))
+
+
+def _acceptance(config: pytest.Config, path: Path) -> str:
+    folder, given = config.invocation_params.dir, config.getoption("--replay-against")
+    name = path.relative_to(folder) if path.is_relative_to(folder) else path
+    options = [f"--replay-against={given}"] if given else []
+    options += [f"--replay-rename={each}" for each in config.getoption("--replay-rename")]
+    return f"to accept: {shlex.join(['pytest', '--replay-update', *options, str(name)])}"
 
 
 def level_of(path: Path) -> Level:
     """A level. Raises Failed with its faults."""
     try:
-        return load_level(str(path))
+        return _read_level(path, path.stat().st_mtime_ns if path.is_file() else 0)
     except LevelError as error:
         raise Failed(*error.faults) from None
 
 
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
-    """The level on which a recording runs instead of its own: one file, or that of the same name in a folder."""
+    """The level on which a recording runs instead of its own: one file, or its file in a folder. Raises Failed."""
     given = config.getoption("--replay-against")
     if given:
         place = config.invocation_params.dir / given
@@ -62,12 +172,40 @@ def level_against(config: pytest.Config, replay: Replay) -> Level | None:
         return None
     if not place.is_dir():
         return level_of(place)
-    found = next(
-        (level for level in map(level_of, sorted(place.glob("*.json"))) if level.name == replay.level.name), None
+    return level_among(sorted(place.glob("*.json")), replay, str(place))
+
+
+def level_among(files: Sequence[Path], replay: Replay, where: str) -> Level:
+    """The level of a recording among files: that of its file's name, or else of its title. Raises Failed."""
+    name, title = file_of(replay.level), replay.level.name
+    named = [path for path in files if name and path.name == name]
+    found = named or [path for path in files if title == _title_of(path)]
+    if len(found) == 1:
+        return level_of(found[0])
+    if found:
+        same = f"{len(found)} levels are called {name if named else repr(title)}: {', '.join(map(str, found))}"
+    else:
+        known = f"neither {name} nor " if name else ""
+        same = f"there is {known}a level with the title {title!r}" if name else f"no level has the title {title!r}"
+    raise Failed(
+        f"{replay.source}: in {where} {same}",
+        f"name its file: pytest --replay-update --replay-against {shlex.quote(f'{where}/NAME.json')} "
+        f"{shlex.quote(replay.source)}",
     )
-    if found is None:
-        raise Failed(f"{replay.source}: no level in {place} is called {replay.level.name!r}, as the recorded one is")
-    return found
+
+
+def _title_of(path: Path) -> str | None:
+    """The title of a level file, None of one that cannot be read."""
+    try:
+        return _read_level(path, path.stat().st_mtime_ns).name
+    except (LevelError, OSError):
+        return None
+
+
+@functools.lru_cache(maxsize=256)
+def _read_level(path: Path, changed: int) -> Level:
+    """A level, read once as long as its file is not changed."""
+    return read_level(path)
 
 
 def with_solver(config: pytest.Config, level: Level) -> Level:
@@ -90,27 +228,22 @@ def _run_twice(config: pytest.Config, replay: Replay) -> None:
         raise Failed(f"{replay.source}: two runs with {level.settings.solver} differ", *found.lines())
 
 
-def _update(config: pytest.Config, path: Path) -> str | None:
-    """Record again what diverges; what changed, None where nothing did. Raises ReplayError and Failed."""
-    try:
-        replay = read_replay(path)
-        level = level_against(config, replay)
-        found = compare(replay, level=level)
-        if found is None:
-            return None
-        changed = str(found.divergence)
-    except ReplayError as error:
-        replay = read_replay(path, retold=True)
-        level, changed = level_against(config, replay), error.faults[0]
+def _update(golden: _Golden) -> Update | None:
+    """Record again what differs; what changed, None where nothing did. Raises ReplayError and Failed."""
+    path, level = golden.path, golden.level
+    found = golden.differing()
+    moved = [*golden.moves_told(), *(golden.renames_told() if golden.is_renamed else [])]
+    if found is None and not moved:
+        return None
     fresh = path.with_name(f".{os.getpid()}-{path.name}")
     try:
-        record_again(replay, level or replay.level, fresh)
+        record_again(golden.replay, level or golden.replay.level, fresh)
         fresh.replace(path)
     except OSError as error:
         raise Failed(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
         fresh.unlink(missing_ok=True)
-    return f"before: {changed}"
+    return update_of(path.name, golden.recorded, moved, found)
 
 
 def _drawn(config: pytest.Config, found: Comparison, path: Path) -> list[str]:

@@ -8,7 +8,7 @@ from sandbox.cli import main
 from sandbox.level.reading.files import level_data, parse_level
 from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edits, deciding_value
 from sandbox.session.commands import CutSprings, Pin
-from sandbox.session.level_edits import edits_between, with_value
+from sandbox.session.level_edits import edits_between, level_edits, with_value
 from sandbox.session.replay.difference import ComparedRun, difference
 from sandbox.session.replay.divergence import Divergence
 from sandbox.session.replay.reader import read_replay
@@ -59,7 +59,7 @@ def test_a_level_runs_with_the_commands_of_a_recording_and_two_levels_alone(pair
     same, other = rope_level(), rope_level(settings={"solver": "iterative", "iterations": 11})
     assert difference(side(pair[0]), ComparedRun("same", same, None), 10**6).is_equal
     found = difference(ComparedRun("same", same, None), ComparedRun("other", other, None), 10)
-    assert found.level == ("level: settings.iterations: left out -> 11",)
+    assert found.level == ("level: settings.iterations: 10 (default) -> 11",)
     assert (found.divergence.tick, found.divergence.array) == (0, "settings")
 
 
@@ -114,7 +114,7 @@ def test_the_edits_that_make_a_check_fail_are_found_among_others():
         bodies__soft__segments=6, bodies__rope__particle_mass=2.0, settings__drag=0.01,
     )  # fmt: skip
     *tried, edits = deciding_edits(variant(), bad, checks_hold([]))
-    assert [str(edit) for edit in edits] == ["settings.gravity: left out -> [0.0, -40.0]"]
+    assert [str(edit) for edit in edits] == ["settings.gravity: [0.0, -9.81] (default) -> [0.0, -40.0]"]
     assert all(isinstance(each, Tried) for each in tried) and len(tried) < 12
 
 
@@ -170,3 +170,13 @@ def test_what_cannot_be_bisected_is_said_in_a_line(tmp_path, capsys):
 )
 def test_the_owner_of_a_difference_is_told_by_kind_and_number(name, owner):
     assert Divergence(1, "position", 0, 1.0, 2.0, name).owner() == owner
+
+
+def test_what_a_side_leaves_out_is_told_by_its_default():
+    before = variant(materials__rubber__stiffness=0.95)
+    after = level_data(before)
+    after["materials"]["rubber"] = {"damping": 0.1}
+    after["bodies"].append({**after["bodies"][1], "id": "third", "start": [0, 9], "end": [2, 9]})
+    told = list(map(str, level_edits(before, parse_level(json.dumps(after).encode(), "after"))))
+    assert told[0] == "materials.rubber.stiffness: 0.95 -> 0.5 (default)"
+    assert told[1].startswith("bodies.third: left out -> {")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from sandbox.cli import main
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.replay.script import read_script
@@ -158,3 +159,26 @@ def test_faults_in_a_script_are_told_all_at_once(tmp_path):
     path = tmp_path / "moves.jsonl"
     path.write_text('{"tick": 1, "command": {}}\nnonsense\n\n{"tick": -1, "command": {}}\n{"tick": 1}\n[]\n')
     assert [fault.split(": ")[1] for fault in _refusal(read_script, path)] == ["line 2", "line 4", "line 5", "line 6"]
+
+
+def test_a_pointer_of_git_lfs_and_damaged_gzip_are_named(tmp_path, capsys):
+    session = Session(rope_level())
+    session.record_to(tmp_path / "good.replay.gz")
+    for _ in range(5):
+        session.advance()
+    session.stop_recording()
+    data = (tmp_path / "good.replay.gz").read_bytes()
+    pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 29092\n"
+    for content, words in (
+        (pointer, "is a Git LFS pointer, not the recording: git lfs pull fetches it"),
+        (b"\x00" + data[1:], "damaged gzip data: it does not begin as gzip does"),
+        (data[:12] + bytes([data[12] ^ 0x55]) + data[13:], "damaged gzip data: "),
+        (data[:200], "line 1: cut off before its end, or no recording"),
+    ):
+        path = tmp_path / "x.replay.gz"
+        path.write_bytes(content)
+        assert main(["replay", str(path)]) == 2
+        assert capsys.readouterr().err.startswith(f"{path}: {words}")
+    (tmp_path / "x.json").write_bytes(pointer)
+    assert main(["check", str(tmp_path / "x.json")]) == 2
+    assert "is a Git LFS pointer (git lfs pull fetches the file), not a" in capsys.readouterr().err

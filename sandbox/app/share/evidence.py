@@ -15,6 +15,7 @@ from sandbox.app.widgets.fonts import plain_font
 from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot, take
 from sandbox.session.player.reel import told_states
+from sandbox.session.replay.apart import metres, recorded_world
 from sandbox.session.replay.divergence import differing_particle, number_text
 from sandbox.session.replay.format import decode_state
 from sandbox.session.replay.verify import Comparison
@@ -110,17 +111,43 @@ def write_motion(comparison: Comparison, path: Path) -> None:
 
 def _sides(comparison: Comparison) -> list[Shown]:
     found, actual = comparison.divergence, comparison.actual
-    now = actual.snapshot()
+    if comparison.telling_slots is not None:
+        return _farthest(comparison, comparison.telling_slots)
+    now = _state_at(actual, found.tick)
     ring = differing_particle(found, now)
     expected = comparison.expected
     if expected is None:
         got = Shown(f"actual  tick {found.tick}, where {found.array} differs", actual.level, now, ring)
         return [*_stored(comparison, comparison.before, ring), got, *_stored(comparison, comparison.after, ring)]
     words = f"tick {found.tick}: {found.array}{found.place}" + (f" of {found.name}" if found.name else "")
+    before = _state_at(expected, found.tick)
     return [
-        Shown(f"expected  {words} = {number_text(found.expected)}", expected.level, expected.snapshot(), ring),
+        Shown(f"expected  {words} = {number_text(found.expected)}", expected.level, before, ring),
         Shown(f"actual    {words} = {number_text(found.actual)}", actual.level, now, ring),
     ]
+
+
+def _state_at(run: Session, tick: int) -> Snapshot:
+    """The state of a run at a tick that it has reached, or the last before it."""
+    state = run.snapshot()
+    for world in told_states(run, tick, tick):
+        state = take(world)
+    return state
+
+
+def _farthest(comparison: Comparison, slots: tuple[int, int]) -> list[Shown]:
+    """Both runs at the tick at which a particle is farthest away."""
+    tick, apart = comparison.telling_tick, comparison.apart
+    assert apart is not None
+    words = f"tick {tick}: {apart.particle}, {metres(apart.farthest)} apart"
+    before = None
+    if comparison.expected is not None:
+        before = _state_at(comparison.expected, tick)
+    elif (world := recorded_world(comparison.replay, tick)) is not None:
+        before = take(world)
+    now = _state_at(comparison.actual, tick)
+    first = [] if before is None else [Shown(f"expected  {words}", comparison.replay.level, before, slots[0])]
+    return [*first, Shown(f"actual    {words}", comparison.actual.level, now, slots[1])]
 
 
 def _stored(comparison: Comparison, tick: int | None, ring: int | None) -> list[Shown]:
@@ -141,7 +168,7 @@ def _stored(comparison: Comparison, tick: int | None, ring: int | None) -> list[
 def _pictures(comparison: Comparison) -> Iterator[pygame.Surface]:
     """Both runs, or the actual one alone, from before that tick until after it."""
     rate = comparison.actual.world.settings.tick_rate
-    step, tick = max(1, round(rate / FPS)), comparison.divergence.tick
+    step, tick = max(1, round(rate / FPS)), comparison.telling_tick
     first, last = max(0, tick - round(AROUND * rate)), min(comparison.replay.ticks, tick + round(AROUND * rate))
     runs = [("expected", comparison.expected)] if comparison.expected else []
     runs.append(("actual", comparison.actual))
@@ -149,10 +176,21 @@ def _pictures(comparison: Comparison) -> Iterator[pygame.Surface]:
     ticks = [number for number in states[-1][2] if all(number in each for _, _, each in states)]
     stack: Stack | None = None
     for number in ticks:
-        ring = differing_particle(comparison.divergence, states[-1][2][number]) if number >= tick else None
-        shown = [Shown(f"{side}  tick {number}", level, each[number], ring) for side, level, each in states]
+        rings = _rings(comparison, states[-1][2][number]) if number >= tick else (None, None)
+        shown = [
+            Shown(f"{side}  tick {number}", level, each[number], ring)
+            for (side, level, each), ring in zip(states, rings[-len(states) :], strict=True)
+        ]
         stack = stack or Stack(shown, GIF_SIZE)
         yield stack.draw(shown)
+
+
+def _rings(comparison: Comparison, state: Snapshot) -> tuple[int | None, int | None]:
+    """The particles that rings are drawn around in both runs."""
+    if comparison.telling_slots is not None:
+        return comparison.telling_slots
+    ring = differing_particle(comparison.divergence, state)
+    return ring, ring
 
 
 def _states(run: Session, first: int, last: int, step: int) -> Iterator[tuple[int, Snapshot]]:

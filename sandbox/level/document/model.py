@@ -333,7 +333,8 @@ class Level(Description):
 
     model_config = ConfigDict(serialize_by_alias=True)
     # The plan that its check made, for building its world. It is no field: not written, compared or copied.
-    __slots__ = ("_plan",)
+    # So is the name of the file that it was read from.
+    __slots__ = ("_file", "_plan")
 
     schema_link: Line | None = Field(
         default=None,

@@ -3,7 +3,10 @@
 import re
 from typing import Any
 
+# What Git LFS leaves in place of a file that was not fetched.
+LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 _STARTS = (
+    (LFS_POINTER, "a Git LFS pointer (git lfs pull fetches the file)"),
     (b"\x1f\x8b", "compressed by gzip"),
     (b"\x89PNG\r\n", "a PNG picture"),
     (b"GIF8", "a GIF picture"),

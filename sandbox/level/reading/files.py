@@ -15,6 +15,8 @@ from sandbox.level.reading.parse import parse_level
 
 __all__ = [
     "LevelError",
+    "file_of",
+    "keep_file",
     "level_data",
     "level_path",
     "load_level",
@@ -30,7 +32,19 @@ __all__ = [
 def read_level(path: str | os.PathLike[str]) -> Level:
     """Read a level file. Raises LevelError with one line per fault, also if the file cannot be read."""
     source = os.fspath(path)
-    return parse_level(read_bytes(source), source)
+    level = parse_level(read_bytes(source), source)
+    keep_file(level, Path(source).name)
+    return level
+
+
+def keep_file(level: Level, name: str) -> None:
+    """Store the name of a level's file in the level, for as long as the level lives; "": there is none."""
+    object.__setattr__(level, "_file", name)
+
+
+def file_of(level: Level) -> str:
+    """The name of the file that a level was read from, without folders; "" for a copy of another level."""
+    return getattr(level, "_file", "")
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:

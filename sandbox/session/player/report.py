@@ -80,13 +80,16 @@ def told_of(runs: Sequence[Session], watches: Sequence[TouchWatch]) -> list[Told
 
 def report_page(found: Comparison, watched: Watched = iter) -> PlayerPage:
     """The page of a divergence; the run that diverged is advanced to its end."""
-    replay, tick = found.replay, found.divergence.tick
+    replay, tick = found.replay, found.telling_tick
     runs, names = [Session(replay.level, script=replay.script), found.actual], ["expected", "actual"]
     first = first_difference_shown(found.divergence, found.actual)
+    if found.telling_slots is not None:
+        first = tick, found.telling_slots[1]
     if found.expected is None:
         names[0] = "as this version steps it; the recorded states are not known"
     watches = watches_of(runs)
     return PlayerPage(
-        f"{replay.source}: diverged at tick {tick}", *played(names, runs, replay.ticks, tick, watched, watches),
-        marks=command_marks(replay), difference=first, lines=found.lines(), happened=told_of(runs, watches),
+        f"{replay.source}: diverged at tick {found.divergence.tick}",
+        *played(names, runs, replay.ticks, tick, watched, watches), marks=command_marks(replay), difference=first,
+        lines=found.lines(), happened=told_of(runs, watches),
     )  # fmt: skip

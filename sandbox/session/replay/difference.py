@@ -6,19 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.level.document.model import Level
-from sandbox.level.reading.files import level_data
 from sandbox.physics.snapshot import hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
+from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.level_edits import edits_between
+from sandbox.session.level_edits import edit_lines
+from sandbox.session.replay.apart import Apart, apart_as_stored, apart_from_stored, apart_in_step
 from sandbox.session.replay.divergence import Divergence, first_difference
 from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
 from sandbox.session.replay.verify import recorded_run
 from sandbox.session.session import Session
-
-# Fields of levels that are listed as different, at most.
-MOST_LISTED = 10
 
 
 @dataclass(frozen=True)
@@ -28,6 +26,11 @@ class ComparedRun:
     name: str
     level: Level
     replay: Replay | None
+
+    @property
+    def is_old(self) -> bool:
+        """Whether it is a recording of another physics version, which cannot be run here as it was."""
+        return self.replay is not None and not self.replay.is_of_this_physics
 
     def begin(self, other: "ComparedRun") -> Session:
         """A run of it from the beginning, where it has no commands with those of the other."""
@@ -40,6 +43,8 @@ class RunDifference:
     """Where two runs part. level, commands: lines, none where they are equal; divergence: None where no tick differs.
 
     left, right: the runs at that tick, None of a recording to whose state this build does not come. ticks: compared.
+    apart: how far particles are apart, None where a run is not known. versions: where a recording is of another physics
+    version, so that stored states are compared and no bits, which ones, in a line; else "".
     """
 
     level: tuple[str, ...]
@@ -48,17 +53,23 @@ class RunDifference:
     left: Session | None
     right: Session | None
     ticks: int
+    apart: Apart | None = None
+    versions: str = ""
 
     @property
     def is_equal(self) -> bool:
         """Whether nothing differs."""
-        return not self.level and not self.commands and self.divergence is None
+        is_apart = self.divergence is not None or (self.apart is not None and self.apart.first is not None)
+        return not self.level and not self.commands and not is_apart
 
     def lines(self) -> list[str]:
         """All that differs, a line each."""
         found = [*self.level, *self.commands]
+        apart = self.apart.told() if self.apart is not None else []
+        if self.versions:
+            return [self.versions, *found, *apart]
         if self.divergence is not None:
-            return [*found, *self.divergence.lines("A", "B")]
+            return [*found, *apart, *self.divergence.lines("A", "B")]
         return [*found, f"equal in every bit of {self.ticks} ticks"]
 
 
@@ -69,22 +80,40 @@ def difference(
     for side in (first, second):
         if side.replay is not None:
             ticks = min(ticks, side.replay.ticks)
-    edits = edits_between(level_data(first.level), level_data(second.level))
-    told = [f"level: {edit}" for edit in edits[:MOST_LISTED]]
-    if len(edits) > MOST_LISTED:
-        told.append(f"level: and {len(edits) - MOST_LISTED} fields more")
+    told = edit_lines(first.level, second.level)
     commands = _command_lines(first, second, ticks)
     sides = (first, second)
+    if any(side.is_old for side in sides):
+        apart = _apart_across(first, second, progress)
+        return RunDifference(told, commands, None, None, None, ticks, apart, _versions(sides))
     try:
         for tick, hashes, sessions in _in_step(sides, ticks):
             if hashes[0].whole[: len(hashes[1].whole)] != hashes[1].whole[: len(hashes[0].whole)]:
                 found = _located(sides, tick, hashes, sessions)
-                return RunDifference(tuple(told), commands, found[0], found[1], found[2], ticks)
+                known = found[1] is not None and found[2] is not None
+                # From the beginning: checks follow a run from its first tick.
+                both = apart_in_step(first.begin(second), second.begin(first), ticks) if known else None
+                return RunDifference(told, commands, *found, ticks, both)
             if progress is not None:
                 progress(tick, ticks)
     except CommandError as error:
         raise ReplayError(*error.faults) from None
-    return RunDifference(tuple(told), commands, None, None, None, ticks)
+    return RunDifference(told, commands, None, None, None, ticks)
+
+
+def _apart_across(first: ComparedRun, second: ComparedRun, progress: Callable[[int, int], None] | None) -> Apart:
+    """How far two runs are apart at the states that the older recording stores, or that both do."""
+    if first.is_old and second.is_old:
+        assert first.replay is not None and second.replay is not None
+        return apart_as_stored(first.replay, second.replay)
+    old, other = (first, second) if first.is_old else (second, first)
+    assert old.replay is not None
+    return apart_from_stored(old.replay, other.begin(old), progress=progress)
+
+
+def _versions(sides: tuple[ComparedRun, ComparedRun]) -> str:
+    here = [side.replay.physics_version if side.replay else PHYSICS_VERSION for side in sides]
+    return f"physics version: {here[0]} -> {here[1]}; stored states are compared, not bits"
 
 
 _Pair = tuple[Session | None, Session | None]

@@ -1,12 +1,14 @@
 """Divergence: the first bit in which two runs differ, and how it is told."""
 
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.analysis.query import slot_name
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
 from sandbox.physics.state import BY_STORED, Family
 from sandbox.physics.world import World
@@ -14,6 +16,8 @@ from sandbox.session.probe import ADDED
 
 # What holds a hand is named by this and the hand's number.
 HAND = "+hand"
+# Bodies whose counts are told, at most.
+MOST_COUNTED = 4
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,7 @@ class Divergence:
         place = f"{self.array}{self.place}{name}"
         if self.seen is not None:
             place = f"{self.array}; {self._elsewhere}{place}"
-        return f"tick {self.tick}: {place}: expected {self.expected!r}, got {self.actual!r}{note}"
+        return f"tick {self.tick}: {place}: expected {_plain(self.expected)}, got {_plain(self.actual)}{note}"
 
     @property
     def _elsewhere(self) -> str:
@@ -73,6 +77,11 @@ class Divergence:
         ]
 
 
+def _plain(value: Any) -> str:
+    """A value in decimal; words as they are."""
+    return value if isinstance(value, str) else repr(value)
+
+
 def _owner_of(name: str) -> str:
     """A particle or spring in words, by its name; what joined a running world is called "added"."""
     if not name or " " in name:
@@ -97,11 +106,50 @@ def number_text(value: Any) -> str:
     return f"{value}  {value:#x}" if type(value) is int else str(value)
 
 
-def first_difference(tick: int, array: str, wanted: NDArray[Any], world: World) -> Divergence:
-    """The first bit of an array, by its name in files, in which a world differs from the expected values."""
+def settings_difference(tick: int, wanted: WorldSettings, found: WorldSettings) -> Divergence | None:
+    """The settings in which two worlds differ, by name; None where they are equal."""
+    names = [each.name for each in fields(WorldSettings) if getattr(wanted, each.name) != getattr(found, each.name)]
+    if not names:
+        return None
+    expected, actual = (
+        ", ".join(f"{name} {_setting_text(getattr(side, name))}" for name in names) for side in (wanted, found)
+    )
+    return Divergence(tick, "settings", None, expected, actual)
+
+
+def _setting_text(value: Any) -> str:
+    return str(list(value)) if isinstance(value, tuple) else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def counts_by_body(wanted: World, found: World) -> str:
+    """The bodies that have other counts of particles or springs in two worlds: "cable: 17 -> 16 particles"."""
+    told = []
+    for kind, sign, names in (
+        ("particles", ".", [side.particle_names for side in (wanted, found)]),
+        ("springs", ":", [side.spring_names for side in (wanted, found)]),
+    ):
+        before, after = (Counter(name.rpartition(sign)[0] for name in each) for each in names)
+        told += [
+            f"{body or 'loose'}: {before[body]} -> {after[body]} {kind}"
+            for body in {**before, **after}
+            if before[body] != after[body] and body != HAND
+        ]
+    return ", ".join(told[:MOST_COUNTED]) + (
+        f" and {len(told) - MOST_COUNTED} more" if len(told) > MOST_COUNTED else ""
+    )
+
+
+def first_difference(
+    tick: int, array: str, wanted: NDArray[Any], world: World, expected: World | None = None
+) -> Divergence:
+    """The first bit of an array, by its name in files, in which a world differs from the expected values.
+
+    expected: the world that has them, where there is one.
+    """
     found: NDArray[Any] = getattr(world, BY_STORED[array].name)
     if len(wanted) != len(found):
-        return Divergence(tick, array, None, f"{len(wanted)} values", f"{len(found)} values")
+        note = "" if expected is None else counts_by_body(expected, world)
+        return Divergence(tick, array, None, f"{len(wanted)} values", f"{len(found)} values", note=note)
     size = found.dtype.itemsize
     left, right = (np.frombuffer(canonical_bytes(side), dtype=f"V{size}") for side in (wanted, found))
     different = np.flatnonzero(left != right)

@@ -7,6 +7,9 @@
                                                                        also "joined", where bodies joined while it ran
     {"end": true, "tick": 900, "hash": "...", "chain": "..."}
 
+The first line names the level's file in "level_file", where it was read from one. {"tick": 20, "written": [...]} names
+what a program wrote into the world by hand.
+
 `hash` is of the whole state, `arrays` has a hash for each array; lines hold their first digits, but `hash` is whole at
 a stored state and at the end. `arrays` names the arrays that changed since the line before, with null for one that is
 no longer in use; at a stored state it names all that are in use. `state` holds the arrays that changed since the last
@@ -30,7 +33,7 @@ import numpy as np
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.assembly.joining import Joiners
 from sandbox.level.document.model import Level
-from sandbox.level.reading.files import level_data
+from sandbox.level.reading.files import file_of, level_data
 from sandbox.physics.constraints import AREA
 from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
@@ -92,6 +95,7 @@ def header(level: Level, physics_version: int, sandbox_version: str) -> dict[str
         "physics_version": physics_version,
         "sandbox_version": sandbox_version,
         "level_sha256": level_digest(data),
+        **({"level_file": file_of(level)} if file_of(level) else {}),
         "level": data,
     }
 

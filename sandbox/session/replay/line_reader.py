@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
+from sandbox.level.format.foreign import LFS_POINTER
 from sandbox.session.replay.recording import ReplayError
 
 GZIP_MAGIC = b"\x1f\x8b"
@@ -37,9 +38,13 @@ class ReplayLines:
     def __iter__(self) -> Iterator[bytes]:
         try:
             with open(self.path, "rb") as raw:
-                start = raw.read(len(GZIP_MAGIC))
+                start = raw.read(len(LFS_POINTER))
                 raw.seek(0)
-                if start != GZIP_MAGIC:
+                if start == LFS_POINTER:
+                    raise ReplayError(f"{self.path}: is a Git LFS pointer, not the recording: git lfs pull fetches it")
+                if not start.startswith(GZIP_MAGIC):
+                    if self.path.suffix == ".gz" and start and not start.startswith(b"{"):
+                        raise ReplayError(f"{self.path}: damaged gzip data: it does not begin as gzip does")
                     yield from self._limited(raw)
                     return
                 inflated = _Inflated(raw)

@@ -13,7 +13,7 @@ from sandbox.level.document.model import Level, Settings
 from sandbox.level.format.limits import FILE_LIMIT, PARTICLE_LIMIT, SPRING_LIMIT
 from sandbox.level.format.scan import scan
 from sandbox.level.plan.plan import Plan, kept_plan
-from sandbox.level.reading.files import LevelError, parse_level
+from sandbox.level.reading.files import LevelError, keep_file, parse_level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ALWAYS_STORED, BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
@@ -21,11 +21,13 @@ from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import CHAIN_DIGITS, FORMAT, TICK_DIGITS, VERSION, level_digest, unseal
 from sandbox.session.replay.line_reader import GZIP_MAGIC, ReplayLines, kind_of
 from sandbox.session.replay.record import CommandLine, Digest, Line, Tick, checked, json_object
-from sandbox.session.replay.recording import Replay, ReplayError, StoredState, TickHashes
+from sandbox.session.replay.recording import ByHand, OtherPhysicsError, Replay, ReplayError, StoredState, TickHashes
 
 # What a stored state may hold [bytes]: so much, and so much for each particle and spring. Shipped levels have up to 224
 # bytes a slot, and a third more as base64.
 STATE_BYTES, STATE_BYTES_A_SLOT = 2**20, 400
+# The longest name of a file that systems have [characters].
+FILE_NAME_LIMIT = 255
 # Lines that are read at a time, where somebody waits for what comes next.
 SLICE_LINES = 100
 
@@ -44,6 +46,7 @@ class FirstLine(Sealed):
     physics_version: int
     sandbox_version: Digest
     level_sha256: Digest
+    level_file: Annotated[str, Field(max_length=FILE_NAME_LIMIT)] = ""
     level: dict[str, Any]
 
 
@@ -81,6 +84,13 @@ class StateLine(Sealed):
         return settings
 
 
+class WrittenLine(Sealed):
+    """What was written into the world past the commands."""
+
+    tick: Tick
+    written: tuple[str, ...]
+
+
 class EndLine(Sealed):
     """The last line."""
 
@@ -89,13 +99,14 @@ class EndLine(Sealed):
     hash: Digest
 
 
-SealedLine = SealedCommand | TickLine | StateLine | EndLine
+SealedLine = SealedCommand | TickLine | StateLine | WrittenLine | EndLine
 # By the key that a Recorder writes behind the tick.
 _KINDS: dict[bytes, type[SealedLine]] = {
     b"gesture": SealedCommand,
     b"command": SealedCommand,
     b"hash": TickLine,
     b"state": StateLine,
+    b"written": WrittenLine,
     b"end": EndLine,
 }
 
@@ -110,6 +121,7 @@ class _Gathered:
     script: list[ScriptLine] = field(default_factory=list)
     hashes: list[TickHashes] = field(default_factory=list)
     states: dict[int, StoredState] = field(default_factory=dict)
+    written: list[ByHand] = field(default_factory=list)
     end_hash: str | None = None
     # Most arrays stay as they are from tick to tick: each text is kept once, which halves the memory of a long replay.
     texts: dict[str, str] = field(default_factory=dict)
@@ -138,6 +150,8 @@ class _Gathered:
             self._state_now = {**self._state_now, **{self._once(name): text for name, text in line.state.items()}}
             joined = tuple(each.model_dump() for each in line.joined)
             self.states[tick] = StoredState(self._state_now, WorldSettings(**dict(line.settings)), joined, number)
+        elif isinstance(line, WrittenLine):
+            self.written.append(ByHand(tick, line.written))
         else:
             self.end_hash = line.hash
 
@@ -145,7 +159,7 @@ class _Gathered:
         before = {} if self.version == 1 else self._hashes_now
         now = {name: digest for name, digest in {**before, **line.arrays}.items() if digest is not None}
         if not self.retold and not ALWAYS_STORED <= now.keys() <= BY_STORED.keys():
-            raise ReplayError(
+            raise OtherPhysicsError(
                 f"{where}: arrays: recorded by a version whose state has other arrays; record the run again"
             )
         self._hashes_now = now
@@ -190,8 +204,11 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
     first = next(each, None)
     if first is None:
         raise ReplayError(f"{source}: the file is empty, not a replay")
+    if not first.endswith(b"\n"):
+        raise ReplayError(f"{source}: line 1: cut off before its end, or no recording")
     head, digest = _read_header(source, first, retold)
     level = level_of(source, head)
+    keep_file(level, head.level_file)
     gathered = _Gathered(head.version, slots_of(level), retold)
     number = 1
     lines.state_limit = gathered.state_limit
@@ -210,7 +227,10 @@ def read_in_slices(path: str | Path, partial: bool = False, retold: bool = False
         if number % SLICE_LINES == 0:
             yield
     _check_end(source, gathered, number, lines.cut, partial)
-    return Replay(source, level, tuple(gathered.script), tuple(gathered.hashes), gathered.states, gathered.end_hash)
+    return Replay(
+        source, level, tuple(gathered.script), tuple(gathered.hashes), gathered.states, gathered.end_hash,
+        head.physics_version, head.sandbox_version, tuple(gathered.written),
+    )  # fmt: skip
 
 
 def _check_end(source: str, gathered: _Gathered, number: int, cut: bool, partial: bool) -> None:
@@ -240,7 +260,7 @@ def _read_header(source: str, line: bytes, retold: bool) -> tuple[FirstLine, str
         raise ReplayError(f"{where}: replay version {version!r:.40}; this program reads {known}{newer}")
     physics = values.get("physics_version")
     if physics != PHYSICS_VERSION and not retold:
-        raise ReplayError(
+        raise OtherPhysicsError(
             f"{where}: recorded with physics version {physics!r:.40}; this program has {PHYSICS_VERSION}, "
             "which steps differently: verify it with the version that recorded it"
         )

@@ -8,6 +8,7 @@ from sandbox.level.document.model import Level
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, state_hash
 from sandbox.physics.state import BY_STORED
+from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.replay.format import decode_state
@@ -21,6 +22,10 @@ class ReplayError(ValueError):
     def __init__(self, *faults: str) -> None:
         super().__init__("\n".join(faults))
         self.faults = list(faults)
+
+
+class OtherPhysicsError(ReplayError):
+    """A recording that another physics version made, which this one can only record again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +59,25 @@ class StoredState:
 
 
 @dataclass(frozen=True)
+class ByHand:
+    """What was written into a recorded world past its commands, after so many ticks; no run can repeat that."""
+
+    tick: int
+    what: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return (
+            f"at tick {self.tick} a program wrote {', '.join(self.what)} by hand, which no run repeats: "
+            "do it with a command"
+        )
+
+
+@dataclass(frozen=True)
 class Replay:
-    """A recorded run: hashes[t] is the state after t ticks; end_hash is None where the file is cut off."""
+    """A recorded run: hashes[t] is the state after t ticks; end_hash is None where the file is cut off.
+
+    physics_version, sandbox_version: of the program that recorded it. written: what was written into its world by hand.
+    """
 
     source: str
     level: Level
@@ -63,6 +85,14 @@ class Replay:
     hashes: tuple[TickHashes, ...]
     states: dict[int, StoredState]
     end_hash: str | None
+    physics_version: int = PHYSICS_VERSION
+    sandbox_version: str = ""
+    written: tuple[ByHand, ...] = ()
+
+    @property
+    def is_of_this_physics(self) -> bool:
+        """Whether this program steps as the one that recorded it."""
+        return self.physics_version == PHYSICS_VERSION
 
     @property
     def ticks(self) -> int:

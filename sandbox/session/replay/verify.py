@@ -4,14 +4,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from sandbox.level.document.model import Level
+from sandbox.level.reading.files import file_of
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
+from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError
-from sandbox.session.replay.divergence import Divergence, first_difference
+from sandbox.session.level_edits import edit_lines
+from sandbox.session.replay.apart import Apart, Progress, apart_from_stored, apart_in_step
+from sandbox.session.replay.divergence import Divergence, first_difference, settings_difference
 from sandbox.session.replay.format import decode_array
 from sandbox.session.replay.recorded_array import recorded_array
-from sandbox.session.replay.recording import Replay, ReplayError
+from sandbox.session.replay.recording import ByHand, Replay, ReplayError
 from sandbox.session.session import Session
 
 # Ticks between two calls of verify's `progress`.
@@ -23,8 +27,10 @@ _OTHERWISE = "this build steps differently"
 class Comparison:
     """A run that diverged from its recording.
 
-    actual: that run, at the tick of the divergence; expected: a run whose state at that tick is the recorded one, None
-    where this build cannot give it. before, after: ticks of the stored states on either side, None where there is none.
+    actual: that run, at the tick of the divergence or later; expected: a run whose state at that tick is the recorded
+    one, None where this build cannot give it. before, after: ticks of the stored states on either side, None without
+    one. edits: in which its level is another, a line each. by_hand: what a program wrote into the recorded world
+    before they part. apart: how far they come apart, None: not measured.
     """
 
     divergence: Divergence
@@ -33,11 +39,38 @@ class Comparison:
     expected: Session | None
     before: int | None
     after: int | None
+    edits: tuple[str, ...] = ()
+    by_hand: ByHand | None = None
+    apart: Apart | None = None
+
+    @property
+    def telling_tick(self) -> int:
+        """The tick that shows the difference best: where they are farthest apart, or else where they part."""
+        return self.apart.tick if self.apart is not None and self.apart.is_visible else self.divergence.tick
+
+    @property
+    def telling_slots(self) -> tuple[int, int] | None:
+        """The particle that is farthest away then, by its slots in both runs; None where no eye sees that."""
+        return self.apart.slots if self.apart is not None and self.apart.is_visible else None
+
+    def cause(self) -> str:
+        """What is known of why they part, in a line: edits, or what was written by hand; else the first difference."""
+        if self.edits:
+            more = f" and {len(self.edits) - 1} more" if len(self.edits) > 1 else ""
+            return f"{self.edits[0]}{more}"
+        return str(self.by_hand) if self.by_hand else str(self.divergence)
 
     def lines(self) -> list[str]:
         """The difference in lines; if the recording does not hold the values at that tick, also its stored states
-        around it.
+        around it. What is known of edits and distances comes first.
         """
+        told = [*self.edits, *(self.apart.told() if self.apart is not None else [])]
+        return [*told, *self.difference()]
+
+    def difference(self) -> list[str]:
+        """The first difference alone, in lines; none across physics versions, where no bits are compared."""
+        if not self.replay.is_of_this_physics:
+            return []
         if self.expected is not None:
             return self.divergence.lines()
         last = "there is none before" if self.before is None else f"the last before is that of tick {self.before}"
@@ -103,13 +136,45 @@ def compare(
     return None
 
 
+def to_the_end(found: Comparison, progress: Progress | None = None) -> Comparison:
+    """A comparison with how far its runs come apart; both are stepped on to the end of the recording.
+
+    Where the level was edited both begin anew, so that its checks can be measured in both.
+    """
+    replay, expected, actual = found.replay, found.expected, found.actual
+    if expected is None:
+        return replace(found, apart=apart_from_stored(replay, actual, progress=progress))
+    if found.edits:
+        expected, actual = (Session(level, script=replay.script) for level in (replay.level, actual.level))
+    elif expected.tick != actual.tick:
+        return found
+    apart = apart_in_step(expected, actual, replay.ticks, progress=progress)
+    if replay.end_hash is not None and expected.tick == replay.ticks and state_hash(expected.world) != replay.end_hash:
+        apart = replace(apart, lines=(*apart.lines, "measured to this build's run of the recording, which differs"))
+    return replace(found, expected=expected, actual=actual, apart=apart)
+
+
+def across_versions(replay: Replay, level: Level | None = None, progress: Progress | None = None) -> Comparison:
+    """A recording of another physics version beside a run of its commands here, at the states that it stores."""
+    run = _Run(replay, level)
+    versions = str(replay.physics_version), str(PHYSICS_VERSION)
+    found = run.comparison(run.session(0), Divergence(0, "physics_version", None, *versions), None)
+    return to_the_end(found, progress)
+
+
 def recorded_run(replay: Replay, tick: int) -> Session | None:
     """A run of a recording at one of its ticks, None where this build does not come to the recorded state there."""
+    session = _run_anew(replay, tick)
+    fits = session is not None and replay.hashes[tick].fits(state_hash(session.world))
+    return session if fits else None
+
+
+def _run_anew(replay: Replay, tick: int) -> Session | None:
+    """A run of a recording at a tick, as this build steps it, None where a command fails before."""
     try:
-        session = _Run(replay, None).clean_session(tick)
+        return _Run(replay, None).clean_session(tick)
     except ReplayError:
         return None
-    return session if replay.hashes[tick].fits(state_hash(session.world)) else None
 
 
 @dataclass(frozen=True)
@@ -142,19 +207,37 @@ class _Run:
         stored = self.replay.states
         before = max((tick for tick in stored if tick < divergence.tick), default=None)
         after = min((tick for tick in stored if tick >= divergence.tick), default=None)
-        return Comparison(divergence, self.replay, actual, expected, before, after)
+        level = self.level
+        edits = () if level is None else edit_lines(self.replay.level, level, file_of(level) or "level")
+        by_hand = next((each for each in self.replay.written if each.tick < divergence.tick), None)
+        return Comparison(divergence, self.replay, actual, expected, before, after, edits, by_hand)
 
     def locate(self, actual: Session, array: str) -> Comparison:
         """Find index and values by stepping the recorded run again, undisturbed, from the last stored state."""
         replay, tick, world = self.replay, actual.tick, actual.world
-        expected = recorded_run(replay, tick)
+        anew = _run_anew(replay, tick)
+        expected = anew if anew is not None and replay.hashes[tick].fits(state_hash(anew.world)) else None
         if array == "settings":
-            found = Divergence(tick, array, None, replay.hashes[tick].whole, state_hash(world))
+            found = self._located_settings(expected, world)
         elif expected is not None:
-            found = first_difference(tick, array, getattr(expected.world, BY_STORED[array].name), world)
+            wanted = getattr(expected.world, BY_STORED[array].name)
+            found = first_difference(tick, array, wanted, world, expected.world)
         else:
-            found = self._located_by_hash(actual, array) or self._located_later(tick, array)
-        return self.comparison(actual, found, expected)
+            found = self._located_by_hash(actual, array) or self._located_later(tick, array, anew)
+        compared = self.comparison(actual, found, expected)
+        if compared.by_hand is None or expected is not None:
+            return compared
+        return replace(compared, divergence=replace(found, note=str(compared.by_hand)))
+
+    def _located_settings(self, expected: Session | None, world: World) -> Divergence:
+        """The settings that differ: as the recorded run has them, or the next state that is stored."""
+        later = min((tick for tick in self.replay.states if tick >= world.tick), default=None)
+        wanted = expected.world.settings if expected else None
+        if wanted is None and later is not None:
+            wanted = self.replay.states[later].settings
+        found = None if wanted is None else settings_difference(world.tick, wanted, world.settings)
+        hashes = self.replay.hashes[world.tick].whole, state_hash(world)
+        return found or Divergence(world.tick, "settings", None, *hashes, note="of the whole state")
 
     def _located_by_hash(self, actual: Session, array: str) -> Divergence | None:
         """The same by the recorded hashes, where no other array differs, and that in a single number."""
@@ -173,8 +256,11 @@ class _Run:
         found = first_difference(actual.tick, array, wanted, world)
         return replace(found, note=f"{_OTHERWISE}; what is expected is told by its hash")
 
-    def _located_later(self, tick: int, array: str) -> Divergence:
-        """The same from the next stored state, where this build does not come to the recorded one."""
+    def _located_later(self, tick: int, array: str, anew: Session | None) -> Divergence:
+        """The same from the next stored state, where this build does not come to the recorded one.
+
+        anew: the recording as this build steps it, at the tick, which is stepped on.
+        """
         replay = self.replay
         later = min((stored for stored in replay.states if stored >= tick), default=None)
         if later is None:
@@ -182,12 +268,22 @@ class _Run:
             return Divergence(tick, array, None, "unknown", "unknown", note=note)
         try:
             recorded = replay.state(later)
-            clean = _Run(replay, self.level).clean_session(later, tick - 1)
+            clean = None if self.level else self._stepped_on(anew, later)
+            clean = clean or self.clean_session(later, tick - 1)
         except ReplayError:
             note = f"{_OTHERWISE}, and cannot reach the next stored state, tick {later}, to show the values"
             return Divergence(tick, array, None, "unknown", "unknown", note=note)
         found = first_difference(tick, array, getattr(recorded, BY_STORED[array].name), clean.world)
         return replace(found, tick=tick, note=_OTHERWISE, seen=later)
+
+    def _stepped_on(self, session: Session | None, tick: int) -> Session | None:
+        """A session at a later tick, None where an undo reaches back behind its beginning."""
+        try:
+            while session is not None and session.tick < tick:
+                self.advance(session)
+        except ReplayError:
+            return None
+        return session
 
     def clean_session(self, tick: int, verified: int | None = None) -> Session:
         """A fresh session at a tick, begun from the last state stored up to the verified tick, the one before it.
