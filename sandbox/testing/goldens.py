@@ -6,6 +6,7 @@ import pytest
 
 from sandbox.testing.failed import Failed
 from sandbox.testing.items import ToldItem
+from sandbox.testing.updates import Update
 
 
 class GoldenTest(pytest.File):
@@ -40,4 +41,5 @@ class GoldenItem(ToldItem):
             write_golden(self.path, measured)
         except OSError as error:
             raise Failed(f"{self.path}: cannot be written: {error.strerror or error}") from None
-        self.user_properties += [("sandbox_updated", f"{self.nodeid}: {line}") for line in found]
+        update = Update(self.path.name, [f"{self.path.name}: {line}" for line in found], "recorded as it is now")
+        self.user_properties.append(("sandbox_updated", update.to_text()))
