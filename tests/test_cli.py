@@ -471,6 +471,22 @@ def test_nothing_that_is_read_is_written_over(rope, tmp_path, options, monkeypat
     assert Path(rope).read_bytes() == before
 
 
+def test_a_script_that_is_refused_leaves_no_recording_and_an_older_one_as_it_was(rope, tmp_path, capsys):
+    script, replay = tmp_path / "moves.jsonl", tmp_path / "run.replay.gz"
+    refused = ["run", rope, "--ticks", "30", "--commands", str(script), "--record", str(replay)]
+    script.write_text('{"tick": 10, "command": {"type": "pin", "particle": "rpoe.2"}}')
+    assert main(refused) == 2 and [path.name for path in tmp_path.glob("*replay*")] == []
+    script.write_text('{"tick": 10, "command": {"type": "pin", "particle": "rope.2"}}')
+    assert main([*refused]) == 0
+    old = replay.read_bytes()
+    script.write_text('{"tick": 20, "command": {"type": "pin", "particle": "rpoe.2"}}')
+    assert main(refused) == 2 and replay.read_bytes() == old
+    script.write_text('{"tick": 20, "command": {"type": "pin", "particle": "rope.2"}}')
+    assert main(refused) == 0 and replay.read_bytes() != old
+    assert main(["replay", str(replay)]) == 0
+    assert [path.name for path in tmp_path.iterdir() if "replay" in path.name] == ["run.replay.gz"]
+
+
 @pytest.mark.parametrize("suffix", ["jsonl", "gz"])
 def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_path, suffix, monkeypatch, capsys):
     from sandbox.session.replay.writer import Recorder

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from sandbox.testing.failed import Failed
-from sandbox.testing.files import check_names, has_solution
+from sandbox.testing.files import check_names, has_solution, says_it_is_a_level
+
+# Told where a file does not even say that it is a level.
+ELSEWHERE = "it lies where levels lie; if it is something else, keep it elsewhere, or name levels by sandbox_levels"
 
 if TYPE_CHECKING:
     from sandbox.level.checks import CheckResult
@@ -87,7 +90,12 @@ class LevelItem(ToldItem):
         from sandbox.level.assembly.build_world import build_world
 
         assert isinstance(self.parent, LevelTests)
-        build_world(self.parent.level())
+        try:
+            build_world(self.parent.level())
+        except Failed as error:
+            if says_it_is_a_level(self.path):
+                raise
+            raise Failed(str(error), ELSEWHERE) from None
 
 
 class CheckItem(ToldItem):

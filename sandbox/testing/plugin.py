@@ -1,21 +1,20 @@
 """The plugin of pytest: recordings and the checks of levels are tests; a fixture plays levels.
 
-It is loaded in every project of an environment, so nothing here takes long to import, and a file is taken only if it
-says of itself that it is a recording's or a level.
+It is loaded in every project of an environment, so nothing here takes long to import. A file is taken for a recording
+by its name, for a level by where it lies, unless it says that it is something else.
 """
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from sandbox.testing.files import is_golden, is_recording, level_files, names_a_level
+from sandbox.testing.files import USUAL_LEVELS, is_golden, is_level, is_recording, level_files
 from sandbox.testing.goldens import GoldenTest
 from sandbox.testing.items import LevelTests, RecordingTest
 
 if TYPE_CHECKING:
-    from sandbox.testing.driver import Driver
+    from sandbox.testing.driver import SandboxSession
 
 # Recordings that --replay-update wrote, with what changed, as lines; workers of xdist hand them to the first process.
 UPDATED = "sandbox_updated"
@@ -33,19 +32,19 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     group.addoption("--replay-against", metavar="LEVEL", help="as the setting sandbox_against, before it")
     group.addoption("--replay-output", metavar="DIR", help="where pictures go; default: .pytest_cache/d/replays")
-    parser.addini(
-        "sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=["levels/*.json"]
-    )
+    parser.addini("sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=USUAL_LEVELS)
     parser.addini(
         "sandbox_against",
-        "A level file on which recordings run instead of their own, or a folder with one of its name.",
+        "A level file on which recordings run, or a folder with one of the same name, or the word own: on the copy "
+        "that each has. Default: on the level of the same name in sandbox_levels, if there is one.",
     )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Refuse what cannot go together before anything runs."""
+    """Refuse what cannot go together, and what names nothing, before anything runs."""
     if config.getoption("--replay-update") and config.getoption("--replay-solver"):
         raise pytest.UsageError("--replay-update records with each level's own solver: leave --replay-solver out")
+    level_files(config)
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
@@ -57,14 +56,14 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
     if file_path.suffix != ".json":
         return None
     asked = parent.session.isinitpath(file_path) or file_path in level_files(parent.config)
-    return LevelTests.from_parent(parent, path=file_path) if asked and names_a_level(file_path) else None
+    return LevelTests.from_parent(parent, path=file_path) if asked and is_level(file_path) else None
 
 
 @pytest.fixture
-def sandbox_session(request: pytest.FixtureRequest) -> "Callable[[Any], Driver]":
+def sandbox_session(request: pytest.FixtureRequest) -> "SandboxSession":
     """Begins a run of a level: a file beside the test or below the root, a shipped level's name, or a Level.
 
-    What it gives drags, cuts, drives, runs and measures, see `sandbox.testing.driver.Driver`.
+    What it gives drags, cuts, drives, runs and measures, see `sandbox.testing.Driver`.
     """
     from sandbox.testing.driver import Driver, found_level
 

@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,9 +15,14 @@ from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.replay.rerecord import record_again, with_settings
 from sandbox.session.replay.verify import Comparison, compare
 from sandbox.testing.failed import Failed
+from sandbox.testing.files import level_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+# In place of a level: the copy that each recording has of its own.
+OWN = "own"
+_PRESENT = pytest.StashKey[list[Level]]()
 
 
 def replay_test(config: pytest.Config, path: Path) -> str | None:
@@ -45,14 +51,20 @@ def level_of(path: Path) -> Level:
 
 
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
-    """The level on which a recording runs instead of its own: one file, or that of the same name in a folder."""
-    given = config.getoption("--replay-against")
+    """The level on which a recording runs instead of its own copy: one file, or that of the same name in a folder.
+
+    Without a word about it, that of the same name among the files of `sandbox_levels`, if there is one.
+    """
+    given, set_down = config.getoption("--replay-against"), config.getini("sandbox_against")
+    if (given or set_down) == OWN:
+        return None
     if given:
         place = config.invocation_params.dir / given
-    elif config.getini("sandbox_against"):
-        place = (config.inipath.parent if config.inipath else config.rootpath) / config.getini("sandbox_against")
+    elif set_down:
+        place = (config.inipath.parent if config.inipath else config.rootpath) / set_down
     else:
-        return None
+        named = [level for level in _present_levels(config) if level.name == replay.level.name]
+        return replay.level if replay.level in named[1:] else next(iter(named), None)
     if not place.is_dir():
         return level_of(place)
     found = next(
@@ -61,6 +73,16 @@ def level_against(config: pytest.Config, replay: Replay) -> Level | None:
     if found is None:
         raise Failed(f"{replay.source}: no level in {place} is called {replay.level.name!r}, as the recorded one is")
     return found
+
+
+def _present_levels(config: pytest.Config) -> list[Level]:
+    """The sound levels among the files of `sandbox_levels`, by their paths; of the others their own tests tell."""
+    if _PRESENT not in config.stash:
+        config.stash[_PRESENT] = levels = []
+        for path in sorted(level_files(config)):
+            with suppress(LevelError):
+                levels.append(load_level(str(path)))
+    return config.stash[_PRESENT]
 
 
 def with_solver(config: pytest.Config, level: Level) -> Level:
