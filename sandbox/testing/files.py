@@ -1,12 +1,12 @@
 """Which files are tests, told without reading more than is needed."""
 
 import difflib
+import fnmatch
 import json
 from pathlib import Path
 
 import pytest
 
-RECORDINGS = (".replay.jsonl", ".replay.gz", ".replay.jsonl.gz")
 # What follows the name of a level in that of a recording that solves it.
 SOLUTION = ".solution.replay.gz"
 GOLDEN = ".golden.json"
@@ -16,11 +16,6 @@ LEVEL_FORMAT = "spring-sandbox/level"
 LONGEST = 8 * 2**20
 
 _LEVELS = pytest.StashKey[frozenset[Path]]()
-
-
-def is_recording(path: Path) -> bool:
-    """Whether a file is called as recordings are."""
-    return path.name.endswith(RECORDINGS)
 
 
 def is_golden(path: Path) -> bool:
@@ -42,6 +37,25 @@ def level_files(config: pytest.Config) -> frozenset[Path]:
             found |= named
         config.stash[_LEVELS] = frozenset(found)
     return config.stash[_LEVELS]
+
+
+def marked(config: pytest.Config) -> list[tuple[str, str]]:
+    """The marks of the setting `sandbox_marks`, each with the pattern of its files. Raises UsageError."""
+    found = []
+    for line in config.getini("sandbox_marks"):
+        mark, colon, pattern = (part.strip() for part in line.partition(":"))
+        if not (colon and pattern and mark.isidentifier()):
+            raise pytest.UsageError(f"sandbox_marks: {line!r}: write a mark, a colon and a pattern of files")
+        found.append((mark, pattern))
+    return found
+
+
+def marks_of(config: pytest.Config, path: Path) -> list[str]:
+    """The marks that the setting gives a file."""
+    if not path.is_relative_to(config.rootpath):
+        return []
+    name = path.relative_to(config.rootpath).as_posix()
+    return [mark for mark, pattern in marked(config) if fnmatch.fnmatchcase(name, pattern)]
 
 
 def is_level(path: Path) -> bool:

@@ -4,20 +4,32 @@ It is loaded in every project of an environment, so nothing here takes long to i
 by its name, for a level by where it lies, unless it says that it is something else.
 """
 
+from collections import deque
+from collections.abc import Generator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from sandbox.testing.files import USUAL_LEVELS, is_golden, is_level, is_recording, level_files
+from sandbox.session.replay.names import is_recording
+from sandbox.testing.evidence import CHOICES, FIRST, runs_of
+from sandbox.testing.files import USUAL_LEVELS, is_golden, is_level, level_files, marked
 from sandbox.testing.goldens import GoldenTest
 from sandbox.testing.items import LevelTests, RecordingTest
 
 if TYPE_CHECKING:
-    from sandbox.testing.driver import SandboxSession
+    from sandbox.testing.driver import Driver, LevelLike, SandboxSession
 
+MARKERS = (
+    "replay: the test of a recording, which runs again bit for bit",
+    "level: a test of a level file: that it is valid, or one of its checks",
+    "golden: the test of a golden file, whose values come out again within their tolerances",
+)
 # Recordings that --replay-update wrote, with what changed, as lines; workers of xdist hand them to the first process.
 UPDATED = "sandbox_updated"
+# Runs of one test in Python that are kept where it fails, the last ones.
+RUNS_KEPT = 3
+_RUNS: "pytest.StashKey[deque[Driver]]" = pytest.StashKey()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -32,19 +44,43 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     group.addoption("--replay-against", metavar="LEVEL", help="as the setting sandbox_against, before it")
     group.addoption("--replay-output", metavar="DIR", help="where pictures go; default: .pytest_cache/d/replays")
+    group.addoption(
+        "--replay-pictures",
+        choices=CHOICES,
+        default="first",
+        help=f"of which failures there are pictures, recordings and pages; default: of the first {FIRST}",
+    )
     parser.addini("sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=USUAL_LEVELS)
     parser.addini(
         "sandbox_against",
         "A level file on which recordings run, or a folder with one of the same name, or the word own: on the copy "
         "that each has. Default: on the level of the same name in sandbox_levels, if there is one.",
     )
+    parser.addini(
+        "sandbox_marks",
+        "Marks of recordings and levels, a line each: a mark, a colon, and a pattern of files from the root on.",
+        "linelist",
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Refuse what cannot go together, and what names nothing, before anything runs."""
+    for line in MARKERS:
+        config.addinivalue_line("markers", line)
+    solver = config.getoption("--replay-solver")
+    if solver:
+        _refuse_unknown_solver(solver)
     if config.getoption("--replay-update") and config.getoption("--replay-solver"):
         raise pytest.UsageError("--replay-update records with each level's own solver: leave --replay-solver out")
     level_files(config)
+    marked(config)
+
+
+def _refuse_unknown_solver(name: str) -> None:
+    from sandbox.physics.settings import SOLVER_NAMES
+
+    if name not in SOLVER_NAMES:
+        raise pytest.UsageError(f"--replay-solver: there is no solver {name!r}; there are {', '.join(SOLVER_NAMES)}")
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
@@ -68,7 +104,27 @@ def sandbox_session(request: pytest.FixtureRequest) -> "SandboxSession":
     from sandbox.testing.driver import Driver, found_level
 
     folders = [request.path.parent, request.config.rootpath]
-    return lambda level: Driver(found_level(level, folders))
+    runs = request.node.stash.setdefault(_RUNS, deque(maxlen=RUNS_KEPT))
+
+    def begin(level: "LevelLike") -> Driver:
+        driver = Driver(found_level(level, folders))
+        runs.append(driver)
+        return driver
+
+    return begin
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
+    """Keep the runs of a test in Python that fails."""
+    report = yield
+    runs = item.stash.get(_RUNS, None)
+    if runs and report.when == "call" and report.failed:
+        told = call.excinfo.exconly() if call.excinfo else ""
+        lines = runs_of(item.config, item.nodeid, [run.session for run in runs], told)
+        if lines:
+            report.sections.append(("Spring Sandbox", "\n".join(lines)))
+    return report
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:

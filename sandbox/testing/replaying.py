@@ -4,7 +4,6 @@ import os
 import tempfile
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -13,12 +12,10 @@ from sandbox.level.reading.files import LevelError, load_level
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import Replay, ReplayError
 from sandbox.session.replay.rerecord import record_again, with_settings
-from sandbox.session.replay.verify import Comparison, compare
+from sandbox.session.replay.verify import compare
+from sandbox.testing.evidence import pictures_of
 from sandbox.testing.failed import Failed
 from sandbox.testing.files import level_files
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 # In place of a level: the copy that each recording has of its own.
 OWN = "own"
@@ -38,7 +35,7 @@ def replay_test(config: pytest.Config, path: Path) -> str | None:
     except ReplayError as error:
         raise Failed(*error.faults) from None
     if found is not None:
-        raise Failed(f"{path.name}: diverged: {found.divergence}", *found.lines(), *_drawn(config, found, path))
+        raise Failed(f"{path.name}: diverged: {found.divergence}", *found.lines(), *pictures_of(config, found, path))
     return None
 
 
@@ -126,39 +123,3 @@ def _update(config: pytest.Config, path: Path) -> str | None:
     finally:
         fresh.unlink(missing_ok=True)
     return f"before: {changed}"
-
-
-def _drawn(config: pytest.Config, found: Comparison, path: Path) -> list[str]:
-    """Draw where a run parts, and say where that is."""
-    from sandbox.app.film.kinds import Missing
-    from sandbox.app.share.evidence import write_motion, write_picture
-    from sandbox.session.player.report import report_page
-
-    folder = _output(config)
-    name = "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name
-    lines = []
-    kinds: list[tuple[str, str, Callable[[Comparison, Path], None]]] = [
-        ("picture", "png", write_picture),
-        ("motion", "gif", write_motion),
-        ("player", "html", lambda found, target: report_page(found).write(target)),
-    ]
-    for what, kind, write in kinds:
-        target = folder / f"{name}.{kind}"
-        try:
-            write(found, target)
-        except (Missing, OSError) as error:
-            lines.append(f"{what}: {error}")
-        else:
-            lines.append(f"{what}: {target}")
-    return lines
-
-
-def _output(config: pytest.Config) -> Path:
-    """Where pictures go."""
-    given = config.getoption("--replay-output")
-    if given:
-        folder = config.invocation_params.dir / given
-        folder.mkdir(parents=True, exist_ok=True)
-        return folder
-    cache = config.cache
-    return cache.mkdir("replays") if cache is not None else Path(tempfile.mkdtemp(prefix="replays-"))
