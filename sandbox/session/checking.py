@@ -73,8 +73,13 @@ def _check_golden(name: str, start: float) -> LevelReport:
         found = differences(golden.file, golden.measured())
     except (GoldenError, LevelError, ReplayError) as error:
         return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
-    data = {"file": name, "result": "failed" if found else "passed", "level": golden.level.name, "differences": found,
-            "wall_seconds": time.perf_counter() - start}
+    data = {
+        "file": name,
+        "result": "failed" if found else "passed",
+        "level": golden.level.name,
+        "differences": found,
+        "wall_seconds": time.perf_counter() - start,
+    }
     lines = [f"  FAILS      {line}" for line in found] or ["  all is within its tolerance"]
     return LevelReport(data, (f"{name}: {golden.level.name}", *lines), passed=not found)
 
