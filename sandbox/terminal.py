@@ -138,11 +138,12 @@ def refusal_of(error: OSError) -> str:
 
 
 def give_up_output() -> None:
-    """Send what standard output cannot take to nowhere, so that leaving does not fail over it."""
-    try:
-        sys.stdout.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    """Send what standard output and error cannot take to nowhere, so that leaving does not fail over it."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def tell(lines: Iterable[str]) -> None:
@@ -161,10 +162,10 @@ class Progress:
     """A bar on standard error where a person looks at it."""
 
     def __init__(self, total: int | None, unit: str = "tick") -> None:
-        """total: None where nobody knows."""
+        """total: None where nobody knows, 0 for no bar."""
         self.done = 0
         self._bar: Any = None
-        if sys.stderr.isatty():
+        if total != 0 and sys.stderr.isatty():
             from tqdm import tqdm
 
             self._bar = tqdm(total=total, unit=unit, leave=False)

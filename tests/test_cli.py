@@ -475,6 +475,22 @@ def test_nothing_that_is_read_is_written_over(rope, tmp_path, options, monkeypat
     assert Path(rope).read_bytes() == before
 
 
+def test_a_script_that_is_refused_leaves_no_recording_and_an_older_one_as_it_was(rope, tmp_path, capsys):
+    script, replay = tmp_path / "moves.jsonl", tmp_path / "run.replay.gz"
+    refused = ["run", rope, "--ticks", "30", "--commands", str(script), "--record", str(replay)]
+    script.write_text('{"tick": 10, "command": {"type": "pin", "particle": "rpoe.2"}}')
+    assert main(refused) == 2 and [path.name for path in tmp_path.glob("*replay*")] == []
+    script.write_text('{"tick": 10, "command": {"type": "pin", "particle": "rope.2"}}')
+    assert main([*refused]) == 0
+    old = replay.read_bytes()
+    script.write_text('{"tick": 20, "command": {"type": "pin", "particle": "rpoe.2"}}')
+    assert main(refused) == 2 and replay.read_bytes() == old
+    script.write_text('{"tick": 20, "command": {"type": "pin", "particle": "rope.2"}}')
+    assert main(refused) == 0 and replay.read_bytes() != old
+    assert main(["replay", str(replay)]) == 0
+    assert [path.name for path in tmp_path.iterdir() if "replay" in path.name] == ["run.replay.gz"]
+
+
 @pytest.mark.parametrize("suffix", ["jsonl", "gz"])
 def test_an_interrupted_run_leaves_a_recording_that_is_only_cut_off(rope, tmp_path, suffix, monkeypatch, capsys):
     from sandbox.session.replay.writer import Recorder
@@ -565,7 +581,38 @@ def test_checks_are_told_to_programs_as_an_object_a_level(three_levels, capfd):
     assert check["value"] == held["value"] and check["value"] < 5.0 and check["at"] == pytest.approx(1.0)
     assert passed["level"] == ROPE["name"] and passed["stability"]["within_limit"] in (True, False, None)
     assert main(["check", "--json", "--processes", "2", *three_levels]) == 2
-    assert capfd.readouterr() == told
+    again = capfd.readouterr()
+    assert again.err == "" and _untimed(again.out) == _untimed(told.out) != told.out
+
+
+def _untimed(text: str) -> str:
+    return re.sub(r'"wall_seconds": [^,}]+', "", text)
+
+
+def test_a_reader_that_goes_away_is_no_failure_and_no_traceback_in_any_command(rope, tmp_path):
+    """As `sandbox ... | head -1`."""
+    replay, recordings = tmp_path / "run.replay.gz", tmp_path / "many"
+    assert main(["run", rope, "--ticks", "20", "--record", str(replay)]) == 0
+    recordings.mkdir()
+    for number in range(3):
+        (recordings / f"{number}.replay.gz").write_bytes(replay.read_bytes())
+    commands = [
+        ["run", rope, "--ticks", "3"], ["run", rope, "--ticks", "3", "--json"], ["replay", str(replay)],
+        ["replay", str(recordings)], ["replay", str(recordings), "--processes", "2", "--json"], ["check", rope],
+        ["check", rope, rope, "--processes", "2", "--json"], ["diff", rope, "rope"], ["schema"],
+    ]  # fmt: skip
+    for command in commands:
+        reader, writer = os.pipe()
+        os.close(reader)
+        ended = _sandbox(command, stdout=writer)
+        os.close(writer)
+        assert (ended.returncode, ended.stderr) == (141, b""), command
+    reader, writer = os.pipe()
+    os.close(reader)
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+    ended = subprocess.run([sys.executable, "-m", "sandbox", "check", "nowhere.json"], env=environment, stderr=writer)
+    os.close(writer)
+    assert ended.returncode == 141
 
 
 @pytest.mark.skipif(os.name != "posix", reason="sends an interrupt to a group of processes, as a terminal does")

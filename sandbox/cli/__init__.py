@@ -32,7 +32,7 @@ from sandbox.cli import (
     toy,
 )
 from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_REFUSED, Refused
+from sandbox.cli.inputs import EXIT_INTERRUPTED, EXIT_REFUSED, EXIT_UNREAD, Refused
 from sandbox.terminal import give_up_output, missing_folder, prepare_streams, refusal_of, tell
 
 # In the order in which --help lists them.
@@ -62,30 +62,43 @@ def program() -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code: 0, 1 a check failed or a replay diverged, 2 refused."""
+    """Run the command line and return its exit code: 0, 1 a check failed or a replay diverged, 2 refused.
+
+    130 interrupted, 141 what is printed is read no further.
+    """
     prepare_streams()
     # No linear algebra of numpy's is used: its threads would only cost time, a tenth of a start.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     named = sys.argv[1:] if arguments is None else arguments
-    parsed = _parser().parse_args(named or USUAL)
-    gone = missing_folder()
-    if gone:
-        return _refuse([gone])
     try:
-        code: int = parsed.command.run(parsed)
-        sys.stdout.flush()
+        try:
+            code = _run(named or USUAL)
+        finally:
+            # Here, where it can still be told, and not as the process ends.
+            sys.stdout.flush()
+            sys.stderr.flush()
         return code
-    except Refused as refusal:
-        return _refuse(refusal.faults)
     except BrokenPipeError:
         give_up_output()
-        return EXIT_FAILED
+        return EXIT_UNREAD
     except OSError as error:
         give_up_output()
         return _refuse([refusal_of(error)])
     except KeyboardInterrupt:
         give_up_output()
         return EXIT_INTERRUPTED
+
+
+def _run(arguments: Sequence[str]) -> int:
+    parsed = _parser().parse_args(arguments)
+    gone = missing_folder()
+    if gone:
+        return _refuse([gone])
+    try:
+        code: int = parsed.command.run(parsed)
+        return code
+    except Refused as refusal:
+        return _refuse(refusal.faults)
 
 
 def _refuse(faults: Iterable[str]) -> int:

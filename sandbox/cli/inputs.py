@@ -7,6 +7,8 @@ if TYPE_CHECKING:
     from sandbox.session.replay.recording import Replay
 
 EXIT_OK, EXIT_FAILED, EXIT_REFUSED, EXIT_INTERRUPTED = 0, 1, 2, 130
+# The reader of what is printed has gone, as `head` does: what shells give of a program that a closed pipe ends.
+EXIT_UNREAD = 141
 
 
 class Refused(Exception):

@@ -1,7 +1,12 @@
 """`sandbox replay`."""
 
 import json
+import os
+import sys
+import time
 from collections import deque
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,20 +15,24 @@ from sandbox.cli.command import Subcommand
 from sandbox.cli.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
 from sandbox.cli.options import arguments, flag, option
 from sandbox.cli.pages import PAGE, write_report
-from sandbox.terminal import Progress, count, tell
+from sandbox.terminal import Progress, cores, count, processes, tell
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level
     from sandbox.physics.world import World
     from sandbox.session.replay.divergence import Divergence
+    from sandbox.session.replay.recording import Replay
     from sandbox.session.replay.verify import Comparison
+
+# A process that verifies recordings takes as long to start as some recordings take; fewer are not worth one.
+FILES_PER_PROCESS = 8
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReplayOptions:
     """Which recordings to verify, on what, and how to tell it."""
 
-    files: list[str] = arguments(str, "FILE")
+    files: list[str] = arguments(str, "FILE|FOLDER")
     json: bool = flag("print one JSON object a file")
     partial: bool = flag("verify what there is of a recording that is cut off")
     report: Path | None = option(Path, metavar="OUT.html", help="where it diverges, play both side by side")
@@ -32,81 +41,146 @@ class ReplayOptions:
     rollback: int | None = option(
         count, metavar="N", help="at every tick also go back N ticks, by a snapshot, and compare when there again"
     )
+    processes: int | None = option(
+        processes, metavar="N", help="verify this many at a time; default: by cores and recordings"
+    )
+
+
+@dataclass(frozen=True)
+class Verified:
+    """What came of a recording: the exit code, and what is told of it."""
+
+    code: int
+    told: dict[str, Any]
 
 
 def verify_files(options: ReplayOptions) -> int:
-    """Verify recordings, one after another. Raises Refused."""
-    worst = EXIT_OK
-    level = level_of(options.against) if options.against else None
-    if options.report and (len(options.files) > 1 or options.report.suffix.lower() != PAGE):
+    """Verify recordings, one after another as they were named. Raises Refused."""
+    names = _recordings(options.files)
+    if options.against:
+        level_of(options.against)
+    if options.report and (len(names) > 1 or options.report.suffix.lower() != PAGE):
         raise Refused("--report: is of one recording, into a file whose name ends in .html")
-    for name in options.files:
-        code, outcome = _verify(name, options, level)
-        worst = max(worst, code)
-        if options.json:
-            print(json.dumps(outcome))
-        elif code == EXIT_REFUSED:
-            tell(outcome["faults"])
-        else:
-            print(f"{name}: {outcome['text']}")
+    at_once = min(options.processes or max(1, min(cores(), len(names) // FILES_PER_PROCESS)), len(names))
+    worst = EXIT_OK
+    bar = Progress(len(names) if len(names) > 1 else 0, "recording")
+    with bar, closing(_all_verified(names, at_once, options)) as results:
+        for name, found in zip(names, results, strict=True):
+            with bar.aside():
+                if options.json:
+                    print(json.dumps(found.told))
+                elif found.code != EXIT_REFUSED:
+                    print(f"{name}: {found.told['text']}")
+                sys.stdout.flush()
+                if not options.json:
+                    tell(found.told.get("faults", ()))
+            worst = max(worst, found.code)
+            bar.update()
     return worst
 
 
-def _verify(name: str, options: ReplayOptions, level: "Level | None") -> tuple[int, dict[str, Any]]:
-    from sandbox.session.outcome import outcome, outcome_data, outcome_text
+def _recordings(names: Sequence[str]) -> list[str]:
+    """The files that are named, and those in the folders that are. Raises Refused."""
+    from sandbox.session.replay.names import RECORDINGS, recordings_in
+
+    found: list[str] = []
+    for name in names:
+        if not os.path.isdir(name):
+            found.append(name)
+            continue
+        inside = recordings_in(Path(name))
+        if not inside:
+            raise Refused(f"{name}: there is no recording in this folder; their names end in {', '.join(RECORDINGS)}")
+        found += map(str, inside)
+    return found
+
+
+def _all_verified(names: Sequence[str], at_once: int, options: ReplayOptions) -> Generator[Verified, None, None]:
+    if at_once == 1:
+        yield from (_verified(name, options, shows=len(names) == 1) for name in names)
+        return
+    from sandbox.session.worker_pool import interrupts_ignored, worker_pool
+
+    with worker_pool(at_once) as workers:
+        with interrupts_ignored():
+            waiting = [workers.submit(_verified, name, options) for name in names]
+        yield from (each.result() for each in waiting)
+
+
+def _verified(name: str, options: ReplayOptions, shows: bool = False) -> Verified:
+    """Verify a recording; shows: with bars of its own."""
     from sandbox.session.replay.recording import ReplayError
+
+    start = time.perf_counter()
+    try:
+        found = _compared(name, options, shows)
+    except (Refused, ReplayError) as error:
+        found = Verified(EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)})
+    return Verified(found.code, {**found.told, "wall_seconds": time.perf_counter() - start})
+
+
+def _compared(name: str, options: ReplayOptions, shows: bool) -> Verified:
+    """Verify a recording. Raises Refused and ReplayError."""
     from sandbox.session.replay.rollback import roll_back
     from sandbox.session.replay.verify import compare
 
-    try:
-        replay = recording_of(name, options.partial)
-        worlds: deque[World] = deque(maxlen=1)
-        with Progress(replay.ticks) as bar:
-            found = compare(
-                replay, level=level, on_tick=worlds.append, progress=lambda done, total: bar.update(done - bar.done)
-            )
-        if found is None and options.rollback:
-            with Progress(replay.ticks) as bar:
-                again = roll_back(replay, options.rollback, level, lambda done, total: bar.update(done - bar.done))
-            if again.found is not None:
-                return EXIT_FAILED, _told(
-                    name, again.found, f"rolled back {options.rollback} ticks, diverged at {again.found}"
-                )
-    except (Refused, ReplayError) as error:
-        return EXIT_REFUSED, {"file": name, "result": "refused", "faults": list(error.faults)}
-    if found is None:
-        cut = " (cut off: verified as far as it goes)" if replay.end_hash is None else ""
-        played = level or replay.level
-        ended, rate = outcome(played, worlds[0]) if worlds else None, played.settings.tick_rate
-        said = "" if ended is None else f", {outcome_text(ended, rate)}"
-        data = {"outcome": outcome_data(ended, rate)} if played.rules else {}
-        at_end = "" if replay.compared == "every tick" else " at its end"
-        back = f", and again from {options.rollback} ticks before each" if options.rollback else ""
-        text = f"equal{at_end}, {replay.ticks} ticks{back}{cut}{said}"
-        return EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text, **data}
-    text = f"diverged at {found.divergence}"
+    level = level_of(options.against) if options.against else None
+    replay = recording_of(name, options.partial)
+    worlds: deque[World] = deque(maxlen=1)
+    with _progress(replay, shows) as bar:
+        found = compare(replay, level=level, on_tick=worlds.append, progress=_onward(bar))
+    if found is not None:
+        return _diverged(name, found, options, shows)
+    if options.rollback:
+        with _progress(replay, shows) as bar:
+            again = roll_back(replay, options.rollback, level, _onward(bar)).found
+        if again is not None:
+            return _failed(name, again, f"rolled back {options.rollback} ticks, diverged at {again}")
+    return _equal(name, replay, level or replay.level, worlds[0] if worlds else None, options.rollback)
+
+
+def _progress(replay: "Replay", shows: bool) -> Progress:
+    return Progress(replay.ticks if shows else 0)
+
+
+def _onward(bar: Progress) -> Callable[[int, int], None]:
+    return lambda done, total: bar.update(done - bar.done)
+
+
+def _equal(name: str, replay: "Replay", level: "Level", end: "World | None", rollback: int | None) -> Verified:
+    from sandbox.session.outcome import outcome, outcome_data, outcome_text
+
+    cut = " (cut off: verified as far as it goes)" if replay.end_hash is None else ""
+    ended, rate = outcome(level, end) if end is not None else None, level.settings.tick_rate
+    said = "" if ended is None else f", {outcome_text(ended, rate)}"
+    data = {"outcome": outcome_data(ended, rate)} if level.rules else {}
+    at_end = "" if replay.compared == "every tick" else " at its end"
+    back = f", and again from {rollback} ticks before each" if rollback else ""
+    text = f"equal{at_end}, {replay.ticks} ticks{back}{cut}{said}"
+    return Verified(EXIT_OK, {"file": name, "result": "equal", "ticks": replay.ticks, "text": text, **data})
+
+
+def _diverged(name: str, found: "Comparison", options: ReplayOptions, shows: bool) -> Verified:
+    from sandbox.session.replay.verify import to_the_end
+
+    text, more = f"diverged at {found.divergence}", {}
     if options.to_end:
-        found = _to_the_end(found)
+        with _progress(found.replay, shows) as bar:
+            found = to_the_end(found, _onward(bar))
         text = "\n  ".join([text, *found.edits, *([*found.apart.told(), found.apart.verdict()] if found.apart else [])])
     if options.report is not None:
         write_report(found, options.report)
-    apart = {"apart": {**asdict(found.apart), "verdict": found.apart.verdict()}} if found.apart else {}
-    return EXIT_FAILED, _told(name, found.divergence, text, **apart)
+    if found.apart:
+        more = {"apart": {**asdict(found.apart), "verdict": found.apart.verdict()}}
+    return _failed(name, found.divergence, text, **more)
 
 
-def _told(name: str, found: "Divergence", text: str, **more: Any) -> dict[str, Any]:
-    """A difference for programs, with a text that tells it."""
+def _failed(name: str, found: "Divergence", text: str, **more: Any) -> Verified:
+    """A difference, with a text that tells it."""
     from sandbox.session.probe import finite
 
     details: dict[str, Any] = finite({**asdict(found), "text": text, **more})
-    return {"file": name, "result": "diverged", **details}
-
-
-def _to_the_end(found: "Comparison") -> "Comparison":
-    from sandbox.session.replay.verify import to_the_end
-
-    with Progress(found.replay.ticks) as bar:
-        return to_the_end(found, lambda done, total: bar.update(done - bar.done))
+    return Verified(EXIT_FAILED, {"file": name, "result": "diverged", **details})
 
 
 COMMAND = Subcommand("replay", "run recordings again and compare every bit", ReplayOptions, verify_files)

@@ -1,6 +1,9 @@
 """`sandbox run`."""
 
 import json
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -47,17 +50,8 @@ def run(options: RunOptions) -> int:
     _keep_apart(options)
     session = _scripted_session(level, options.commands, ticks)
     probe = _probe(options, session.world)
-    if options.record:
-        session.record_to(options.record)
-    try:
+    with _recorded(session, options.record) as is_whole:
         summary = run_with_bar(session, ticks, options.commands, probe.take)
-    except KeyboardInterrupt:
-        if session.recording:
-            tell([f"{session.recording}: cut off at tick {session.tick}; `sandbox replay --partial` verifies it"])
-        session.abandon_recording()
-        raise
-    finally:
-        recorded = session.stop_recording()
     if options.output:
         _write_text(options.output, probe.table())
     if options.dump:
@@ -67,7 +61,49 @@ def run(options: RunOptions) -> int:
         print(json.dumps({"level": level.name, **finite(asdict(summary))}))
     else:
         print(summary.text(level.name))
-    return EXIT_OK if recorded == options.record else EXIT_REFUSED
+    return EXIT_OK if is_whole() else EXIT_REFUSED
+
+
+@contextmanager
+def _recorded(session: "Session", path: Path | None) -> "Iterator[Callable[[], bool]]":
+    """Record what a session does in here; whether that was written whole is known after it.
+
+    What is refused leaves no recording, and an older one of that name as it was; an interrupt one that is cut off.
+    """
+    if path is None:
+        yield lambda: True
+        return
+    # An older file is replaced in the end only; a device is written to.
+    target = Path(os.path.realpath(path))
+    fresh = target.with_name(f".{os.getpid()}-{path.name}") if target.is_file() else path
+    written: Path | None = None
+    try:
+        session.record_to(fresh)
+        yield lambda: written is not None
+        written = session.stop_recording()
+        if written and written != path:
+            written.replace(target)
+    except OSError as error:
+        session.abandon_recording()
+        if error.filename == str(fresh):
+            error.filename = str(path)
+        raise
+    except KeyboardInterrupt:
+        if session.recording:
+            tell([f"{path}: cut off at tick {session.tick}; `sandbox replay --partial` verifies it"])
+            session.abandon_recording()
+            if fresh != path:
+                fresh.replace(target)
+        raise
+    except BaseException:
+        session.abandon_recording()
+        if fresh.is_file():
+            fresh.unlink()
+        raise
+    finally:
+        session.refusals[:] = [line.replace(str(fresh), str(path)) for line in session.refusals]
+        if fresh != path:
+            fresh.unlink(missing_ok=True)
 
 
 def _keep_apart(options: RunOptions) -> None:

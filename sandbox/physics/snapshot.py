@@ -1,7 +1,9 @@
 """Snapshot: a read-only copy of every bit of a world's state; hashes of that state."""
 
+import functools
 import hashlib
 import itertools
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import Field, dataclass, fields
 from typing import Any
@@ -100,7 +102,9 @@ def canonical_bytes(array: NDArray[Any]) -> bytes:
     if array.dtype.kind == "f":
         array = array + 0.0
         array[np.isnan(array)] = np.nan
-    return array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes()
+    if sys.byteorder != "little":
+        array = array.astype(array.dtype.newbyteorder("<"), copy=False)
+    return array.tobytes()
 
 
 # Arrays larger than so much [bytes] are hashed each time rather than kept.
@@ -111,8 +115,15 @@ _COLUMNS = tuple((column.name, column.stored, column) for column in COLUMNS)
 
 def _digest(column: Column, array: NDArray[Any]) -> str | None:
     """Hash of an array; None: it has its usual values and is left out."""
-    is_usual = column.sparse and not (array != column.usual).any()
-    return None if is_usual else hashlib.blake2b(canonical_bytes(array), digest_size=8).hexdigest()
+    content = canonical_bytes(array)
+    if column.sparse and content == _usual_bytes(column, len(array)):
+        return None
+    return hashlib.blake2b(content, digest_size=8).hexdigest()
+
+
+@functools.lru_cache(maxsize=512)
+def _usual_bytes(column: Column, count: int) -> bytes:
+    return canonical_bytes(column.usual_rows(count))
 
 
 def _hashed(_: World) -> dict[str, tuple[bytes, str | None]]:

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -124,7 +125,8 @@ class _Waiting:
             return None
         assert self.found is not None
         once = not (check.always or check.eventually)
-        return judge(check, value) if once else judge(check, *self.found)
+        result = judge(check, value) if once else judge(check, *self.found)
+        return result if result.passed else replace(result, text=result.text + gauge.reason(check))
 
 
 class _Gauge:
@@ -164,6 +166,18 @@ class _Gauge:
     def value(self, check: CheckDef) -> float:
         """The value that a check measures now."""
         return float(_VALUES[check.metric](self, self._world, check))
+
+    def reason(self, check: CheckDef) -> str:
+        """Why a check fails now, where its value does not say it: what moves fastest of what should have settled."""
+        moving = np.flatnonzero(self._shown(check.body)) if check.metric == "settled" else ()
+        if not len(moving):
+            return ""
+        speed = np.sqrt(np.sum(self._world.velocity[moving] ** 2, axis=1))
+        fastest = int(np.argmax(speed))
+        if speed[fastest] <= STILL:
+            return ""
+        name = self._world.particle_names[moving[fastest]]
+        return f"; {name} moves fastest, with {speed[fastest]:.3g} m/s of at most {STILL:g}"
 
     def _shown(self, body: str | None) -> NDArray[np.bool_]:
         return shown_particles(self._world) & _of_body(self._particles, self._world.particle_names, body, ".")

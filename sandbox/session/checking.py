@@ -1,5 +1,6 @@
 """Checks level files and reports on each, one after another or in processes."""
 
+import time
 from collections.abc import Generator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -7,9 +8,10 @@ from typing import Any
 
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.checks import CheckResult
+from sandbox.level.document.model import Level
 from sandbox.level.reading.files import LevelError, level_path, read_level
 from sandbox.physics.analysis.stability import report
-from sandbox.session.check_run import run_checks
+from sandbox.session.check_run import checks_as_they_end
 from sandbox.session.golden import SUFFIX, GoldenError, differences, read_golden
 from sandbox.session.outcome import outcome_data
 from sandbox.session.probe import finite
@@ -37,15 +39,17 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
 
     rollback: random hands play it besides, and it goes back so many ticks at each.
     """
+    start = time.perf_counter()
     if name.endswith(SUFFIX):
-        return _check_golden(name)
+        return _check_golden(name, start)
     try:
         path = level_path(name)
         level = read_level(path)
     except LevelError as error:
         return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
     stability = report(build_world(level))
-    results, goal = run_checks(level), try_goal(level, Path(path))
+    timed = _timed(level)
+    results, goal = [result for result, _ in timed], try_goal(level, Path(path))
     again = None if rollback is None else roll_back_level(level, rollback)
     lines = (
         f"{name}: valid: {level.name}",
@@ -60,7 +64,8 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     passed = passed and (again is None or again.found is None)
     data: dict[str, Any] = {
         "file": name, "result": "passed" if passed else "failed", "level": level.name, "stability": asdict(stability),
-        "checks": [_told(result) for result in results],
+        "checks": [{**_told(result), "wall_seconds": wall} for result, wall in timed],
+        "wall_seconds": time.perf_counter() - start,
     }  # fmt: skip
     if goal is not None:
         won = outcome_data(goal.outcome, level.settings.tick_rate)
@@ -70,16 +75,33 @@ def check_level(name: str, rollback: int | None = None) -> LevelReport:
     return LevelReport(finite(data), lines, passed=passed)
 
 
-def _check_golden(name: str) -> LevelReport:
+def _check_golden(name: str, start: float) -> LevelReport:
     """Run a golden file, and compare within its tolerances."""
     try:
         golden = read_golden(Path(name))
         found = differences(golden.file, golden.measured())
     except (GoldenError, LevelError, ReplayError) as error:
         return LevelReport({"file": name, "result": "refused", "faults": error.faults}, faults=tuple(error.faults))
-    data = {"file": name, "result": "failed" if found else "passed", "level": golden.level.name, "differences": found}
+    data = {
+        "file": name,
+        "result": "failed" if found else "passed",
+        "level": golden.level.name,
+        "differences": found,
+        "wall_seconds": time.perf_counter() - start,
+    }
     lines = [f"  FAILS      {line}" for line in found] or ["  all is within its tolerance"]
     return LevelReport(data, (f"{name}: {golden.level.name}", *lines), passed=not found)
+
+
+def _timed(level: Level) -> list[tuple[CheckResult, float]]:
+    """What came of the checks, in the order of the file, and how long each took [s] after the one known before it."""
+    found: dict[int, tuple[CheckResult, float]] = {}
+    before = time.perf_counter()
+    for known in checks_as_they_end(level):
+        if known is not None:
+            now = time.perf_counter()
+            found[known[0]], before = (known[1], now - before), now
+    return [found[number] for number in sorted(found)]
 
 
 def _told(result: CheckResult) -> dict[str, Any]:

@@ -40,14 +40,14 @@ class RandomHands:
             self._chance.choice(self._acts)()
 
     def _do(self, record: dict[str, Any], gesture: int) -> bool:
-        session, told = self._session, len(self._session.messages)
+        session, told = self._session, len(self._session.refusals)
         try:
             command = from_record(record, session.world)
         except CommandError:
             return False
         session.submit(command, gesture)
         session.apply_pending()
-        return len(session.messages) == told
+        return len(session.refusals) == told
 
     def _particle(self) -> int | None:
         world = self._session.world

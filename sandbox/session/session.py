@@ -36,19 +36,25 @@ class Session:
     Commands are applied at tick boundaries: `submit` queues, `advance` applies what is due and steps once. Every
     command belongs to a gesture (a drag from grab to release, one slider drag), the unit of undo. A script feeds
     recorded commands at their ticks; a scripted command that cannot be applied raises CommandError, a submitted one
-    leaves a line in `messages`. `start` continues from a snapshot of this level's world instead of its beginning.
+    leaves a line in `refusals`; `do` applies one at once, and raises. `start` continues from a snapshot of this level's
+    world instead of its beginning.
     progress: called with ticks done and ticks in all while ticks are stepped again. Where it raises Interrupted, what
     they were stepped for passes that on and changes nothing; a script ends that asked for it.
+    refusals: what could not be done, a line each: commands, and writing the recording. events: what happened by itself:
+    springs that broke, what was stopped as it left the world's bounds. Who reads them may clear them.
     """
 
     def __init__(self, level: Level, script: Iterable[ScriptLine] = (), start: Snapshot | None = None) -> None:
+        if not isinstance(level, Level):
+            raise TypeError(f"a Session is of a Level, not of {level!r}; load_level reads a file or a shipped level")
         self.level = level
         self.world = build_world(level)
         self._actions = RuleActions(level, self.world)
         if start is not None:
             restore(self.world, start)
             name_added(self.world)
-        self.messages: list[str] = []
+        self.refusals: list[str] = []
+        self.events: list[str] = []
         self.progress: Callable[[int, int], None] | None = None
         self._script = iter(script)
         self.history = RunHistory(Keyframes(Keyframe(0, take(self.world))), self.tick)
@@ -63,6 +69,18 @@ class Session:
         count = len(self.history.done)
         gestures = f"{count} gesture" if count == 1 else f"{count} gestures"
         return f"<Session of {self.level.name!r} at tick {self.tick}{past}: {gestures}{recorded}>"
+
+    @property
+    def messages(self) -> tuple[str, ...]:
+        """Refusals, then events."""
+        return (*self.refusals, *self.events)
+
+    def take_messages(self) -> tuple[str, ...]:
+        """The messages, which are then told and forgotten."""
+        told = self.messages
+        self.refusals.clear()
+        self.events.clear()
+        return told
 
     @property
     def tick(self) -> int:
@@ -103,8 +121,31 @@ class Session:
         return self.history.new_gesture()
 
     def submit(self, command: Command, gesture: int | None = None) -> None:
-        """Queue a command for this tick boundary; without a gesture number it is a gesture of its own."""
+        """Queue a command for this tick boundary; without a gesture number it is a gesture of its own.
+
+        Where it cannot be carried out then, it leaves a line in `refusals`. Raises TypeError for what is no command.
+        """
+        if not isinstance(command, Command):
+            raise TypeError(f"submit takes a command, such as Grab(...), not {command!r}; do takes a record or a type")
         self._pending.append((command, self.new_gesture() if gesture is None else gesture))
+
+    def do(self, command: Command | dict[str, Any] | str, gesture: int | None = None, **fields: Any) -> Command:
+        """Apply a command now, before the next step: one, its record, or its type in files with its fields.
+
+            session.do("grab", grab=0, particle="rope.end", target=(1.0, 2.0))
+
+        What was submitted before is applied first. Returns the command with slots in place of names. Raises
+        CommandError, with nothing changed, where it cannot be carried out.
+        """
+        self.apply_pending()
+        if not isinstance(command, Command):
+            record = {"type": command, **fields} if isinstance(command, str) else command
+            command = from_record(record, self.world)
+        elif fields:
+            raise TypeError(f"fields belong to a command's type, as in do({command.type!r}, ...)")
+        applied = self._apply(command, self.new_gesture() if gesture is None else gesture)
+        self.history.scripted = None
+        return applied
 
     def undo(self) -> None:
         """Queue the undoing of the last gesture."""
@@ -136,7 +177,7 @@ class Session:
             try:
                 self._apply(command, gesture)
             except CommandError as error:
-                self.messages.extend(error.faults)
+                self.refusals.extend(error.faults)
             else:
                 self.history.scripted = None
         return due
@@ -146,7 +187,8 @@ class Session:
         if self._recorder is None:
             return
         written = self._record(self._recorder.note_written, self.world)
-        self.messages.extend([] if written is None else [f"this run's recording will not verify: {written}"])
+        if written is not None:
+            self.refusals.append(f"this run's recording will not verify: {written}")
 
     def advance(self) -> None:
         """One tick: apply what is due, then step. In the past that `seek` reached, the logged commands follow again."""
@@ -156,8 +198,8 @@ class Session:
             return
         self._step(self.history.next_order)
         self.history.last_tick = self.tick
-        self.messages.extend(str(hit) for hit in self.world.contained)
-        self.messages.extend(break_lines(self.world))
+        self.events.extend(str(hit) for hit in self.world.contained)
+        self.events.extend(break_lines(self.world))
         if self._recorder is not None:
             self._record(self._recorder.write_tick, self.world)
 
@@ -296,7 +338,7 @@ class Session:
         """
         twin = self._recorded(path, STATE_TICKS)
         saved = twin.stop_recording()
-        self.messages.extend(twin.messages)
+        self.refusals.extend(twin.refusals)
         return saved
 
     def _recorded(self, path: Path, state_ticks: int) -> "Session":
@@ -319,8 +361,8 @@ class Session:
                 with suppress(OSError):
                     path.unlink()
             raise
-        self.messages.extend(twin.messages)
-        twin.messages.clear()
+        self.refusals.extend(twin.refusals)
+        twin.refusals.clear()
         return twin
 
     def _catch_up(self, twin: "Session", tick: int) -> None:
@@ -337,7 +379,7 @@ class Session:
         try:
             recorder.finish(self.world)
         except OSError as error:
-            self.messages.append(f"{recorder.path}: the end of the recording could not be written: {error.strerror}")
+            self.refusals.append(f"{recorder.path}: the end of the recording could not be written: {error.strerror}")
             return None
         return recorder.path
 
@@ -352,14 +394,17 @@ class Session:
         try:
             return write(*what)
         except OSError as error:
-            self.messages.append(f"{self.recording}: recording stopped at tick {self.tick}: {error.strerror}")
+            self.refusals.append(f"{self.recording}: recording stopped at tick {self.tick}: {error.strerror}")
             self.abandon_recording()
             return None
 
-    def _apply(self, command: Command, gesture: int) -> None:
-        """Apply a command now, log it and record it. Raises CommandError and changes nothing where it cannot be."""
+    def _apply(self, command: Command, gesture: int) -> Command:
+        """Apply a command now, log it and record it; returns it with slots in place of names.
+
+        Raises CommandError and changes nothing where it cannot be.
+        """
         if gesture in self.history.undone:
-            return
+            return command
         tick = self.tick
         if isinstance(command, Undo):
             with self._all_or_nothing():
@@ -370,13 +415,14 @@ class Session:
         else:
             if gesture not in self.history.entries and not self.history.reached.has(tick):
                 self.history.keep_reached(self.world)
-            apply(self.world, command)
+            command = apply(self.world, command)
             self.history.drop_future(self.tick)
             self.history.begin(gesture)
         self.history.last_gesture = max(self.history.last_gesture, gesture)
         self.history.note(command, gesture, self.world)
         if self._recorder is not None:
             self._record(self._recorder.write_command, self.world, gesture, to_record(command, self.world))
+        return command
 
     def _all_or_nothing(self, changes_history: bool = True) -> AbstractContextManager[None]:
         """Do something whole, or where `progress` gives it up not at all."""

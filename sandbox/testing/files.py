@@ -1,24 +1,21 @@
 """Which files are tests, told without reading more than is needed."""
 
+import difflib
+import fnmatch
 import json
 from pathlib import Path
 
 import pytest
 
-RECORDINGS = (".replay.jsonl", ".replay.gz", ".replay.jsonl.gz")
 # What follows the name of a level in that of a recording that solves it.
 SOLUTION = ".solution.replay.gz"
 GOLDEN = ".golden.json"
+USUAL_LEVELS = ["levels/*.json"]
 LEVEL_FORMAT = "spring-sandbox/level"
 # A level file is no longer [bytes], see docs/level-format.md.
 LONGEST = 8 * 2**20
 
 _LEVELS = pytest.StashKey[frozenset[Path]]()
-
-
-def is_recording(path: Path) -> bool:
-    """Whether a file is called as recordings are."""
-    return path.name.endswith(RECORDINGS)
 
 
 def is_golden(path: Path) -> bool:
@@ -32,9 +29,12 @@ def level_files(config: pytest.Config) -> frozenset[Path]:
         found: set[Path] = set()
         for pattern in config.getini("sandbox_levels"):
             try:
-                found.update(config.rootpath.glob(pattern))
+                named = set(config.rootpath.glob(pattern))
             except (NotImplementedError, ValueError) as error:
                 raise pytest.UsageError(f"sandbox_levels: {pattern!r}: {error}") from None
+            if not named and pattern not in USUAL_LEVELS:
+                raise pytest.UsageError(f"sandbox_levels: {pattern!r}: there is no such file in {config.rootpath}")
+            found |= named
         config.stash[_LEVELS] = frozenset(found)
     return config.stash[_LEVELS]
 
@@ -48,20 +48,56 @@ def given_renames(config: pytest.Config) -> dict[str, str]:
     return {old: new for old, _, new in pairs}
 
 
-def names_a_level(path: Path) -> bool:
-    """Whether a JSON file says that it is a level; one that is damaged does where it holds those words."""
+def marked(config: pytest.Config) -> list[tuple[str, str]]:
+    """The marks of the setting `sandbox_marks`, each with the pattern of its files. Raises UsageError."""
+    found = []
+    for line in config.getini("sandbox_marks"):
+        mark, colon, pattern = (part.strip() for part in line.partition(":"))
+        if not (colon and pattern and mark.isidentifier()):
+            raise pytest.UsageError(f"sandbox_marks: {line!r}: write a mark, a colon and a pattern of files")
+        found.append((mark, pattern))
+    return found
+
+
+def marks_of(config: pytest.Config, path: Path) -> list[str]:
+    """The marks that the setting gives a file."""
+    if not path.is_relative_to(config.rootpath):
+        return []
+    name = path.relative_to(config.rootpath).as_posix()
+    return [mark for mark, pattern in marked(config) if fnmatch.fnmatchcase(name, pattern)]
+
+
+def is_level(path: Path) -> bool:
+    """Whether a JSON file that lies where levels lie is to be one: all but what says that it is something else.
+
+    That is a `format` that is another's, or the keys of a JSON Schema or of another program. What is empty, cut off,
+    damaged, or has a format that resembles that of levels, is a level, and so its test fails.
+    """
     try:
-        with path.open("rb") as file:
-            data = file.read(LONGEST + 1)
+        values = json.loads(_read(path))
+    except (OSError, ValueError, RecursionError):
+        return True
+    if not isinstance(values, dict) or values.get("format") == LEVEL_FORMAT:
+        return True
+    kind = values.get("format")
+    if kind is not None:
+        return isinstance(kind, str) and bool(difflib.get_close_matches(kind.strip().casefold(), [LEVEL_FORMAT]))
+    from sandbox.level.format.foreign import foreign_keys
+
+    return foreign_keys(values) is None
+
+
+def says_it_is_a_level(path: Path) -> bool:
+    """Whether a file holds the format of levels, also one that is damaged."""
+    try:
+        return LEVEL_FORMAT.encode() in _read(path)
     except OSError:
         return False
-    if LEVEL_FORMAT.encode() not in data:
-        return False
-    try:
-        values = json.loads(data)
-    except (ValueError, RecursionError):
-        return True
-    return isinstance(values, dict) and values.get("format") == LEVEL_FORMAT
+
+
+def _read(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(LONGEST + 1)
 
 
 def has_solution(path: Path) -> bool:

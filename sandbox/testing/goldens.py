@@ -20,6 +20,8 @@ class GoldenTest(pytest.File):
 class GoldenItem(ToldItem):
     """What a golden file holds comes out again, within its tolerances."""
 
+    mark = "golden"
+
     def runtest(self) -> None:
         """Run it. Raises Failed."""
         from sandbox.level.format.level_error import LevelError

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from sandbox.testing.failed import Failed
-from sandbox.testing.files import check_names, has_solution
+from sandbox.testing.files import check_names, has_solution, marks_of, says_it_is_a_level
+
+# Told where a file does not even say that it is a level.
+ELSEWHERE = "it lies where levels lie; if it is something else, keep it elsewhere, or name levels by sandbox_levels"
 
 if TYPE_CHECKING:
     from sandbox.level.checks import CheckResult
@@ -15,7 +18,14 @@ if TYPE_CHECKING:
 
 
 class ToldItem(pytest.Item):
-    """A test whose failures are told in lines."""
+    """A test whose failures are told in lines; mark: what all of its kind have."""
+
+    mark = "level"
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        for name in (self.mark, *marks_of(self.config, self.path)):
+            self.add_marker(name)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """The lines of a failure that this plugin has found; anything else with its traceback."""
@@ -39,6 +49,8 @@ class RecordingTest(pytest.File):
 class ReplayItem(ToldItem):
     """A recording runs again, bit for bit."""
 
+    mark = "replay"
+
     def runtest(self) -> None:
         """Run it. Raises Failed."""
         from sandbox.testing.replaying import replay_test
@@ -51,7 +63,7 @@ class ReplayItem(ToldItem):
 class LevelTests(pytest.File):
     """A level file: that it can be built, and each of its checks."""
 
-    _results: "dict[int, CheckResult] | None" = None
+    _running: "Iterator[tuple[int, CheckResult] | None] | None" = None
 
     def collect(self) -> Iterator[pytest.Item]:
         """A test that it is a level, and one a check."""
@@ -63,13 +75,15 @@ class LevelTests(pytest.File):
             yield GoalItem.from_parent(self, name="goal")
 
     def result(self, number: int) -> "CheckResult":
-        """What came of a check; all of the file are measured in the same run. Raises Failed."""
-        if self._results is None:
-            from sandbox.session.check_run import run_checks
+        """What came of a check; all of the file are measured in the same run, as far as it is needed. Raises Failed."""
+        if self._running is None:
+            from sandbox.session.check_run import checks_as_they_end
             from sandbox.testing.replaying import with_solver
 
-            level = with_solver(self.config, self.level())
-            self._results = dict(enumerate(run_checks(level)))
+            self._running = checks_as_they_end(with_solver(self.config, self.level()))
+            self._results: dict[int, CheckResult] = {}
+        while number not in self._results:
+            self._results.update(filter(None, [next(self._running)]))
         return self._results[number]
 
     def level(self) -> "Level":
@@ -88,8 +102,13 @@ class LevelItem(ToldItem):
         from sandbox.testing.smaller import check_rollback_of_level
 
         assert isinstance(self.parent, LevelTests)
-        level = self.parent.level()
-        build_world(level)
+        try:
+            level = self.parent.level()
+            build_world(level)
+        except Failed as error:
+            if says_it_is_a_level(self.path):
+                raise
+            raise Failed(str(error), ELSEWHERE) from None
         check_rollback_of_level(self.config, level)
 
 

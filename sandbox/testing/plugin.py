@@ -1,25 +1,36 @@
 """The plugin of pytest: recordings and the checks of levels are tests; a fixture plays levels.
 
-It is loaded in every project of an environment, so nothing here takes long to import, and a file is taken only if it
-says of itself that it is a recording's or a level.
+It is loaded in every project of an environment, so nothing here takes long to import. A file is taken for a recording
+by its name, for a level by where it lies, unless it says that it is something else.
 """
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Generator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from sandbox.testing.files import given_renames, is_golden, is_recording, level_files, names_a_level
+from sandbox.session.replay.names import is_recording
+from sandbox.testing.evidence import CHOICES, FIRST, runs_of
+from sandbox.testing.files import USUAL_LEVELS, given_renames, is_golden, is_level, level_files, marked
 from sandbox.testing.goldens import GoldenTest
 from sandbox.testing.items import LevelTests, RecordingTest
 from sandbox.testing.updates import grouped
 
 if TYPE_CHECKING:
-    from sandbox.testing.driver import Driver
+    from sandbox.testing.driver import Driver, LevelLike, SandboxSession
 
+MARKERS = (
+    "replay: the test of a recording, which runs again bit for bit",
+    "level: a test of a level file: that it is valid, or one of its checks",
+    "golden: the test of a golden file, whose values come out again within their tolerances",
+)
 # Recordings that --replay-update wrote, with what changed, as lines; workers of xdist hand them to the first process.
 UPDATED = "sandbox_updated"
+# Runs of one test in Python that are kept where it fails, the last ones.
+RUNS_KEPT = 3
+_RUNS: "pytest.StashKey[deque[Driver]]" = pytest.StashKey()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -51,20 +62,44 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="a body that the level calls otherwise now, for --replay-update; may be given several times",
     )
     group.addoption("--replay-output", metavar="DIR", help="where pictures go; default: .pytest_cache/d/replays")
-    parser.addini(
-        "sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=["levels/*.json"]
+    group.addoption(
+        "--replay-pictures",
+        choices=CHOICES,
+        default="first",
+        help=f"of which failures there are pictures, recordings and pages; default: of the first {FIRST}",
     )
+    parser.addini("sandbox_levels", "Files whose level checks are tests, as patterns.", "args", default=USUAL_LEVELS)
     parser.addini(
         "sandbox_against",
-        "A level file on which recordings run instead of their own, or a folder with one of its name.",
+        "A level file on which recordings run, or a folder with one of the same name, or the word own: on the copy "
+        "that each has. Default: on the level of the same name in sandbox_levels, if there is one.",
+    )
+    parser.addini(
+        "sandbox_marks",
+        "Marks of recordings and levels, a line each: a mark, a colon, and a pattern of files from the root on.",
+        "linelist",
     )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Refuse what cannot go together before anything runs."""
+    """Refuse what cannot go together, and what names nothing, before anything runs."""
+    for line in MARKERS:
+        config.addinivalue_line("markers", line)
+    solver = config.getoption("--replay-solver")
+    if solver:
+        _refuse_unknown_solver(solver)
     if config.getoption("--replay-update") and config.getoption("--replay-solver"):
         raise pytest.UsageError("--replay-update records with each level's own solver: leave --replay-solver out")
     given_renames(config)
+    level_files(config)
+    marked(config)
+
+
+def _refuse_unknown_solver(name: str) -> None:
+    from sandbox.physics.settings import SOLVER_NAMES
+
+    if name not in SOLVER_NAMES:
+        raise pytest.UsageError(f"--replay-solver: there is no solver {name!r}; there are {', '.join(SOLVER_NAMES)}")
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
@@ -76,19 +111,39 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
     if file_path.suffix != ".json":
         return None
     asked = parent.session.isinitpath(file_path) or file_path in level_files(parent.config)
-    return LevelTests.from_parent(parent, path=file_path) if asked and names_a_level(file_path) else None
+    return LevelTests.from_parent(parent, path=file_path) if asked and is_level(file_path) else None
 
 
 @pytest.fixture
-def sandbox_session(request: pytest.FixtureRequest) -> "Callable[[Any], Driver]":
+def sandbox_session(request: pytest.FixtureRequest) -> "SandboxSession":
     """Begins a run of a level: a file beside the test or below the root, a shipped level's name, or a Level.
 
-    What it gives drags, cuts, drives, runs and measures, see `sandbox.testing.driver.Driver`.
+    What it gives drags, cuts, drives, runs and measures, see `sandbox.testing.Driver`.
     """
     from sandbox.testing.driver import Driver, found_level
 
     folders = [request.path.parent, request.config.rootpath]
-    return lambda level: Driver(found_level(level, folders))
+    runs = request.node.stash.setdefault(_RUNS, deque(maxlen=RUNS_KEPT))
+
+    def begin(level: "LevelLike") -> Driver:
+        driver = Driver(found_level(level, folders))
+        runs.append(driver)
+        return driver
+
+    return begin
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
+    """Keep the runs of a test in Python that fails."""
+    report = yield
+    runs = item.stash.get(_RUNS, None)
+    if runs and report.when == "call" and report.failed:
+        told = call.excinfo.exconly() if call.excinfo else ""
+        lines = runs_of(item.config, item.nodeid, [run.session for run in runs], told)
+        if lines:
+            report.sections.append(("Spring Sandbox", "\n".join(lines)))
+    return report
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:

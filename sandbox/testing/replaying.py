@@ -7,7 +7,6 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -18,13 +17,14 @@ from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayEr
 from sandbox.session.replay.renames import Renames, carried_over, guessed_renames, missing_names, new_names
 from sandbox.session.replay.rerecord import record_again, with_settings
 from sandbox.session.replay.verify import Comparison, across_versions, compare, to_the_end
+from sandbox.testing.evidence import folder_of, name_of, pictures_of
 from sandbox.testing.failed import Failed
-from sandbox.testing.files import given_renames
+from sandbox.testing.files import given_renames, level_files
 from sandbox.testing.smaller import check_rollback, shrunk_lines
 from sandbox.testing.updates import Update, update_of
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+# In place of a level: the copy that each recording has of its own.
+OWN = "own"
 
 # Names that are told of those that a level does not have, and of those that are new there.
 MOST_NAMED = 5
@@ -139,10 +139,8 @@ def _failed(config: pytest.Config, golden: _Golden, headline: str, found: Compar
     told += [line for line in lines if not told[0].endswith(f": {line}")]
     smaller: list[str] = []
     if found and not golden.refused:
-        smaller = shrunk_lines(
-            config, golden.replay, golden.level, lambda: output_folder(config) / output_name(config, path)
-        )
-    return Failed(*told, *(_drawn(config, found, path) if found else []), *smaller, _acceptance(config, path))
+        smaller = shrunk_lines(config, golden.replay, golden.level, lambda: folder_of(config) / name_of(config, path))
+    return Failed(*told, *(pictures_of(config, found, path) if found else []), *smaller, _acceptance(config, path))
 
 
 def _acceptance(config: pytest.Config, path: Path) -> str:
@@ -162,14 +160,19 @@ def level_of(path: Path) -> Level:
 
 
 def level_against(config: pytest.Config, replay: Replay) -> Level | None:
-    """The level on which a recording runs instead of its own: one file, or its file in a folder. Raises Failed."""
-    given = config.getoption("--replay-against")
+    """The level on which a recording runs instead of its own copy: one file, or its file in a folder.
+
+    Without a word about it, its file among those of `sandbox_levels`, if there is one.
+    """
+    given, set_down = config.getoption("--replay-against"), config.getini("sandbox_against")
+    if (given or set_down) == OWN:
+        return None
     if given:
         place = config.invocation_params.dir / given
-    elif config.getini("sandbox_against"):
-        place = (config.inipath.parent if config.inipath else config.rootpath) / config.getini("sandbox_against")
+    elif set_down:
+        place = (config.inipath.parent if config.inipath else config.rootpath) / set_down
     else:
-        return None
+        return _usual_level(sorted(level_files(config)), replay)
     if not place.is_dir():
         return level_of(place)
     return level_among(sorted(place.glob("*.json")), replay, str(place))
@@ -177,13 +180,12 @@ def level_against(config: pytest.Config, replay: Replay) -> Level | None:
 
 def level_among(files: Sequence[Path], replay: Replay, where: str) -> Level:
     """The level of a recording among files: that of its file's name, or else of its title. Raises Failed."""
-    name, title = file_of(replay.level), replay.level.name
-    named = [path for path in files if name and path.name == name]
-    found = named or [path for path in files if title == _title_of(path)]
+    name, title, found = file_of(replay.level), replay.level.name, _fitting(files, replay)
     if len(found) == 1:
         return level_of(found[0])
     if found:
-        same = f"{len(found)} levels are called {name if named else repr(title)}: {', '.join(map(str, found))}"
+        called = name if found[0].name == name else repr(title)
+        same = f"{len(found)} levels are called {called}: {', '.join(map(str, found))}"
     else:
         known = f"neither {name} nor " if name else ""
         same = f"there is {known}a level with the title {title!r}" if name else f"no level has the title {title!r}"
@@ -192,6 +194,21 @@ def level_among(files: Sequence[Path], replay: Replay, where: str) -> Level:
         f"name its file: pytest --replay-update --replay-against {shlex.quote(f'{where}/NAME.json')} "
         f"{shlex.quote(replay.source)}",
     )
+
+
+def _usual_level(files: Sequence[Path], replay: Replay) -> Level | None:
+    """That of a recording among the level files of a project; None where there is none."""
+    found = _fitting(files, replay)
+    if len(found) > 1 and any(replay.level == level_of(path) for path in found):
+        return replay.level
+    return level_among(files, replay, str(found[0].parent)) if found else None
+
+
+def _fitting(files: Sequence[Path], replay: Replay) -> list[Path]:
+    """The files of the name of a recording's level, or else those of its title."""
+    name, title = file_of(replay.level), replay.level.name
+    named = [path for path in files if name and path.name == name]
+    return named or [path for path in files if title == _title_of(path)]
 
 
 def _title_of(path: Path) -> str | None:
@@ -244,43 +261,3 @@ def _update(golden: _Golden) -> Update | None:
     finally:
         fresh.unlink(missing_ok=True)
     return update_of(path.name, golden.recorded, moved, found)
-
-
-def _drawn(config: pytest.Config, found: Comparison, path: Path) -> list[str]:
-    """Draw where a run parts, and say where that is."""
-    from sandbox.app.film.kinds import Missing
-    from sandbox.app.share.evidence import write_motion, write_picture
-    from sandbox.session.player.report import report_page
-
-    folder, name = output_folder(config), output_name(config, path)
-    lines = []
-    kinds: list[tuple[str, str, Callable[[Comparison, Path], None]]] = [
-        ("picture", "png", write_picture),
-        ("motion", "gif", write_motion),
-        ("player", "html", lambda found, target: report_page(found).write(target)),
-    ]
-    for what, kind, write in kinds:
-        target = folder / f"{name}.{kind}"
-        try:
-            write(found, target)
-        except (Missing, OSError) as error:
-            lines.append(f"{what}: {error}")
-        else:
-            lines.append(f"{what}: {target}")
-    return lines
-
-
-def output_folder(config: pytest.Config) -> Path:
-    """Where pictures go."""
-    given = config.getoption("--replay-output")
-    if given:
-        folder = config.invocation_params.dir / given
-        folder.mkdir(parents=True, exist_ok=True)
-        return folder
-    cache = config.cache
-    return cache.mkdir("replays") if cache is not None else Path(tempfile.mkdtemp(prefix="replays-"))
-
-
-def output_name(config: pytest.Config, path: Path) -> str:
-    """What is written of a file is called by its place."""
-    return "-".join(path.relative_to(config.rootpath).parts) if path.is_relative_to(config.rootpath) else path.name

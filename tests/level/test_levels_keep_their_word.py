@@ -18,7 +18,7 @@ def do(session, **command):
     before = len(session.messages)
     session.submit(from_record(command, session.world), 1)
     session.apply_pending()
-    assert session.messages[before:] == []
+    assert not session.messages[before:]
 
 
 def run(session, ticks):

@@ -73,11 +73,11 @@ def test_what_breaks_is_named_once_at_its_tick_and_many_are_counted():
 def test_going_back_tells_no_break_a_second_time_and_meets_it_at_the_same_tick():
     session = Session(busy_level())
     advance(session, 240)
-    told, end = list(session.messages), state_hash(session.world)
+    told, end = list(session.events), state_hash(session.world)
     session.seek(10)
     assert session.world.spring_active[0]
     session.seek(240)
-    assert session.messages == told
+    assert session.events == told
     assert state_hash(session.world) == end
 
 

@@ -104,7 +104,7 @@ def test_what_is_done_to_a_body_in_the_middle_of_its_ramp_is_recorded_and_undone
     session.submit(Remove(body="body"))
     go(session, TICKS)
     session.stop_recording()
-    assert session.messages == []
+    assert not session.messages
     assert verify(read_replay(tmp_path / "run.replay")) is None
 
 

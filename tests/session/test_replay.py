@@ -29,7 +29,7 @@ def recorded(tmp_path_factory) -> Path:
     session.record_to(path, STATE_TICKS)
     play(session, TICKS)
     session.stop_recording()
-    assert session.messages == []
+    assert not session.messages
     return path
 
 
@@ -372,7 +372,7 @@ def test_a_recording_verifies_from_a_state_behind_what_was_added(tmp_path, bodie
     session.submit(CutSprings((session.world.spring_slot("+:0"),)))
     session.advance()
     session.stop_recording()
-    assert session.messages == []
+    assert not session.messages
     replay = read_replay(tmp_path / "run.jsonl")
     assert verify(replay) is None
     assert verify(replay, start=60) is None

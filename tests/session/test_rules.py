@@ -142,7 +142,7 @@ def test_an_action_on_what_is_gone_does_nothing():
     session = still(bodies=bodies, rules=cuts)
     session.submit(CutSprings((0,)))
     world = run(session, 60)
-    assert not world.spring_active[:2].any() and session.messages == []
+    assert not world.spring_active[:2].any() and not session.messages
 
 
 def random_run(level, seed, ticks=168):

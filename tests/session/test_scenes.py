@@ -51,7 +51,7 @@ def played(level_name):
         elif session.tick == 70:
             session.submit(Release(0), hand)
         session.advance()
-    assert session.messages == []
+    assert not session.messages
     return session
 
 

@@ -5,6 +5,7 @@ from sandbox.physics.step import step
 from sandbox.session.commands import (
     AddParticle,
     AddSpring,
+    CommandError,
     CutSprings,
     Grab,
     MoveGrab,
@@ -12,6 +13,7 @@ from sandbox.session.commands import (
     Redo,
     Release,
     SetCoefficients,
+    SetDrive,
     SetGravity,
     SetSolver,
     Undo,
@@ -21,6 +23,7 @@ from sandbox.session.log import ReachedStates
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.session import Session
 from sandbox.session.transaction import Interrupted
+from tests.session.test_breaks_and_drives import advance, busy_level
 from tests.support.rope_level import rope_level
 
 
@@ -117,14 +120,14 @@ def test_a_new_gesture_ends_the_chance_to_redo(session):
     assert not session.can_redo
     session.redo()
     session.apply_pending()
-    assert session.messages == ["nothing to redo"]
+    assert session.refusals == ["nothing to redo"]
     assert session.world.inverse_mass[3] > 0.0
 
 
 def test_undo_with_nothing_to_undo_says_so(session):
     session.undo()
     session.advance()
-    assert session.messages == ["nothing to undo"]
+    assert session.refusals == ["nothing to undo"]
 
 
 def test_undo_during_a_drag_ends_it_and_redo_leaves_no_hand_behind(session):
@@ -138,7 +141,7 @@ def test_undo_during_a_drag_ends_it_and_redo_leaves_no_hand_behind(session):
     session.redo()
     session.apply_pending()
     assert not session.world.is_held(0)
-    assert session.messages == []
+    assert not session.messages
 
 
 def test_undo_takes_back_what_was_added_and_its_name_can_be_used_again(session):
@@ -171,7 +174,7 @@ def test_every_kind_of_command_can_be_undone(session):
         session.undo()
         session.apply_pending()
         assert state_hash(session.world) == start, command
-    assert session.messages == []
+    assert not session.messages
 
 
 def test_seek_goes_back_and_forth_through_the_same_states(session):
@@ -206,7 +209,7 @@ def test_what_was_added_keeps_its_name_when_time_goes_back_and_forth(session):
     session.submit(CutSprings((session.world.spring_slot("+:0"),)))
     session.submit(AddParticle((2.0, 1.0)))
     session.apply_pending()
-    assert session.messages == []
+    assert not session.messages
     assert session.world.particle_names[-1] == "+.1"
 
 
@@ -220,7 +223,7 @@ def test_redo_belongs_to_the_end_of_the_run(session):
     assert not session.can_redo
     session.redo()
     session.apply_pending()
-    assert session.messages == ["redo works at the end of the run: go to tick 150 first"]
+    assert session.refusals == ["redo works at the end of the run: go to tick 150 first"]
     assert session.tick == 10
     session.seek(150)
     session.redo()
@@ -256,6 +259,69 @@ def test_a_command_in_the_past_starts_a_new_future(session):
     assert session.world.inverse_mass[4] > 0.0
 
 
+def test_names_stand_for_slots_in_every_command_that_has_some():
+    named, slots = Session(rope_level()), Session(rope_level())
+    for session, particle, springs in ((named, "rope.7", ("rope:2", 3)), (slots, 7, (2, 3))):
+        session.submit(Pin(particle))
+        session.submit(CutSprings(springs))
+        advance(session, 5)
+        session.do(Grab(0, "rope.end" if session is named else session.world.particle_slot("rope.end"), (1.0, 1.0)))
+        advance(session, 5)
+        assert not session.messages
+    assert state_hash(named.world) == state_hash(slots.world)
+    assert [entry.command for entry in named.history.log] == [entry.command for entry in slots.history.log]
+
+
+def test_do_applies_at_once_by_command_record_or_type_and_returns_what_was_done():
+    session = Session(rope_level())
+    session.submit(Pin(5))
+    assert session.do("pin", particle="rope.6") == Pin(6)
+    assert session.do({"type": "unpin", "particle": "rope.5"}) == Unpin(5)
+    assert session.do("grab", grab=0, particle="rope.7", target=session.world.position[7]).particle == 7
+    assert session.do(Release(0), 9) == Release(0)
+    assert session.world.inverse_mass[5] > 0.0 == session.world.inverse_mass[6]
+    session.undo()
+    session.apply_pending()
+    assert not session.messages
+
+
+@pytest.mark.parametrize(
+    ("given", "fields", "message"),
+    [
+        (Pin("rpoe.3"), {}, 'there is no particle "rpoe.3"; did you mean "rope.3"?'),
+        ("pin", {"particle": "rpoe.3"}, 'there is no particle "rpoe.3"; did you mean "rope.3"?'),
+        ("pin", {"particle": "rope.3", "at": 1}, "pin: at: there is no such field"),
+        ("grab", {"grab": 0, "particle": "rope.3", "target": object()}, "grab: object is no value of a command"),
+        (SetDrive("nobody", 1.0), {}, 'there is no driven part "nobody"'),
+        ({"type": 3}, {}, "a command is an object with its type in quotes"),
+    ],
+)
+def test_do_raises_at_once_what_submit_leaves_as_a_refusal(given, fields, message):
+    session = Session(rope_level())
+    before = state_hash(session.world)
+    with pytest.raises(CommandError) as refused:
+        session.do(given, **fields)
+    assert str(refused.value) == message and not session.messages
+    assert state_hash(session.world) == before and not session.can_undo
+
+
+def test_what_is_no_command_or_no_level_is_refused_where_it_is_given():
+    session = Session(rope_level())
+    with pytest.raises(TypeError, match=r"submit takes a command, such as Grab\(...\), not 'grab'"):
+        session.submit("grab")
+    with pytest.raises(TypeError, match="a Session is of a Level, not of 'rope'; load_level reads"):
+        Session("rope")
+
+
+def test_refusals_and_events_are_told_apart():
+    session = Session(busy_level())
+    session.submit(Pin(10**6))
+    advance(session, 240)
+    assert session.refusals == ["there is no particle 1000000"]
+    assert session.events and all(line.endswith(" broke") for line in session.events)
+    assert session.messages == (*session.refusals, *session.events)
+
+
 @pytest.mark.parametrize(
     ("command", "message"),
     [
@@ -264,7 +330,8 @@ def test_a_command_in_the_past_starts_a_new_future(session):
         (Grab(10, 3, (0.0, 0.0)), "grab: must be less than 10"),
         (Grab(0, 3, (float("nan"), 0.0)), "target.0: must be a finite number"),
         (Grab(0, 3, (2e6, 0.0)), "target.0: must be less than or equal to 1000000"),
-        (Grab(0, "rope.3", (0.0, 0.0)), "particle: must be a valid integer"),
+        (Grab(0, "rpoe.3", (0.0, 0.0)), 'there is no particle "rpoe.3"; did you mean "rope.3"?'),
+        (Grab(0, 3.0, (0.0, 0.0)), "particle: must be a valid integer"),
         (Grab(0, 3, (0.0, 0.0), 0.0), "strength: must be greater than 0"),
         (Grab(0, 3, (0.0, 0.0), 1e7), "strength: must be less than or equal to 1000000"),
         (Grab(0, 3, (0.0, 0.0), 30.0, -1.0), "radius: must be greater than or equal to 0"),
@@ -435,7 +502,7 @@ def test_what_redo_comes_back_to_has_the_breaks_and_the_effects_that_it_had(sess
     _advance(session, 2)
     session.redo()
     session.apply_pending()
-    assert session.messages == ["nothing to redo"]
+    assert session.refusals == ["nothing to redo"]
     assert session.world.inverse_mass[[3, -1]].tolist() == [0.0, 0.0]
 
 

@@ -41,7 +41,7 @@ def replay(tmp_path_factory):
             session.submit(MoveGrab(0, (2.0 + 0.001 * tick, 1.0)), hand)
         session.advance()
     session.stop_recording()
-    assert session.messages == []
+    assert not session.messages
     return read_replay(path)
 
 

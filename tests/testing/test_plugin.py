@@ -96,11 +96,54 @@ def test_recordings_and_the_checks_of_levels_are_tests(project):
     assert [name for file, name in names if file == "levels/rope.json"] == ["is valid", "the end stays up"]
 
 
-def test_in_another_project_nothing_is_taken_that_does_not_say_it_is_a_level(project):
-    (project.path / "levels" / "package.json").write_text('{"name": "x", "checks": [{"name": "y"}]}')
-    (project.path / "levels" / "broken.json").write_text("{")
+def test_what_says_that_it_is_something_else_is_left_alone_also_where_levels_lie(project):
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "level"}
+    (project.path / "levels" / "level.schema.json").write_text(json.dumps(schema))
+    (project.path / "levels" / "map.json").write_text('{"type": "map", "layers": []}')
     project("levels").assert_outcomes(passed=2)
     project("levels/foreign.json", "-q").assert_outcomes()
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("{", "line 1, column 2: not JSON: the file ends inside the level"),
+        ("", "is empty; a level is a JSON object {...}"),
+        ("[1]", "a level is an object {...}; this is a list"),
+        ('{"format": "spring-sandbox/levle"}', 'format: "spring-sandbox/levle" is not "spring-sandbox/level"'),
+        ('{"format": "Spring Sandbox/level "}', 'format: "Spring Sandbox/level " is not "spring-sandbox/level"'),
+        ('{"fromat": "spring-sandbox/level"}', 'fromat: unknown key; did you mean "format"?'),
+        ('{"name": "x"}', "format: is missing"),
+    ],
+)
+def test_a_level_that_is_cut_off_empty_or_misspelt_fails_where_levels_lie_and_where_it_is_named(project, text, told):
+    (project.path / "levels" / "rope.json").write_text(text)
+    for arguments in (["levels"], ["levels/rope.json"]):
+        result = project(*arguments)
+        result.assert_outcomes(failed=1)
+        assert f"rope.json: {told}" in result.stdout.str()
+
+
+def test_a_pattern_of_levels_that_fits_no_file_is_a_usage_error(project):
+    (project.path / "pytest.ini").write_text("[pytest]\nsandbox_levels = levels/*.json lvels/*.json\n")
+    result = project()
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    assert "sandbox_levels: 'lvels/*.json': there is no such file in" in result.stderr.str()
+
+
+def test_a_recording_runs_on_the_file_of_its_level_unless_its_own_copy_is_asked_for(project):
+    level = level_data(rope_level(checks=CHECKS[:1], settings={"gravity": [0.0, -1.6]}))
+    (project.path / "levels" / "rope.json").write_text(json.dumps(level))
+    (project.path / "levels" / "damaged.json").write_text("{")
+    result = project("one.replay.jsonl")
+    result.assert_outcomes(failed=1)
+    assert "one.replay.jsonl: diverged: tick 0: settings" in result.stdout.str()
+    project("one.replay.jsonl", "--replay-against=own").assert_outcomes(passed=1)
+    (project.path / "pytest.ini").write_text("[pytest]\nsandbox_against = own\n")
+    project("one.replay.jsonl").assert_outcomes(passed=1)
+    (project.path / "pytest.ini").unlink()
+    (project.path / "levels" / "rope.json").unlink()
+    project("one.replay.jsonl").assert_outcomes(passed=1)
 
 
 def test_a_damaged_level_a_failing_check_and_a_changed_byte_fail_in_a_line_each(project):
@@ -264,10 +307,14 @@ def test_a_test_in_python_drags_cuts_drives_and_measures(made, pytester):
                 run.do({"type": "pin", "particle": "nobody"})
             with pytest.raises(CommandError, match="there is no spring"):
                 run.cut("rope:2")
-            with pytest.raises(KeyError):
+            with pytest.raises(CommandError, match='no particle "rpoe.3"; did you mean "rope.3"'):
+                run.position("rpoe.3")
+            with pytest.raises(CommandError, match='no body with springs "nobody"'):
                 run.strain("nobody")
-            with pytest.raises(pytest.fail.Exception, match="did not come to hold"):
-                run.run_until(lambda run: False, within=0.05)
+            with pytest.raises(CommandError, match="seconds: must be greater than or equal to 0, not -1"):
+                run.run(-1)
+            with pytest.raises(CommandError, match="it is 1.5 s already"):
+                run.run_until(1.0)
 
         def test_break(sandbox_session):
             run = sandbox_session(WHEEL)

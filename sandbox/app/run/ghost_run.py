@@ -36,5 +36,6 @@ class GhostRun:
                     session.advance()
             except CommandError:
                 self._is_broken = True
-        session.messages.clear()
+        session.refusals.clear()
+        session.events.clear()
         self.state = session.snapshot() if session.tick == tick and not self._is_broken else None

@@ -433,10 +433,10 @@ class Playback:
 
     def _note_events(self) -> None:
         """Tell what broke, and what was stopped, in words for a person, in place of the session's."""
-        world, messages = self.session.world, self.session.messages
+        world, events = self.session.world, self.session.events
         # Of a past that is played again the session says nothing.
         said = {*break_lines(world), *map(str, world.contained)}
-        messages[:] = [line for line in messages if line not in said]
+        events[:] = [line for line in events if line not in said]
         self.breaks.note(world)
         self.stopped.note(world)
         if self.travel.target is None:
@@ -484,8 +484,7 @@ class Playback:
             self.messages.append(GIVEN_UP)
 
     def _drain(self) -> None:
-        self.messages.extend(self.session.messages)
-        self.session.messages.clear()
+        self.messages.extend(self.session.take_messages())
 
 
 def interpolated(previous: Snapshot, current: Snapshot, alpha: float) -> np.ndarray:

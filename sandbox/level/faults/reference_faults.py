@@ -47,7 +47,11 @@ def weld_reference_faults(level: Level, layout: Layout) -> Iterator[Fault]:
 def check_faults(level: Level, layout: Layout) -> Iterator[Fault]:
     """Faults of the acceptance checks."""
     keys = driving_keys(level) if any(check.hold for check in level.checks) else {}
+    names: set[str] = set()
     for index, check in enumerate(level.checks):
+        if check.name in names:
+            yield f"checks.{index}.name", f"{shown(check.name)} is taken; every check needs a name of its own"
+        names.add(check.name)
         yield from _check_faults(f"checks.{index}", check, layout)
         for number, hold in enumerate(check.hold):
             where = f"checks.{index}.hold.{number}"

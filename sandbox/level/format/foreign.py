@@ -39,6 +39,8 @@ def foreign_bytes(data: bytes) -> str | None:
 
 def foreign_keys(raw: dict[str, Any]) -> str | None:
     """The kind of an object without a "format" by its keys, in words; None if unknown."""
+    if "json-schema.org" in str(raw.get("$schema")):
+        return "a JSON Schema"
     if raw.get("type") == "map" or {"layers", "tilewidth"} <= raw.keys():
         return "a Tiled map (JSON)"
     if {"body", "gravity"} <= raw.keys() and isinstance(raw["body"], list):

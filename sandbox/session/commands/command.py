@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Hashable
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
@@ -21,7 +22,8 @@ class Command(ABC):
     """Something to do to a world. A command is a frozen dataclass of this base.
 
     Its fields are checked by their annotations, also where it was made without; a slot is annotated with the namespace
-    by whose names files call it (named.py), so that nothing else is needed to write and read it as JSON.
+    by whose names files call it (named.py), so that nothing else is needed to write and read it as JSON. A program may
+    give the name itself: Pin(particle="rope.5").
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(
@@ -61,8 +63,24 @@ def adapter(kind: type[Command]) -> TypeAdapter[Any]:
     return _adapters[kind]
 
 
-def apply(world: World, command: Command) -> None:
-    """Carry a command out. Raises CommandError and changes nothing where it cannot be."""
+def with_slots(world: World, command: Command) -> Command:
+    """The command with slots in place of the names that it was made with. Raises CommandError."""
+    found: dict[str, Any] = {}
+    for field, names in namespaces(type(command)).items():
+        value = getattr(command, field)
+        if isinstance(value, str):
+            found[field] = names.slot(world, value)
+        elif isinstance(value, tuple) and any(isinstance(each, str) for each in value):
+            found[field] = tuple(names.slot(world, each) if isinstance(each, str) else each for each in value)
+    return replace(command, **found) if found else command  # type: ignore[type-var]
+
+
+def apply(world: World, command: Command) -> Command:
+    """Carry a command out, and return it with slots in place of names.
+
+    Raises CommandError and changes nothing where it cannot be.
+    """
+    command = with_slots(world, command)
     try:
         adapter(type(command)).validate_python(command)
     except ValidationError as error:
@@ -75,3 +93,4 @@ def apply(world: World, command: Command) -> None:
         named = namespaces(type(command)).get(condition.field)
         raise CommandError(condition.words.format(named.names(world)[row] if named else row))
     command.carry_out(world)
+    return command

@@ -3,7 +3,7 @@
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_args, get_type_hints
 
 from pydantic import Field
 
@@ -74,17 +74,27 @@ def _materials(world: World) -> Sequence[str]:
 
 
 _Slot = Annotated[int, Field(ge=0)]
-_PARTICLE = Named(
+PARTICLES = Named(
     "particle", lambda world: world.particle_names, World.particle_slot, "particle", active="particle_active"
 )
-_SPRING = Named("spring", lambda world: world.spring_names, World.spring_slot, "spring", active="spring_active")
-ParticleSlot = Annotated[_Slot, _PARTICLE]
-SpringSlot = Annotated[_Slot, _SPRING]
-PartSlot = Annotated[_Slot, Named("driven part", _parts, _listed(_parts), "part")]
-BodySlot = Annotated[_Slot, Named("body that keeps an area", _bodies, _listed(_bodies))]
-FormSlot = Annotated[_Slot, Named("body whose form may be stiff", _forms, _listed(_forms))]
-KeySlot = Annotated[_Slot, Named("key that a rule asks for", _keys, _listed(_keys), "key")]
-MaterialSlot = Annotated[_Slot, Named("material", _materials, _listed(_materials), "material")]
+SPRINGS = Named("spring", lambda world: world.spring_names, World.spring_slot, "spring", active="spring_active")
+if TYPE_CHECKING:
+    # A slot, or until the command is carried out its name: no type says which of the two it is when.
+    ParticleSlot: TypeAlias = Any
+    SpringSlot: TypeAlias = Any
+    PartSlot: TypeAlias = Any
+    BodySlot: TypeAlias = Any
+    FormSlot: TypeAlias = Any
+    KeySlot: TypeAlias = Any
+    MaterialSlot: TypeAlias = Any
+else:
+    ParticleSlot = Annotated[_Slot, PARTICLES]
+    SpringSlot = Annotated[_Slot, SPRINGS]
+    PartSlot = Annotated[_Slot, Named("driven part", _parts, _listed(_parts), "part")]
+    BodySlot = Annotated[_Slot, Named("body that keeps an area", _bodies, _listed(_bodies))]
+    FormSlot = Annotated[_Slot, Named("body whose form may be stiff", _forms, _listed(_forms))]
+    KeySlot = Annotated[_Slot, Named("key that a rule asks for", _keys, _listed(_keys), "key")]
+    MaterialSlot = Annotated[_Slot, Named("material", _materials, _listed(_materials), "material")]
 
 
 def namespace(annotation: Any) -> Named | None:
@@ -105,5 +115,5 @@ def namespaces(kind: type) -> dict[str, Named]:
 
 def particle_of(world: World, slot: int) -> str:
     """The name of a particle that a command may work on. Raises CommandError."""
-    _PARTICLE.check(world, slot)
+    PARTICLES.check(world, slot)
     return world.particle_names[slot]

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
+import numpy as np
 from pydantic import ValidationError
 
 from sandbox.level.format.level_error import shown
@@ -55,10 +56,17 @@ def from_record(record: Any, world: World) -> Command:
             values[field] = names.slot(world, values[field])
     try:
         # JSON mode: lists stand for tuples and whole numbers for floats, and nothing else is converted.
-        return adapter(kind).validate_json(json.dumps(values), strict=True)
+        return adapter(kind).validate_json(json.dumps(values, default=_plain), strict=True)
     except (ValidationError, ValueError) as error:
         text = plain_fault(error, namespaces(kind)) if isinstance(error, ValidationError) else str(error)
         raise CommandError(f"{type_name}: {text}") from None
+
+
+def _plain(value: Any) -> Any:
+    """What numpy has, as JSON has it."""
+    if not isinstance(value, np.ndarray | np.generic):
+        raise CommandError(f"{type(value).__name__} is no value of a command")
+    return value.tolist()
 
 
 class Applied(Protocol):

@@ -125,8 +125,8 @@ class _Gathered:
     end_hash: str | None = None
     # Most arrays stay as they are from tick to tick: each text is kept once, which halves the memory of a long replay.
     texts: dict[str, str] = field(default_factory=dict)
-    # Hashes by array after the last tick line, and arrays by name in the last stored state.
-    _hashes_now: dict[str, str] = field(default_factory=dict)
+    # Hashes by array after the last tick line, "" for none, and arrays by name in the last stored state.
+    _hashes_now: dict[str, str] = field(default_factory=lambda: dict.fromkeys(BY_STORED, ""))
     _state_now: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -156,14 +156,17 @@ class _Gathered:
             self.end_hash = line.hash
 
     def _add_hashes(self, line: "TickLine", where: str) -> None:
-        before = {} if self.version == 1 else self._hashes_now
-        now = {name: digest for name, digest in {**before, **line.arrays}.items() if digest is not None}
-        if not self.retold and not ALWAYS_STORED <= now.keys() <= BY_STORED.keys():
+        # A tick line tells of the few arrays that changed: only these are looked at.
+        if self.version == 1:
+            self._hashes_now = dict.fromkeys(BY_STORED, "")
+        now = self._hashes_now
+        now.update({name: self._once(digest or "") for name, digest in line.arrays.items()})
+        is_known = len(now) == len(BY_STORED)
+        if not self.retold and not (is_known and all(map(now.__getitem__, ALWAYS_STORED))):
             raise OtherPhysicsError(
                 f"{where}: arrays: recorded by a version whose state has other arrays; record the run again"
             )
-        self._hashes_now = now
-        self.hashes.append(TickHashes(line.hash, tuple(self._once(now.get(name, "")) for name in BY_STORED)))
+        self.hashes.append(TickHashes(line.hash, tuple(now.values())[: len(BY_STORED)]))
 
     def _once(self, text: str) -> str:
         """The text itself, or the equal one that is kept already."""

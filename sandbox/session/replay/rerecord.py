@@ -30,7 +30,7 @@ def record_again(replay: Replay, level: Level, path: Path) -> None:
         session.abandon_recording()
         raise ReplayError(*(f"{replay.source}: {fault}" for fault in error.faults)) from None
     if session.stop_recording() is None:
-        raise OSError(0, "; ".join(session.messages), str(path))
+        raise OSError(0, "; ".join(session.refusals), str(path))
 
 
 def with_settings(level: Level, settings: Mapping[str, Any], source: str) -> Level:

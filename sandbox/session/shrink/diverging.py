@@ -57,7 +57,7 @@ class _PairWatch(FailureWatch):
                 carried_out(self._other, ScriptLine(entry.tick, entry.gesture, record, 0))
         self._done = len(log)
         self._other.advance()
-        self._other.messages.clear()
+        self._other.take_messages()
 
     def after(self) -> FailureSeen | None:
         if self._failure.apart is not None:

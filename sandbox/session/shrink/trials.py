@@ -82,7 +82,7 @@ class Trials:
                     done.append(line)
             watch.before()
             session.advance()
-            session.messages.clear()
+            session.take_messages()
             seen = watch.after()
             if seen is not None:
                 return seen
@@ -109,11 +109,11 @@ class Trials:
 
 def carried_out(session: Session, line: ScriptLine) -> bool:
     """Carry a command out before the next tick; whether that was possible."""
-    told = len(session.messages)
+    told = len(session.refusals)
     try:
         command = from_record(line.record, session.world)
     except CommandError:
         return False
     session.submit(command, line.gesture)
     session.apply_pending()
-    return len(session.messages) == told
+    return len(session.refusals) == told

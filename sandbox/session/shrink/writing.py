@@ -31,7 +31,7 @@ def write_recording(play: Play, level: Level, path: Path) -> None:
     except Exception:
         # The crash is what is recorded.
         pass
-    session.messages.clear()
+    session.take_messages()
     if session.stop_recording() is None:
         raise OSError(0, "; ".join(session.messages), str(path))
 

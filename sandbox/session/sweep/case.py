@@ -75,8 +75,8 @@ def _set_coefficients(session: Session, values: dict[str, Value], material: str 
     number = None if material is None else names.index(material)
     session.submit(SetCoefficients(stiffness=cs, damping=cd, material=number))
     session.apply_pending()
-    if session.messages:
-        raise SweepError(session.messages[0])
+    if session.refusals:
+        raise SweepError(session.refusals[0])
 
 
 def _fastest(world: World) -> float:
