@@ -43,9 +43,10 @@ export class Run {
    * @type {(record: Command, gesture: number) => void} */
   command(record, gesture) {
     this.takeUp(gesture);
-    const fault = this.world.commands.faultIn(this.world, record);
+    const { commands } = this.world;
+    const fault = commands.refusalOf(this.world, record) ?? commands.faultIn(this.world, record);
     if (fault) throw new Refusal(fault);
-    this.world.command(record);
+    this.world.commandByHand(record);
     this.commands.push({ tick: this.time, gesture, record });
     this.next = this.commands.length;
     this.last = this.time;

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
+from sandbox.level.assembly.by_hand import refusal_of, spend
 from sandbox.physics.world import World
 from sandbox.session.commands.conditions import Condition, faults_of
 from sandbox.session.commands.faults import CommandError as CommandError
@@ -62,7 +63,16 @@ def adapter(kind: type[Command]) -> TypeAdapter[Any]:
 
 
 def apply(world: World, command: Command) -> None:
-    """Carry a command out. Raises CommandError and changes nothing where it cannot be."""
+    """Carry out a command that hands give. Raises CommandError and changes nothing where it cannot be."""
+    refusal = refusal_of(world, command)
+    if refusal:
+        raise CommandError(refusal)
+    act(world, command)
+    spend(world, command)
+
+
+def act(world: World, command: Command) -> None:
+    """Carry out a command, whatever hands may do. Raises CommandError and changes nothing where it cannot be."""
     try:
         adapter(type(command)).validate_python(command)
     except ValidationError as error:
