@@ -20,6 +20,7 @@ from sandbox.physics.command import KINDS
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step
 from sandbox.physics.world import World
+from sandbox.session.commands.command import not_for_hands
 from tests.page.in_node import NODE, tried_in_node
 
 LEVEL = "suspension_car"
@@ -233,7 +234,12 @@ def test_a_page_takes_and_refuses_what_the_desktop_does_in_its_words(records, tm
 @needs_node
 @pytest.mark.parametrize(
     "hands",
-    [{"may": ["pin", "cut"]}, {"at_most": {"grab": 1, "pin": 1, "cut": 2}}, {"may": ["grab"], "at_most": {"grab": 2}}],
+    [
+        {"may": ["pin", "cut"]},
+        {"at_most": {"grab": 1, "pin": 1, "cut": 2}},
+        {"may": ["grab"], "at_most": {"grab": 2}},
+        {"bodies": ["front wheel"]},
+    ],
 )
 def test_a_page_refuses_what_the_level_does_not_let_hands_do(hands, tmp_path):
     def limited():
@@ -242,7 +248,8 @@ def test_a_page_refuses_what_the_level_does_not_let_hands_do(hands, tmp_path):
 
     world = limited()
     # Before, of all that counts something is done, where it may be.
-    before = [each for each in names_in(BEFORE, world) if not world.source.hands.refusal(each["type"])]
+    allowed = [each for each in names_in(BEFORE, world) if not not_for_hands(world, from_record(each, world))]
+    before = [] if "bodies" in hands else allowed
     tried = names_in([{"type": kind, **fields} for kind, fields in GOOD.items()], world)
     pages, desktop = tried_in_node(tmp_path, world, before, tried), tried_on_the_desktop(limited(), before, tried)
     assert [(page["words"], page["hash"]) for page in pages] == desktop

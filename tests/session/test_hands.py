@@ -105,8 +105,16 @@ def test_a_recording_holds_what_is_left_and_is_the_same_run(tmp_path):
     assert state_hash(other.world) != state_hash(session.world)
 
 
+def test_hands_touch_only_the_bodies_that_a_level_lists_and_what_they_add():
+    session = Session(level(bodies=["ball"]))
+    ball, start = session.world.particle_slot("ball"), session.world.particle_slot("rope.1")
+    assert said(session, Pin(ball), AddParticle((0.0, 0.0))) == []
+    assert said(session, Pin(session.world.particle_slot("+.0"))) == []
+    assert said(session, Pin(start), CutSprings((1,))) == ['in this level hands may not touch "rope"'] * 2
+
+
 def test_a_level_keeps_its_hands_when_it_is_written():
-    given = level(may=["add", "grab"], at_most={"add": 3})
+    given = level(may=["add", "grab"], bodies=["ball"], at_most={"add": 3})
     assert parse_level(level_text(given).encode(), "again") == given
 
 
@@ -119,6 +127,8 @@ def test_faults_of_hands_say_where_and_what_to_do():
     ]
     with pytest.raises(LevelError, match=r"hands\.may\.0"):
         level(may=["graab"])
+    with pytest.raises(LevelError, match=r'hands\.bodies\.0: there is no body or particle "bal"; did you mean "ball"'):
+        level(bodies=["bal"])
 
 
 def test_every_word_stands_for_commands_and_every_command_but_keys_and_history_has_one():

@@ -3,7 +3,7 @@
 from typing import Any
 
 from sandbox.level.document.model import Level
-from sandbox.level.rules.hands import MEANINGS, HandsDef
+from sandbox.level.rules.hands import MEANINGS, UNTOUCHED, HandsDef
 from sandbox.physics.world import World
 
 
@@ -46,10 +46,12 @@ def by_hand(world: World, types: list[str]) -> dict[str, Any]:
     """The same for pages: of types of commands why they are refused, and rows and words of their budgets."""
     hands = hands_of(world)
     if hands is None:
-        return {"refused": {}, "budgets": {}}
+        return {"refused": {}, "budgets": {}, "bodies": None, "untouched": UNTOUCHED}
     needing = [(kind, hands.budget_of(kind)) for kind in types]
     count = len(world.counter)
     return {
         "refused": {kind: hands.refusal(kind) for kind in types if hands.refusal(kind)},
         "budgets": {kind: [hands.row(deed, count), hands.exhausted(deed)] for kind, deed in needing if deed},
+        "bodies": hands.bodies,
+        "untouched": UNTOUCHED,
     }

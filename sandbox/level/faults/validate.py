@@ -74,7 +74,7 @@ def _all_faults(level: Level, plan: Plan) -> Iterator[Fault]:
     yield from actuator_faults(level)
     yield from weld_reference_faults(level, layout)
     yield from rule_faults(level, layout)
-    yield from hand_faults(level.hands)
+    yield from hand_faults(level.hands, layout.owners)
     yield from check_faults(level, layout)
     yield from look_faults(level)
     yield from extras_faults(level)

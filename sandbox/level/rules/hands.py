@@ -1,12 +1,12 @@
 """What hands may do in a level, and how often: by words, each of which stands for commands."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Annotated, Literal, NamedTuple, get_args
 
 from pydantic import Field
 
-from sandbox.level.format.level_error import Fault, shown
-from sandbox.level.format.quantities import Description, empty
+from sandbox.level.format.level_error import Fault, shown, suggestion
+from sandbox.level.format.quantities import Description, Name, empty
 
 Deed = Literal[
     "grab", "pin", "cut", "add", "remove", "move", "push", "shake", "firmness", "material", "inflation", "air", "solver"
@@ -69,6 +69,11 @@ class HandsDef(Description):
     may: Annotated[tuple[Deed, ...], Field(max_length=len(DEEDS))] | None = Field(
         default=None, description="What they may do.", json_schema_extra=empty("everything")
     )
+    bodies: Annotated[tuple[Name, ...], Field(max_length=MOST)] | None = Field(
+        default=None,
+        description="Bodies and loose particles that they may do it to, beside what hands add.",
+        json_schema_extra=empty("all"),
+    )
     at_most: BudgetDef = Field(default=BudgetDef(), description="How often they may do it.")
 
     def refusal(self, kind: str) -> str:
@@ -77,6 +82,11 @@ class HandsDef(Description):
             if kind in meaning.commands and self.may is not None and deed not in self.may:
                 return f"in this level hands may not {meaning.words}"
         return ""
+
+    def untouched(self, name: str) -> str:
+        """The thing that a particle, spring or body of that name belongs to, where hands may not touch it."""
+        thing = name.partition(":")[0].partition(".")[0]
+        return "" if self.bodies is None or thing in self.bodies or name.startswith("+") else thing or name
 
     def allows(self, deed: str) -> bool:
         """Whether hands may do that."""
@@ -100,14 +110,24 @@ class HandsDef(Description):
         return f"not enough {MEANINGS[deed].left.lower()} left: this level allows {self.budgets[deed]}"
 
 
-def hand_faults(hands: HandsDef | None) -> Iterator[Fault]:
-    """Faults of what is listed twice, and of budgets of what hands may not do."""
+UNTOUCHED = "in this level hands may not touch {}"
+
+
+def hand_faults(hands: HandsDef | None, things: Collection[str]) -> Iterator[Fault]:
+    """Faults of what is listed twice or is not there, and of budgets of what hands may not do.
+
+    things: the names of bodies and loose particles.
+    """
     if hands is None:
         return
     may = hands.may or ()
     for k, twice in enumerate(may):
         if twice in may[:k]:
             yield f"hands.may.{k}", f"{shown(twice)} is listed twice"
+    for k, name in enumerate(hands.bodies or ()):
+        if name not in things:
+            found = f"there is no body or particle {shown(name)}{suggestion(name, things)}"
+            yield f"hands.bodies.{k}", found
     for deed in hands.budgets:
         if not hands.allows(deed):
             yield f"hands.at_most.{deed}", f"hands may not do that here; add {shown(deed)} to may, or take this out"

@@ -158,7 +158,17 @@ export class Commands {
   refusalOf(world, record) {
     const refusal = this.#about.byHand.refused[record.type], needs = this.needs(record);
     if (refusal) return refusal;
-    return needs && world.view('state.counter')[needs[0]] < needs[1] ? needs[2] : null;
+    if (needs && world.view('state.counter')[needs[0]] < needs[1]) return needs[2];
+    const { byHand: { bodies, untouched }, names } = this.#about;
+    const fields = /** @type {Record<string, number | number[] | undefined>} */ ({ ...record, type: undefined });
+    for (const [field, { names: kind }] of bodies ? this.#named(record.type) : []) {
+      if (kind !== 'particle' && kind !== 'spring') continue;
+      for (const slot of [fields[field] ?? []].flat()) {
+        const name = names[kind][slot], thing = name.split(':')[0].split('.')[0];
+        if (!bodies?.includes(thing) && !name.startsWith('+')) return fill(untouched, shown(thing || name));
+      }
+    }
+    return null;
   }
 
   /** What of a world does not let a record with slots be carried out, in words; null: nothing.
