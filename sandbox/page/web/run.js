@@ -22,6 +22,8 @@ export class Run {
     // The command that comes next; how often what would come later was forgotten.
     this.next = 0;
     this.revision = 0;
+    // Why the last command was refused that was, in words.
+    this.refused = '';
     this.gesture = commands.reduce((most, each) => Math.max(most, each.gesture), 0);
     this.#follow();
   }
@@ -59,6 +61,7 @@ export class Run {
       this.command(record, gesture);
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
+      this.refused = error.message;
       return false;
     }
     return true;
