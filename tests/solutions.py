@@ -11,10 +11,12 @@ from typing import Any
 
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.analysis.query import grip_radius
+from sandbox.session.commands import AddBody
 from sandbox.session.commands.records import from_record
 from sandbox.session.outcome import outcome, outcome_text
 from sandbox.session.session import Session
 from sandbox.session.solution import solution_of
+from sandbox.tools.parts import PARTS
 
 # Records of commands, each with its time [s], that are one gesture.
 Gesture = list[tuple[float, dict[str, Any]]]
@@ -38,6 +40,18 @@ def drag(particle: str, *path: tuple[float, float, float], strength: float = 100
 def drive(part: str, value: float, start: float, end: float) -> Gesture:
     """Hold the key of a motor or a hydraulic."""
     return [(time, {"type": "set_drive", "part": part, "value": one}) for time, one in ((start, value), (end, 0.0))]
+
+
+def ahead(*spans: tuple[float, float]) -> list[Gesture]:
+    """Hold the key that drives both wheels of a truck, from one time to another, each time."""
+    return [drive(f"{wheel} wheel", 1.0, *span) for span in spans for wheel in ("rear", "front")]
+
+
+def box(time: float, x: float, y: float, size: float) -> Gesture:
+    """Drop a box of the strip of parts."""
+    part = PARTS["box"].make(size, (x, y), (0.0, 0.0), "")
+    assert isinstance(part, AddBody)
+    return [(time, {"type": "add_body", "body": part.body})]
 
 
 def press(key: str, start: float, end: float) -> Gesture:
@@ -77,6 +91,26 @@ SOLUTIONS: dict[str, list[Gesture]] = {
         drag("boat.21", (13.0, -2.7, 0.5), (21.0, 2.6, 0.5), (21.5, 2.6, 0.5)),
         lift("crate 1.4", 22.0, 3.4, 9.2), lift("crate 2.4", 26.0, 2.3, 7.9), lift("crate 3.4", 30.0, 1.2, 6.5),
     ],
+    # The word is jelly.
+    "egg_drop": [firmness(1.0, "cushion", 1.279), press("d", 3.5, 3.7)],
+    "low_door": [material(1.0, "deck", stiffness=0.25), *ahead((3.0, 11.0))],
+    "catapult_practice": [material(1.0, "thread", stiffness=0.16), drive(":0", 1.0, 3.0, 5.0)],
+    "bridge_budget": [
+        box(1.0, -2.05, 0.8, 1.772), box(2.5, 2.05, 0.8, 1.772), box(4.0, 0.0, 0.8, 1.772), *ahead((7.0, 14.0)),
+    ],
+    # Slowly over the crests.
+    "truck_course": ahead((0.3, 1.65), (2.25, 3.75), (4.8, 7.05), (7.95, 13.2)),
+    # Up, over the wall, down once it hardly swings, and let go.
+    "crane": [
+        drive(":1", -1.0, 1.0, 5.0), drive(":0", -1.0, 4.0, 6.6), drive(":1", 1.0, 9.2, 10.5), press("c", 12.5, 12.7),
+    ],
+    "pinball_score": [
+        drive("right flipper", 1.0, 6.383, 6.617), drive("right flipper", 1.0, 6.667, 6.917),
+        drive("left flipper", 1.0, 6.883, 7.083), drive("left flipper", 1.0, 12.817, 13.033),
+        drive("left flipper", 1.0, 13.067, 13.333), drive("left flipper", 1.0, 14.283, 14.5),
+        drive("left flipper", 1.0, 15.45, 15.667), drive("right flipper", 1.0, 15.533, 15.783),
+        drive("left flipper", 1.0, 16.2, 16.4),
+    ],
 }  # fmt: skip
 
 
@@ -106,9 +140,11 @@ def record(path: Path, gestures: list[Gesture]) -> str:
     play(session, gestures)
     session.stop_recording()
     found = outcome(session.level, session.world)
-    if session.messages or found is None or not found.is_won:
+    # That a spring breaks is no fault.
+    faults = [line for line in session.messages if not line.endswith(" broke")]
+    if faults or found is None or not found.is_won:
         part.unlink()
-        raise ValueError(f"{path.stem}: not won: {[found and found.text, *session.messages]}")
+        raise ValueError(f"{path.stem}: not won: {[found and found.text, *faults]}")
     part.replace(solution_of(path))
     return outcome_text(found, session.level.settings.tick_rate)
 

@@ -102,6 +102,7 @@ def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
             welds=(),
             counters=(),
             rules=(),
+            hands=None,
             checks=(),
             terrain=(),
             zones=(),
@@ -111,7 +112,9 @@ def check_bodies(level: Level, bodies: Iterable[AnyBody]) -> None:
 
 def check_terrain(level: Level) -> None:
     """Raise EditError where the terrain and zones of a level, were they alone, could not be saved."""
-    checked(replaced(level, bodies=(), particles=(), springs=(), welds=(), counters=(), rules=(), checks=()))
+    checked(
+        replaced(level, bodies=(), particles=(), springs=(), welds=(), counters=(), rules=(), hands=None, checks=())
+    )
 
 
 def check_places(bodies: Iterable[AnyBody]) -> None:

@@ -93,7 +93,12 @@ def _sections(models: dict[str, Model], whole: Model) -> Iterator[str]:
     yield from map(table, ("Loose particle", "Loose spring"))
     yield "## Actuators\n"
     yield from (*map(table, ("Muscle", "Hydraulic", "Motor")), prose.ACTUATORS)
-    yield from (prose.RULES, *map(table, ("Rule", "Question", "Action", "Stars", "Counter")))
+    yield from (
+        prose.RULES,
+        *map(table, ("Rule", "Question", "Action", "Stars", "Counter")),
+        prose.HANDS,
+        *map(table, ("Hands", "Budget")),
+    )
     yield from (prose.CHECKS, table("Acceptance check"), table("Key that is held"), prose.METRICS)
     yield from (prose.LOOKS, *map(table, ("Level look", "Body look", "Particle look", "Zone look")))
     yield from (prose.NAMES, prose.COLLISIONS, prose.AREAS, prose.FIRMNESS, prose.LIMITS, _faults(), _index(models))

@@ -3,6 +3,7 @@
 from sandbox.level.checks import STILL
 from sandbox.level.format import limits
 from sandbox.level.kinds.bodies import EXPANSIONS
+from sandbox.level.rules.hands import MEANINGS
 
 EXAMPLE = """\
 {
@@ -289,6 +290,27 @@ spring that broke, does nothing. [How to make a level that answers](how-to-rules
 {"id": "gate", "when": {"all": [{"key": "g"}, {"counter": "score", "at_least": 100}]}, "then": [{"cut": "bar"}]}
 ```
 """
+
+HANDS = """\
+## What hands may do
+
+Who plays a level may do everything to it, unless `hands` says less. A level of softness allows `firmness` alone; one to
+build in allows `add`, and says how many parts there are:
+
+```text
+"hands": {"may": ["firmness"]}
+"hands": {"may": ["add", "grab"], "at_most": {"add": 4}}
+```
+
+The window, scripts, recordings and pages refuse all else, in one line. What hands have left is a counter of the level,
+so it is part of the state. A part that is taken out again counts all the same; undo gives it back. Each word stands for
+[commands](commands.md):
+
+| word | commands |
+|---|---|
+""" + "".join(
+    f"| `{deed}` | {', '.join(f'`{kind}`' for kind in meaning.commands)} |\n" for deed, meaning in MEANINGS.items()
+)
 
 CHECKS = """\
 ## Checks

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from sandbox.level.assembly.by_hand import by_hand
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
 from sandbox.level.rules.rule import RuleDef
@@ -47,6 +48,7 @@ def about(world: World, words: int) -> dict[str, Any]:
         "kinds": {name: kind._asdict() for name, kind in command.KINDS.items()},
         "badSlot": command.BAD_SLOT,
         **table_of(set(filter(is_done_by_pages, COMMAND_TYPES))),
+        "byHand": by_hand(world, list(COMMAND_TYPES)),
         "solvers": SOLVER_NAMES,
         "hands": {"particle": world.grab_particle, "spring": world.grab_spring, "count": GRAB_COUNT},
         "area": AREA,

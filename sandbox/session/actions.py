@@ -14,7 +14,7 @@ from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.firmness import Firmness, FirmnessRange, give_firmness
 from sandbox.physics.keeping.forms import FirmBody
 from sandbox.physics.world import World
-from sandbox.session.commands import CommandError, apply
+from sandbox.session.commands import CommandError, act
 from sandbox.session.commands.records import from_record
 from sandbox.session.outcome import stars_of
 
@@ -48,7 +48,7 @@ class RuleActions:
                 record = record_of(action, world, self._level.settings.tick_rate)
                 with suppress(CommandError):
                     if record is not None:
-                        apply(world, from_record(record, world))
+                        act(world, from_record(record, world))
 
 
 def sags_of(level: Level, world: World) -> dict[tuple[str, float], tuple[FirmBody, float, float]]:

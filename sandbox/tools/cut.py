@@ -54,4 +54,4 @@ class CutTool(PlacedTool):
         return Response((Submission(CutSprings(fresh), self._gesture),))
 
 
-CUT = PlayTool("cut", ("C", "3"), "Cut tool: a stroke cuts what it crosses", "Tools", CutTool)
+CUT = PlayTool("cut", ("C", "3"), "Cut tool: a stroke cuts what it crosses", "Tools", CutTool, "cut")

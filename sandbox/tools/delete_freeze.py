@@ -34,5 +34,5 @@ class FreezeTool(ClickTool):
         return [Pin(slot) for slot in free] or [Unpin(slot) for slot in body.tolist()]
 
 
-DELETE = PlayTool("delete", ("X",), "Delete: click takes a thing out", "Parts", DeleteTool)
-FREEZE = PlayTool("freeze", ("I",), "Freeze or thaw a body", "Parts", FreezeTool)
+DELETE = PlayTool("delete", ("X",), "Delete: click takes a thing out", "Parts", DeleteTool, "remove")
+FREEZE = PlayTool("freeze", ("I",), "Freeze or thaw a body", "Parts", FreezeTool, "pin")

@@ -167,4 +167,4 @@ def _beside(snapshot: Snapshot, particle: int, event: PointerEvent) -> Point:
     return (0.0, 0.0) if dx * dx + dy * dy <= near * near else (dx, dy)
 
 
-DRAG = PlayTool("drag", ("D", "1"), "Drag tool: hold and move particles", "Tools", DragTool)
+DRAG = PlayTool("drag", ("D", "1"), "Drag tool: hold and move particles", "Tools", DragTool, "grab")

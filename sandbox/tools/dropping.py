@@ -200,5 +200,5 @@ _LINES = {
     "rope": ("7", "Rope"), "balloon": ("8", "Balloon"), "cart": ("9", "Cart: Q and W drive it"),
 }  # fmt: skip
 DROPS = tuple(
-    PlayTool(part, (_LINES[part][0],), _LINES[part][1], "Parts", partial(DropTool, part=part)) for part in PARTS
+    PlayTool(part, (_LINES[part][0],), _LINES[part][1], "Parts", partial(DropTool, part=part), "add") for part in PARTS
 )

@@ -14,4 +14,4 @@ class PinTool(ClickTool):
         return [Pin(particle) if snapshot.inverse_mass[particle] > 0.0 else Unpin(particle)]
 
 
-PIN = PlayTool("pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools", PinTool)
+PIN = PlayTool("pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools", PinTool, "pin")

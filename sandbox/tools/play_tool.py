@@ -16,6 +16,7 @@ class PlayTool:
 
     make: the tool, for a function that gives the number of a new gesture. Its icon is the file of its name in
     assets/icons, unless the strip has a picture of its own for it.
+    deed: what hands do with it, which a level may keep away.
     """
 
     name: str
@@ -23,6 +24,7 @@ class PlayTool:
     label: str
     group: Group
     make: Callable[[Callable[[], int]], Tool]
+    deed: str = ""
 
     @property
     def action(self) -> str:

@@ -121,5 +121,5 @@ class WindTool(PlacedTool):
         return NOTHING if gesture is None else Response((Submission(self._before, gesture),))
 
 
-PUSH = PlayTool("push", ("0",), "Push: click bursts, drag pushes", "Parts", PushTool)
-WIND = PlayTool("wind", ("V",), "Wind: it blows along a drag", "Parts", WindTool)
+PUSH = PlayTool("push", ("0",), "Push: click bursts, drag pushes", "Parts", PushTool, "push")
+WIND = PlayTool("wind", ("V",), "Wind: it blows along a drag", "Parts", WindTool, "air")

@@ -6,6 +6,7 @@ import pytest
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.draw.part_pictures import PartGhost
+from sandbox.app.play.goals.score import chips_of
 from sandbox.app.play.palette import MORE, NAMES
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.physics.pipeline.block_owner import block_of
@@ -13,6 +14,7 @@ from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
 from sandbox.tools.parts import PARTS
 from sandbox.tools.tool import DropPicture
+from tests.app.conftest import small_level
 from tests.support.parts import furnished
 
 KEYS = dict(zip(NAMES, "4567890vxi", strict=True))
@@ -227,3 +229,24 @@ def test_what_has_no_room_beside_panel_and_graphs_is_in_a_menu(player):
     player.click_widget(palette.buttons[MORE])
     player.choose(tip_of("tool_delete", "play"))
     assert player.stage.tool_name == "delete" and palette.buttons[MORE].is_selected
+
+
+def test_tools_that_a_level_keeps_away_are_greyed_and_parts_that_are_left_are_counted(open_app):
+    level = small_level(hands={"may": ["add", "cut"], "at_most": {"add": 2}})
+    driver = open_app(level)
+    driver.key(pygame.K_b)
+    play = driver.app.play
+    greyed = {name for name, button in play.palette.buttons.items() if not button.is_enabled}
+    assert greyed == {"push", "wind", "delete", "freeze"}
+    assert [play.toolbar.tools[name].is_enabled for name in ("drag", "pin", "cut")] == [False, False, True]
+
+    def left():
+        chips = chips_of(driver.playback.level, driver.playback.current, None)
+        return [chip.value for chip in chips if chip.name == "Parts left"]
+
+    assert left() == ["2 of 2"]
+    driver.key(pygame.K_4)
+    for x in (0.0, 2.0, 4.0):
+        drop(driver, (x, 3.0))
+    assert left() == ["0 of 2"]
+    assert len(commands(driver)) == 2

@@ -15,7 +15,8 @@ SHORTER = {
     "spider_web": 180, "suspension_bridge": 240, "trampoline": 180, "truck_bridge": 240, "tumble_drum": 180,
     "wrecking_ball": 240, "wrecking_crane": 180,
     "squeeze": 60, "basket_throw": 120, "trampoline_basket": 60, "chain_of_events": 60, "sorting_belt": 60,
-    "ferry": 60,
+    "ferry": 60, "egg_drop": 60, "low_door": 60, "catapult_practice": 60, "bridge_budget": 60, "truck_course": 60,
+    "crane": 60, "pinball_score": 60,
 }  # fmt: skip
 # From one stored state to the next. It is no multiple of a round of scenes, so that each begins in other scenes.
 STATE_TICKS = 1500

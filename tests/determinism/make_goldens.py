@@ -11,6 +11,7 @@ import os
 import random
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers import SOLVERS
+from sandbox.session.commands.command import not_for_hands
 from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session
 from tests.determinism.golden import LONG, SHORTER, STATE_TICKS, golden_path
@@ -43,6 +45,10 @@ def _coefficients(session: Session) -> dict[str, tuple[float, float]]:
     }
 
 
+class NotAllowed(ValueError):
+    """What the level does not let hands do."""
+
+
 class Person:
     """Who plays a level, and writes down what she does; the same for the same level."""
 
@@ -58,9 +64,13 @@ class Person:
         self.solvers = sorted(SOLVERS, key=lambda name: (name != self.shipped.solver, name))
 
     def do(self, gesture: int, **command: Any) -> None:
-        """Carry a command out and write it down. Raises ValueError where it is refused."""
+        """Carry a command out and write it down. Raises NotAllowed, or ValueError where it is refused for else."""
         session, before = self.session, len(self.session.messages)
-        session.submit(from_record(command, session.world), gesture)
+        made = from_record(command, session.world)
+        refusal = not_for_hands(session.world, made)
+        if refusal:
+            raise NotAllowed(refusal)
+        session.submit(made, gesture)
         session.apply_pending()
         if len(session.messages) > before:
             raise ValueError(f"{command}: {session.messages[before]}")
@@ -288,7 +298,9 @@ def perform(person: Person, ticks: int, rounds: int) -> None:
         acts = [act(person, length) for act in scene]
         for _ in range(length):
             for act in acts:
-                next(act, None)
+                # It ends where hands may not go on.
+                with suppress(NotAllowed):
+                    next(act, None)
             person.session.advance()
     while person.session.tick < ticks:
         person.session.advance()

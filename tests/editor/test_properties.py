@@ -536,3 +536,25 @@ def test_what_only_some_of_a_mixed_selection_have_is_there_for_those():
     changed = found["material"].set(both, other).level
     assert next(body for body in changed.bodies if body.id == rope.id).material == other
     assert changed.particles == level.particles
+
+
+def test_what_hands_may_do_is_typed_as_words_and_numbers_and_what_is_wrong_is_said(level):
+    document = Document(level)
+
+    def hands(field):
+        return next(each for each in level_properties(document)[0].properties if each.field == field)
+
+    for field, text in (("hands", True), ("hands.may", "add, grab"), ("hands.at_most.add", "3")):
+        each = hands(field)
+        document = each.set(document, each.typed(text) if isinstance(text, str) else text)
+    assert document.level.hands.may == ("add", "grab") and document.level.hands.budgets == {"add": 3}
+    assert hands("hands.may").texts == ("add, grab",) and hands("hands.at_most.add").texts == ("3",)
+    for field, text, said in (
+        ("hands.may", "fly", "fly"),
+        ("hands.may", "grab", "at_most"),
+        ("hands.bodies", "x", "x"),
+    ):
+        with pytest.raises(EditError, match=said):
+            hands(field).set(document, hands(field).typed(text))
+    document = hands("hands").set(document, False)
+    assert document.level.hands is None

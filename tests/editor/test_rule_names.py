@@ -124,3 +124,11 @@ def test_everything_in_the_levels_of_the_manual_can_be_deleted_one_by_one(name):
 def test_a_zone_cannot_have_the_name_of_another_thing():
     with pytest.raises(EditError, match="taken"):
         rename(document([]), Item("zone", "basket"), "ball")
+
+
+def test_what_hands_may_touch_follows_what_is_renamed_deleted_and_copied():
+    start = document([], hands={"may": ["grab", "pin"], "bodies": ["rope", "ball"]})
+    renamed = rename(start, Item("body", "rope"), "string")
+    assert renamed.level.hands.bodies == ("string", "ball")
+    assert delete(only(renamed, ("particle", "ball"))).level.hands.bodies == ("string",)
+    assert duplicate(only(start, ("body", "rope")), 1.0, 0.0).level.hands == start.level.hands

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.actuators import unlimited
 from sandbox.physics.analysis.stance import Support, slots_of
@@ -103,8 +104,10 @@ def seen(session, subject, stance):
 @pytest.mark.whole_world
 @pytest.mark.parametrize("name", [path.stem for path in shipped_levels()])
 def test_a_body_sags_in_its_level_by_what_was_set(name):
-    for number in range(len(kinds(Session(load_level(name))))):
-        session = Session(load_level(name))
+    # Whatever hands may do.
+    level = replaced(load_level(name), hands=None)
+    for number in range(len(kinds(Session(level)))):
+        session = Session(level)
         subject, meter = kinds(session)[number]
         if name == "walker":
             # It stands on legs that are not its own.

@@ -32,9 +32,11 @@ for (const text of tried) {
   let words = 'taken', isChanged = false;
   try {
     const record = areSlots ? eval(`(${text})`) : read(text);
-    const fault = areSlots ? null : world.commands.faultIn(world, record);
+    const { commands } = world;
+    const fault = areSlots ? null : commands.refusalOf(world, record) ?? commands.faultIn(world, record);
     if (fault) throw new Refusal(fault);
-    world.command(record);
+    if (areSlots) world.command(record);
+    else world.commandByHand(record);
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
     words = error.message;

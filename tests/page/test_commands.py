@@ -12,12 +12,15 @@ import pytest
 from sandbox import load_level
 from sandbox.commands import COMMAND_TYPES, CommandError, apply, from_record
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.format.quantities import replaced
+from sandbox.level.rules.hands import HandsDef
 from sandbox.level.rules.rule import RuleDef
 from sandbox.page.about import is_done_by_pages
 from sandbox.physics.command import KINDS
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step
 from sandbox.physics.world import World
+from sandbox.session.commands.command import not_for_hands
 from tests.page.in_node import NODE, tried_in_node
 
 LEVEL = "suspension_car"
@@ -226,6 +229,31 @@ def test_a_page_takes_and_refuses_what_the_desktop_does_in_its_words(records, tm
     assert outcomes[False] > 100
     assert outcomes[True] > {"any": 500, "one fault": 30, "bad": -1}[records]
     assert records != "bad" or outcomes[True] == 0
+
+
+@needs_node
+@pytest.mark.parametrize(
+    "hands",
+    [
+        {"may": ["pin", "cut"]},
+        {"at_most": {"grab": 1, "pin": 1, "cut": 2}},
+        {"may": ["grab"], "at_most": {"grab": 2}},
+        {"bodies": ["front wheel"]},
+    ],
+)
+def test_a_page_refuses_what_the_level_does_not_let_hands_do(hands, tmp_path):
+    def limited():
+        level = world_of().source
+        return build_world(replaced(level, hands=HandsDef.model_validate_json(json.dumps(hands))))
+
+    world = limited()
+    # Before, of all that counts something is done, where it may be.
+    allowed = [each for each in names_in(BEFORE, world) if not not_for_hands(world, from_record(each, world))]
+    before = [] if "bodies" in hands else allowed
+    tried = names_in([{"type": kind, **fields} for kind, fields in GOOD.items()], world)
+    pages, desktop = tried_in_node(tmp_path, world, before, tried), tried_on_the_desktop(limited(), before, tried)
+    assert [(page["words"], page["hash"]) for page in pages] == desktop
+    assert any(words.startswith(("in this level hands may not", "not enough")) for words, _ in desktop)
 
 
 @needs_node

@@ -29,11 +29,18 @@ SECTIONS = (
     }),
     GallerySection("Puzzles", "Each can be won. The first ones are easy.", {
         "chain_of_events": "One push, and all follows",
+        "egg_drop": "Make the cushion soft, then press D",
+        "low_door": "Soften the deck, then drive",
         "squeeze": "Soft, then firm again",
+        "bridge_budget": "Three boxes, the wheel sizes them",
         "trampoline_basket": "Tune the bed, then press D",
+        "catapult_practice": "Tune the thread, then hold D",
         "basket_throw": "Swing the ball, then let go",
+        "truck_course": "D drives, but not too fast",
+        "crane": "A, D, W, S, and C lets go",
         "sorting_belt": "D lifts the flap",
         "ferry": "Load the boat with care",
+        "pinball_score": "A and D flip",
     }),
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",

@@ -1,7 +1,7 @@
 """Palette: a strip at the left of the world with parts to drop and tools to use while it runs."""
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from typing import Any
 
 from sandbox.app.base.shortcuts import tip_of
@@ -9,6 +9,7 @@ from sandbox.app.draw.part_pictures import picture_of
 from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.ui import Ui
+from sandbox.level.document.model import Level
 from sandbox.tools.parts import PARTS
 from sandbox.tools.play_tools import PLAY_TOOLS
 
@@ -29,13 +30,25 @@ def _action_of(name: str) -> str:
     return "catalogue" if name == CATALOGUE else f"tool_{name}"
 
 
+def refused_tools(level: Level) -> set[str]:
+    """The names of tools that hands may not use in a level, that of the catalogue too."""
+    if level.hands is None:
+        return set()
+    allows = level.hands.allows
+    refused = {name for name, tool in PLAY_TOOLS.items() if not allows(tool.deed)}
+    return refused if allows("add") else refused | {CATALOGUE}
+
+
 class PartsPalette:
     """Buttons that take up what they show; `press` starts an action by its name.
 
-    left_out: names that have no room in a world of that width and height [layout units]; they are in a menu.
+    refused: names of tools that are greyed, as the level keeps them away. left_out: names that have no room in a world
+    of that width and height [layout units]; they are in a menu.
     """
 
-    def __init__(self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float) -> None:
+    def __init__(
+        self, ui: Ui, press: Callable[[str], None], top: float, width: float, height: float, refused: Set[str]
+    ) -> None:
         self._ui, self._press = ui, press
         names = [*NAMES, CATALOGUE]
         rows, most = (max(1, int((room - 2 * TOP - 2 * EDGE + GAP) // LEAST_STEP)) for room in (height, width))
@@ -56,6 +69,7 @@ class PartsPalette:
             do = self._show_menu if name == MORE else functools.partial(press, _action_of(name))
             icon = picture_of(name, ui.px(PICTURE)) if name in PARTS else name
             self.buttons[name] = ui.button(place, "", do, self.back, tip=tip, style="quiet", icon=icon)
+            self.buttons[name].is_enabled = name not in refused
 
     def _show_menu(self) -> None:
         """Offer what has no room on the strip."""

@@ -34,7 +34,7 @@ from sandbox.app.play.hand_strength import keep_strength, kept_strength, next_st
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
 from sandbox.app.play.melting import toggle_melt
-from sandbox.app.play.palette import NAMES, PartsPalette
+from sandbox.app.play.palette import NAMES, PartsPalette, refused_tools
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import HAND_TOOL, Stage
 from sandbox.app.play.status import STATUS_HEIGHT, run_parts
@@ -190,12 +190,15 @@ class PlayScreen:
         self.show_panel = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
         self._has_ghost = self.game.has_ghost
         absent = {"keep": not self.of_document, "ghost": not self._has_ghost}
-        self.toolbar = Toolbar(ui, self._app.act, {action for action, is_absent in absent.items() if is_absent})
+        refused = refused_tools(self.playback.level)
+        self.toolbar = Toolbar(
+            ui, self._app.act, {action for action, is_absent in absent.items() if is_absent}, refused
+        )
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
             wide, tall = (side / ui.scale for side in self.area[2:])
-            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall)
+            self.palette = PartsPalette(ui, self._app.act, BAR_HEIGHT, wide, tall, refused)
         left, below = REMEDIES_PLACE
         left = left if self.palette is None else self.palette.right + below
         self.troubles.build(ui, left, BAR_HEIGHT + below)

@@ -113,9 +113,14 @@ def _width(action: str, is_wide: bool = False) -> float:
 
 
 class Toolbar:
-    """Buttons for every action of the bar but those in `without`; `press` starts an action by its name."""
+    """Buttons for every action of the bar but those in `without`; `press` starts an action by its name.
 
-    def __init__(self, ui: Ui, press: Callable[[str], None], without: Set[str] = frozenset()) -> None:
+    refused: names of tools that are greyed, as the level keeps them away.
+    """
+
+    def __init__(
+        self, ui: Ui, press: Callable[[str], None], without: Set[str] = frozenset(), refused: Set[str] = frozenset()
+    ) -> None:
         self._ui, self._press = ui, press
         self._state: BarState | None = None
         width = ui.units[0]
@@ -146,6 +151,9 @@ class Toolbar:
             self._pictures["more"] = "more"
             self._add("more", self._show_menu, "More buttons")
         self.tools = {name: self.buttons.get(f"tool_{name}") for name in ("drag", "pin", "cut")}
+        for name, button in self.tools.items():
+            if button is not None:
+                button.is_enabled = name not in refused
 
     def _show_menu(self) -> None:
         """Offer what has no room on the bar."""

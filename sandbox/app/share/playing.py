@@ -13,6 +13,7 @@ from sandbox.app.share.recorded import recorded
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.by_hand import left_of
 from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import GRAVITY_LIMIT
@@ -78,7 +79,7 @@ def playable_in_slices(
         "gravity_limit": GRAVITY_LIMIT,
         "ramp_ticks": round(RAMP_TIME * world.settings.tick_rate),
         "checks": _checks(level, world),
-        "goals": _goals(level),
+        "goals": _goals(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
         "recording": None if played is None else {"commands": played.commands, "hashes": played.hashes},
@@ -94,9 +95,10 @@ def _checks(level: Level, world: World) -> list[dict[str, Any]]:
     return [_check(check, world) for check in measured]
 
 
-def _goals(level: Level) -> dict[str, Any]:
-    """What a page shows of the goal of a level, and of its counters."""
+def _goals(level: Level, world: World) -> dict[str, Any]:
+    """What a page shows of the goal of a level, of its counters, and of what hands have left."""
     counters = [[place, counter.text] for place, counter in enumerate(level.counters) if counter.text]
+    counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, world.counter)]
     return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules)}
 
 

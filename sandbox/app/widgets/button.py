@@ -71,7 +71,7 @@ class Button(Written):
         ui, look = self.ui, self._style.looks[self.state]
         rim = max(ui.px(1), 1)
         surface = box(size, look, ui.px(self._style.radius), rim).copy()
-        tint = self._tint or (ACCENT if self.is_selected else TEXT if self.is_enabled else DISABLED)
+        tint = self._tint or (DISABLED if not self.is_enabled else ACCENT if self.is_selected else TEXT)
         icon, left = self._icon, 0
         if isinstance(icon, str) and icon:
             icon = painted_icon(icon, ui.px(self._icon_size), tint)

@@ -183,7 +183,7 @@ def _renamed(copy: Level, ids: set[str], groups: set[str], materials: dict[str, 
     parts = sorted(taken_groups(copy))
     group_names: dict[str | None, str | None] = {None: None, **dict(zip(parts, free_ids(groups, parts), strict=True))}
     used = {name: _material(copy, name, materials) for name in sorted(_used([*copy.bodies, *copy.springs]))}
-    copy, _ = rewired(replaced(copy, checks=(), rules=()), renamed(names))
+    copy, _ = rewired(replaced(copy, checks=(), rules=(), hands=None), renamed(names))
 
     def particle(part: ParticleDef) -> ParticleDef:
         return replaced(part, id=names[part.id], group=group_names[part.group])

@@ -34,7 +34,20 @@ _FORMLESS = frozenset(BodyDef.model_fields).union(*(each.formless for each in ED
 # Parts of a level that other edits change.
 _NO_FIELDS = frozenset(
     set(Level.model_fields)
-    - {"name", "description", "goal", "author", "licence", "tags", "view", "contacts", "walls", "look", "extras"}
+    - {
+        "name",
+        "description",
+        "goal",
+        "author",
+        "licence",
+        "tags",
+        "view",
+        "contacts",
+        "walls",
+        "look",
+        "hands",
+        "extras",
+    }
 )
 
 

@@ -52,8 +52,14 @@ def with_springs_followed(level: Level, rules: Sequence[RuleDef], kept: Sequence
 
 
 def with_things_followed(level: Level, thing: Follow) -> Level:
-    """The level with rules that name things as they are called now."""
-    return _with(level, followed(level.rules, thing))
+    """The level with rules and hands that name things as they are called now; hands let go what is gone."""
+    level = _with(level, followed(level.rules, thing))
+    if level.hands is None or level.hands.bodies is None:
+        return level
+    bodies = tuple(name for name in map(thing, level.hands.bodies) if name is not None)
+    if bodies == level.hands.bodies:
+        return level
+    return replaced(level, hands=replaced(level.hands, bodies=bodies))
 
 
 def lost_rules(before: Level, after: Level) -> list[str]:

@@ -1,6 +1,7 @@
 """Properties of the level itself, and of how its time passes."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -16,6 +17,7 @@ from sandbox.editor.scene import make_scene
 from sandbox.level.document.model import Level, Material, MaterialDef, NissenMaterial, Settings
 from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import replaced
+from sandbox.level.rules.hands import BudgetDef, HandsDef
 
 # Walls of a level in which nothing is yet [m]; around something they leave this share of its size, and of at least 1 m.
 FIRST_ROOM = (-6.0, 0.0, 6.0, 6.0)
@@ -34,7 +36,7 @@ def level_properties(document: Document) -> tuple[Section, ...]:
         value = getattr(level.settings, name)
         settings.append(Property(name, each, str(value) if each.kind == "choice" else value, partial(_set_time, name)))
     return (
-        Section("Level", (*of_level, *_object(document, "look"))),
+        Section("Level", (*of_level, *_object(document, "look"), *_hands(document))),
         Section("Time and solver", tuple(settings)),
         Section("Contacts", tuple(_object(document, "contacts") + _object(document, "walls"))),
         Section("Other", tuple(extras_properties(about["extras"], [level.extras], _change_extras))),
@@ -55,6 +57,29 @@ def _object(document: Document, name: str) -> list[Property]:
         return change(document, lambda old: _FIRST[name](document) if old is None else old)
 
     return part_properties(name, fields_of(Level)[name], [getattr(document.level, name)], change, add)
+
+
+def _hands(document: Document) -> list[Property]:
+    """Properties of what hands may do: lists as words, and a number for each budget."""
+    hands = document.level.hands
+    found = _object(document, "hands")
+    if hands is None:
+        return found
+
+    def set_budget(deed: str, document: Document, value: Any) -> Document:
+        now = document.level.hands or HandsDef()
+        return set_level_field(document, "hands", {**now.__dict__, "at_most": {**now.at_most.__dict__, deed: value}})
+
+    lists = [
+        replace(each, about=replace(each.about, kind="words")) if each.field in ("hands.may", "hands.bodies") else each
+        for each in found
+        if each.field != "hands.at_most"
+    ]
+    budgets = [
+        Property(f"hands.at_most.{deed}", about, getattr(hands.at_most, deed), partial(set_budget, deed))
+        for deed, about in fields_of(BudgetDef).items()
+    ]
+    return [*lists, *budgets]
 
 
 def look_properties(name: str, material: Material) -> list[Property]:
@@ -87,7 +112,7 @@ def _first_walls(document: Document) -> dict[str, Any]:
 
 
 _FIRST: dict[str, Callable[[Document], dict[str, Any]]] = {
-    "contacts": lambda _: {}, "walls": _first_walls, "look": lambda _: {},
+    "contacts": lambda _: {}, "walls": _first_walls, "look": lambda _: {}, "hands": lambda _: {},
 }  # fmt: skip
 
 

@@ -223,5 +223,5 @@ def staged(document: Document, points: list[Snap]) -> tuple[Document, list[Snap]
     places = {point.name: point.point for point in points}
     particles = tuple(ParticleDef(id=stand_in, position=places[name]) for name, stand_in in stand_ins.items())
     level = replaced(document.level, bodies=(), particles=particles, springs=(), welds=(), checks=())
-    level = replaced(level, terrain=(), zones=(), counters=(), rules=(), walls=None, extras={})
+    level = replaced(level, terrain=(), zones=(), counters=(), rules=(), hands=None, walls=None, extras={})
     return Document(level), [replace(point, name=stand_ins.get(point.name or "")) for point in points]

@@ -29,6 +29,8 @@ TITLES = {
     "QuestionDef": "Question",
     "ActionDef": "Action",
     "StarsDef": "Stars",
+    "HandsDef": "Hands",
+    "BudgetDef": "Budget",
     **{
         model.__name__: name.capitalize()
         for kind, each in EXPANSIONS.items()

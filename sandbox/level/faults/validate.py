@@ -21,6 +21,7 @@ from sandbox.level.faults.weld_faults import weld_faults
 from sandbox.level.faults.zone_faults import zone_faults
 from sandbox.level.format.level_error import Fault, LevelError, shown
 from sandbox.level.plan.plan import Plan, kept_plan
+from sandbox.level.rules.hands import hand_faults
 
 
 def check_level(level: Level, source: str) -> Plan:
@@ -73,6 +74,7 @@ def _all_faults(level: Level, plan: Plan) -> Iterator[Fault]:
     yield from actuator_faults(level)
     yield from weld_reference_faults(level, layout)
     yield from rule_faults(level, layout)
+    yield from hand_faults(level.hands, layout.owners)
     yield from check_faults(level, layout)
     yield from look_faults(level)
     yield from extras_faults(level)

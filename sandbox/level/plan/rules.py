@@ -40,9 +40,18 @@ class _Term(NamedTuple):
 
 
 def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
-    """Give a world a level's rules and counters; slots: the slot of each particle before welds."""
-    if not level.rules and not level.counters:
-        return
+    """Give a world a level's rules and counters, and behind them a counter for each budget of hands.
+
+    slots: the slot of each particle before welds.
+    """
+    if level.rules or level.counters:
+        _add_rules(world, level, plan, slots)
+    if level.hands is not None:
+        lefts = [most + 0.0 for most in level.hands.budgets.values()]
+        world.append(Family.COUNTER, len(lefts), counter=lefts)
+
+
+def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     maker = _Maker(world, level, plan, slots)
     roots = [maker.term(rule.when) for rule in level.rules]
     rate = level.settings.tick_rate

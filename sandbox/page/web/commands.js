@@ -145,6 +145,32 @@ export class Commands {
     return null;
   }
 
+  /** How much a record takes of a budget of hands, and of which: null: of none.
+   * @type {(record: Command) => [row: number, needs: number, words: string] | null} */
+  needs(record) {
+    const [row, words] = this.#about.byHand.budgets[record.type] ?? [];
+    if (row === undefined || words === undefined) return null;
+    return [row, record.type === 'cut_springs' ? new Set(record.springs).size : 1, words];
+  }
+
+  /** Why hands may not give a record with slots here and now; null: they may.
+   * @type {(world: World, record: Command) => string | null} */
+  refusalOf(world, record) {
+    const refusal = this.#about.byHand.refused[record.type], needs = this.needs(record);
+    if (refusal) return refusal;
+    if (needs && world.view('state.counter')[needs[0]] < needs[1]) return needs[2];
+    const { byHand: { bodies, untouched }, names } = this.#about;
+    const fields = /** @type {Record<string, number | number[] | undefined>} */ ({ ...record, type: undefined });
+    for (const [field, { names: kind }] of bodies ? this.#named(record.type) : []) {
+      if (kind !== 'particle' && kind !== 'spring') continue;
+      for (const slot of [fields[field] ?? []].flat()) {
+        const name = names[kind][slot], thing = name.split(':')[0].split('.')[0];
+        if (!bodies?.includes(thing) && !name.startsWith('+')) return fill(untouched, shown(thing || name));
+      }
+    }
+    return null;
+  }
+
   /** What of a world does not let a record with slots be carried out, in words; null: nothing.
    * @type {(world: World, record: Command) => string | null} */
   faultIn(world, record) {

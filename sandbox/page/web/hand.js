@@ -246,13 +246,13 @@ export class Hands {
     if (particle === null) return;
     pointer.kind = 'done';
     const type = near.inverse_mass[particle] > 0 ? 'pin' : 'unpin';
-    if (!this.run.submit({ type, particle }, this.run.newGesture())) this.say('This page cannot pin.');
+    if (!this.run.submit({ type, particle }, this.run.newGesture())) this.say(this.run.refused);
   }
 
   /** @type {(gesture: number, springs: number[]) => void} */
   #cut(gesture, springs) {
     if (!springs.length || this.run.submit({ type: 'cut_springs', springs }, gesture)) return;
-    this.say('This page cannot cut.');
+    this.say(this.run.refused);
   }
 
   /** Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
@@ -273,7 +273,10 @@ export class Hands {
     const limit = STRENGTH * near.bodyMass(particle);
     /** @type {Command} */
     const record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
-    if (!this.run.submit(record, gesture)) return null;
+    if (!this.run.submit(record, gesture)) {
+      this.say(this.run.refused);
+      return null;
+    }
     this.#held.set(hand, { particle, gesture, beside, target, isMoved: false, limit });
     return hand;
   }

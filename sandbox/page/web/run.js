@@ -22,6 +22,8 @@ export class Run {
     // The command that comes next; how often what would come later was forgotten.
     this.next = 0;
     this.revision = 0;
+    // Why the last command was refused that was, in words.
+    this.refused = '';
     this.gesture = commands.reduce((most, each) => Math.max(most, each.gesture), 0);
     this.#follow();
   }
@@ -43,9 +45,10 @@ export class Run {
    * @type {(record: Command, gesture: number) => void} */
   command(record, gesture) {
     this.takeUp(gesture);
-    const fault = this.world.commands.faultIn(this.world, record);
+    const { commands } = this.world;
+    const fault = commands.refusalOf(this.world, record) ?? commands.faultIn(this.world, record);
     if (fault) throw new Refusal(fault);
-    this.world.command(record);
+    this.world.commandByHand(record);
     this.commands.push({ tick: this.time, gesture, record });
     this.next = this.commands.length;
     this.last = this.time;
@@ -58,6 +61,7 @@ export class Run {
       this.command(record, gesture);
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
+      this.refused = error.message;
       return false;
     }
     return true;

@@ -77,6 +77,9 @@ export interface About {
   topology: string[];
   kept: string[];
   names: Record<NameKind, string[]>;
+  // What hands may not do, by types of commands, and what they may do so often: a row of counters, and words.
+  byHand: { refused: Partial<Record<string, string>>; budgets: Partial<Record<string, [row: number, words: string]>>;
+    bodies: string[] | null; untouched: string };
   // What each rule of the level does, in order.
   rules: Action[][];
   second: Partial<Record<NameKind, Record<string, number>>>;

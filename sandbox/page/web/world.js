@@ -237,7 +237,7 @@ export class World {
    * @type {(done: Done) => void} */
   carryOut(done) {
     if (!done.changes) {
-      this.command(done.record);
+      this.commandByHand(done.record);
       return;
     }
     const { changes, counts } = done;
@@ -258,6 +258,14 @@ export class World {
       const values = view instanceof BigInt64Array ? BigInt64Array.from(row, BigInt) : Float64Array.from(row, Number);
       for (let k = first; k < first + count; k++) put(view, values, row.length * k);
     }
+  }
+
+  /** Carry out a command of hands, and take what it needs from what they have left. Throws as `command` does.
+   * @type {(record: Command) => void} */
+  commandByHand(record) {
+    this.command(record);
+    const needs = this.commands.needs(record);
+    if (needs) this.view('state.counter')[needs[0]] -= needs[1];
   }
 
   /** Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.

@@ -7,6 +7,9 @@ from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
+from sandbox.level.assembly.by_hand import hands_of, refusal_of, spend
+from sandbox.level.format.level_error import shown
+from sandbox.level.rules.hands import UNTOUCHED
 from sandbox.physics.world import World
 from sandbox.session.commands.conditions import Condition, faults_of
 from sandbox.session.commands.faults import CommandError as CommandError
@@ -76,15 +79,54 @@ def with_slots(world: World, command: Command) -> Command:
 
 
 def apply(world: World, command: Command) -> Command:
-    """Carry a command out, and return it with slots in place of names.
+    """Carry out a command that hands give, and return it with slots in place of names.
 
     Raises CommandError and changes nothing where it cannot be.
     """
+    command = _validated(world, command)
+    refusal = not_for_hands(world, command)
+    if refusal:
+        raise CommandError(refusal)
+    _carry_out(world, command)
+    spend(world, command)
+    return command
+
+
+def act(world: World, command: Command) -> None:
+    """Carry out a command, whatever hands may do. Raises CommandError and changes nothing where it cannot be."""
+    _carry_out(world, _validated(world, command))
+
+
+def not_for_hands(world: World, command: Command) -> str:
+    """Why the level does not let hands give a command now, in words; nothing where it does."""
+    return refusal_of(world, command) or _untouched(world, command)
+
+
+def _validated(world: World, command: Command) -> Command:
     command = with_slots(world, command)
     try:
         adapter(type(command)).validate_python(command)
     except ValidationError as error:
         raise CommandError(plain_fault(error)) from None
+    return command
+
+
+def _untouched(world: World, command: Command) -> str:
+    """What is said where a command is about something that hands may not touch; nothing where it is not."""
+    hands = hands_of(world)
+    if hands is None or hands.bodies is None:
+        return ""
+    # Of what is taken out, a body goes by its name.
+    found = [body] if isinstance(body := getattr(command, "body", None), str) else []
+    for field, named in namespaces(type(command)).items():
+        value, names = getattr(command, field), named.names(world)
+        slots = value if isinstance(value, tuple) else () if value is None else (value,)
+        found += [names[slot] for slot in slots if named.is_thing and slot < len(names)]
+    thing = next(filter(None, map(hands.untouched, found)), "")
+    return UNTOUCHED.format(shown(thing)) if thing else ""
+
+
+def _carry_out(world: World, command: Command) -> None:
     for field, names in namespaces(type(command)).items():
         value = getattr(command, field)
         for slot in value if isinstance(value, tuple) else () if value is None else (value,):
@@ -93,4 +135,3 @@ def apply(world: World, command: Command) -> Command:
         named = namespaces(type(command)).get(condition.field)
         raise CommandError(condition.words.format(named.names(world)[row] if named else row))
     command.carry_out(world)
-    return command

@@ -27,6 +27,11 @@ class Named:
     kind: str = ""
     active: str = ""
 
+    @property
+    def is_thing(self) -> bool:
+        """Whether it is something to touch: a particle, spring or body."""
+        return self.kind in ("particle", "spring", "")
+
     def slot(self, world: World, name: Any) -> int:
         """The slot of a name that a file holds. Raises CommandError."""
         if not isinstance(name, str):

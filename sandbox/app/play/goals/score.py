@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from sandbox.app.draw.colours import ACCENT, DANGER, TEXT, WARNING, Colour
+from sandbox.level.assembly.by_hand import left_of
 from sandbox.level.document.model import Level
 from sandbox.level.rules.rule import has_clock
 from sandbox.physics.snapshot import Snapshot
@@ -48,8 +49,12 @@ def chips_of(level: Level, state: Snapshot, result: Outcome | None) -> list[Chip
     chips = [Chip("goal", colour=ACCENT)] if level.goal else []
     if has_clock(level.rules):
         chips.append(_clock(level, state.tick if result is None else result.tick))
-    values = zip(level.counters, state.counter.tolist(), strict=True)
+    values = zip(level.counters, state.counter.tolist(), strict=False)
     chips += [Chip(name=counter.text, value=f"{value + 0.0:.6g}") for counter, value in values if counter.text]
+    chips += [
+        Chip(name=f"{name} left", value=f"{state.counter[row]:.0f} of {most}")
+        for row, name, most in left_of(level.hands, state.counter)
+    ]
     if result is not None and result.is_won:
         chips.append(Chip("won", colour=ACCENT, stars=result.stars))
     elif result is not None:

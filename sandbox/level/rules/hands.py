@@ -1,0 +1,133 @@
+"""What hands may do in a level, and how often: by words, each of which stands for commands."""
+
+from collections.abc import Collection, Iterator
+from typing import Annotated, Literal, NamedTuple, get_args
+
+from pydantic import Field
+
+from sandbox.level.format.level_error import Fault, shown, suggestion
+from sandbox.level.format.quantities import Description, Name, empty
+
+Deed = Literal[
+    "grab", "pin", "cut", "add", "remove", "move", "push", "shake", "firmness", "material", "inflation", "air", "solver"
+]
+DEEDS: tuple[str, ...] = get_args(Deed)
+MOST = 1000
+
+
+class Meaning(NamedTuple):
+    """What a word stands for: types of commands; in words; those of them that a budget counts, and what it counts."""
+
+    commands: tuple[str, ...]
+    words: str
+    counting: tuple[str, ...] = ()
+    left: str = ""
+
+
+_ADDING = ("add_particle", "add_spring", "add_body")
+# Commands that no word stands for are always allowed: keys of motors, hydraulics and rules, undo and redo.
+MEANINGS = {
+    "grab": Meaning(("grab", "move_grab", "release"), "grab things", ("grab",), "Grabs"),
+    "pin": Meaning(("pin", "unpin"), "pin things or let them go", ("pin",), "Pins"),
+    "cut": Meaning(("cut_springs",), "cut", ("cut_springs",), "Cuts"),
+    "add": Meaning(_ADDING, "add parts", _ADDING, "Parts"),
+    "remove": Meaning(("remove",), "take things out"),
+    "move": Meaning(("move_body", "free"), "move things at once"),
+    "push": Meaning(("push",), "push"),
+    "shake": Meaning(("shake",), "shake the world"),
+    "firmness": Meaning(("set_firmness",), "make bodies softer or firmer"),
+    "material": Meaning(("set_coefficients",), "change Cs and Cd"),
+    "inflation": Meaning(("set_inflation",), "pump things up"),
+    "air": Meaning(("set_gravity", "set_air"), "change gravity or air"),
+    "solver": Meaning(("set_solver",), "change the solver"),
+}
+
+
+Count = Annotated[int, Field(ge=0, le=MOST)]
+
+
+class BudgetDef(Description):
+    """How often hands may do something. Players see how many are left; undo gives back."""
+
+    grab: Count | None = Field(
+        default=None, description="How often they may grab.", json_schema_extra=empty("as often as they like")
+    )
+    pin: Count | None = Field(
+        default=None, description="How many particles they may pin.", json_schema_extra=empty("as many as they like")
+    )
+    cut: Count | None = Field(
+        default=None, description="How many springs they may cut.", json_schema_extra=empty("as many as they like")
+    )
+    add: Count | None = Field(
+        default=None, description="How many parts they may add.", json_schema_extra=empty("as many as they like")
+    )
+
+
+class HandsDef(Description):
+    """What hands may do while the level runs. Keys, undo and redo always work, and rules do what they like."""
+
+    may: Annotated[tuple[Deed, ...], Field(max_length=len(DEEDS))] | None = Field(
+        default=None, description="What they may do.", json_schema_extra=empty("everything")
+    )
+    bodies: Annotated[tuple[Name, ...], Field(max_length=MOST)] | None = Field(
+        default=None,
+        description="Bodies and loose particles that they may do it to, beside what hands add.",
+        json_schema_extra=empty("all"),
+    )
+    at_most: BudgetDef = Field(default=BudgetDef(), description="How often they may do it.")
+
+    def refusal(self, kind: str) -> str:
+        """Why hands may not give a command of that type, in words; nothing where they may."""
+        for deed, meaning in MEANINGS.items():
+            if kind in meaning.commands and self.may is not None and deed not in self.may:
+                return f"in this level hands may not {meaning.words}"
+        return ""
+
+    def untouched(self, name: str) -> str:
+        """The thing that a particle, spring or body of that name belongs to, where hands may not touch it."""
+        thing = name.partition(":")[0].partition(".")[0]
+        return "" if self.bodies is None or thing in self.bodies or name.startswith("+") else thing or name
+
+    def allows(self, deed: str) -> bool:
+        """Whether hands may do that."""
+        return not deed or self.may is None or deed in self.may
+
+    @property
+    def budgets(self) -> dict[str, int]:
+        """How often hands may do what is counted, in the order of their counters, which are the last of a world."""
+        return {deed: most for deed, most in self.at_most if most is not None}
+
+    def budget_of(self, kind: str) -> str:
+        """The budget that a command of that type needs; nothing where it needs none."""
+        return next((deed for deed in self.budgets if kind in MEANINGS[deed].counting), "")
+
+    def row(self, deed: str, count: int) -> int:
+        """The row of a budget among so many counters."""
+        return count - len(self.budgets) + list(self.budgets).index(deed)
+
+    def exhausted(self, deed: str) -> str:
+        """What is said where more is asked for than is left."""
+        return f"not enough {MEANINGS[deed].left.lower()} left: this level allows {self.budgets[deed]}"
+
+
+UNTOUCHED = "in this level hands may not touch {}"
+
+
+def hand_faults(hands: HandsDef | None, things: Collection[str]) -> Iterator[Fault]:
+    """Faults of what is listed twice or is not there, and of budgets of what hands may not do.
+
+    things: the names of bodies and loose particles.
+    """
+    if hands is None:
+        return
+    may = hands.may or ()
+    for k, twice in enumerate(may):
+        if twice in may[:k]:
+            yield f"hands.may.{k}", f"{shown(twice)} is listed twice"
+    for k, name in enumerate(hands.bodies or ()):
+        if name not in things:
+            found = f"there is no body or particle {shown(name)}{suggestion(name, things)}"
+            yield f"hands.bodies.{k}", found
+    for deed in hands.budgets:
+        if not hands.allows(deed):
+            yield f"hands.at_most.{deed}", f"hands may not do that here; add {shown(deed)} to may, or take this out"
