@@ -182,9 +182,9 @@ GREET = '''
 
 from dataclasses import dataclass
 
-from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_OK, Refused, level_of
-from sandbox.cli.options import argument
+from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of
+from sandbox.cli.base.options import argument
 
 
 @dataclass(frozen=True, kw_only=True)

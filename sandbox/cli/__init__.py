@@ -31,8 +31,8 @@ from sandbox.cli import (
     take_home,
     toy,
 )
-from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_INTERRUPTED, EXIT_REFUSED, EXIT_UNREAD, Refused
+from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.inputs import EXIT_INTERRUPTED, EXIT_REFUSED, EXIT_UNREAD, Refused
 from sandbox.terminal import give_up_output, missing_folder, prepare_streams, refusal_of, tell
 
 # In the order in which --help lists them.

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_FAILED, EXIT_OK, Refused, level_or_replay
-from sandbox.cli.options import argument, flag, option
-from sandbox.cli.pages import PAGE, watching
+from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, Refused, level_or_replay
+from sandbox.cli.base.options import argument, flag, option
+from sandbox.cli.base.pages import PAGE, watching
 from sandbox.terminal import Progress, interrupted_between_ticks, seconds
 
 if TYPE_CHECKING:

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from sandbox.cli.command import Subcommand, WindowOptions
-from sandbox.cli.inputs import Refused
-from sandbox.cli.options import optional_argument
+from sandbox.cli.base.command import Subcommand, WindowOptions
+from sandbox.cli.base.inputs import Refused
+from sandbox.cli.base.options import optional_argument
 
 
 @dataclass(frozen=True, kw_only=True)

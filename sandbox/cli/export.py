@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_OK, Refused, level_of, recording_of
-from sandbox.cli.options import flag, option, option_or, optional_argument
+from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.inputs import EXIT_OK, Refused, level_of, recording_of
+from sandbox.cli.base.options import flag, option, option_or, optional_argument
 
 if TYPE_CHECKING:
     from sandbox.level.document.model import Level

@@ -5,9 +5,9 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Subcommand, length_in_seconds, length_in_ticks
-from sandbox.cli.inputs import EXIT_OK, Refused, is_replay, level_of
-from sandbox.cli.options import arguments, flag
+from sandbox.cli.base.command import Subcommand, length_in_seconds, length_in_ticks
+from sandbox.cli.base.inputs import EXIT_OK, Refused, is_replay, level_of
+from sandbox.cli.base.options import arguments, flag
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 if TYPE_CHECKING:

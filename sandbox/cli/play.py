@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sandbox.cli.command import Subcommand, WindowOptions
-from sandbox.cli.inputs import EXIT_OK, level_or_replay
-from sandbox.cli.options import flag, option, optional_argument
-from sandbox.cli.running import run_with_bar
+from sandbox.cli.base.command import Subcommand, WindowOptions
+from sandbox.cli.base.inputs import EXIT_OK, level_or_replay
+from sandbox.cli.base.options import flag, option, optional_argument
+from sandbox.cli.base.running import run_with_bar
 from sandbox.terminal import seconds
 
 if TYPE_CHECKING:

@@ -11,10 +11,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
-from sandbox.cli.options import arguments, flag, option
-from sandbox.cli.pages import PAGE, write_report
+from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.inputs import EXIT_FAILED, EXIT_OK, EXIT_REFUSED, Refused, level_of, recording_of
+from sandbox.cli.base.options import arguments, flag, option
+from sandbox.cli.base.pages import PAGE, write_report
 from sandbox.terminal import Progress, cores, count, processes, tell
 
 if TYPE_CHECKING:

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from sandbox.cli.command import Subcommand, length_in_seconds, length_in_ticks
-from sandbox.cli.inputs import EXIT_OK, Refused, recording_of
-from sandbox.cli.options import argument
+from sandbox.cli.base.command import Subcommand, length_in_seconds, length_in_ticks
+from sandbox.cli.base.inputs import EXIT_OK, Refused, recording_of
+from sandbox.cli.base.options import argument
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 

@@ -8,10 +8,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Subcommand, length_in_seconds, length_in_ticks
-from sandbox.cli.inputs import EXIT_OK, EXIT_REFUSED, Refused, level_of
-from sandbox.cli.options import argument, flag, option, option_or
-from sandbox.cli.running import run_with_bar
+from sandbox.cli.base.command import Subcommand, length_in_seconds, length_in_ticks
+from sandbox.cli.base.inputs import EXIT_OK, EXIT_REFUSED, Refused, level_of
+from sandbox.cli.base.options import argument, flag, option, option_or
+from sandbox.cli.base.running import run_with_bar
 from sandbox.terminal import count, substeps, tell
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
 import json
 from dataclasses import dataclass
 
-from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_OK
+from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.inputs import EXIT_OK
 
 
 @dataclass(frozen=True)

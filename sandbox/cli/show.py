@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_OK, recording_of
-from sandbox.cli.options import argument
+from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.inputs import EXIT_OK, recording_of
+from sandbox.cli.base.options import argument
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.cli.command import Subcommand
-from sandbox.cli.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of
-from sandbox.cli.options import argument, flag, needed_option, option, option_or, repeated_option
+from sandbox.cli.base.command import Subcommand
+from sandbox.cli.base.inputs import EXIT_INTERRUPTED, EXIT_OK, Refused, level_of
+from sandbox.cli.base.options import argument, flag, needed_option, option, option_or, repeated_option
 from sandbox.terminal import Progress, cores, processes, seconds, tell
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from sandbox.cli.inputs import Refused
+from sandbox.cli.base.inputs import Refused
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 if TYPE_CHECKING:

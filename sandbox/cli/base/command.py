@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from sandbox.cli.options import declare, flag, option, read
+from sandbox.cli.base.options import declare, flag, option, read
 from sandbox.terminal import count, scale, seconds
 
 Options = TypeVar("Options")

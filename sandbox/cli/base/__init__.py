@@ -1,0 +1,1 @@
+"""What the files of commands share: typed options, what is read, what is written."""
