@@ -49,9 +49,9 @@ A_FILE = f"""\
 `sandbox check FILE` lists the faults of a level and runs its checks. `sandbox format FILE` rewrites it in canonical
 form. `sandbox schema` prints the JSON Schema.
 
-An editor such as VS Code completes and checks a level whose first line is `"$schema": "./level.schema.json"`. Put the
-schema into the same folder: `sandbox schema > level.schema.json`. To do it for every level of a folder, write into
-`.vscode/settings.json`:
+An editor such as VS Code completes and checks a level whose first line is `"$schema": "../level.schema.json"`. Put the
+schema beside the folder of the levels: `sandbox schema > level.schema.json`. To do it for every level of a folder, open
+the folder in which both lie, and write into its `.vscode/settings.json`:
 
 ```json
 {{"json.schemas": [{{"fileMatch": ["levels/*.json"], "url": "./level.schema.json"}}]}}
