@@ -54,8 +54,7 @@ class TwinPlayback(Playback):
         if len(self.previous.mass) != len(self.current.mass):
             self.previous = self.current
         # It says the same as its twin.
-        self.session.refusals.clear()
-        self.session.events.clear()
+        self.session.take_messages()
         self.messages.clear()
 
     def return_to(self, branch: Branch) -> None:

@@ -36,6 +36,5 @@ class GhostRun:
                     session.advance()
             except CommandError:
                 self._is_broken = True
-        session.refusals.clear()
-        session.events.clear()
+        session.take_messages()
         self.state = session.snapshot() if session.tick == tick and not self._is_broken else None
