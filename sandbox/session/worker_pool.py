@@ -26,6 +26,8 @@ def worker_pool(processes: int) -> Iterator[ProcessPoolExecutor]:
         workers.shutdown(wait=False, cancel_futures=True)
         for child in set(multiprocessing.active_children()) - others:
             child.terminate()
+        # Its threads find their pipes closed, and would print so as the process ends.
+        workers.shutdown()
         if isinstance(error, BrokenProcessPool):
             raise OSError(0, "a process has ended before it has answered; is there memory for all?") from None
         raise
