@@ -31,6 +31,7 @@ def bisect(options: BisectOptions) -> int:
     """Find what makes a level fail."""
     from sandbox.level.format.level_error import LevelError
     from sandbox.session.bisect import BisectError, Tried, checks_hold, deciding_edits, deciding_value, recording_holds
+    from sandbox.session.level_edits import field_place
 
     if (options.bad is None) == (options.set is None):
         raise Refused("give a second level, BAD, or --set FIELD=GOOD:BAD")
@@ -41,7 +42,7 @@ def bisect(options: BisectOptions) -> int:
             work: Any = deciding_edits(good, _bad_level(options.bad), trial)
         elif options.set is not None:
             field, first, last = _range(options.set)
-            work = deciding_value(good, field, first, last, trial)
+            work = deciding_value(good, field_place(good, field), first, last, trial)
         for found in work:
             if isinstance(found, Tried):
                 verdict = {True: "holds", False: "fails", None: "no level"}[found.holds]

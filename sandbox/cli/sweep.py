@@ -175,7 +175,7 @@ def _rows(grid: "SweepGrid", known: "Rows", options: SweepOptions) -> Generator[
 
 def _columns(options: SweepOptions, level: "Level") -> "dict[str, tuple[Value, ...]]":
     """The values of every column, Cs and Cd last. Raises Refused."""
-    from sandbox.session.sweep.grid import field_place
+    from sandbox.session.level_edits import field_place
 
     columns: dict[str, tuple[Value, ...]] = {}
     if options.solver:

@@ -103,6 +103,12 @@ def edited(level: Level, edits: Iterable[Edit]) -> Level:
     return parse_level(json.dumps(data).encode(), "the edited level")
 
 
+def field_place(level: Level, name: str) -> str:
+    """The place of a field as `with_value` takes it; a body's may be called by its id alone, as in "rope.segments"."""
+    is_body = name.partition(".")[0] in {body.id for body in level.bodies}
+    return f"bodies.{name}" if is_body else name
+
+
 def with_value(level: Level, path: str, value: Any) -> Level:
     """A level with another value at a place such as "settings.gravity.1" or "bodies.deck.segments".
 

@@ -142,6 +142,9 @@ def test_what_cannot_be_bisected_is_said_in_a_line(tmp_path, capsys):
         assert words in capsys.readouterr().err
     assert main(["bisect", str(good), "--set", "settings.gravity.1=-1:-40"]) == 0
     assert "settings.gravity.1: holds at -" in capsys.readouterr().out
+    # A body goes by its id, as in a sweep.
+    assert main(["bisect", str(good), "--set", "soft.segments=6:6"]) == 2
+    assert "no such place" not in capsys.readouterr().err
     with pytest.raises(BisectError, match="fails already"):
         list(deciding_value(variant(), "settings.gravity.1", -40.0, -1.0, checks_hold([])))
     assert parse_level(json.dumps(level_data(variant())).encode(), "x").checks

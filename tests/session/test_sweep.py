@@ -13,9 +13,10 @@ import pytest
 import sandbox.session.sweep.pool as pool
 from sandbox.cli import main
 from sandbox.level.reading.files import level_data
+from sandbox.session.level_edits import field_place
 from sandbox.session.sweep.case import run_case
 from sandbox.session.sweep.cluster import swept_by_dask
-from sandbox.session.sweep.grid import SweepError, SweepGrid, field_place
+from sandbox.session.sweep.grid import SweepError, SweepGrid
 from sandbox.session.sweep.journal import Journal
 from sandbox.session.sweep.pool import swept
 from sandbox.session.sweep.sweep_map import edges, is_logarithmic, sweep_panels

@@ -115,9 +115,3 @@ def case_level(level: Level, columns: Sequence[str], case: Sequence[Value]) -> L
     except LevelError as error:
         raise SweepError(f"{name} = {value}: {error.faults[0]}") from None
     return level
-
-
-def field_place(level: Level, name: str) -> str:
-    """The place of a field as `case_level` takes it; a body's may be called by its id alone, as in "rope.segments"."""
-    is_body = name.partition(".")[0] in {body.id for body in level.bodies}
-    return f"bodies.{name}" if is_body else name
