@@ -7,6 +7,8 @@ from contextlib import AbstractContextManager, nullcontext, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.physics.snapshot import Snapshot, restore, take
@@ -37,7 +39,7 @@ class Session:
     command belongs to a gesture (a drag from grab to release, one slider drag), the unit of undo. A script feeds
     recorded commands at their ticks; a scripted command that cannot be applied raises CommandError, a submitted one
     leaves a line in `refusals`; `do` applies one at once, and raises. `start` continues from a snapshot of this level's
-    world instead of its beginning.
+    world instead of its beginning; one of another level raises ValueError.
     progress: called with ticks done and ticks in all while ticks are stepped again. Where it raises Interrupted, what
     they were stepped for passes that on and changes nothing; a script ends that asked for it.
     refusals: what could not be done, a line each: commands, and writing the recording. events: what happened by itself:
@@ -51,6 +53,9 @@ class Session:
         self.world = build_world(level)
         self._actions = RuleActions(level, self.world)
         if start is not None:
+            own = self.world.origin
+            if not np.array_equal(start.arrays["origin"][: len(own)], own):
+                raise ValueError(f"the snapshot to start from is of another level than {level.name!r}")
             restore(self.world, start)
             name_added(self.world)
         self.refusals: list[str] = []

@@ -93,7 +93,7 @@ def test_a_replay_has_a_picture_its_level_and_its_length_and_a_broken_one_its_fa
     assert cards[whole.name].line.startswith(f"Small, {ticks / 60:.1f} s, ")
     assert ", cut off, " in cards["cut.replay.jsonl"].line
     assert "nothing was done" in cards[whole.name].text
-    assert "not a replay" in cards["broken.replay.jsonl"].text
+    assert "no recording" in cards["broken.replay.jsonl"].text
 
 
 def test_the_picture_of_a_replay_has_the_ground_of_its_level(open_app, documents):

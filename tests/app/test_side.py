@@ -507,6 +507,7 @@ def test_settings_of_the_level_are_changed(driver):
     assert level(driver).name == "Two ropes" and level(driver).tags == ("rope", "small")
     assert level(driver).settings.gravity == (0.0, -1.62)
     assert level(driver).description == "First line\nsecond"
+    reveal(driver, form(driver).pickers["substeps"])
     press(driver, form(driver).pickers["substeps"])
     driver.key(pygame.K_END)
     driver.key(pygame.K_RETURN)
@@ -569,6 +570,7 @@ def test_results_go_with_every_part_of_the_level_that_runs():
         "licence",
         "tags",
         "view",
+        "hands",
         "checks",
         "look",
         "extras",

@@ -34,7 +34,7 @@ def level(**hands):
 
 def said(session, *commands):
     """The lines about commands that are given now."""
-    session.messages.clear()
+    session.take_messages()
     for command in commands:
         session.submit(command)
     session.advance()

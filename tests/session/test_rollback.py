@@ -7,6 +7,7 @@ import pytest
 
 import sandbox.session.session as session_module
 from sandbox.cli import main
+from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.physics.step import step
 from sandbox.session.commands import Grab, Push
@@ -49,7 +50,8 @@ def recorded(tmp_path):
 
 @pytest.mark.parametrize("name", LEVELS)
 def test_a_shipped_level_comes_to_the_same_bits_from_eight_ticks_before_each(name):
-    result = roll_back_level(load_level(name), 8)
+    # Whatever hands may do.
+    result = roll_back_level(replaced(load_level(name), hands=None), 8)
     assert result.found is None and result.ticks >= 300 and result.commands > 20
 
 

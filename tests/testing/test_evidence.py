@@ -38,10 +38,10 @@ def test_without_a_cache_the_difference_is_told_and_one_line_that_there_are_no_p
     result = pytester.runpytest_inprocess(*LOADED, "one.replay.jsonl", "--junitxml=report.xml")
     result.assert_outcomes(failed=1)
     told = result.stdout.str()
-    assert "one.replay.jsonl: diverged: tick 0: settings" in told and "Traceback" not in told
+    assert "one.replay.jsonl: diverged: rope.json: sett" in told and "Traceback" not in told
     assert told.count("no pictures: pytest's cache is switched off; --replay-output DIR puts them") == 1
     failure = xml.parse(edited / "report.xml").find(".//failure")
-    assert failure is not None and "diverged: tick 0" in failure.text
+    assert failure is not None and "diverged: rope.json" in failure.text
 
 
 @pytest.mark.parametrize("place", ["file", "/proc/none"])
@@ -51,7 +51,7 @@ def test_where_pictures_cannot_be_the_difference_is_told_and_why_there_are_none(
         result = pytester.runpytest_inprocess(*options, "one.replay.jsonl")
         result.assert_outcomes(failed=1)
         told = result.stdout.str()
-        assert "one.replay.jsonl: diverged: tick 0: settings" in told and "Traceback" not in told
+        assert "one.replay.jsonl: diverged: rope.json: sett" in told and "Traceback" not in told
         assert told.count("no pictures: ") == 1 and "Error" not in told
 
 
@@ -64,7 +64,7 @@ def test_a_picture_that_fails_hides_no_difference(edited, project, monkeypatch, 
     result = project("one.replay.jsonl")
     result.assert_outcomes(failed=1)
     told = result.stdout.str()
-    assert "one.replay.jsonl: diverged: tick 0: settings" in told and "Traceback" not in told
+    assert "one.replay.jsonl: diverged: rope.json: sett" in told and "Traceback" not in told
     assert f"no picture: {'a.png: No space left on device' if error.args[1:] else error}" in told
 
 
@@ -170,7 +170,7 @@ def test_a_test_in_python_that_fails_leaves_its_run_and_a_page_and_says_what_it_
 
 def test_the_tests_in_python_that_the_documents_show_pass(project, pytester):
     text = (Path(__file__).resolve().parents[2] / "docs" / "testing.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    blocks = re.findall(r"```python\n([^`]*?def test_.*?)```", text, re.DOTALL)
     for number, block in enumerate(blocks):
         (project.path / f"test_block_{number}.py").write_text(block)
     project("-k", "block").assert_outcomes(passed=len(blocks), deselected=5)

@@ -52,7 +52,7 @@ def test_a_recording_that_diverges_on_a_level_is_shrunk_where_that_is_asked_for(
 
 
 def test_recordings_and_levels_go_back_where_that_is_asked_for(project, monkeypatch):
-    project.runpytest_subprocess(*LOADED, "--replay-rollback=8").assert_outcomes(passed=2)
+    project.runpytest_subprocess(*LOADED, "--replay-rollback=8", "--replay-against=own").assert_outcomes(passed=2)
 
     def wrong(world):
         step(world)
