@@ -17,9 +17,9 @@ from tests.page.opened import VERDICT, opened
 SOME = 1200
 
 
-def played(browser: Browser, folder: Path, name: str, most: int | None = SOME) -> str:
-    """What a page says of a golden, of so many ticks of it at most (None: all)."""
-    replay = read_replay(golden_path(name))
+def played(browser: Browser, folder: Path, name: str | Path, most: int | None = SOME) -> str:
+    """What a page says of a golden, or of a recording's file, of so many ticks of it at most (None: all)."""
+    replay = read_replay(name if isinstance(name, Path) else golden_path(name))
     end = min(replay.ticks, most or replay.ticks)
     tab = opened(browser, folder, page_of(replay.level, replay.script, end))
     tab.evaluate("page.toy.pause()")

@@ -15,6 +15,7 @@ from sandbox.physics.snapshot import Snapshot, state_hash, take
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.step import step
 from sandbox.physics.world import World
+from sandbox.session.actions import RuleActions
 from sandbox.session.commands import CommandError, Redo, Undo, apply
 from sandbox.session.commands.records import ScriptLine, from_record, script_of
 from sandbox.session.replay.format import TICK_DIGITS
@@ -47,14 +48,14 @@ def recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generato
     world, commands = build_world(level), []
     if script and world.grab_particle < 0:
         raise CommandError("a page cannot play a recording that begins with nothing")
-    hashes = [_tick_hash(world)]
+    hashes, actions = [_tick_hash(world)], RuleActions(level, world)
     for line in script:
-        yield from map(part, _stepped(world, line.tick, hashes))
+        yield from map(part, _stepped(world, actions, line.tick, hashes))
         try:
             commands.append(_carried_out(world, line))
         except CommandError as error:
             raise CommandError(f"line {line.line}: {error}") from None
-    yield from map(part, _stepped(world, ticks, hashes))
+    yield from map(part, _stepped(world, actions, ticks, hashes))
     return Recorded(commands, hashes, world)
 
 
@@ -69,8 +70,9 @@ def _without_undone(
     return script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
 
 
-def _stepped(world: World, tick: int, hashes: list[str]) -> Iterator[int]:
+def _stepped(world: World, actions: RuleActions, tick: int, hashes: list[str]) -> Iterator[int]:
     while world.tick < tick:
+        actions.act(world)
         step(world)
         hashes.append(_tick_hash(world))
         yield world.tick
