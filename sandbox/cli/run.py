@@ -68,7 +68,8 @@ def run(options: RunOptions) -> int:
 def _recorded(session: "Session", path: Path | None) -> "Iterator[Callable[[], bool]]":
     """Record what a session does in here; whether that was written whole is known after it.
 
-    What is refused leaves no recording, and an older one of that name as it was; an interrupt one that is cut off.
+    What is refused leaves no recording, and an older one of that name as it was; so does an interrupt, which leaves one
+    that is cut off where there is no older one.
     """
     if path is None:
         yield lambda: True
@@ -90,10 +91,11 @@ def _recorded(session: "Session", path: Path | None) -> "Iterator[Callable[[], b
         raise
     except KeyboardInterrupt:
         if session.recording:
-            tell([f"{path}: cut off at tick {session.tick}; `sandbox replay --partial` verifies it"])
-            session.abandon_recording()
+            told = f"cut off at tick {session.tick}; `sandbox replay --partial` verifies it"
             if fresh != path:
-                fresh.replace(target)
+                told = f"interrupted at tick {session.tick}; the older recording of that name stays"
+            tell([f"{path}: {told}"])
+            session.abandon_recording()
         raise
     except BaseException:
         session.abandon_recording()

@@ -118,6 +118,8 @@ def read_golden(path: Path) -> Golden:
         file = GoldenFile.model_validate_json(data)
     except ValidationError as error:
         raise GoldenError(f"{path}: {plain_fault(error)}") from None
+    if not (file.places and file.at) and not file.values:
+        raise GoldenError(f"{path}: holds nothing to compare: it has neither places at some times nor values")
     wrong = [name for name, points in file.places.items() if points and len(points) != len(file.at)]
     if wrong:
         lengths = {name: len(file.places[name]) for name in wrong}

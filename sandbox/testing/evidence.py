@@ -69,7 +69,10 @@ def runs_of(config: pytest.Config, test: str, runs: Iterable["Session"], told: s
             _page_of(recording, test, told.splitlines()).write(target)
 
         one = name if number == 1 else f"{name}-{number}"
-        lines += _written(config, one, [("recording", KEPT_RUN, recording), ("player", "html", player)])
+        # A run cannot be had otherwise: it is kept of every failure, pages are not.
+        kept = _files(config, one, [("recording", KEPT_RUN, recording)])
+        page = [] if kept[0].startswith("no ") else _written(config, one, [("player", "html", player)])
+        lines += [*kept, *page]
     return lines
 
 
@@ -92,6 +95,10 @@ def _written(config: pytest.Config, name: str, writers: Sequence[_Writer]) -> li
     if chosen == "first" and drawn >= FIRST:
         return [f"no pictures: of the first {FIRST} failures only; --replay-pictures=all draws them of all"]
     config.stash[_DRAWN] = drawn + 1
+    return _files(config, name, writers)
+
+
+def _files(config: pytest.Config, name: str, writers: Sequence[_Writer]) -> list[str]:
     try:
         folder = folder_of(config)
     except OSError as error:

@@ -51,7 +51,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--replay-rollback",
         metavar="N",
         type=int,
-        default=0,
         help="at every tick of a recording, and of a level under random hands, also go back N ticks and compare",
     )
     group.addoption(
@@ -90,6 +89,9 @@ def pytest_configure(config: pytest.Config) -> None:
         _refuse_unknown_solver(solver)
     if config.getoption("--replay-update") and config.getoption("--replay-solver"):
         raise pytest.UsageError("--replay-update records with each level's own solver: leave --replay-solver out")
+    back = config.getoption("--replay-rollback")
+    if back is not None and back < 1:
+        raise pytest.UsageError(f"--replay-rollback: {back}: at least 1 tick")
     given_renames(config)
     level_files(config)
     marked(config)

@@ -4,6 +4,7 @@ import functools
 import os
 import shlex
 import tempfile
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from sandbox.level.document.model import Level
-from sandbox.level.reading.files import LevelError, file_of, read_level
+from sandbox.level.reading.files import LevelError, file_of, read_level, shipped_levels
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.recording import OtherPhysicsError, Replay, ReplayError
 from sandbox.session.replay.renames import Renames, carried_over, guessed_renames, missing_names, new_names
@@ -198,10 +199,23 @@ def level_among(files: Sequence[Path], replay: Replay, where: str) -> Level:
 
 def _usual_level(files: Sequence[Path], replay: Replay) -> Level | None:
     """That of a recording among the level files of a project; None where there is none."""
-    found = _fitting(files, replay)
+    found, name = _fitting(files, replay), file_of(replay.level)
+    if name and not found and not _is_shipped(replay.level):
+        warnings.warn(
+            pytest.PytestWarning(
+                f"recordings of {name} ran on their own copy of it: sandbox_levels has neither this file nor the title "
+                f"{replay.level.name!r}; sandbox_against = own says that it is meant"
+            ),
+            stacklevel=1,
+        )
     if len(found) > 1 and any(replay.level == level_of(path) for path in found):
         return replay.level
     return level_among(files, replay, str(found[0].parent)) if found else None
+
+
+def _is_shipped(level: Level) -> bool:
+    """Whether it is as the program ships it."""
+    return any(path.name == file_of(level) and level_of(path) == level for path in shipped_levels())
 
 
 def _fitting(files: Sequence[Path], replay: Replay) -> list[Path]:

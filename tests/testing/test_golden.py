@@ -118,3 +118,9 @@ def test_the_command_line_checks_golden_files_beside_levels(golden):
     )  # fmt: skip
     assert run.returncode == 0
     assert [json.loads(line)["result"] for line in run.stdout.splitlines()] == ["passed", "passed"]
+
+
+def test_a_golden_file_that_holds_nothing_is_refused(golden):
+    golden.write_text(json.dumps({key: GOLDEN[key] for key in ("format", "level", "at")}))
+    failed = _pytest(golden.parent)
+    assert failed.returncode == 1 and "holds nothing to compare" in failed.stdout

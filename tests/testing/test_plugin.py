@@ -12,7 +12,7 @@ import pytest
 
 import sandbox.session.session as session_module
 from sandbox.app.draw.picture import draw_picture
-from sandbox.level.reading.files import level_data
+from sandbox.level.reading.files import level_data, read_level
 from sandbox.physics.step import step
 from sandbox.session.commands import Pin
 from sandbox.session.replay.format import encode_state, seal
@@ -324,3 +324,23 @@ def test_a_test_in_python_drags_cuts_drives_and_measures(made, pytester):
         """
     )
     pytester.runpytest_inprocess(*LOADED).assert_outcomes(passed=2)
+
+
+def test_recordings_whose_level_is_gone_say_that_they_ran_on_their_own_copy(project):
+    level = read_level(project.path / "levels" / "rope.json")
+    session = Session(level)
+    session.record_to(project.path / "gone.replay.gz")
+    session.advance()
+    session.stop_recording()
+    assert "ran on their own copy" not in project("gone.replay.gz").stdout.str()
+    (project.path / "levels" / "rope.json").unlink()
+    told = project("gone.replay.gz")
+    told.assert_outcomes(passed=1, warnings=1)
+    assert "recordings of rope.json ran on their own copy of it" in told.stdout.str()
+    assert "ran on" not in project("gone.replay.gz", "--replay-against=own").stdout.str()
+
+
+def test_going_back_by_no_tick_is_a_usage_error(project):
+    result = project("--replay-rollback=0")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    assert "--replay-rollback: 0: at least 1 tick" in result.stderr.str()

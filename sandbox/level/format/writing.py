@@ -34,6 +34,15 @@ def write_file(path: Path, data: bytes) -> None:
     The file keeps its permissions. After an error, such as a full disk, it is unchanged and no other file remains.
     """
     _refuse_what_is_no_file(path)
+    try:
+        _write_whole(path, data)
+    except OSError as error:
+        # What is beside it for a moment has no name for anybody.
+        error.filename = os.fspath(path)
+        raise
+
+
+def _write_whole(path: Path, data: bytes) -> None:
     _sweep(path.parent)
     temporary = path.with_name(_TEMPORARY.format(secrets.token_hex(8)))
     try:

@@ -6,8 +6,8 @@ RECORDINGS = (".replay.jsonl", ".replay.gz", ".replay.jsonl.gz")
 
 
 def is_recording(path: Path) -> bool:
-    """Whether a file is called as recordings are."""
-    return path.name.endswith(RECORDINGS)
+    """Whether a file is called as recordings are; one whose name begins with a point is not whole yet."""
+    return path.name.endswith(RECORDINGS) and not path.name.startswith(".")
 
 
 def recordings_in(folder: Path) -> list[Path]:

@@ -86,6 +86,8 @@ def roll_back(
     replay: Replay, back: int, level: Level | None = None, progress: Callable[[int, int], None] | None = None
 ) -> RolledBack:
     """Run a recording's commands, on its level or on another, and go back at every tick. Raises ReplayError."""
+    if back > replay.ticks:
+        raise ReplayError(f"{replay.source}: a run of {replay.ticks} ticks does not go back {back} ticks")
     session = Session(level or replay.level, script=replay.script)
     try:
         return _rolled_back(session, replay.ticks, back, None, progress)
