@@ -1,5 +1,6 @@
 import pytest
 
+from sandbox.level.reading.files import load_level
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from sandbox.session.commands import (
@@ -522,3 +523,9 @@ def test_a_session_its_world_and_a_snapshot_say_what_they_are_in_a_line(tmp_path
     session.record_to(tmp_path / "run.replay.gz")
     assert repr(session).endswith("run.replay.gz>")
     session.abandon_recording()
+
+
+def test_a_snapshot_of_another_level_is_refused():
+    other = Session(load_level("newtons_cradle")).snapshot()
+    with pytest.raises(ValueError, match="the snapshot to start from is of another level than 'Test rope'"):
+        Session(rope_level(), start=other)
