@@ -131,3 +131,12 @@ def tests_give_back_the_memory_that_they_take():
     if sys.platform == "linux":
         peak = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         assert peak <= MOST_MEMORY, f"{peak / 1e6:.0f} MB at their most"
+
+
+@pytest.fixture(autouse=True, scope="session")
+def tests_within_tests_say_the_same_wherever_they_run():
+    """pytest prints whole messages a second time where these say that nobody watches: they are those of the outer run."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("CI", "BUILD_NUMBER", "PYTEST_ADDOPTS", "PY_COLORS", "FORCE_COLOR"):
+            patch.delenv(name, raising=False)
+        yield

@@ -34,6 +34,16 @@ def is_run(line):
     return has_program and not any(re.fullmatch(pattern, line.text) for pattern in NOT_RUN)
 
 
+def with_what_they_need(windows, usual):
+    """Lines that open windows, each after those before it on the page that name its file: they may write it."""
+    found = []
+    for line in windows:
+        files = {word for word in line.text.split() if "." in word}
+        found += [made for made in usual if made.number < line.number and files & set(made.text.split())]
+        found.append(line)
+    return list(dict.fromkeys(found))
+
+
 def batches():
     """A test's worth of lines each: those of a page that print and write, that take long, and that open windows."""
     found = []
@@ -45,8 +55,11 @@ def batches():
         kinds = {
             "": (usual, ()),
             ", long": (long, pytest.mark.whole_world),
-            ", windows": (windows[:SAMPLE], needs_a_screen),
-            ", more windows": (windows[SAMPLE:], (needs_a_screen, pytest.mark.whole_world)),
+            ", windows": (with_what_they_need(windows[:SAMPLE], usual), needs_a_screen),
+            ", more windows": (
+                with_what_they_need(windows[SAMPLE:], usual),
+                (needs_a_screen, pytest.mark.whole_world),
+            ),
         }
         name = page.relative_to(ROOT).as_posix()
         found += [pytest.param(batch, id=name + kind, marks=marks) for kind, (batch, marks) in kinds.items() if batch]
@@ -125,3 +138,9 @@ def test_lines_are_found_in_pages_and_in_comments_without_their_own(tmp_path, mo
         ShellLine("page.md", 6, "sandbox run rope   --json"),
         ShellLine("page.md", 10, "node a.js"),
     ]
+
+
+def test_a_window_opens_a_file_that_an_earlier_line_of_its_page_writes_whoever_runs_that():
+    made = ShellLine("page.md", 1, "python make.py gap.json")
+    other, window = ShellLine("page.md", 2, "sandbox run rope"), ShellLine("page.md", 3, "sandbox play gap.json")
+    assert with_what_they_need([window], [made, other]) == [made, window]
