@@ -135,7 +135,7 @@ def tests_give_back_the_memory_that_they_take():
 
 @pytest.fixture(autouse=True, scope="session")
 def tests_within_tests_say_the_same_wherever_they_run():
-    """pytest prints whole messages a second time where these say that nobody watches: they are those of the outer run."""
+    """Where nobody watches, pytest prints whole messages a second time: these names are the outer run's alone."""
     with pytest.MonkeyPatch.context() as patch:
         for name in ("CI", "BUILD_NUMBER", "PYTEST_ADDOPTS", "PY_COLORS", "FORCE_COLOR"):
             patch.delenv(name, raising=False)
