@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from sandbox.cli.base.command import Subcommand
 from sandbox.cli.base.inputs import EXIT_OK, Refused, recording_of
 from sandbox.cli.base.options import argument, option_or
+from sandbox.terminal import seconds
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -12,17 +13,22 @@ class LinkOptions:
     """A link to which run, and on which site."""
 
     replay: str = argument(str, "REPLAY")
-    site: str = option_or("", str, metavar="ADDRESS", help="what comes before the #: where `sandbox site` was put")
+    site: str = option_or("", str, metavar="ADDRESS", help="where the folder of `sandbox site` lies on the web")
+    at: float = option_or(0.0, seconds, help="from when on a page shows it")
 
 
 def link(options: LinkOptions) -> int:
     """Print a link that holds a recorded run. Raises Refused."""
-    from sandbox.session.link.scene_link import fragment_of
+    from sandbox.app.share.links import link_to
+    from sandbox.app.share.recorded import all_at_once
     from sandbox.session.replay.recording import ReplayError
 
     replay = recording_of(options.replay)
+    at = round(options.at * replay.level.settings.tick_rate)
+    if at > replay.ticks:
+        raise Refused(f"--at {options.at:g} s is behind the end of the run, {replay.ticks} ticks")
     try:
-        print(f"{options.site.partition('#')[0]}#{fragment_of(replay)}")
+        print(all_at_once(link_to(replay, options.site, at)))
     except ReplayError as error:
         raise Refused(*error.faults) from None
     return EXIT_OK

@@ -35,7 +35,7 @@ class Image(NamedTuple):
 
 def image_of(block: tuple[Any, ...]) -> Image:
     """The image of a named tuple of contiguous arrays and of such tuples; arrays that share memory share it there."""
-    arrays = dict(_arrays(block, ""))
+    arrays = dict(arrays_of(block))
     table, words = {}, 0
     for path, array in arrays.items():
         table[path] = ArrayPlace(words, array.dtype.str.lstrip("<|"), array.ndim)
@@ -61,12 +61,13 @@ def _leave_out_copies(
     return copies
 
 
-def _arrays(item: Any, path: str) -> Iterator[tuple[str, NDArray[Any]]]:
+def arrays_of(item: Any, path: str = "") -> Iterator[tuple[str, NDArray[Any]]]:
+    """The arrays of a named tuple of such and of named tuples, by their paths."""
     if isinstance(item, np.ndarray):
         yield path, item
         return
     for name, part in zip(item._fields, item, strict=True):
-        yield from _arrays(part, f"{path}.{name}" if path else name)
+        yield from arrays_of(part, f"{path}.{name}" if path else name)
 
 
 def _laid_out(arrays: list[NDArray[Any]], end: int) -> tuple[dict[int, int], bytearray]:

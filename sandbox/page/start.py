@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 from sandbox.page.about import about
+from sandbox.page.growth import growth_of
 from sandbox.page.image import Image, image_of
 from sandbox.page.room import Counts, leave_unused
 from sandbox.physics.pipeline.block_owner import block_of
@@ -25,4 +26,5 @@ def start_of(world: World, counts: Counts) -> Start:
     # Words follow each other as the arrays do.
     table = {path: [place.dtype, place.dimensions] for path, place in image.table.items()}
     known = about(world, block.pointer.nbytes // 8)
-    return Start(image, known | {"table": table, "copies": image.copies, "counts": counts})
+    grows = growth_of(world)
+    return Start(image, known | {"table": table, "copies": image.copies, "counts": counts, "grows": grows})

@@ -82,7 +82,7 @@ def test_a_shipped_level_goes_by_its_name_until_it_is_another(tmp_path):
     fragment = fragment_of(read_replay(tmp_path / "rope.replay.gz"))
     values = opened(fragment)
     assert values["level"] == "rope" and len(fragment) < 250
-    with pytest.raises(ReplayError, match="is to another edition of 'rope'"):
+    with pytest.raises(ReplayError, match="is to another edition of the level 'Rope'"):
         replay_of(closed({**values, "digest": "00000000"}))
     with pytest.raises(ReplayError, match="a level that is not here: 'rape'"):
         replay_of(closed({**values, "level": "rape"}))

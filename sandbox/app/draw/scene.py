@@ -1,6 +1,7 @@
 """Scene: what is drawn of a level, as plain data for a page that draws it by itself."""
 
 import base64
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -17,7 +18,7 @@ from sandbox.app.draw.things.balls import added_balls
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
 from sandbox.app.draw.things.faces import LEAST_KEPT, LEAST_OWN, spot_of
-from sandbox.app.draw.things.level_slots import Actor, Join, LevelSlots, joined_slots, level_slots_of
+from sandbox.app.draw.things.level_slots import Actor, Ball, Join, LevelSlots, joined_slots, level_slots_of
 from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
 from sandbox.app.draw.things.soft import CRUMB, FLAT, ROUNDING, USUAL_ROUNDING, Shape, shape_of
 from sandbox.app.draw.things.springs import CYLINDER
@@ -28,7 +29,8 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
 from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.marks import GRAB_COUNT
-from sandbox.physics.snapshot import Snapshot
+from sandbox.physics.snapshot import Snapshot, take
+from sandbox.physics.world import World
 
 # What a spring looks like that joined the world while it ran.
 ADDED = Look("", "steel", 0)
@@ -46,14 +48,8 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         "themes": {name: _theme(theme) for name, theme in THEMES.items()},
         "palette": [_hex(colour) for colour in PALETTE.values()],
         "bodies": [_body(actor, snapshot) for actor in slots.actors],
-        "joins": [
-            {"spring": join.spring, "ends": list(join.ends), **_look(join.look)}
-            for join in [*slots.joins, *_added_springs(slots, snapshot)]
-        ],
-        "balls": [
-            {"slot": ball.slot, "kind": ball.kind, "colour": None if ball.colour is None else _hex(ball.colour)}
-            for ball in [*slots.balls, *added_balls(balls, snapshot)]
-        ],
+        "joins": _joins(slots, snapshot),
+        "balls": [_ball(ball) for ball in [*slots.balls, *added_balls(balls, snapshot)]],
         "pieces": {"own": LEAST_OWN, "kept": LEAST_KEPT, "crumb": CRUMB, "flat": _lighting(FLAT)},
         "ground": ground,
         "treads": [
@@ -63,6 +59,31 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         "water": [_pool(box, pool) for box, pool in Pools(level).seen()],
         "pictures": _pictures(slots, ground),
     }
+
+
+def joined_scene(level: Level, world: World, before: Mapping[str, int]) -> dict[str, Any]:
+    """What is drawn of what joined a world, whose rows were these before: bodies, joins and balls, as in `scene_of`."""
+    snapshot = take(world)
+    slots = joined_slots(level_slots_of(level), world.joined)
+    balls = added_balls(_added(len(snapshot.mass), slots.particles, snapshot.grab_particle), snapshot)
+    particle, spring = before["particle"], before["spring"]
+    found = {
+        "bodies": [
+            _body(actor, snapshot) for actor in slots.actors if len(actor.slots) and actor.slots[-1] >= particle
+        ],
+        "joins": [join for join in _joins(slots, snapshot) if join["spring"] >= spring],
+        "balls": [_ball(ball) for ball in [*slots.balls, *balls] if ball.slot >= particle],
+    }
+    return {name: things for name, things in found.items() if things}
+
+
+def _joins(slots: LevelSlots, snapshot: Snapshot) -> list[dict[str, Any]]:
+    joins = [*slots.joins, *_added_springs(slots, snapshot)]
+    return [{"spring": join.spring, "ends": list(join.ends), **_look(join.look)} for join in joins]
+
+
+def _ball(ball: Ball) -> dict[str, Any]:
+    return {"slot": ball.slot, "kind": ball.kind, "colour": None if ball.colour is None else _hex(ball.colour)}
 
 
 def _pool(box: tuple[float, ...], pool: DrawnPool) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from sandbox import __version__
 from sandbox.app.draw.scene import scene_of
 from sandbox.app.run.playback import RAMP_TIME
 from sandbox.app.share.firmness_table import material_rows
-from sandbox.app.share.recorded import recorded
+from sandbox.app.share.recorded import all_at_once, recorded
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.assembly.build_world import build_world
@@ -26,6 +26,7 @@ from sandbox.physics.snapshot import take
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.commands.records import ScriptLine
+from sandbox.session.link.scene_link import level_record
 from sandbox.session.replay.format import header, seal
 
 # Metrics that need the energies of areas and bends, which a page does not have.
@@ -49,13 +50,7 @@ def page_of(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None =
 
 def playable(level: Level, script: Sequence[ScriptLine] = (), ticks: int | None = None) -> Playable:
     """As `page_of`, for a page of any kind. Raises CommandError."""
-    slices = playable_in_slices(level, script, ticks)
-    while True:
-        try:
-            next(slices)
-        except StopIteration as end:
-            made: Playable = end.value
-            return made
+    return all_at_once(playable_in_slices(level, script, ticks))
 
 
 def playable_in_slices(
@@ -82,6 +77,7 @@ def playable_in_slices(
         "goals": _goals(level, world),
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
+        "link": level_record(level) | {"physics": PHYSICS_VERSION},
         "recording": None if played is None else {"commands": played.commands, "hashes": played.hashes},
         "begin": begin,
     }

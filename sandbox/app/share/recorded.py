@@ -1,8 +1,8 @@
 """Recorded: what of a recording a page plays, for its own kernels: slots in place of names, and what they cannot do."""
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import asdict
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
 from sandbox.page.about import SETTING_ARRAYS, array_path, is_done_by_pages
-from sandbox.page.room import row_counts
+from sandbox.page.room import Counts, row_counts
 from sandbox.physics.snapshot import Snapshot, state_hash, take
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.step import step
@@ -21,16 +21,38 @@ from sandbox.session.commands.records import ScriptLine, from_record, script_of
 from sandbox.session.replay.format import TICK_DIGITS
 from sandbox.session.session import Session
 
+T = TypeVar("T")
+# What else pages are told of a command that no kernel carries out: of the rows there were before it, and the world now.
+Beside = Callable[[Counts, World], dict[str, Any]]
+
 
 class Recorded(NamedTuple):
-    """Commands in order, as a page carries them out, the hash of each tick, and the world at the end."""
+    """Commands in order, as a page carries them out, and as lines; the hash of each tick, and the world at the end."""
 
     commands: list[dict[str, Any]]
+    script: Sequence[ScriptLine]
     hashes: list[str]
     world: World
 
 
-def recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generator[float, None, Recorded]:
+def all_at_once(slices: Generator[float, None, T]) -> T:
+    """What work in slices comes to."""
+    while True:
+        try:
+            next(slices)
+        except StopIteration as end:
+            made: T = end.value
+            return made
+
+
+def nothing_beside(counts: Counts, world: World) -> dict[str, Any]:
+    """Nothing more: for a page whose world has all that joins from its start."""
+    return {}
+
+
+def recorded(
+    level: Level, script: Sequence[ScriptLine], ticks: int, beside: Beside = nothing_beside
+) -> Generator[float, None, Recorded]:
     """What a page plays of a recording, a slice of the work at a time: each gives the part that is done, 0..1.
 
     Commands that were undone are left out. Raises CommandError, also where nothing was there at first: hands get their
@@ -52,11 +74,11 @@ def recorded(level: Level, script: Sequence[ScriptLine], ticks: int) -> Generato
     for line in script:
         yield from map(part, _stepped(world, actions, line.tick, hashes))
         try:
-            commands.append(_carried_out(world, line))
+            commands.append(_carried_out(world, line, beside))
         except CommandError as error:
             raise CommandError(f"line {line.line}: {error}") from None
     yield from map(part, _stepped(world, actions, ticks, hashes))
-    return Recorded(commands, hashes, world)
+    return Recorded(commands, script, hashes, world)
 
 
 def _without_undone(
@@ -82,7 +104,7 @@ def _tick_hash(world: World) -> str:
     return state_hash(world)[:TICK_DIGITS]
 
 
-def _carried_out(world: World, line: ScriptLine) -> dict[str, Any]:
+def _carried_out(world: World, line: ScriptLine, beside: Beside) -> dict[str, Any]:
     """Carry out a command of a recording; it as a page reads it, with all that it changed where no kernel does it."""
     command, entry = from_record(line.record, world), {"tick": line.tick, "gesture": line.gesture}
     if is_done_by_pages(command.type):
@@ -91,7 +113,8 @@ def _carried_out(world: World, line: ScriptLine) -> dict[str, Any]:
     before, counts = take(world), row_counts(world)
     apply(world, command)
     changes, present = _changes(before, world), row_counts(world)
-    return entry | {"record": line.record, "changes": changes} | ({"counts": present} if present != counts else {})
+    grown = {"counts": present, **beside(counts, world)} if present != counts else {}
+    return entry | {"record": line.record, "changes": changes} | grown
 
 
 def _changes(before: Snapshot, world: World) -> dict[str, list[list[Any]]]:

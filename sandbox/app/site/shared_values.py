@@ -19,6 +19,7 @@ from sandbox.page.page import WEB
 from sandbox.physics import world
 from sandbox.physics.analysis import body_motion, pulls, query
 from sandbox.session import summary
+from sandbox.session.link import packing, scene_link
 from sandbox.session.replay import format
 
 MODULE = WEB / "shared.js"
@@ -31,6 +32,8 @@ def shared_values() -> dict[str, dict[str, Any]]:
     return {
         "RECORDING": _of(format, "TICK_DIGITS", "ARRAY_DIGITS", "STATE_TICKS")
         | {"CHAIN_DIGITS": format.CHAIN_DIGITS[format.VERSION]},
+        "LINK": _of(scene_link, "MARK", "VERSION", "LONGEST", "UNPACKED_LIMIT", "RUN_LIMIT")
+        | _of(packing, "COMMAND_LIMIT", "FARTHEST", "PER_METRE", "HANDS", "MOVE"),
         "CHECKS": _of(checks, "STILL") | _of(summary, "STRAIN_WINDOW"),
         "PACE": {"LONGEST": loop.LONGEST_FRAME, "BUDGET": playback.TICK_BUDGET},
         "HANDS": {

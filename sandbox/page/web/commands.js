@@ -21,7 +21,7 @@ const LIMITS = {
 };
 /** The rows that have the names of a kind, where they are called otherwise.
  * @type {(kind: NameKind) => keyof Counts} */
-const countedBy = (kind) => (kind === 'part' ? 'actuator' : kind);
+export const countedBy = (kind) => (kind === 'part' ? 'actuator' : kind);
 
 /** @type {(message: string, ...values: unknown[]) => string} */
 const fill = (message, ...values) => message.replace(/\{\}/g, () => String(values.shift()));
@@ -46,11 +46,13 @@ const placed = (parts) => [...parts.map((part) => (PLAIN.test(String(part)) ? pa
 
 export class Commands {
   #about;
+  #names;
 
-  /** about: what Python says, see about.py.
-   * @param {About} about */
-  constructor(about) {
+  /** about: what Python says, see about.py; names: of the rows there are, which may grow.
+   * @param {About} about @param {Record<NameKind, string[]>} names */
+  constructor(about, names) {
     this.#about = about;
+    this.#names = names;
   }
 
   /** @type {(type: string) => [field: string, schema: Named][]} */
@@ -65,7 +67,7 @@ export class Commands {
   /** The slot of a name. kind: particle, spring, part or material; counts: rows in use, by family.
    * @type {(schema: Named, name: unknown, counts: Counts) => number} */
   slot({ names: kind, noun = kind }, name, counts) {
-    const { messages, names, second } = this.#about;
+    const { messages, second } = this.#about, names = this.#names;
     if (typeof name !== 'string') throw new Refusal(fill(messages.noName, noun));
     const first = names[kind].indexOf(name), others = second[kind] ?? {};
     const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
@@ -159,7 +161,7 @@ export class Commands {
     const refusal = this.#about.byHand.refused[record.type], needs = this.needs(record);
     if (refusal) return refusal;
     if (needs && world.view('state.counter')[needs[0]] < needs[1]) return needs[2];
-    const { byHand: { bodies, untouched }, names } = this.#about;
+    const { byHand: { bodies, untouched } } = this.#about, names = this.#names;
     const fields = /** @type {Record<string, number | number[] | undefined>} */ ({ ...record, type: undefined });
     for (const [field, { names: kind }] of bodies ? this.#named(record.type) : []) {
       if (kind !== 'particle' && kind !== 'spring') continue;
@@ -174,7 +176,7 @@ export class Commands {
   /** What of a world does not let a record with slots be carried out, in words; null: nothing.
    * @type {(world: World, record: Command) => string | null} */
   faultIn(world, record) {
-    const { messages, commands, names } = this.#about, kinds = new Map(this.#named(record.type));
+    const { messages, commands } = this.#about, names = this.#names, kinds = new Map(this.#named(record.type));
     const fields = /** @type {Record<string, number | number[] | undefined>} */ ({ ...record, type: undefined });
     for (const [field, { names: kind, noun }] of kinds) {
       const lost = [fields[field] ?? []].flat().find((slot) => !world.isInUse(kind, slot));
@@ -212,7 +214,7 @@ export class Commands {
   /** A record with slots as files have it: names in place of slots, and nothing that is left out.
    * @type {(record: Command) => NamedRecord} */
   named(record) {
-    const { names } = this.#about, kinds = new Map(this.#named(record.type));
+    const names = this.#names, kinds = new Map(this.#named(record.type));
     const entries = Object.entries(record).filter(([, value]) => value !== null && value !== undefined);
     return { type: record.type, ...Object.fromEntries(entries.map(([field, value]) => {
       const kind = kinds.get(field)?.names;

@@ -65,6 +65,7 @@ export class Camera {
 export class Picture {
   #canvas;
   #context;
+  #whole;
   #scene;
   #world;
   #water;
@@ -93,6 +94,7 @@ export class Picture {
     this.#canvas = canvas;
     this.#context = contextOf(canvas);
     this.theme = scene.themes.dark;
+    this.#whole = scene;
     this.#scene = unfolded(scene, world);
     keepPictures(scene.pictures);
     this.#world = world;
@@ -117,8 +119,9 @@ export class Picture {
     this.#place(previous, part);
     const there = [this.#state('spring_active'), this.#state('particle_active')];
     let things = this.#things;
-    if (!things || there.some((array, n) => array.some((value, k) => value !== this.#there[n][k]))) {
+    if (!things || there.some((array, n) => array.length !== this.#there[n].length || array.some((value, k) => value !== this.#there[n][k]))) {
       this.#there = there.map((array) => array.slice());
+      this.#scene = unfolded(this.#whole, this.#world);
       things = this.#things = thingsOf(this.#scene, this.#world, this.#there[0], this.#there[1]);
     }
     const { shapes } = things;

@@ -2,6 +2,7 @@
 import { Refusal } from './commands.js';
 import { read } from './files.js';
 import { Goals } from './goals.js';
+import { isLink, linked } from './link.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
 import { Toy } from './toy.js';
@@ -28,8 +29,9 @@ const press = (button, isOn) => button?.setAttribute('aria-pressed', String(isOn
 const isTypedInto = (target) => target instanceof Element && target.matches('input, select, .pad');
 
 class Page {
-  /** @param {Level} level @param {Fresh} fresh */
-  constructor(level, fresh) {
+  /** words: what there is to say at first.
+   * @param {Level} level @param {Fresh} fresh @param {string} words */
+  constructor(level, fresh, words) {
     this.toy = new Toy(byId('picture'), level, fresh, window);
     this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level);
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
@@ -46,7 +48,9 @@ class Page {
     // Who turns a phone has another picture, whatever was pinched before.
     matchMedia('(orientation: portrait)').addEventListener('change', () => this.toy.fit());
     if (level.recording) this.#verify();
-    this.#say(level.recording ? 'A recording. Touch it to take over.' : '');
+    this.#say(words || (level.recording ? 'A recording. Touch it to take over.' : ''), words && 'bad');
+    // A page of a disk has no address that others could open.
+    byId('link').hidden = !location.protocol.startsWith('http');
     byId('picture').focus({ preventScroll: true });
   }
 
@@ -64,6 +68,7 @@ class Page {
         press(byId('sound'), toy.sound.isOn);
       },
       tune: () => this.#show('panel', 'tune'), hint: () => this.#show('hints', 'hint'), save: () => this.#save(),
+      link: () => this.#copyLink(),
     };
     for (const tool of TOOLS) acts[tool] = () => this.#choose(tool);
     for (const [id, act] of Object.entries(acts)) byId(id).addEventListener('click', act);
@@ -182,11 +187,28 @@ class Page {
     const count = recording.hashes.length - 1;
     try {
       const wrong = await verified(fresh(), recording);
-      if (wrong === null) this.#say(`Verified: every bit of ${count} ticks is that of the recording.`, 'good');
+      const whose = recording.end === undefined ? 'every bit of' : 'the state after';
+      if (wrong === null) this.#say(`Verified: ${whose} ${count} ticks is that of the recording.`, 'good');
       else this.#say(`This browser comes to other bits at tick ${wrong}.`, 'bad');
     } catch (error) {
       this.#say(error instanceof Refusal ? error.message : 'This recording could not be compared.', 'bad');
     }
+  }
+
+  async #copyLink() {
+    const { toy } = this;
+    toy.pause();
+    const fragment = await toy.link();
+    if (fragment === null) {
+      this.#say('This run is too long for a link: save it as a file, and send that.', 'bad');
+      return;
+    }
+    // Without a new page: it is the address of what is here.
+    history.replaceState(null, '', fragment);
+    const isCopied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
+    const length = location.href.length.toLocaleString('en');
+    if (isCopied) this.#say(`The link is copied, ${length} characters. Whoever opens it sees what you did.`, 'good');
+    else this.#say(`The address of this page is the link now, ${length} characters: copy it from there.`, 'good');
   }
 
   async #save() {
@@ -206,11 +228,26 @@ class Page {
   }
 }
 
+/** Take the run of a link in the address as the recording of a level. What there is to say: why it cannot be.
+ * @type {(level: Level) => Promise<string>} */
+async function follow(level) {
+  if (!isLink(location.hash)) return '';
+  try {
+    [level.recording, level.begin] = await linked(location.hash, level.link, level.about);
+    return '';
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    return error.message;
+  }
+}
+
 /** Open the page of a toy whose parts a promise gives: what its file holds, and the kernels.
  * @type {(parts: Promise<[Level, Fresh]>) => Promise<void>} */
 export async function start(parts) {
   try {
-    globalThis.page = new Page(...await parts);
+    const [level, fresh] = await parts, words = await follow(level);
+    globalThis.page = new Page(level, fresh, words);
+    addEventListener('hashchange', () => { if (isLink(location.hash)) location.reload(); });
   } catch (error) {
     byId('error').textContent = error instanceof Refusal ? error.message : 'This page could not be opened here.';
     byId('error').hidden = false;

@@ -11,15 +11,16 @@ const encoder = new TextEncoder();
  * @type {() => Promise<void>} */
 const pause = () => new Promise((resolve) => setTimeout(resolve));
 
-/** Run commands on a world from its start; gives every tick its hash, and the commands that follow it.
- * @type {(world: World, commands: Done[], ticks: number) => AsyncGenerator<{ hash: StateHash, commands: Done[] }>} */
+/** Run commands on a world from its start; gives of every tick the commands that follow it, before they do.
+ * @type {(world: World, commands: Done[], ticks: number) => AsyncGenerator<Done[]>} */
 async function* repeated(world, commands, ticks) {
   let next = 0, since = performance.now();
   for (;;) {
-    const hash = world.hash(), first = next;
+    const first = next;
     while (next < commands.length && commands[next].tick === world.time) next += 1;
-    yield { hash, commands: commands.slice(first, next) };
-    for (const done of commands.slice(first, next)) world.carryOut(done);
+    const due = commands.slice(first, next);
+    yield due;
+    for (const done of due) world.carryOut(done);
     if (world.time >= ticks) return;
     world.tick();
     if (performance.now() - since > SLICE) {
@@ -31,11 +32,13 @@ async function* repeated(world, commands, ticks) {
 
 /** The first tick of a recording that has not the hash that it says; null: each has.
  * @type {(world: World, recording: Recording) => Promise<number | null>} */
-export async function verified(world, { commands, hashes }) {
-  for await (const { hash } of repeated(world, commands, hashes.length - 1)) {
-    if (!hash.whole.startsWith(hashes[world.time])) return world.time;
+export async function verified(world, { commands, hashes, end }) {
+  const ticks = repeated(world, commands, hashes.length - 1);
+  while (!(await ticks.next()).done) {
+    const hash = hashes[world.time];
+    if (hash !== undefined && !world.hash().whole.startsWith(hash)) return world.time;
   }
-  return null;
+  return end === undefined || world.hash().whole === end ? null : world.time;
 }
 
 /** The file of a run, compressed. world: a fresh one; about: the table; header: the first line without its end.
@@ -69,8 +72,8 @@ export async function written(world, about, header, commands, ticks, progress) {
   write(header);
   /** @type {{ hash: StateHash, isStored: boolean, isChanged: boolean } | null} */
   let last = null;
-  for await (const { hash, commands: due } of repeated(world, commands, ticks)) {
-    const isStored = world.time % STATE_TICKS === 0;
+  for await (const due of repeated(world, commands, ticks)) {
+    const hash = world.hash(), isStored = world.time % STATE_TICKS === 0;
     /** @type {Record<string, string | null>} */
     const arrays = {};
     for (const name of columns.keys()) {

@@ -5,6 +5,18 @@ export const RECORDING = {
   STATE_TICKS: 600,
   CHAIN_DIGITS: 8,
 };
+export const LINK = {
+  MARK: 'scene=',
+  VERSION: 1,
+  LONGEST: 32000,
+  UNPACKED_LIMIT: 4194304,
+  RUN_LIMIT: 216000,
+  COMMAND_LIMIT: 200000,
+  FARTHEST: 549755813888,
+  PER_METRE: 1000,
+  HANDS: 10,
+  MOVE: 'move_grab',
+};
 export const CHECKS = {
   STILL: 0.05,
   STRAIN_WINDOW: 2,

@@ -16,12 +16,12 @@ const NO_SPOT = /** @type {Spot} */ ([0, 0, 0]);
 /** @typedef {SceneLook & Partial<Pick<Body, 'type' | 'cell' | 'slots' | 'segments'>>} LineLook */
 /** @typedef {{ particles: number[], springs: number[] }} Chain */
 
-/** The scene with the slots of each body's particles and its springs as [spring, first end, second end].
+/** The scene with all that joined, the slots of each body's particles and its springs as [spring, first end, second end].
  * @type {(scene: Scene, world: World) => Unfolded} */
 export function unfolded(scene, world) {
   const a = world.view('state.particle_a'), b = world.view('state.particle_b'),
     key = (/** @type {number} */ p, /** @type {number} */ q) => Math.min(p, q) * 0x4000000 + Math.max(p, q);
-  const bodies = scene.bodies.map((body) => {
+  const bodies = [scene, ...world.joined].flatMap(({ bodies: each = [] }) => each).map((body) => {
     const slots = body.slots.flatMap(([first, count]) => Array.from({ length: count }, (_, k) => first + k));
     const springs = Array.from({ length: body.springs },
       (_, k) => /** @type {SpringEnds} */ ([body.spring + k, a[body.spring + k], b[body.spring + k]]));
@@ -32,7 +32,9 @@ export function unfolded(scene, world) {
     const { spot = NO_SPOT, spacing = body.cell } = body;
     return { ...body, triangles, spot, spacing, slots, springs, sides };
   });
-  return { ...scene, bodies };
+  const joins = [scene, ...world.joined].flatMap(({ joins: each = [] }) => each);
+  const balls = [scene, ...world.joined].flatMap(({ balls: each = [] }) => each);
+  return { ...scene, bodies, joins, balls };
 }
 
 /** What a picture finds out of each shape and line.

@@ -5,6 +5,7 @@ import { Camera, Picture } from './draw.js';
 import { Drives } from './drives.js';
 import { load } from './files.js';
 import { Hands } from './hand.js';
+import { linkOf } from './link.js';
 import { Pace } from './pace.js';
 import { contextOf } from './paint.js';
 import { written } from './recording.js';
@@ -231,7 +232,7 @@ export class Toy extends EventTarget {
       return Math.min(Math.max((2 * x) / this.camera.width - 1, -1), 1);
     });
     this.#tell('tick');
-    const { spring: names } = this.level.about.names;
+    const { spring: names } = world.names;
     if (world.broken.length) this.#tell('break', { springs: world.broken.map((spring) => names[spring]) });
     for (const result of this.#checks.look()) this.#tell('check', result);
     this.#tellRules();
@@ -324,7 +325,7 @@ export class Toy extends EventTarget {
 
   // Names of particles, as in the level's file: 'rope.39' is the last of a body named rope.
   get particles() {
-    return this.world.particles.map((slot) => this.level.about.names.particle[slot]);
+    return this.world.particles.map((slot) => this.world.names.particle[slot]);
   }
 
   /** Where a particle is [m], its velocity [m/s], and whether it is pinned.
@@ -352,6 +353,20 @@ export class Toy extends EventTarget {
       if (done % 60 === 0) this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`);
     };
     return written(this.fresh(), level.about, level.header, commands, run.time, progress);
+  }
+
+  /** The fragment of a link to what was done; null: a link would be too long.
+   * @type {() => Promise<string | null>} */
+  async link() {
+    const { run, world, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
+    let tick = 0;
+    const entries = commands.map(({ tick: at, gesture, record, changes, counts, names, scene }) => {
+      const passed = at - tick;
+      tick = at;
+      if (!changes) return { passed, gesture, record: world.commands.named(record) };
+      return { passed, gesture, record: /** @type {NamedRecord} */ (record), told: { changes, counts, names, scene } };
+    });
+    return linkOf(level.link, { commands: entries, ticks: run.time, at: 0, hash: world.hash().whole });
   }
 
   // Stop for good.

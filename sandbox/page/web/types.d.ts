@@ -87,6 +87,8 @@ export interface About {
   table: Record<string, ['f8' | 'f4' | 'i8' | 'u4' | 'i4' | 'i1' | 'b1', number]>;
   copies: [to: number, from: number, size: number][];
   counts: Counts;
+  // By path of an array that has a row for each of a family: the family, and what new rows hold.
+  grows: Record<string, [family: keyof Counts, fill: number | string]>;
 }
 
 // What a rule does: a text or a sound of it, a counter that changes, or commands with slots in place of names.
@@ -165,13 +167,35 @@ export type Fields = { type: string } & Record<string, unknown>;
 export type Runs = [first: number, count: number, ...row: (number | string | boolean)[]][];
 
 // Something done. What no kernel carries out comes as what it changes, by array, and is written down as it is.
-export type Done = { tick: number; gesture: number; record: Command; changes?: undefined; counts?: undefined }
-  | { tick: number; gesture: number; record: NamedRecord; changes: Record<string, Runs>; counts?: Counts };
+export type Done = { tick: number; gesture: number; record: Command; changes?: undefined; counts?: undefined;
+    names?: undefined; scene?: undefined }
+  | { tick: number; gesture: number; record: NamedRecord; } & Told;
+
+// What a page is told of a command that no kernel carries out: what it changes, and of what it adds the rows in use since
+// then, their names and what people see.
+export interface Told {
+  changes: Record<string, Runs>;
+  counts?: Counts;
+  names?: Partial<Record<NameKind, string[]>>;
+  scene?: Joined;
+}
 
 export interface Recording {
   commands: Done[];
   hashes: string[];
+  // Of a link: the hash at its end, after its last commands. It has no hashes of ticks.
+  end?: string;
 }
+
+// What links say of a level: the name of a shipped one, or all of it; what it is known by; and of which physics.
+export interface LevelLink {
+  level: unknown;
+  digest: string;
+  physics: number;
+}
+
+// What a link holds, before it is looked at.
+export type PackedLink = { v: unknown; ticks: unknown; at?: unknown; hash: string; commands: unknown } & LevelLink;
 
 // ---- A level: playing.py
 
@@ -248,6 +272,7 @@ export interface Level {
   goals: Goals;
   keys: Record<string, [part: number, value: number][]>;
   header: string;
+  link: LevelLink;
   recording: Recording | null;
   begin: number;
   about: About;
@@ -378,6 +403,9 @@ export interface Pool {
   flow: Point;
   tones: Record<'dark' | 'light', Tones>;
 }
+
+// What people see of what joined a world.
+export type Joined = Partial<Pick<Scene, 'bodies' | 'joins' | 'balls'>>;
 
 export interface Scene {
   view: Box;

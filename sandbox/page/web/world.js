@@ -1,9 +1,9 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
-import { Commands } from './commands.js';
+import { Commands, countedBy } from './commands.js';
 import { blake2b, hexOf } from './hash.js';
 /**
  * @import { About, Action, AnyArray, Column, Command, Counts, Done, Kernels, NameKind, Outcome, Runs, SavedState,
- *   Settings, StateHash, View } from './types.js'
+ *   Joined, Settings, StateHash, View } from './types.js'
  */
 
 const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
@@ -32,6 +32,9 @@ export class World {
   #about;
   /** @type {number} */
   #arguments;
+  /** Where slots of a command are given, and how many there may be.
+   * @type {[address: number, most: number]} */
+  #slots = [0, 0];
   /** @type {number} */
   #base;
   /** @type {number} */
@@ -49,9 +52,18 @@ export class World {
   #hashed = new Map();
   /** @type {Map<string, AnyArray>} */
   #saved = new Map();
+  /** By path: how many rows there are room for, and how many there are at least.
+   * @type {Map<string, { room: number, least: number }>} */
+  #rows = new Map();
   /** Rows in use, by family: a page has room for what a recording adds later.
    * @type {Counts} */
   counts;
+  /** Names of rows in use, and of others that there were once.
+   * @type {Record<NameKind, string[]>} */
+  names;
+  /** What people see of what joined, and the rows in use since then.
+   * @type {{ counts: Counts, scene: Joined }[]} */
+  #joined = [];
   /** What of records is right, and what kernels take of it.
    * @type {Commands} */
   commands;
@@ -66,9 +78,10 @@ export class World {
     this.#kernels = kernels;
     this.#about = about;
     this.counts = about.counts;
-    this.commands = new Commands(about);
+    this.names = structuredClone(about.names);
+    this.commands = new Commands(about, this.names);
     this.#arguments = aligned(kernels.__heap_base.value);
-    this.#base = aligned(this.#arguments + (ARGUMENTS + 2 * RECORD + about.names.spring.length) * WORD);
+    this.#base = aligned(this.#arguments + (ARGUMENTS + RECORD) * WORD);
     this.#end = this.#base;
     this.#reserve(image.length);
     const memory = new Uint8Array(kernels.memory.buffer);
@@ -83,6 +96,10 @@ export class World {
       word += SHAPE + 2 * dimensions;
     }
     this.#given = new Uint8Array(kernels.memory.buffer, this.#base, about.words * WORD).slice();
+    for (const path of Object.keys(about.grows)) {
+      const rows = this.#dimension(path);
+      this.#rows.set(path, { room: rows, least: rows });
+    }
     this.#derive(DERIVATIONS);
   }
 
@@ -116,6 +133,40 @@ export class World {
     const view = new KINDS[kind](this.#kernels.memory.buffer, words[at + 2 * ADDRESS], size);
     this.#views.set(path, view);
     return /** @type {View<P>} */ (view);
+  }
+
+  /** How many rows an array has.
+   * @type {(path: string) => number} */
+  #dimension(path) {
+    const { word } = this.#table.get(path) ?? { word: 0 };
+    return new Uint32Array(this.#kernels.memory.buffer)[this.#place(word) + 2 * SHAPE];
+  }
+
+  /** Give all arrays as many rows as are in use. It is derived again afterwards.
+   * @type {(counts: Counts) => void} */
+  #grow(counts) {
+    for (const [path, [family, fill]] of Object.entries(this.#about.grows)) {
+      const known = this.#rows.get(path) ?? { room: 0, least: 0 };
+      const rows = Math.max(counts[family], known.least), before = this.view(path), had = this.#dimension(path);
+      if (rows === had) continue;
+      const { word, dimensions } = /** @type {{ word: number, dimensions: number }} */ (
+        this.#table.get(path));
+      const width = dimensions > 1 ? new Uint32Array(this.#kernels.memory.buffer)[this.#place(word) + 2 * (SHAPE + 1)] : 1;
+      const kept = before.slice(), size = kept.BYTES_PER_ELEMENT, isMoved = rows > known.room;
+      if (isMoved) known.room = MORE * rows;
+      const address = isMoved ? this.#reserve(known.room * width * size) : before.byteOffset;
+      const words = [[2, rows * width], [ADDRESS, address], [SHAPE, rows]];
+      for (const buffer of [this.#kernels.memory.buffer, this.#given.buffer]) {
+        const from = buffer === this.#given.buffer ? 0 : this.#base, all = new Uint32Array(buffer);
+        for (const [at, value] of words) all[(from + WORD * (word + at)) / 4] = value;
+      }
+      this.#rows.set(path, known);
+      this.#views.delete(path);
+      const view = this.view(path);
+      put(view, kept.subarray(0, Math.min(kept.length, view.length)));
+      if (view instanceof BigInt64Array) view.fill(BigInt(fill), had * width);
+      else view.fill(Number(fill), had * width);
+    }
   }
 
   /** Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
@@ -240,8 +291,13 @@ export class World {
       this.commandByHand(done.record);
       return;
     }
-    const { changes, counts } = done;
+    const { changes, counts, names, scene } = done;
+    if (counts) this.#grow(counts);
+    for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(names ?? {}))) {
+      this.names[kind].splice(this.counts[countedBy(kind)], Infinity, ...added);
+    }
     this.counts = counts ?? this.counts;
+    if (scene) this.#joined.push({ counts: this.counts, scene });
     for (const [path, runs] of Object.entries(changes)) {
       this.#change(path, runs);
       const good = path.replace('state', 'good');
@@ -273,12 +329,13 @@ export class World {
   command(record) {
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
-    const { code, slots, numbers, changes } = packed, { buffer } = this.#kernels.memory;
-    const at = this.#arguments + ARGUMENTS * WORD;
-    new BigInt64Array(buffer, at + RECORD * WORD, slots.length).set(slots.map(BigInt));
+    const { code, slots, numbers, changes } = packed;
+    if (slots.length > this.#slots[1]) this.#slots = [this.#reserve(MORE * slots.length * WORD), MORE * slots.length];
+    const at = this.#arguments + ARGUMENTS * WORD, { buffer } = this.#kernels.memory;
+    new BigInt64Array(buffer, this.#slots[0], slots.length).set(slots.map(BigInt));
     new Float64Array(buffer, at, numbers.length).set(numbers);
     /** @type {(number | Span)[]} */
-    const given = [code, [at + RECORD * WORD, slots.length, WORD], [at, numbers.length, WORD]];
+    const given = [code, [this.#slots[0], slots.length, WORD], [at, numbers.length, WORD]];
     this.commands.answer(record, packed, this.#inArena('command', ...given));
     if (changes) this.#derive(changes === 'hands' ? HANDS : DERIVATIONS);
   }
@@ -328,6 +385,11 @@ export class World {
   #contactRows() {
     const count = Number(this.view('collisions.counts')[this.#about.progress.KEPT]);
     return CONTACTS.map((path, k) => this.view(path).slice(0, count * (k === 2 ? 2 : 1)));
+  }
+
+  // What people see of what joined.
+  get joined() {
+    return this.#joined.map(({ scene }) => scene);
   }
 
   // First particle and spring of hands, and how many hands there are.
@@ -402,6 +464,8 @@ export class World {
   /** @type {(state: SavedState) => void} */
   restore({ time, counts, arrays, contacts }) {
     const isOther = this.#about.topology.some((path) => !isEqual(this.view(path), arrays.get(path) ?? NONE));
+    this.#grow(counts);
+    this.#joined = this.#joined.filter((each) => isWithin(each.counts, counts));
     for (const [path, kept] of arrays) put(this.view(path), kept);
     [this.time, this.counts, this.broken] = [time, counts, []];
     if (isOther) this.#derive(DERIVATIONS, contacts);
@@ -458,6 +522,10 @@ function put(array, values, at = 0) {
   // Both are of 64 bits and whole, or neither is.
   /** @type {Float64Array} */ (array).set(/** @type {Float64Array} */ (values), at);
 }
+
+/** @type {(one: Counts, other: Counts) => boolean} */
+const isWithin = (one, other) => one.particle <= other.particle && one.spring <= other.spring
+  && one.constraint <= other.constraint;
 
 /** @type {(one: AnyArray, other: AnyArray) => boolean} */
 function isEqual(one, other) {

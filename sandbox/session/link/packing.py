@@ -1,14 +1,16 @@
 """Packing: commands as short lists for links, and back to the very bits.
 
     [ticks since the one before, gesture, record]       a command
+    [..., told]                                         one that pages cannot carry out, and what they are told of it
     [[ticks...], [hands...], [x...], [y...]]            moves of hands, one after another
 
 Moves of a hand belong to the gesture of its last grab. Their places are whole millimetres, as differences to the place
 before of the same hand; a move to another place, or of another gesture, is a command as all others.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 from sandbox.session.commands.records import ScriptLine
@@ -20,8 +22,11 @@ COMMAND_LIMIT, TICK_LIMIT = 200_000, 2**31
 HANDS = 10
 _COLUMNS = 4
 # Places of moves are no farther out [mm].
-_FARTHEST = 2**39
-_MOVE = "move_grab"
+FARTHEST = 2**39
+MOVE = "move_grab"
+
+
+NOTHING: Mapping[int, Any] = MappingProxyType({})
 
 
 class PackingError(ValueError):
@@ -45,17 +50,20 @@ class _Hands:
         return self.places.get(hand, (0, 0))
 
 
-def pack(script: Sequence[ScriptLine]) -> list[Any]:
-    """The commands of a script, gestures numbered anew from 1 on in the order in which they begin."""
+def pack(script: Sequence[ScriptLine], told: Mapping[int, Any] = NOTHING) -> list[Any]:
+    """The commands of a script, gestures numbered anew from 1 on in the order in which they begin.
+
+    told: what pages are told of some, by their places in the script.
+    """
     packed: list[Any] = []
     moves: list[list[int]] = []
     hands, numbers, tick = _Hands(), dict[int, int](), 0
-    for line in script:
+    for place, line in enumerate(script):
         gesture = numbers.setdefault(line.gesture, len(numbers) + 1)
         move = _move(line.record, gesture, hands)
         if move is None:
             moves = []
-            packed.append([line.tick - tick, gesture, line.record])
+            packed.append([line.tick - tick, gesture, line.record, *([told[place]] if place in told else [])])
             hands.note(gesture, line.record)
         else:
             if not moves:
@@ -73,14 +81,14 @@ def pack(script: Sequence[ScriptLine]) -> list[Any]:
 
 def _move(record: dict[str, Any], gesture: int, hands: _Hands) -> tuple[int, tuple[int, int]] | None:
     """The hand of a move and its place in millimetres, where that is all that the record says."""
-    if record.get("type") != _MOVE or set(record) != {"type", "grab", "target"}:
+    if record.get("type") != MOVE or set(record) != {"type", "grab", "target"}:
         return None
     hand, target = record["grab"], record["target"]
     if hands.gestures.get(hand) != gesture:
         return None
     x, y = (round(each * PER_METRE) for each in target)
     is_exact = [_metres(x), _metres(y)] == list(target) and all(_is_plain(each) for each in target)
-    return (hand, (x, y)) if is_exact and max(abs(x), abs(y)) <= _FARTHEST else None
+    return (hand, (x, y)) if is_exact and max(abs(x), abs(y)) <= FARTHEST else None
 
 
 def _metres(place: int) -> float:
@@ -112,8 +120,8 @@ def unpack(packed: Any) -> tuple[ScriptLine, ...]:
 def _entry(entry: Any, hands: _Hands) -> Iterator[tuple[Any, Any, dict[str, Any]]]:
     if isinstance(entry, list) and len(entry) == _COLUMNS and all(isinstance(each, list) for each in entry):
         yield from _moves(entry, hands)
-    elif isinstance(entry, list) and len(entry) == 3 and isinstance(entry[2], dict):
-        passed, gesture, record = entry
+    elif isinstance(entry, list) and 3 <= len(entry) <= 4 and isinstance(entry[2], dict):
+        passed, gesture, record = entry[:3]
         yield passed, gesture, record
         hands.note(gesture, record)
     else:
@@ -131,11 +139,11 @@ def _moves(columns: list[list[Any]], hands: _Hands) -> Iterator[tuple[Any, Any, 
         before = hands.place(hand)
         x, y = before[0] + dx, before[1] + dy
         hands.places[hand] = x, y
-        yield passed, hands.gestures[hand], {"type": _MOVE, "grab": hand, "target": [_metres(x), _metres(y)]}
+        yield passed, hands.gestures[hand], {"type": MOVE, "grab": hand, "target": [_metres(x), _metres(y)]}
 
 
 def _is_step(value: Any) -> bool:
-    return _is_int(value) and abs(value) <= 2 * _FARTHEST
+    return _is_int(value) and abs(value) <= 2 * FARTHEST
 
 
 def _is_int(value: Any) -> bool:

@@ -12,6 +12,7 @@ import hashlib
 import json
 import re
 import zlib
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -24,7 +25,7 @@ from sandbox.level.reading.files import load_level, parse_level, shipped_levels
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.faults import plain_fault
-from sandbox.session.link.packing import PackingError, pack, unpack
+from sandbox.session.link.packing import NOTHING, PackingError, pack, unpack
 from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
 
 VERSION = 1
@@ -33,8 +34,8 @@ MARK = "scene="
 # A longer link is cut by programs that pass it on [characters]; a longer run goes into a file.
 LONGEST = 32_000
 # What a link may unpack to [bytes], and ticks of its run: an hour at 60 a second.
-_UNPACKED = 4 * 2**20
-_TICKS = 216_000
+UNPACKED_LIMIT = 4 * 2**20
+RUN_LIMIT = 216_000
 _DIGEST = 8
 
 _LINK = re.compile(rf"(?:^|#){MARK}(\S*)$")
@@ -47,8 +48,9 @@ class _LinkedRun(BaseModel):
     v: Literal[1]
     physics: int
     level: dict[str, Any] | Annotated[str, Field(max_length=80)]
-    digest: Annotated[str, Field(max_length=_DIGEST)] = ""
-    ticks: Annotated[int, Field(ge=0, le=_TICKS)]
+    digest: Annotated[str, Field(max_length=_DIGEST)]
+    ticks: Annotated[int, Field(ge=0, le=RUN_LIMIT)]
+    at: Annotated[int, Field(ge=0, le=RUN_LIMIT)] = 0
     hash: Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
     commands: list[Any]
 
@@ -58,23 +60,24 @@ def is_link(text: str) -> bool:
     return _LINK.search(text.strip()) is not None
 
 
-def fragment_of(replay: Replay) -> str:
-    """The fragment of a link to a recorded run.
+def fragment_of(replay: Replay, at: int = 0, told: Mapping[int, Any] = NOTHING) -> str:
+    """The fragment of a link to a recorded run, which pages show from a tick on.
 
-    Raises ReplayError for a recording that is cut off, and for one that is too long for a link.
+    told: what pages must know of commands that they cannot carry out, by their places in the script. Raises ReplayError
+    for a recording that is cut off, and for one that is too long for a link.
     """
     if replay.end_hash is None:
         raise ReplayError(f"{replay.source}: is cut off; a link holds the hash of its end")
-    if replay.ticks > _TICKS:
+    if replay.ticks > RUN_LIMIT:
         raise ReplayError(f"{replay.source}: {replay.ticks:,} ticks are too long for a link; send the file")
     whole = {
-        "v": VERSION, "physics": PHYSICS_VERSION, **_level_record(replay.level), "ticks": replay.ticks,
-        "hash": replay.end_hash, "commands": pack(replay.script),
+        "v": VERSION, "physics": PHYSICS_VERSION, **level_record(replay.level), "ticks": replay.ticks, "at": at,
+        "hash": replay.end_hash, "commands": pack(replay.script, told),
     }  # fmt: skip
     data = json.dumps(whole, separators=(",", ":"), ensure_ascii=False).encode()
     packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
     text = MARK + base64.urlsafe_b64encode(packer.compress(data) + packer.flush()).decode().rstrip("=")
-    if len(data) > _UNPACKED or len(text) > LONGEST:
+    if len(data) > UNPACKED_LIMIT or len(text) > LONGEST:
         raise ReplayError(
             f"{replay.source}: a link to it would have {len(text):,} characters, where {LONGEST:,} are the most; "
             "send the file"
@@ -82,11 +85,10 @@ def fragment_of(replay: Replay) -> str:
     return text
 
 
-def _level_record(level: Level) -> dict[str, Any]:
-    for path in shipped_levels():
-        if load_level(path) == level:
-            return {"level": path.stem, "digest": _digest(level)}
-    return {"level": level_data(level)}
+def level_record(level: Level) -> dict[str, Any]:
+    """What links say of a level: the name of a shipped one, or all of it; and its digest."""
+    shipped = (path.stem for path in shipped_levels() if load_level(path) == level)
+    return {"level": next(shipped, None) or level_data(level), "digest": _digest(level)}
 
 
 def _digest(level: Level) -> str:
@@ -121,11 +123,11 @@ def _unpacked(text: str) -> _LinkedRun:
     try:
         data = base64.b64decode(text + "=" * (-len(text) % 4), altchars=b"-_", validate=True)
         opener = zlib.decompressobj(-zlib.MAX_WBITS)
-        plain = opener.decompress(data, _UNPACKED)
+        plain = opener.decompress(data, UNPACKED_LIMIT)
     except (binascii.Error, ValueError, zlib.error):
         raise ReplayError("the link is damaged: copy it again, whole") from None
     if opener.unconsumed_tail:
-        raise ReplayError(f"the link unpacks to more than {_UNPACKED // 2**20} MiB")
+        raise ReplayError(f"the link unpacks to more than {UNPACKED_LIMIT // 2**20} MiB")
     if not opener.eof:
         raise ReplayError("the link is cut off: copy it again, whole")
     if fault := scan(plain):
@@ -156,13 +158,14 @@ def _level_of(packed: _LinkedRun) -> Level:
     """The level of a link. Raises ReplayError."""
     try:
         if isinstance(packed.level, dict):
-            return parse_level(json.dumps(packed.level).encode(), "the level of the link")
-        shipped = {path.stem: path for path in shipped_levels()}
-        if packed.level not in shipped:
-            raise ReplayError(f"the link is to a level that is not here: {packed.level!r}")
-        level = load_level(shipped[packed.level])
+            level = parse_level(json.dumps(packed.level).encode(), "the level of the link")
+        else:
+            shipped = {path.stem: path for path in shipped_levels()}
+            if packed.level not in shipped:
+                raise ReplayError(f"the link is to a level that is not here: {packed.level!r}")
+            level = load_level(shipped[packed.level])
     except LevelError as error:
         raise ReplayError(*error.faults) from None
     if _digest(level) != packed.digest:
-        raise ReplayError(f"the link is to another edition of {packed.level!r}")
+        raise ReplayError(f"the link is to another edition of the level {level.name!r}")
     return level

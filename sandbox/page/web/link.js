@@ -1,0 +1,202 @@
+// Link: a run in the fragment of an address, which no browser sends to a server; written and read as
+// session/link/scene_link.py does it.
+import { Commands, countedBy, Refusal } from './commands.js';
+import { LINK } from './shared.js';
+/** @import { About, Counts, Done, LevelLink, NamedRecord, NameKind, PackedLink, Recording, Told } from './types.js' */
+/** @import { World } from './world.js' */
+
+const { MARK, VERSION, LONGEST, UNPACKED_LIMIT, RUN_LIMIT, COMMAND_LIMIT, FARTHEST, PER_METRE, HANDS, MOVE } = LINK;
+const COLUMNS = 4;
+const BROKEN = 'This link is broken: copy it again, whole.';
+
+/** @typedef {{ places: Map<number, [number, number]>, gestures: Map<number, number> }} Held */
+/** @typedef {{ passed: number, gesture: number, record: NamedRecord, told?: Told }} Entry */
+
+/** @type {(value: unknown, least: number, most: number) => value is number} */
+function isWhole(value, least, most) {
+  return Number.isInteger(value) && Number(value) >= least && Number(value) <= most;
+}
+/** @type {() => Held} */
+const nobody = () => ({ places: new Map(), gestures: new Map() });
+/** @type {(held: Held, gesture: number, record: NamedRecord) => void} */
+const note = ({ gestures }, gesture, { type, grab }) => {
+  if (type === 'grab' && isWhole(grab, 0, HANDS)) gestures.set(grab, gesture);
+};
+
+/** Whether the fragment of an address holds a run.
+ * @type {(fragment: string) => boolean} */
+export const isLink = (fragment) => fragment.startsWith(`#${MARK}`);
+
+/** The fragment of a link to a run; null: it would be too long. commands: with names in place of slots.
+ * @type {(level: LevelLink, run: { commands: Entry[], ticks: number, at: number, hash: string }) =>
+ *   Promise<string | null>} */
+export async function linkOf({ level, digest, physics }, { commands, ticks, at, hash }) {
+  const whole = { v: VERSION, physics, level, digest, ticks, at, hash, commands: packed(commands) };
+  const bytes = new TextEncoder().encode(JSON.stringify(whole));
+  if (ticks > RUN_LIMIT || bytes.length > UNPACKED_LIMIT) return null;
+  const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream('deflate-raw'));
+  const content = new Uint8Array(await new Response(stream).arrayBuffer());
+  let text = '';
+  for (let k = 0; k < content.length; k += 0x8000) text += String.fromCharCode(...content.subarray(k, k + 0x8000));
+  const letters = btoa(text).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
+  return letters.length + MARK.length > LONGEST ? null : `#${MARK}${letters}`;
+}
+
+/** Commands as short lists, gestures counted from 1 on.
+ * @type {(commands: Entry[]) => unknown[]} */
+function packed(commands) {
+  /** @type {unknown[]} */
+  const found = [];
+  const held = nobody(), numbers = new Map();
+  /** @type {number[][] | null} */
+  let moves = null;
+  for (const { passed, gesture, record, told } of commands) {
+    if (!numbers.has(gesture)) numbers.set(gesture, numbers.size + 1);
+    const number = numbers.get(gesture), place = told ? null : moved(record, number, held);
+    if (!place) {
+      moves = null;
+      found.push(told ? [passed, number, record, told] : [passed, number, record]);
+      note(held, number, record);
+      continue;
+    }
+    if (!moves) found.push(moves = [[], [], [], []]);
+    const hand = Number(record.grab), [x, y] = held.places.get(hand) ?? [0, 0];
+    [passed, hand, place[0] - x, place[1] - y].forEach((value, k) => moves?.[k].push(value));
+    held.places.set(hand, place);
+  }
+  return found;
+}
+
+/** Where a hand moves to [mm], where that is all that a record says.
+ * @type {(record: NamedRecord, gesture: number, held: Held) => [number, number] | null} */
+function moved({ type, grab, target, ...more }, gesture, { gestures }) {
+  if (type !== MOVE || Object.keys(more).length || gestures.get(Number(grab)) !== gesture || !Array.isArray(target)) {
+    return null;
+  }
+  // A -0 is no whole number.
+  const [x, y] = target.map((each) => Math.round(each * PER_METRE) + 0);
+  const isExact = [x, y].every((each, k) => Object.is(each / PER_METRE, target[k]) && Math.abs(each) <= FARTHEST);
+  return isExact ? [x, y] : null;
+}
+
+/** What a fragment holds. Throws a Refusal.
+ * @type {(fragment: string) => Promise<PackedLink>} */
+async function unpacked(fragment) {
+  const letters = fragment.slice(MARK.length + 1);
+  if (letters.length > LONGEST) throw new Refusal('This link is too long.');
+  try {
+    const text = atob(letters.replace(/-/g, '+').replace(/_/g, '/'));
+    const bytes = Uint8Array.from(text, (letter) => letter.charCodeAt(0));
+    const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw')).getReader();
+    const decoder = new TextDecoder('utf-8', { fatal: true });
+    let plain = '', size = 0;
+    for (let part = await reader.read(); !part.done; part = await reader.read()) {
+      size += part.value.length;
+      if (size > UNPACKED_LIMIT) throw new Refusal('This link unpacks to too much.');
+      plain += decoder.decode(part.value, { stream: true });
+    }
+    return JSON.parse(plain + decoder.decode());
+  } catch (error) {
+    throw error instanceof Refusal ? error : new Refusal(BROKEN);
+  }
+}
+
+/** Commands one by one. Throws a Refusal.
+ * @type {(given: unknown) => Generator<Entry>} */
+function* entriesOf(given) {
+  if (!Array.isArray(given)) throw new Refusal(BROKEN);
+  const held = nobody();
+  let count = 0;
+  for (const entry of given) {
+    if (!Array.isArray(entry)) throw new Refusal(BROKEN);
+    const isMoves = entry.length === COLUMNS && entry.every(Array.isArray);
+    for (const found of isMoves ? movesOf(entry, held) : [commandOf(entry, held)]) {
+      count += 1;
+      if (count > COMMAND_LIMIT) throw new Refusal('This link holds too many commands.');
+      yield found;
+    }
+  }
+}
+
+/** @type {(entry: unknown[], held: Held) => Entry} */
+function commandOf([passed, gesture, record, told], held) {
+  const isRecord = typeof record === 'object' && record !== null && !Array.isArray(record);
+  if (!isRecord || !isWhole(passed, 0, RUN_LIMIT) || !isWhole(gesture, 0, COMMAND_LIMIT)) throw new Refusal(BROKEN);
+  const named = /** @type {NamedRecord} */ (record);
+  note(held, gesture, named);
+  return { passed, gesture, record: named, ...(told ? { told: /** @type {Told} */ (told) } : {}) };
+}
+
+/** @type {(columns: unknown[][], held: Held) => Generator<Entry>} */
+function* movesOf([passes, hands, across, up], { places, gestures }) {
+  if ([hands, across, up].some(({ length }) => length !== passes.length)) throw new Refusal(BROKEN);
+  for (let k = 0; k < passes.length; k++) {
+    const passed = passes[k], hand = hands[k], dx = across[k], dy = up[k];
+    const isRight = isWhole(passed, 0, RUN_LIMIT) && isWhole(hand, 0, HANDS - 1) && isWhole(dx, -2 * FARTHEST, 2 * FARTHEST)
+      && isWhole(dy, -2 * FARTHEST, 2 * FARTHEST);
+    const gesture = isRight ? gestures.get(hand) : undefined;
+    if (!isRight || gesture === undefined) throw new Refusal(BROKEN);
+    const [x, y] = places.get(hand) ?? [0, 0];
+    places.set(hand, [x + dx, y + dy]);
+    yield { passed, gesture, record: { type: MOVE, grab: hand, target: [(x + dx) / PER_METRE, (y + dy) / PER_METRE] } };
+  }
+}
+
+/** The run of a link to a level, and the tick at which it is shown. Throws a Refusal.
+ * @type {(fragment: string, level: LevelLink, about: About) => Promise<[recording: Recording, at: number]>} */
+export async function linked(fragment, { level, digest, physics }, about) {
+  const link = await unpacked(fragment);
+  if (typeof link !== 'object' || link === null || Array.isArray(link)) throw new Refusal(BROKEN);
+  const { v, ticks, at = 0, hash } = link;
+  if (v !== VERSION) throw new Refusal(`This link is of version ${JSON.stringify(v)}; this page reads ${VERSION}.`);
+  if (link.physics !== physics) throw new Refusal('This link was made with other physics, whose bits differ.');
+  if (!isWhole(ticks, 0, RUN_LIMIT) || !isWhole(at, 0, ticks) || !/^[0-9a-f]{32}$/.test(String(hash))) {
+    throw new Refusal(BROKEN);
+  }
+  if (link.digest !== digest) {
+    throw new Refusal(`This link is to another ${link.level === level ? 'edition of this ' : ''}level.`);
+  }
+  /** @type {string[]} */
+  const hashes = [];
+  hashes.length = ticks + 1;
+  const commands = told([...entriesOf(link.commands)], about);
+  if (commands.length && commands[commands.length - 1].tick > ticks) throw new Refusal(BROKEN);
+  return [{ commands, hashes, end: hash }, at];
+}
+
+/** Commands as a world takes them, with slots in place of names.
+ * @type {(entries: Entry[], about: About) => Done[]} */
+function told(entries, about) {
+  const names = structuredClone(about.names), commands = new Commands(about, names);
+  let tick = 0, counts = about.counts;
+  return entries.map(({ passed, gesture, record, told: more }) => {
+    tick += passed;
+    if (!more && about.commands[record.type] === null) {
+      throw new Refusal(`This run holds what no page can do, ${record.type}: open the link in Spring Sandbox.`);
+    }
+    if (!more) return { tick, gesture, record: commands.read(record, counts) };
+    checkTold(more, about, counts);
+    for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(more.names ?? {}))) {
+      names[kind].splice(counts[countedBy(kind)], Infinity, ...added);
+    }
+    counts = more.counts ?? counts;
+    return { tick, gesture, record, ...more };
+  });
+}
+
+/** Refuse what would write beyond rows, or make more of them than a level may have.
+ * @type {(told: Told, about: About, before: Counts) => void} */
+function checkTold({ changes, counts, names, scene }, { columns, counts: first }, before) {
+  const paths = new Set([...columns.map(({ path }) => path), 'numbers', 'choices']);
+  const isTable = [changes, counts ?? {}, names ?? {}, scene ?? {}].every((each) => typeof each === 'object' && each !== null);
+  const isCounts = !counts || Object.keys(first).every((family) => {
+    const family_ = /** @type {keyof Counts} */ (family);
+    return isWhole(counts[family_], before[family_], before[family_] + LONGEST);
+  });
+  const isNames = Object.entries(names ?? {}).every(([kind, added]) => kind in first && Array.isArray(added)
+    && added.length <= LONGEST && added.every((name) => typeof name === 'string'));
+  const isChanges = isTable && Object.entries(changes).every(([path, runs]) => paths.has(path)
+    && Array.isArray(runs) && runs.every((run) => Array.isArray(run) && isWhole(run[0], 0, UNPACKED_LIMIT)
+      && isWhole(run[1], 0, UNPACKED_LIMIT) && run.slice(2).every((value) => Number.isFinite(Number(value)))));
+  if (!isTable || !isCounts || !isNames || !isChanges) throw new Refusal(BROKEN);
+}
