@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.backdrop import BEVEL, SOIL_DEPTH, WIDE
 from sandbox.app.draw.colours import mixed
-from sandbox.app.draw.looks import SOFT_SKINS, Look, ground_look
+from sandbox.app.draw.looks import FIRM, SOFT_SKINS, Look, ground_look
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.textures import BLACK, LIT_DOWN, LIT_UP, TILE, Tiles, ground_tones, laid, skin_look, woven
-from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, Theme, outline_of
+from sandbox.app.draw.themes import CLOTH_STRIPE, THEMES, WOOD, Theme, outline_of
 from sandbox.app.draw.things.balls import added_balls
 from sandbox.app.draw.things.borders import hull_of
 from sandbox.app.draw.things.drawables import CLOTH, CRATES, PANEL_OUT, WINDOW, WINDOW_IN
 from sandbox.app.draw.things.faces import LEAST_KEPT, LEAST_OWN, spot_of
 from sandbox.app.draw.things.level_slots import Actor, Ball, Join, LevelSlots, joined_slots, level_slots_of
 from sandbox.app.draw.things.sheets import CLOTH_TEXELS, FOLD, FOLD_DEPTH
-from sandbox.app.draw.things.soft import CRUMB, FLAT, ROUNDING, USUAL_ROUNDING, Shape, shape_of
+from sandbox.app.draw.things.soft import CRUMB, CUT_OF_SIDE, FLAT, ROUNDING, USUAL_ROUNDING, Shape, shape_of
 from sandbox.app.draw.things.springs import CYLINDER
 from sandbox.app.draw.things.treads import Tread, body_treads, ground_treads
 from sandbox.app.draw.things.wheels import DrawnWheel
@@ -36,6 +36,7 @@ from sandbox.physics.world import World
 ADDED = Look("", "steel", 0)
 # Digits of lengths [m]: a tenth of a millimetre.
 DIGITS = 4
+_NO_SPRINGS = np.zeros(0, np.int64), np.zeros((0, 2), np.int64), 1.0
 
 
 def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
@@ -58,6 +59,24 @@ def scene_of(level: Level, snapshot: Snapshot) -> dict[str, Any]:
         ],
         "water": [_pool(box, pool) for box, pool in Pools(level).seen()],
         "pictures": _pictures(slots, ground),
+    }
+
+
+def made_looks() -> dict[str, Any]:
+    """What a page draws bodies with that were added to it: shapes of each skin without loops and colour, and colours.
+
+    firm: Cs from which on a spring by itself is a bar.
+    """
+    shapes = {
+        "jelly": Shape([], "jelly", 0, 1, keep=CUT_OF_SIDE, flushed=_NO_SPRINGS),
+        "rubber": Shape([], "rubber", 0, 1, keep=CUT_OF_SIDE, flushed=_NO_SPRINGS),
+        "plain": Shape([], "plain", 0, 1, keep=CUT_OF_SIDE),
+    }
+    return {
+        "skins": {skin: _shape(shape) for skin, shape in shapes.items()},
+        "palette": {name: _hex(colour) for name, colour in PALETTE.items()},
+        "wood": _hex(WOOD),
+        "firm": FIRM,
     }
 
 

@@ -10,6 +10,7 @@ from sandbox.app.draw.scene import joined_scene
 from sandbox.app.share.recorded import recorded
 from sandbox.level.document.model import Level
 from sandbox.level.plan.actuators import actuators as driven_parts
+from sandbox.page.adding import is_added_by_pages
 from sandbox.page.room import Counts
 from sandbox.physics.world import World
 from sandbox.session.commands.command import CommandError
@@ -40,7 +41,7 @@ def link_to(replay: Replay, site: str, at: int) -> Generator[float, None, str]:
     told = {
         place: {name: done[name] for name in _TOLD if name in done}
         for place, done in enumerate(played.commands)
-        if "changes" in done and ("counts" in done) == ("names" in done)
+        if "changes" in done and ("counts" in done) == ("names" in done) and not is_added_by_pages(done["record"])
     }
     fragment = fragment_of(replace(replay, script=tuple(played.script)), at, told)
     return f"{page_address(level, site)}#{fragment}"

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from sandbox import __version__
-from sandbox.app.draw.scene import scene_of
+from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
 from sandbox.app.share.firmness_table import material_rows
 from sandbox.app.share.recorded import all_at_once, recorded
@@ -19,6 +19,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.limits import GRAVITY_LIMIT
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.level.rules.rule import has_clock
+from sandbox.page.adding import adding
 from sandbox.page.page import page_text, toy_content
 from sandbox.page.room import make_room, row_counts
 from sandbox.page.start import start_of
@@ -81,8 +82,9 @@ def playable_in_slices(
         "recording": None if played is None else {"commands": played.commands, "hashes": played.hashes},
         "begin": begin,
     }
-    start = start_of(world, counts)
-    return Playable(level.name, level.description, toy_content(data | {"about": start.about}, start.image))
+    start, added = start_of(world, counts), adding(world) | {"made": made_looks()}
+    content = toy_content(data | {"about": start.about | {"adding": added}}, start.image)
+    return Playable(level.name, level.description, content)
 
 
 def _checks(level: Level, world: World) -> list[dict[str, Any]]:

@@ -255,9 +255,7 @@ def directed_sides(triangles: Pairs, count: int) -> tuple[NDArray[np.int64], NDA
     return (triangles * count + ends).reshape(-1), np.zeros(0, dtype=np.int64)
 
 
-def edges_of(
-    pairs: Pairs, sides: NDArray[np.int64], inner: NDArray[np.int64], count: int
-) -> NDArray[np.int8]:
+def edges_of(pairs: Pairs, sides: NDArray[np.int64], inner: NDArray[np.int64], count: int) -> NDArray[np.int8]:
     """Kind of edge (m,) of springs of pairs (m, 2): solid along one side, none along two and where it lies inside.
 
     sides: keys a n + b of sides from a to b, counter-clockwise; inner: of diagonals; n = count particles.

@@ -44,6 +44,11 @@ function shown(text) {
 const placed = (parts) => [...parts.map((part) => (PLAIN.test(String(part)) ? part : shown(String(part)))).join('.')]
   .slice(0, PLACE).join('');
 
+const ADDING = ['add_particle', 'add_spring', 'add_body'];
+/** Whether a type of command adds something, which a world does by itself.
+ * @type {(type: string) => boolean} */
+export const adds = (type) => ADDING.includes(type);
+
 export class Commands {
   #about;
   #names;
@@ -83,6 +88,8 @@ export class Commands {
     if (typeof record !== 'object' || !record || typeof type !== 'string') throw new Refusal(messages.noCommand);
     if (!types.includes(type)) throw new Refusal(fill(messages.unknown, shown(type), types.join(', ')));
     const entry = commands[type];
+    // A world reads it when it adds it.
+    if (adds(type)) return /** @type {Command} */ (record);
     if (!entry) {
       throw new Refusal(`a page cannot do ${type}; it can do ${types.filter((each) => commands[each]).join(', ')}`);
     }

@@ -1,6 +1,7 @@
 // Link: a run in the fragment of an address, which no browser sends to a server; written and read as
 // session/link/scene_link.py does it.
-import { Commands, countedBy, Refusal } from './commands.js';
+import { namesOf } from './adding.js';
+import { adds, Commands, countedBy, Refusal } from './commands.js';
 import { LINK } from './shared.js';
 /** @import { About, Counts, Done, LevelLink, NamedRecord, NameKind, PackedLink, Recording, Told } from './types.js' */
 /** @import { World } from './world.js' */
@@ -171,16 +172,17 @@ function told(entries, about) {
   let tick = 0, counts = about.counts;
   return entries.map(({ passed, gesture, record, told: more }) => {
     tick += passed;
-    if (!more && about.commands[record.type] === null) {
+    if (!more && about.commands[record.type] === null && !adds(record.type)) {
       throw new Refusal(`This run holds what no page can do, ${record.type}: open the link in Spring Sandbox.`);
     }
-    if (!more) return { tick, gesture, record: commands.read(record, counts) };
-    checkTold(more, about, counts);
-    for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(more.names ?? {}))) {
+    const own = more || !adds(record.type) ? more : namesOf(record, names, counts);
+    if (more) checkTold(more, about, counts);
+    const done = more ? { tick, gesture, record, ...more } : { tick, gesture, record: commands.read(record, counts) };
+    for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(own?.names ?? {}))) {
       names[kind].splice(counts[countedBy(kind)], Infinity, ...added);
     }
-    counts = more.counts ?? counts;
-    return { tick, gesture, record, ...more };
+    counts = own?.counts ?? counts;
+    return done;
   });
 }
 

@@ -68,7 +68,7 @@ export function piecesOf(body, active, whole) {
 
 /** Loops of particles around triangles of one winding: sides of one of them alone.
  * @type {(triangles: number[][]) => number[][]} */
-function bordersOf(triangles) {
+export function bordersOf(triangles) {
   /** @type {Map<number, [number, number]>} */
   const sides = new Map();
   /** @type {Map<number, number[]>} */
@@ -128,7 +128,7 @@ function awayFrom(place, { left }, form) {
 
 /** Where the largest circle inside a piece lies in the form, rather near to a place, and its radius [m].
  * @type {(piece: Piece, form: Form, near: Point) => [place: Point, room: number]} */
-function spotIn({ left, slots, loops }, form, near) {
+export function spotIn({ left, slots, loops }, form, near) {
   const halves = left.flatMap((corners) => corners.map((slot, k) =>
     middleOf([form(slot), form(corners[(k + 1) % 3])])));
   const tries = [...slots.map(form), ...left.map((corners) => middleOf(corners.map(form))), ...halves];

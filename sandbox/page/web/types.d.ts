@@ -89,6 +89,7 @@ export interface About {
   counts: Counts;
   // By path of an array that has a row for each of a family: the family, and what new rows hold.
   grows: Record<string, [family: keyof Counts, fill: number | string]>;
+  adding: Adding;
 }
 
 // What a rule does: a text or a sound of it, a counter that changes, or commands with slots in place of names.
@@ -402,6 +403,44 @@ export interface Pool {
   box: Box;
   flow: Point;
   tones: Record<'dark' | 'light', Tones>;
+}
+
+// Commands that add to a world, as files have them.
+export type AddedParticle = NamedRecord & { position: Point; mass?: number; radius?: number; pinned?: boolean;
+  velocity?: Point | null; friction?: number | null; restitution?: number | null };
+export type AddedSpring = NamedRecord & { particle_a: unknown; particle_b: unknown; rest_length?: number | null;
+  stiffness?: number; damping?: number };
+export type AddedBody = NamedRecord & {
+  body: { type: string; id?: string; particles: Point[]; masses?: number[]; springs?: [number, number][];
+    triangles?: [number, number, number][]; pinned?: boolean | number[]; particle_radius?: number; friction?: number;
+    restitution?: number; velocity?: Point; collides?: boolean | string[]; material?: string;
+    look?: Record<string, unknown> };
+  materials?: Record<string, Record<string, unknown>>;
+};
+
+// What shapes of each skin are like, colours by their names, that of wood, and the Cs from which on a spring is a bar.
+export interface Made {
+  skins: Record<string, SceneShape>;
+  palette: Record<string, string>;
+  wood: string;
+  firm: number;
+}
+
+// What a page must know to add something: see adding.py.
+export interface Adding {
+  // What is said of a body that a page adds.
+  fields: string[];
+  surface: Record<string, number | string>;
+  usual: { friction: number; restitution: number };
+  groups: Record<string, string>;
+  group: string;
+  allGroups: string;
+  touches: boolean;
+  hasWater: boolean;
+  edges: Record<'none' | 'line' | 'left' | 'right', number>;
+  unopened: number;
+  materials: Record<string, Record<string, unknown>>;
+  made: Made;
 }
 
 // What people see of what joined a world.

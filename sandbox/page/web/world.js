@@ -1,9 +1,10 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
-import { Commands, countedBy } from './commands.js';
+import { addedTo } from './adding.js';
+import { adds, Commands, countedBy } from './commands.js';
 import { blake2b, hexOf } from './hash.js';
 /**
  * @import { About, Action, AnyArray, Column, Command, Counts, Done, Kernels, NameKind, Outcome, Runs, SavedState,
- *   Joined, Settings, StateHash, View } from './types.js'
+ *   Joined, NamedRecord, Settings, StateHash, View } from './types.js'
  */
 
 const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
@@ -327,6 +328,11 @@ export class World {
   /** Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
    * @type {(record: Command) => void} */
   command(record) {
+    if (adds(record.type)) {
+      const named = /** @type {NamedRecord} */ (record);
+      this.carryOut({ tick: this.time, gesture: 0, record: named, ...addedTo(this, this.#about, named) });
+      return;
+    }
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
     const { code, slots, numbers, changes } = packed;

@@ -1,0 +1,48 @@
+// Made: what people see of a body that says each particle, spring and triangle, by its look.
+import { bordersOf, spotIn } from './pieces.js';
+import { THINGS } from './shared.js';
+/** @import { AddedBody, Joined, Made, Point, SceneBody, SkinLook } from './types.js' */
+
+const { LAID } = THINGS, HEX = /^#[0-9a-fA-F]{6}$/, DARK = [40, 0, 60], SHARE = 0.46, GREY = '#8e99a8';
+
+/** The line around something of a colour: its own hue, darker.
+ * @type {(colour: string) => string} */
+function outlineOf(colour) {
+  const parts = [1, 3, 5].map((k, n) => {
+    const own = parseInt(colour.slice(k, k + 2), 16);
+    return Math.round(own + (DARK[n] - own) * SHARE).toString(16).padStart(2, '0');
+  });
+  return `#${parts.join('')}`;
+}
+
+/** @type {(values: number[]) => number} */
+const median = (values) => [...values].sort((one, other) => one - other)[values.length >> 1] ?? 1;
+
+/** first, spring: its first slots; made: what shapes of each skin are like.
+ * @type {(body: AddedBody['body'], place: { first: number, spring: number, made: Made }) => Joined} */
+export function madeScene({ particles, springs = [], triangles = [], look = {}, particle_radius: radius = 0.05 },
+  { first, spring, made }) {
+  const lengths = springs.map(([a, b]) => Math.hypot(particles[b][0] - particles[a][0],
+    particles[b][1] - particles[a][1]));
+  const cell = median(lengths), given = String(look.colour ?? ''), skin = String(look.skin ?? 'jelly');
+  const colour = made.palette[given] ?? (HEX.test(given) ? given.toLowerCase() : GREY);
+  const line = typeof look.line === 'string' ? look.line : triangles.length ? 'paint' : 'steel';
+  /** @type {SceneBody} */
+  const body = { type: 'mesh', skin, line, colour, width: 1, cell, angle: 0, slots: [[first, particles.length]], spring,
+    springs: springs.length, segments: null, shapes: [], needs: [] };
+  if (!triangles.length) return { bodies: [body] };
+  // Without its picture something laid is as if it were painted.
+  const shown = skin in made.skins ? skin : 'plain', template = made.skins[shown];
+  const tone = LAID.includes(shown) ? made.wood : colour, borders = bordersOf(triangles.map((corners) => [...corners]));
+  const middle = /** @type {Point} */ ([0, 1].map((k) => particles.reduce((sum, each) => sum + each[k], 0)
+    / particles.length));
+  /** @type {(slot: number) => Point} */
+  const form = (slot) => [particles[slot][0] - middle[0], particles[slot][1] - middle[1]];
+  const slots = particles.map((_, k) => k);
+  const [[x, y], room] = spotIn({ left: triangles, slots, loops: borders, inside: [], face: false }, form, [0, 0]);
+  const shape = { ...template, loops: borders.map((loop) => loop.map((k) => first + k)), grown: radius,
+    look: /** @type {SkinLook} */ ([tone, tone, ...template.look.slice(2)]),
+    line: template.line === null ? null : outlineOf(tone) };
+  return { bodies: [{ ...body, skin: shown, colour: tone, triangles: triangles.flat().map((k) => first + k),
+    keeps_area: true, spacing: cell, spot: [x, y, room], face: Boolean(look.face), shapes: [shape] }] };
+}
