@@ -146,11 +146,12 @@ def in_pace(command: Command, tick_rate: int) -> Command:
     """
     if not isinstance(command, AddBody) or command.materials is None or tick_rate == USUAL_RATE:
         return command
-    materials = {name: _at_rate(material, tick_rate) for name, material in command.materials.items()}
+    materials = {name: at_rate(material, tick_rate) for name, material in command.materials.items()}
     return replace(command, materials=materials)
 
 
-def _at_rate(material: dict[str, float], tick_rate: int) -> dict[str, float]:
+def at_rate(material: dict[str, float], tick_rate: int) -> dict[str, float]:
+    """A material of the usual tick rate at another one; as it is where it swings too fast for that."""
     try:
         pair = at_other_step(material["stiffness"], material["damping"], USUAL_RATE / tick_rate)
     except ValueError:

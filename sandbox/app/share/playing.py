@@ -10,6 +10,7 @@ from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
 from sandbox.app.share.firmness_table import material_rows
 from sandbox.app.share.recorded import all_at_once, recorded
+from sandbox.app.share.stuffs import stuffs_for
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.assembly.build_world import build_world
@@ -82,7 +83,10 @@ def playable_in_slices(
         "recording": None if played is None else {"commands": played.commands, "hashes": played.hashes},
         "begin": begin,
     }
-    start, added = start_of(world, counts), adding(world) | {"made": made_looks()}
+    start, added = (
+        start_of(world, counts),
+        adding(world) | {"made": made_looks() | stuffs_for(world.settings.tick_rate)},
+    )
     content = toy_content(data | {"about": start.about | {"adding": added}}, start.image)
     return Playable(level.name, level.description, content)
 

@@ -1,6 +1,7 @@
-// Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut; what holds nothing moves the view.
+// Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut, make; what holds nothing moves the view.
 import { HANDS } from './shared.js';
 /** @import { Camera } from './draw.js' */
+/** @import { Maker } from './maker.js' */
 /** @import { Run } from './run.js' */
 /** @import { Command, HandEvents, Point, Theme } from './types.js' */
 /** @import { World } from './world.js' */
@@ -15,13 +16,16 @@ const NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 // Two taps so soon after each other [ms] and so near to each other [pixels] are one gesture.
 const TWICE = 350, BESIDE = 30;
+// A press that rests so long [ms] asks for a menu.
+const LONG = 500;
 /** @typedef {{ x: number, y: number }} Pixel */
 /** Where and when a finger came down [ms].
  * @typedef {Pixel & { time: number }} Touch */
 /**
- * What a pointer does, and where it is; hand: that it moves; point: where it cut last [m].
- * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'done', began: Touch, isBeside: boolean, hand: number | null,
- *   point: Point, gesture: number }} Pointer
+ * What a pointer does, and where it is; hand: that it moves; point: where it cut last [m]; within: how far it reaches
+ * [m]; asks: of which particle it asks for a menu; timer: until it does.
+ * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'make' | 'done', began: Touch, isBeside: boolean,
+ *   hand: number | null, point: Point, within: number, gesture: number, asks: number | null, timer: number }} Pointer
  */
 /**
  * What a hand holds, where it draws it [m], how far that is from the pointer, and its largest force [N].
@@ -174,9 +178,13 @@ export class Hands {
   #tapped = null;
   #closing = new AbortController();
 
-  /** changed: called when the view has been moved by hand; fit: shows all again; say: tells a person something in a line.
-   * @param {HTMLCanvasElement} canvas @param {Run} run @param {Camera} camera @param {HandEvents} events */
-  constructor(canvas, run, camera, { changed, fit, say }) {
+  /** changed: called when the view has been moved by hand; fit: shows all again; say: tells a person something in a line;
+   * menu: asks what is to be done to a particle.
+   * @param {HTMLCanvasElement} canvas @param {Run} run @param {Camera} camera @param {Maker} maker
+   * @param {HandEvents} events */
+  constructor(canvas, run, camera, maker, { changed, fit, say, menu }) {
+    this.maker = maker;
+    this.menu = menu;
     this.canvas = canvas;
     this.run = run;
     this.camera = camera;
@@ -217,20 +225,39 @@ export class Hands {
     const point = this.camera.toWorld(event.offsetX, event.offsetY),
       within = REACH[event.pointerType] / this.camera.zoom;
     /** @type {Pointer} */
-    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', isBeside: false, hand: null, point, gesture: 0,
-      began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
+    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', isBeside: false, hand: null, point, within,
+      gesture: 0, asks: null, timer: 0, began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
     this.#pointers.set(event.pointerId, pointer);
-    if (event.button !== 0 || event.altKey) return;
     const near = new Near(this.run.world), touched = near.particle(point, within), free = near.free(point, within);
+    if (event.button === 2) pointer.asks = touched ?? free;
+    if (event.button !== 0 || event.altKey) return;
     pointer.isBeside = this.tool !== 'cut' && touched === null && free === null && this.#pointers.size === 1;
     if (this.tool === 'cut') {
       Object.assign(pointer, { kind: 'cut', gesture: this.run.newGesture() });
       this.#cut(pointer.gesture, near.spring(point, within / 2));
     } else if (this.tool === 'pin') this.#pin(near, touched, pointer);
+    else if (this.maker.makes(this.tool)) {
+      // A second finger moves the view.
+      if (this.maker.isAtWork) this.maker.forget();
+      else {
+        pointer.kind = 'make';
+        this.maker.begin(point, touched ?? free);
+      }
+    }
     else if (free !== null) {
       pointer.hand = this.hold(free, point, within);
       if (pointer.hand !== null) pointer.kind = 'hold';
+      if (event.pointerType !== 'mouse') pointer.timer = setTimeout(() => this.#ask(pointer, free), LONG);
     } else if (touched !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
+  }
+
+  /** Ask what is to be done to a particle, with a finger that has rested on it.
+   * @type {(pointer: Pointer, particle: number) => void} */
+  #ask(pointer, particle) {
+    if (pointer.hand === null || !this.#heldBy(pointer)) return;
+    this.release(pointer.hand);
+    pointer.kind = 'done';
+    this.menu({ particle, x: pointer.x, y: pointer.y });
   }
 
   /** Two taps where nothing is show all again.
@@ -295,9 +322,13 @@ export class Hands {
     else if (pointer.kind === 'cut') {
       this.#cut(pointer.gesture, new Near(this.run.world).crossing(pointer.point, point));
       pointer.point = point;
-    } else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
+    } else if (pointer.kind === 'make') this.maker.go(point, pointer.within);
+    else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
     Object.assign(pointer, { x, y });
-    if (!isNear(pointer, pointer.began)) pointer.isBeside = false;
+    if (isNear(pointer, pointer.began)) return;
+    pointer.isBeside = false;
+    pointer.asks = null;
+    clearTimeout(pointer.timer);
   }
 
   /** One finger moves the view, two turn it larger or smaller as well.
@@ -325,8 +356,20 @@ export class Hands {
     const pointer = this.#pointers.get(event.pointerId);
     this.#pointers.delete(event.pointerId);
     if (!pointer) return;
+    clearTimeout(pointer.timer);
+    if (event.type === 'pointerup' && pointer.kind === 'make' && this.maker.isAtWork) this.#make(pointer);
+    if (event.type === 'pointerup' && pointer.asks !== null) {
+      this.menu({ particle: pointer.asks, x: pointer.x, y: pointer.y });
+    }
     if (pointer.hand !== null && this.#heldBy(pointer)) this.release(pointer.hand);
     else if (pointer.isBeside && event.type === 'pointerup') this.#tap(pointer.began, event.timeStamp);
+  }
+
+  /** Make what was drawn, up to where the pointer is.
+   * @type {(pointer: Pointer) => void} */
+  #make({ x, y, within }) {
+    const near = new Near(this.run.world), point = this.camera.toWorld(x, y);
+    this.maker.end(this.tool, point, near.particle(point, within) ?? near.free(point, within), within);
   }
 
   /** @type {(pointer: Pointer) => Held | undefined} */
@@ -356,6 +399,7 @@ export class Hands {
   // Hold nothing any more, as time has jumped.
   forget() {
     this.#held.clear();
+    this.maker.forget();
     for (const pointer of this.#pointers.values()) Object.assign(pointer, { kind: 'done', hand: null });
   }
 
@@ -394,6 +438,7 @@ export class Hands {
   draw(context, at, theme) {
     const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'),
       force = world.view('state.hand_force');
+    this.maker.draw(context, this.tool, (x, y) => this.camera.toPixels(x, y), theme);
     if (this.marked !== null && world.isShown(this.marked)) circle(context, at, this.marked, 10, theme.accent);
     for (let hand = 0; hand < count; hand++) {
       if (!world.isHeld(hand)) continue;

@@ -3,6 +3,7 @@ import { Refusal } from './commands.js';
 import { read } from './files.js';
 import { Goals } from './goals.js';
 import { isLink, linked } from './link.js';
+import { Menu } from './menu.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
 import { Toy } from './toy.js';
@@ -11,9 +12,13 @@ import { Toy } from './toy.js';
 const SLOW = 0.2, NARROW = 640;
 /** @type {Record<string, string | undefined>} */
 const ARROWS = { left: '←', right: '→', up: '↑', down: '↓' };
-const TOOLS = ['drag', 'pin', 'cut'];
+const TOOLS = ['drag', 'pin', 'cut', 'jelly', 'wood', 'steel', 'rope', 'spring', 'rod'];
+const DRAW = 'Draw around a shape: it becomes ', PULL = 'Pull from one thing to another, or to the air: ';
 /** @type {Record<string, string | undefined>} */
-const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', m: 'sound', h: 'tune', '?': 'hint' };
+const MAKES = { jelly: `${DRAW}jelly.`, wood: `${DRAW}wood.`, steel: `${DRAW}steel.`, rope: `${PULL}a rope.`,
+  spring: `${PULL}a spring.`, rod: `${PULL}a rod.` };
+/** @type {Record<string, string | undefined>} */
+const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', b: 'make', j: 'jelly', o: 'rope', m: 'sound', h: 'tune', '?': 'hint' };
 /** Parts of the page that are no plain elements.
  * @typedef {{ picture: HTMLCanvasElement, time: HTMLInputElement }} Parts */
 /** @template {string} I @typedef {I extends keyof Parts ? Parts[I] : HTMLElement} Part */
@@ -36,6 +41,7 @@ class Page {
     this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level);
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), on: byId('end-on') });
+    this.menu = new Menu(byId('menu'), this.toy, level.about.adding.made.words);
     this.#bind();
     this.#listen();
     this.#addDriveKeys();
@@ -67,7 +73,7 @@ class Page {
         toy.sound.toggle();
         press(byId('sound'), toy.sound.isOn);
       },
-      tune: () => this.#show('panel', 'tune'), hint: () => this.#show('hints', 'hint'), save: () => this.#save(),
+      tune: () => this.#show('panel', 'tune'), make: () => this.#show('makers', 'make'), hint: () => this.#show('hints', 'hint'), save: () => this.#save(),
       link: () => this.#copyLink(),
     };
     for (const tool of TOOLS) acts[tool] = () => this.#choose(tool);
@@ -94,6 +100,7 @@ class Page {
       if (event instanceof CustomEvent) act(event.detail);
     });
     on('say', ({ text, kind }) => this.#say(text, kind));
+    on('menu', (asked) => this.menu.open(asked));
     on('theme', ({ name }) => this.#theme(name));
     on('pace', ({ isBehind }) => { byId('pace').textContent = isBehind ? 'slower than real time' : ''; });
     on('jump', () => this.panel.show());
@@ -146,6 +153,7 @@ class Page {
   #choose(tool) {
     this.toy.hands.tool = tool;
     for (const name of TOOLS) press(byId(name), name === tool);
+    if (tool in MAKES) this.#say(MAKES[tool] ?? '');
   }
 
   #drawTime() {

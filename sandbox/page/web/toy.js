@@ -6,6 +6,7 @@ import { Drives } from './drives.js';
 import { load } from './files.js';
 import { Hands } from './hand.js';
 import { linkOf } from './link.js';
+import { Maker } from './maker.js';
 import { Pace } from './pace.js';
 import { contextOf } from './paint.js';
 import { written } from './recording.js';
@@ -20,7 +21,7 @@ const light = matchMedia('(prefers-color-scheme: light)');
 /** @typedef {'dark' | 'light'} ThemeName */
 
 // It tells what happens as events: tick, break { springs }, check { name, holds, value }, rules { actions },
-// outcome { isWon, text, stars, tick }, say { text, kind }, pause, pace { isBehind }, jump, theme and draw.
+// outcome { isWon, text, stars, tick }, say { text, kind }, menu { particle, x, y }, pause, pace { isBehind }, jump, theme and draw.
 export class Toy extends EventTarget {
   #pace = new Pace();
   #isDirty = true;
@@ -58,7 +59,9 @@ export class Toy extends EventTarget {
     this.run = new Run(this.world, commands, hashes.length - 1);
     if (level.begin) this.run.seek(level.begin);
     this.picture = new Picture(canvas, level.scene, this.world);
-    this.hands = new Hands(canvas, this.run, this.camera, {
+    const maker = new Maker(this.run, level.about.adding, (text) => this.say(text));
+    this.hands = new Hands(canvas, this.run, this.camera, maker, {
+      menu: (asked) => this.#tell('menu', asked),
       changed: () => { this.#isMoved = this.#isDirty = true; }, fit: () => this.fit(), say: (text) => this.say(text),
     });
     this.drives = new Drives(this.run, level.keys, level.about.names.key);

@@ -424,6 +424,18 @@ export interface Made {
   palette: Record<string, string>;
   wood: string;
   firm: number;
+  // What drawn bodies are made of: Cs, Cd, mass of a square metre [kg/m^2], colours that they take in turn, and what a
+  // body says more; of ropes and rods, and of springs.
+  stuffs: Record<string, Pair & { density: number; colours: string[]; more: { look: Record<string, unknown> } }>;
+  firmest: Pair;
+  springy: Pair;
+  // Cs and Cd by words of firmness.
+  words: Record<string, Point>;
+}
+
+export interface Pair {
+  stiffness: number;
+  damping: number;
 }
 
 // What a page must know to add something: see adding.py.
@@ -602,6 +614,7 @@ export interface ToyEvents {
   rules: { actions: Action[] };
   outcome: Outcome;
   say: { text: string; kind: '' | 'good' | 'bad' };
+  menu: Asked;
   pause: { isPaused: boolean };
   pace: { isBehind: boolean };
   jump: undefined;
@@ -614,6 +627,14 @@ export interface HandEvents {
   changed: () => void;
   fit: () => void;
   say: (text: string) => void;
+  menu: (asked: Asked) => void;
+}
+
+// A particle that somebody asked a menu of, and where [pixels].
+export interface Asked {
+  particle: number;
+  x: number;
+  y: number;
 }
 
 declare global {

@@ -1,0 +1,168 @@
+// Maker: what is drawn or pulled on the picture joins the world: a body inside an outline, a rope, a spring, a rod.
+import { Refusal } from './commands.js';
+import { areaOf, meshed, outlineOf, TOO_SMALL } from './mesh.js';
+/** @import { Run } from './run.js' */
+/** @import { Adding, NamedRecord, Point, Theme } from './types.js' */
+
+// Parts of the reach of a pointer: how much an outline is simplified, and how large it is at least.
+const TOLERANCE = 0.12, MOST_POINTS = 400;
+const TOO_SHORT = 'Drag from one thing to another, or to the air: what you let go of in the air is pinned there.';
+// A rope: its lengths, mass of a metre [kg/m]; widest radius, and as a part of a length. A pin: widest radius, and as one.
+const SEGMENTS = 12, ROPE_MASS = 2, THICKEST = 0.05, SHARE = 0.3, PIN_SHARE = 0.05, SKIN = 0.15;
+
+/** @typedef {{ place: Point, name: string | null }} End */
+
+/** @type {(value: number) => number} */
+const rounded = (value) => Number(value.toPrecision(6));
+/** @type {(place: Point) => Point} */
+const placed = ([x, y]) => [Math.round(x * 1000) / 1000, Math.round(y * 1000) / 1000];
+
+export class Maker {
+  /** @type {Point[]} */
+  #stroke = [];
+  /** @type {End | null} */
+  #start = null;
+  #count = 0;
+
+  /** @param {Run} run @param {Adding} adding @param {(text: string) => void} say */
+  constructor(run, adding, say) {
+    this.run = run;
+    this.adding = adding;
+    this.say = say;
+  }
+
+  /** Whether a tool makes something.
+   * @type {(tool: string) => boolean} */
+  makes(tool) {
+    return tool in this.adding.made.stuffs || ['rope', 'spring', 'rod'].includes(tool);
+  }
+
+  get isAtWork() {
+    return this.#stroke.length > 0;
+  }
+
+  /** particle: what lies at the point; null: nothing.
+   * @type {(point: Point, particle: number | null) => void} */
+  begin(point, particle) {
+    this.#stroke = [point];
+    this.#start = this.#end(point, particle);
+  }
+
+  /** @type {(point: Point, within: number) => void} */
+  go(point, within) {
+    const [x, y] = this.#stroke[this.#stroke.length - 1];
+    const isFar = Math.hypot(point[0] - x, point[1] - y) > TOLERANCE * within;
+    if (isFar && this.#stroke.length < MOST_POINTS) this.#stroke.push(point);
+  }
+
+  forget() {
+    this.#stroke = [];
+  }
+
+  /** @type {(point: Point, particle: number | null) => End} */
+  #end(point, particle) {
+    const { world } = this.run;
+    if (particle === null) return { place: placed(point), name: null };
+    const [x, y] = world.view('state.position').subarray(2 * particle);
+    return { place: [x, y], name: world.names.particle[particle] };
+  }
+
+  /** Make it: the tool's, of what was drawn until now.
+   * @type {(tool: string, point: Point, particle: number | null, within: number) => void} */
+  end(tool, point, particle, within) {
+    const stroke = this.#stroke, start = this.#start;
+    this.#stroke = [];
+    try {
+      const records = tool in this.adding.made.stuffs ? [this.#body(tool, [...stroke, point], within)]
+        : this.#joined(tool, /** @type {End} */ (start), this.#end(point, particle), within);
+      const gesture = this.run.newGesture();
+      for (const record of records) this.run.command(/** @type {any} */ (record), gesture);
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      this.say(error.message);
+    }
+  }
+
+  /** @type {(stuff: string, stroke: Point[], within: number) => NamedRecord} */
+  #body(stuff, stroke, within) {
+    if (stroke.length < 3 || Math.abs(areaOf(stroke)) < within * within) throw new Refusal(TOO_SMALL);
+    const outline = outlineOf(stroke, TOLERANCE * within);
+    if (outline.length < 3) throw new Refusal(TOO_SMALL);
+    const mesh = meshed(outline), { stiffness, damping, density, colours, more } = this.adding.made.stuffs[stuff];
+    const area = areaOf(outline), mass = rounded((density * area) / mesh.particles.length), name = `drawn ${stuff}`;
+    const look = { ...more.look, ...(colours.length ? { colour: colours[this.#count++ % colours.length] } : {}) };
+    const radius = rounded(Math.min(SKIN * Math.sqrt(area / mesh.particles.length), THICKEST));
+    return { type: 'add_body', body: { type: 'mesh', ...mesh, masses: mesh.particles.map(() => mass),
+      particle_radius: radius, material: name, ...more, look }, materials: { [name]: { stiffness, damping } } };
+  }
+
+  /** @type {(tool: string, start: End, end: End, within: number) => NamedRecord[]} */
+  #joined(tool, start, end, within) {
+    const length = Math.hypot(end.place[0] - start.place[0], end.place[1] - start.place[1]);
+    if (length < within || (start.name !== null && start.name === end.name)) throw new Refusal(TOO_SHORT);
+    return tool === 'rope' ? this.#rope(start, end, length) : this.#bar(tool, start, end, length);
+  }
+
+  /** @type {(start: End, end: End, length: number) => NamedRecord[]} */
+  #rope(start, end, length) {
+    // Ends that are particles of the world are none of its own.
+    const steps = Array.from({ length: SEGMENTS + 1 }, (_, k) => k).filter((k) =>
+      (k > 0 || start.name === null) && (k < SEGMENTS || end.name === null));
+    const particles = steps.map((k) => placed(/** @type {Point} */ ([0, 1].map((u) =>
+      start.place[u] + ((end.place[u] - start.place[u]) * k) / SEGMENTS))));
+    const { stiffness, damping } = this.adding.made.firmest, rest = rounded(length / SEGMENTS), name = 'drawn rope';
+    const pinned = steps.flatMap((k, n) => (k === 0 || k === SEGMENTS ? [n] : []));
+    const body = { type: 'mesh', particles, masses: steps.map(() => rounded((ROPE_MASS * length) / SEGMENTS)),
+      springs: steps.slice(1).map((_, k) => [k, k + 1]), pinned, particle_radius: rounded(Math.min(THICKEST, SHARE * rest)),
+      collides: ['terrain'], material: name, look: { line: 'rope' } };
+    const own = this.#nextBody;
+    const ties = [[start.name, `${own}.0`], [end.name, `${own}.${steps.length - 1}`]].filter(([name_]) => name_ !== null);
+    return [{ type: 'add_body', body, materials: { [name]: { stiffness, damping } } }, ...ties.map(([a, b]) =>
+      ({ type: 'add_spring', particle_a: a, particle_b: b, rest_length: rest, stiffness, damping }))];
+  }
+
+  /** @type {(tool: string, start: End, end: End, length: number) => NamedRecord[]} */
+  #bar(tool, start, end, length) {
+    const { stiffness, damping } = tool === 'rod' ? this.adding.made.firmest : this.adding.made.springy;
+    /** @type {NamedRecord[]} */
+    const pins = [];
+    const ends = [start, end].map(({ place, name }) => {
+      if (name !== null) return name;
+      pins.push({ type: 'add_particle', position: place, radius: rounded(Math.min(THICKEST, PIN_SHARE * length)),
+        pinned: true });
+      return `+.${this.#nextPin + pins.length - 1}`;
+    });
+    return [...pins, { type: 'add_spring', particle_a: ends[0], particle_b: ends[1], stiffness, damping }];
+  }
+
+  /** @type {(form: RegExp) => number} */
+  #next(form) {
+    const { names, counts } = this.run.world;
+    const numbers = names.particle.slice(0, counts.particle).map((name) => form.exec(name)?.[1]);
+    return numbers.reduce((most, each) => (each === undefined ? most : Math.max(most, Number(each) + 1)), 0);
+  }
+
+  get #nextPin() {
+    return this.#next(/^\+\.(\d+)$/);
+  }
+
+  get #nextBody() {
+    return `+${Math.max(1, this.#next(/^\+(\d+)\./))}`;
+  }
+
+  /** What is drawn so far. toPixels: of places [m].
+   * @type {(context: CanvasRenderingContext2D, tool: string, toPixels: (x: number, y: number) => Point, theme: Theme) =>
+   *   void} */
+  draw(context, tool, toPixels, theme) {
+    if (!this.#stroke.length) return;
+    const isBody = tool in this.adding.made.stuffs, last = this.#stroke[this.#stroke.length - 1];
+    const line = isBody ? this.#stroke : [this.#start?.place ?? last, last];
+    context.strokeStyle = theme.accent;
+    context.lineWidth = 2;
+    context.setLineDash(isBody ? [] : [6, 5]);
+    context.beginPath();
+    line.forEach(([x, y]) => context.lineTo(...toPixels(x, y)));
+    context.stroke();
+    context.setLineDash([]);
+  }
+}

@@ -1,0 +1,67 @@
+// Menu: what can be done to a thing: its material softer or firmer, and its particle fixed or let go.
+import { element } from './panel.js';
+/** @import { Toy } from './toy.js' */
+/** @import { Asked, Point } from './types.js' */
+
+export class Menu {
+  /** @param {HTMLElement} box @param {Toy} toy @param {Record<string, Point>} words Cs and Cd by words of firmness */
+  constructor(box, toy, words) {
+    this.box = box;
+    this.toy = toy;
+    this.words = words;
+    addEventListener('pointerdown', ({ target }) => {
+      if (target instanceof Node && !box.contains(target)) this.close();
+    }, true);
+    addEventListener('keydown', ({ key }) => { if (key === 'Escape') this.close(); });
+  }
+
+  close() {
+    this.box.hidden = true;
+  }
+
+  /** @type {(asked: Asked) => void} */
+  open({ particle, x, y }) {
+    const { box, toy } = this, { world } = toy, material = this.#materialOf(particle);
+    /** @type {(text: string, act: () => void) => HTMLButtonElement} */
+    const button = (text, act) => {
+      const made = element('button', { type: 'button', textContent: text });
+      made.addEventListener('click', () => {
+        this.close();
+        act();
+        toy.refresh();
+      });
+      return made;
+    };
+    const isFixed = world.view('state.inverse_mass')[particle] === 0;
+    const softness = material === null ? [] : Object.entries(this.words).map(([word, [stiffness, damping]]) =>
+      button(word, () => this.#soften(material, word, stiffness, damping)));
+    box.replaceChildren(...softness, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
+      { type: isFixed ? 'unpin' : 'pin', particle })));
+    box.hidden = false;
+    box.style.left = `${Math.max(8, Math.min(x, innerWidth - box.offsetWidth - 8))}px`;
+    box.style.top = `${Math.max(8, Math.min(y, innerHeight - box.offsetHeight - 8))}px`;
+    box.querySelector('button')?.focus({ preventScroll: true });
+  }
+
+  /** The material of the springs at a particle; null: it has none.
+   * @type {(particle: number) => number | null} */
+  #materialOf(particle) {
+    const { world } = this.toy, a = world.view('state.particle_a'), b = world.view('state.particle_b');
+    const material = world.view('state.material'), active = world.view('state.spring_active');
+    const spring = material.findIndex((own, k) => own >= 0 && active[k] !== 0 && (a[k] === particle || b[k] === particle));
+    return spring < 0 ? null : material[spring];
+  }
+
+  /** @type {(material: number, word: string, stiffness: number, damping: number) => void} */
+  #soften(material, word, stiffness, damping) {
+    const { ramp_ticks: duration } = this.toy.level;
+    this.#submit({ type: 'set_coefficients', material, stiffness, damping, duration });
+    this.toy.say(`Everything of ${this.toy.world.names.material[material]} is ${word} now.`);
+  }
+
+  /** @type {(record: import('./types.js').Command) => void} */
+  #submit(record) {
+    const { run } = this.toy;
+    if (!run.submit(record, run.newGesture())) this.toy.say(run.refused);
+  }
+}
