@@ -201,6 +201,7 @@ SHORTCUTS = (
     Shortcut("gallery", ("G",), "Levels", "Files", "play"),
     Shortcut("open", ("Ctrl+O",), "Open a level or a recording, or drop its file here", "Files", "play"),
     Shortcut("share", ("F12",), "Share the last minute: GIF, MP4, PNG, page", "Files", "play"),
+    Shortcut("copy_link", ("Ctrl+Shift+L",), "Copy a link to this run", "Files", "play"),
     Shortcut("toy", ("Ctrl+T",), "Desk toy: this level in a small window that stays on top", "Files", "play"),
     Shortcut("save", ("Ctrl+S",), "Save the scene as it stands, in My levels", "Files", "play"),
     Shortcut("record", ("Ctrl+R",), "Start or stop recording", "Files", "play"),

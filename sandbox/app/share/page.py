@@ -40,8 +40,8 @@ class SharePage:
     page: what is on it while it is open; after that nothing is kept of the window that it was in.
     """
 
-    def __init__(self, app: Application, sharing: Sharing) -> None:
-        self._app, self._sharing = app, sharing
+    def __init__(self, app: Application, sharing: Sharing, copy_link: Callable[[], None]) -> None:
+        self._app, self._sharing, self._copy_link = app, sharing, copy_link
         self.page: ShareForm | None = None
 
     def open(self) -> None:
@@ -60,7 +60,11 @@ class SharePage:
             self.page = None
 
     def _build(self, ui: Ui) -> None:
-        self.page = ShareForm(ui, self._sharing, self.leave, self._build)
+        self.page = ShareForm(ui, self._sharing, self.leave, self._build, self._link)
+
+    def _link(self) -> None:
+        self.leave()
+        self._copy_link()
 
     def update(self) -> None:
         """Show what has changed."""
@@ -80,8 +84,11 @@ class SharePage:
 class ShareForm:
     """What is on the page at one step of sharing, in one window; reopen: called where it is laid out again."""
 
-    def __init__(self, ui: Ui, sharing: Sharing, leave: Callable[[], None], reopen: Callable[[Ui], None]) -> None:
-        self._ui, self._sharing, self._leave = ui, sharing, leave
+    def __init__(
+        self, ui: Ui, sharing: Sharing, leave: Callable[[], None], reopen: Callable[[Ui], None],
+        copy_link: Callable[[], None],
+    ) -> None:  # fmt: skip
+        self._ui, self._sharing, self._leave, self._copy_link = ui, sharing, leave, copy_link
         self.step = sharing.step
         self._seen: tuple[object, ...] = ()
         dialog = Dialog(ui, _title(sharing.film), WIDTH, HEIGHT, reopen, leave, is_page=True)
@@ -154,6 +161,7 @@ class ShareForm:
         self._build_note(TOP + 4 * step)
         self._add_button("Save", self._save, 0, "primary")
         self._add_button("Close", self._leave, 1)
+        self._add_button("Copy link", self._copy_link, 2, tip="A link to the whole run, for a page of this level")
 
     @property
     def _preview_width(self) -> float:
@@ -165,7 +173,7 @@ class ShareForm:
         place = self._ui.rect(self._right, top, self._side, max(bottom - top, 18))
         if self.step == "choose":
             # Left of both buttons.
-            wide = min(self._preview_width, self._width - 2 * MARGIN - 2 * BUTTON_WIDTH - 20)
+            wide = min(self._preview_width, self._width - 2 * MARGIN - 3 * BUTTON_WIDTH - 30)
             place = self._ui.rect(MARGIN, self._height - MARGIN - BUTTON, wide, BUTTON + 14)
         self.note = TextBlock(self._ui, place, "", self._box, 12.0, TEXT)
 

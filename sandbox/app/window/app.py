@@ -35,6 +35,7 @@ from sandbox.app.run.scene_keeping import SceneKeeping
 from sandbox.app.settings.chosen import Chosen
 from sandbox.app.settings.settings_sheet import SettingsSheet
 from sandbox.app.settings.system_theme import theme_of
+from sandbox.app.share.link_copying import LinkCopying
 from sandbox.app.share.page import SharePage
 from sandbox.app.share.sharing import Sharing
 from sandbox.app.sound.sounds import Sounds
@@ -83,7 +84,8 @@ class App:
         self.documents = DocumentActions(self)
         self.guide = Guide(self, self.documents)
         self.sharing = Sharing(self)
-        self.share_page = SharePage(self, self.sharing)
+        self.link_copying = LinkCopying(self)
+        self.share_page = SharePage(self, self.sharing, self.link_copying.ask)
         self.sounds = Sounds(self.chosen, time.perf_counter)
         self._progress = RunProgress(self)
         self._toys = ToyStarter()
@@ -229,6 +231,7 @@ class App:
         return {
             "hint": self._show_hint,
             "share": self.share_page.open,
+            "copy_link": self.link_copying.ask,
             "compare": self._compare,
             "sound": self._toggle_sound,
             "toy": self._start_toy,
@@ -360,6 +363,7 @@ class App:
                 self.gallery.update(frame_time)
             self.guide.update(frame_time)
             self.sharing.update(frame_time)
+            self.link_copying.update()
             self.share_page.update()
             self.ui.update(frame_time)
         if not self.display.hidden:
@@ -376,7 +380,7 @@ class App:
     @property
     def moves(self) -> bool:
         """Whether something in the window changes by itself, or works in its frames at what it will show."""
-        parts = (self.screen, self.gallery, self.status, self.guide, self.sharing, self.best)
+        parts = (self.screen, self.gallery, self.status, self.guide, self.sharing, self.link_copying, self.best)
         return any(part is not None and part.moves for part in parts)
 
     @property

@@ -12,7 +12,7 @@ import hashlib
 import json
 import re
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -25,6 +25,7 @@ from sandbox.level.reading.files import load_level, parse_level, shipped_levels
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.faults import plain_fault
+from sandbox.session.commands.records import ScriptLine
 from sandbox.session.link.packing import NOTHING, PackingError, pack, unpack
 from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
 
@@ -111,9 +112,12 @@ def replay_of(link: str) -> Replay:
         raise ReplayError(f"the link is broken: {error}") from None
     if any(line.tick > packed.ticks for line in script[-1:]):
         raise ReplayError("the link is broken: it goes on after its end")
-    level = _level_of(packed)
-    hashes = (_NO_HASHES,) * (packed.ticks + 1)
-    return Replay("link", level, script, hashes, {}, packed.hash)
+    return run_of("link", _level_of(packed), script, packed.ticks, packed.hash)
+
+
+def run_of(source: str, level: Level, script: Sequence[ScriptLine], ticks: int, end_hash: str) -> Replay:
+    """A run of which the hash of its end is known alone, as a recording."""
+    return Replay(source, level, tuple(script), (_NO_HASHES,) * (ticks + 1), {}, end_hash)
 
 
 def _unpacked(text: str) -> _LinkedRun:

@@ -1,0 +1,70 @@
+"""A link to the run so far, by Ctrl+Shift+L and from the page of sharing: what is copied is the run, to the bit."""
+
+import pygame
+import pytest
+
+from sandbox.app.base import desktop
+from sandbox.app.share.link_copying import so_far
+from sandbox.physics.snapshot import state_hash
+from sandbox.session.commands import AddParticle, CutSprings
+from sandbox.session.link.scene_link import replay_of
+from sandbox.session.replay.verify import verify
+from tests.app.conftest import small_level
+
+
+@pytest.fixture
+def copied(monkeypatch):
+    """What is put on the clipboard."""
+    found = []
+    monkeypatch.setattr(desktop, "_clipboard_tool", lambda: None)
+    monkeypatch.setattr(desktop.pygame.scrap, "put_text", found.append)
+    return found
+
+
+def played(driver):
+    """The session of a run of half a second with a thing added, and one that was undone."""
+    session = driver.app.play.playback.session
+    session.do(AddParticle((0.5, 2.0), mass=2.0, radius=0.1))
+    driver.frames(20)
+    session.submit(CutSprings((0,)))
+    driver.frames(5)
+    session.undo()
+    driver.frames(5)
+    return session
+
+
+def test_the_link_that_is_copied_is_the_run_without_what_was_undone(open_app, copied):
+    driver = open_app(small_level())
+    session = played(driver)
+    driver.key(pygame.K_l, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
+    driver.frames(2)
+    driver.type("https://toys.example/play")
+    driver.key(pygame.K_RETURN)
+    driver.frames(60)
+    (link,) = copied
+    assert link.startswith("https://toys.example/play#scene=")
+    replay = replay_of(link)
+    assert 0 < replay.ticks <= session.tick and verify(replay) is None
+    assert [line.record["type"] for line in replay.script] == ["add_particle"]
+
+
+def test_an_address_that_is_none_is_said_and_nothing_is_copied(open_app, copied):
+    driver = open_app(small_level())
+    played(driver)
+    driver.key(pygame.K_l, pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
+    driver.frames(2)
+    driver.type("toys")
+    driver.key(pygame.K_RETURN)
+    driver.frames(10)
+    assert not copied and not driver.app.link_copying.moves
+    driver.key(pygame.K_BACKSPACE)
+    driver.type("s.example")
+    driver.key(pygame.K_RETURN)
+    driver.frames(60)
+    assert not copied, "the address has to begin with https://"
+
+
+def test_the_run_so_far_ends_as_the_world_is_now(open_app):
+    session = played(open_app(small_level()))
+    replay = so_far(session)
+    assert replay.end_hash == state_hash(session.world) and replay.ticks == session.tick
