@@ -72,6 +72,11 @@ def _said(level: Level, body: BodyDef | SpringDef) -> dict[str, Any]:
     }
 
 
+def is_filled(body: BodyDef) -> bool:
+    """Whether a body is filled with triangles, as a jelly is."""
+    return body.type == "jelly" or bool(body.__dict__.get("triangles"))
+
+
 def body_looks(level: Level) -> list[Look]:
     """What each body is drawn as."""
     names, toys = list(PALETTE.values()), 0
@@ -99,7 +104,7 @@ def body_looks(level: Level) -> list[Look]:
 
 
 def _skin(body: BodyDef, stuff: str, firm: float) -> str:
-    if body.type == "jelly":
+    if is_filled(body):
         if stuff in SOFT_SKINS or stuff == "cloth":
             return stuff
         if firm < DRAPES and body.pinned:
@@ -113,7 +118,7 @@ def _skin(body: BodyDef, stuff: str, firm: float) -> str:
 
 
 def _line(body: BodyDef, stuff: str, firm: float, skin: str) -> str:
-    if body.type in ("jelly", "ring"):
+    if is_filled(body) or body.type == "ring":
         # What hangs out of it where it is torn.
         return "thread" if skin == "cloth" else "paint"
     if body.type == "rope":

@@ -122,10 +122,10 @@ def _body(actor: Actor, snapshot: Snapshot) -> dict[str, Any]:
     }
     if look.skin == "lattice":
         return made
-    if actor.body.type == "jelly":
+    if actor.is_filled:
         triangles = actor.triangles()
         made["triangles"] = actor.slots[triangles].reshape(-1).tolist()
-        made["keeps_area"] = actor.body.__dict__["area"]
+        made["keeps_area"] = actor.keeps_areas
         made["spacing"] = float(actor.body.__dict__.get("spacing", actor.cell))
         loops = [loop for piece in actor.filling(there).pieces for loop in piece.loops]
         made["shapes"] = [_shape(shape_of(actor, loops, there, radius))]
@@ -193,7 +193,7 @@ def _pictures(slots: LevelSlots, ground: list[dict[str, Any]]) -> dict[str, dict
         made[_hex(colour)] = bars.array[number]
     for name, theme in THEMES.items() if any(each["kind"] == "soil" for each in ground) else ():
         made[f"turf {name}"] = Tiles(theme).array[TILE["turf"]]
-    for look in [actor.look for actor in slots.actors if actor.body.type == "jelly"]:
+    for look in [actor.look for actor in slots.actors if actor.is_filled]:
         if look.skin == CLOTH:
             made[f"{look.skin} {_hex(look.colour)}"] = _folded(woven(look.colour, CLOTH_STRIPE))
         elif look.skin in CRATES:

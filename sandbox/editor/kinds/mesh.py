@@ -17,7 +17,9 @@ class MeshEditing(BodyEditing[MeshDef]):
         return True
 
     def mapped(self, motion: Motion) -> dict[str, Any]:
-        """The places of all particles and their velocities, after a motion."""
+        """The places of all particles, their velocities and triangles, after a motion."""
         body = self.body
         velocities = body.velocities and tuple(mapped_velocity(velocity, motion) for velocity in body.velocities)
-        return {"particles": motion.points(body.particles), "velocities": velocities}
+        mapped = {"particles": motion.points(body.particles), "velocities": velocities}
+        # A mirror turns triangles round.
+        return mapped | ({"triangles": tuple(each[::-1] for each in body.triangles)} if motion.is_mirror else {})

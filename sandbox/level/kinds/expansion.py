@@ -13,7 +13,7 @@ from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import Description
 from sandbox.level.kinds.body_def import BendingDef, BodyDef
 from sandbox.level.kinds.geometry import Pairs, Points, distances
-from sandbox.physics.collision.filter import LINE
+from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.keeping.forms import StiffForm
 
 Body = TypeVar("Body", bound=BodyDef)
@@ -247,6 +247,30 @@ class Expansion(Generic[Body]):
                 )
         if self.body.pose is not None and len(self.body.pose) != particles:
             yield f"{path}.pose", f"has {len(self.body.pose)} items for {particles} particles; give one each"
+
+
+def directed_sides(triangles: Pairs, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Keys a n + b of the sides a to b of triangles (t, 3), counter-clockwise, of n = count particles; no diagonals."""
+    ends = np.roll(triangles, -1, axis=1)
+    return (triangles * count + ends).reshape(-1), np.zeros(0, dtype=np.int64)
+
+
+def edges_of(pairs: Pairs, sides: NDArray[np.int64], inner: NDArray[np.int64], count: int) -> NDArray[np.int8]:
+    """Kind of edge (m,) of springs of pairs (m, 2): solid along one side, none along two and where it lies inside.
+
+    sides: keys a n + b of sides from a to b, counter-clockwise; inner: of diagonals; n = count particles.
+    """
+    there, back = pairs[:, 0] * count + pairs[:, 1], pairs[:, 1] * count + pairs[:, 0]
+    left, right = np.isin(there, sides), np.isin(back, sides)
+    hidden = np.isin(there, inner) | np.isin(back, inner) | (left & right)
+    kind = np.where(left, SOLID_LEFT, np.where(right, SOLID_RIGHT, LINE))
+    return np.where(hidden, NO_EDGE, kind).astype(np.int8)
+
+
+def outline_of(edges: NDArray[np.int8]) -> Pairs:
+    """The hull of the springs (m,) whose edges are solid."""
+    outline = np.flatnonzero((edges == SOLID_LEFT) | (edges == SOLID_RIGHT))
+    return np.stack([outline, edges[outline] == SOLID_RIGHT], axis=1)
 
 
 def round_hull(first: int, count: int) -> Pairs:

@@ -13,7 +13,7 @@ from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import COORDINATE_LIMIT, CORNER_LIMIT, PARTICLE_LIMIT
 from sandbox.level.format.quantities import Angle, Description, Mass, Point, Size, Spacing, unit
 from sandbox.level.kinds.body_def import BodyDef
-from sandbox.level.kinds.expansion import NO_HULL, NO_POLYGONS, Expansion
+from sandbox.level.kinds.expansion import NO_HULL, NO_POLYGONS, Expansion, directed_sides, edges_of, outline_of
 from sandbox.level.kinds.fitting import (
     FittedMesh,
     Loop,
@@ -27,7 +27,6 @@ from sandbox.level.kinds.fitting import (
 )
 from sandbox.level.kinds.geometry import Pairs, Points, turn
 from sandbox.level.kinds.polygon import BORDER, grid_bounds, holds, is_simple, largest_part, loops_touch, polygon_grid
-from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 
 
 class BoxShape(Description):
@@ -168,13 +167,9 @@ class Jelly(Expansion[JellyDef]):
     @property
     def edges(self) -> NDArray[np.int8]:
         """Kind of edge (m,): a side of only one square or triangle of the mesh is solid."""
-        pairs, count = self.pairs, self.form_count[0]
-        sides, inner = _sides(self._numbers, count) if self._fitted is None else _keys(self._fitted.triangles, count)
-        there, back = pairs[:, 0] * count + pairs[:, 1], pairs[:, 1] * count + pairs[:, 0]
-        left, right = np.isin(there, sides), np.isin(back, sides)
-        hidden = np.isin(there, inner) | np.isin(back, inner) | (left & right)
-        kind = np.where(left, SOLID_LEFT, np.where(right, SOLID_RIGHT, LINE))
-        return np.where(hidden, NO_EDGE, kind).astype(np.int8)
+        count = self.form_count[0]
+        sides = _sides(self._numbers, count) if self._fitted is None else directed_sides(self._fitted.triangles, count)
+        return edges_of(self.pairs, *sides, count)
 
     def polygons(self) -> Pairs:
         """Triangles (t, 3), counter-clockwise: of the fitted mesh, or of each grid cell, which has two or one.
@@ -200,9 +195,7 @@ class Jelly(Expansion[JellyDef]):
 
     def hull(self) -> Pairs:
         """The outline, unless one of its springs is cut."""
-        edges = self.edges
-        outline = np.flatnonzero((edges == SOLID_LEFT) | (edges == SOLID_RIGHT))
-        return NO_HULL if self.body.cut else np.stack([outline, edges[outline] == SOLID_RIGHT], axis=1)
+        return NO_HULL if self.body.cut else outline_of(self.edges)
 
     def faults(self, path: str) -> Iterator[Fault]:
         """Faults of a shape that crosses itself, leaves the world, or has no point of the grid inside."""
@@ -377,12 +370,6 @@ def _sides(numbers: Pairs, count: int) -> tuple[NDArray[np.int64], NDArray[np.in
     directed = np.concatenate(sides)
     inner = np.concatenate([full[:, [0, 2]], full[:, [1, 3]]])
     return directed[:, 0] * count + directed[:, 1], inner[:, 0] * count + inner[:, 1]
-
-
-def _keys(triangles: Pairs, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Keys a n + b of the sides a to b of triangles (t, 3), counter-clockwise; they have no diagonals."""
-    ends = np.roll(triangles, -1, axis=1)
-    return (triangles * count + ends).reshape(-1), np.zeros(0, dtype=np.int64)
 
 
 def _turned(x: NDArray[np.float64], y: NDArray[np.float64], angle: float) -> Points:

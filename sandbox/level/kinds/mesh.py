@@ -5,14 +5,16 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.format.limits import SPEED_LIMIT
 from sandbox.level.format.quantities import Index, Mass, Point, Velocity, empty, unit
 from sandbox.level.kinds.body_def import BENDING, BENDS_FREELY, BendingDef, BodyDef
-from sandbox.level.kinds.expansion import Expansion, Floats
+from sandbox.level.kinds.expansion import NO_HULL, Expansion, Floats, directed_sides, edges_of, outline_of
 from sandbox.level.kinds.geometry import Pairs, Points
+from sandbox.physics.geometry.segment import doubled_areas
 
 
 class MeshDef(BodyDef):
@@ -31,11 +33,16 @@ class MeshDef(BodyDef):
     springs: tuple[tuple[Index, Index], ...] = Field(
         default=(), description="Pairs of particles, by index. A spring joins each pair; its rest length is as placed."
     )
+    triangles: tuple[tuple[Index, Index, Index], ...] = Field(
+        default=(),
+        description="Triangles of particles, by index, counter-clockwise, with a spring along each side. They keep "
+        "their areas as a jelly's do, and it is filled: a side of only one triangle is its outline.",
+    )
     bending: BendingDef | None = Field(default=None, description=BENDING, json_schema_extra=BENDS_FREELY)
 
 
 class Mesh(Expansion[MeshDef]):
-    """The particles and springs of its lists."""
+    """The particles, springs and triangles of its lists."""
 
     model = MeshDef
     size_path = ()
@@ -69,6 +76,19 @@ class Mesh(Expansion[MeshDef]):
         """Whether it is stiff."""
         return self.body.bending
 
+    @property
+    def edges(self) -> NDArray[np.int8]:
+        """Kind of edge (m,): a side of only one triangle is solid, one of two is none, and all else is a line."""
+        return edges_of(self.pairs, *directed_sides(self.polygons(), self.form_count[0]), self.form_count[0])
+
+    def polygons(self) -> Pairs:
+        """Its triangles (t, 3)."""
+        return np.array(self.body.triangles, dtype=np.int64).reshape(-1, 3)
+
+    def hull(self) -> Pairs:
+        """The outline of its triangles, unless one of its springs is cut."""
+        return NO_HULL if self.body.cut else outline_of(self.edges)
+
     def faults(self, path: str) -> Iterator[Fault]:
         """Faults of lists of different lengths, and of springs that join particles that do not exist."""
         body, size = self.body, len(self.body.particles)
@@ -83,3 +103,26 @@ class Mesh(Expansion[MeshDef]):
                 yield f"{path}.springs.{index}", f"{shown(max(a, b))} is beyond the last particle, {size - 1}"
             elif a == b:
                 yield f"{path}.springs.{index}", f"joins particle {a} to itself; name two particles"
+        if body.triangles:
+            yield from self._triangle_faults(f"{path}.triangles")
+
+    def _triangle_faults(self, path: str) -> Iterator[Fault]:
+        """Faults of triangles that are none, run clockwise, lack a spring, or lie over one another."""
+        places, size = self.body.particles, len(self.body.particles)
+        joined = {frozenset(pair) for pair in self.body.springs}
+        taken: set[tuple[int, int]] = set()
+        for index, (a, b, c) in enumerate(self.body.triangles):
+            place, sides = f"{path}.{index}", [(a, b), (b, c), (c, a)]
+            bare = next((side for side in sides if frozenset(side) not in joined), None)
+            twice = next((side for side in sides if side in taken), None)
+            if max(a, b, c) >= size:
+                yield place, f"{shown(max(a, b, c))} is beyond the last particle, {size - 1}"
+            elif len({a, b, c}) < 3:
+                yield place, "has a corner twice; name three particles"
+            elif doubled_areas(*(np.array(places[corner]) for corner in (a, b, c))) <= 0.0:
+                yield place, "does not run counter-clockwise; turn it round"
+            elif bare is not None:
+                yield place, f"has no spring from particle {bare[0]} to {bare[1]}; add one"
+            elif twice is not None:
+                yield place, f"lies on the same side of {twice[0]} and {twice[1]} as an earlier one; take one out"
+            taken.update(sides)

@@ -74,7 +74,7 @@ class Drawables:
         """Make a thing of a body whose springs are there (m,); its springs that are drawn one by one are given back."""
         look, kind = actor.look, actor.body.type
         if look.skin != "lattice":
-            if kind == "jelly":
+            if actor.is_filled:
                 return self._add_filled(actor, there)
             if kind == "ring" and there.all() and len(there) == len(actor.slots):
                 self._balloons += [(len(self._shapes), actor)] if look.skin == "balloon" else []

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, spring_look
+from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, is_filled, spring_look
 from sandbox.app.draw.things.borders import sides_of, trace_loops
 from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
@@ -72,6 +72,16 @@ class Actor:
         """Slots (m, 2) of the ends of its springs."""
         return self.slots[self.pairs]
 
+    @property
+    def is_filled(self) -> bool:
+        """Whether it is filled with triangles."""
+        return is_filled(self.body)
+
+    @property
+    def keeps_areas(self) -> bool:
+        """Whether these triangles keep their areas; a jelly may have none that do."""
+        return self.is_filled and bool(self.body.__dict__.get("area", True))
+
     @cached_property
     def cell(self) -> float:
         """A usual length [m] of its springs."""
@@ -105,7 +115,7 @@ class Actor:
         triangles = self.triangles()
         if there.all() and not self.body.cut:
             return triangles
-        if whole is None or not self.body.__dict__.get("area", False):
+        if whole is None or not self.keeps_areas:
             sides = sides_of(triangles, self.pairs)
             return np.asarray(triangles[((sides >= 0) & np.append(there, False)[sides]).all(axis=1)])
         index = np.full(max(int(whole.max(initial=0)), int(self.slots.max(initial=0))) + 1, -1)

@@ -67,7 +67,7 @@ class Members:
         if not len(ends) or look.line == "hidden":
             return
         none = np.zeros(0, dtype=np.int64)
-        bolts = none if actor.body.type == "jelly" and look.skin != "lattice" else np.unique(ends)
+        bolts = none if actor.is_filled and look.skin != "lattice" else np.unique(ends)
         if actor.body.type not in ("bridge", "girder"):
             self._add(_Bars(ends, springs, actor.cell, MESH, look.width, look.line, look.colour, bolts, none))
             return

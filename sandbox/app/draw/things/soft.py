@@ -15,7 +15,7 @@ from sandbox.app.draw.things.borders import starts_of
 from sandbox.app.draw.things.faces import room_in, spot_of
 from sandbox.app.draw.things.frame import FLUSH_FROM, FLUSH_RANGE, Frame
 from sandbox.app.draw.things.level_slots import Actor, Piece
-from sandbox.level.kinds.jelly import CircleShape, JellyDef
+from sandbox.level.kinds.jelly import CircleShape
 from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.geometry.segment import lengths
 
@@ -112,7 +112,7 @@ def keep_of(actor: Actor, loops: list[Slots]) -> float:
 
 def _has_corners(actor: Actor) -> bool:
     """Whether a body was drawn with corners: what is round is so by few particles as well."""
-    return isinstance(actor.body, JellyDef) and not isinstance(actor.body.shape, CircleShape)
+    return actor.is_filled and not isinstance(getattr(actor.body, "shape", None), CircleShape)
 
 
 def _cut_of(actor: Actor, loop: Slots) -> float:
