@@ -29,7 +29,7 @@ from sandbox.app.play.bake_choice import ask_to_keep
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.earlier_runs import EarlierRuns
 from sandbox.app.play.goals.game import Game
-from sandbox.app.play.hand_labels import draw_labels
+from sandbox.app.play.hand_labels import draw_hint, draw_labels
 from sandbox.app.play.hand_strength import keep_strength, kept_strength, next_strength
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
@@ -446,11 +446,7 @@ class PlayScreen:
 
     def film(self, seconds: float) -> Film | FilmPair:
         """The chosen range of the run, or its last seconds [s], as it is seen now."""
-        return self._film_of(self.stage, seconds)
-
-    def _film_of(self, stage: Stage, seconds: float) -> Film:
-        span = self.playback.travel.span or last_ticks(self.playback.session, seconds)
-        return Film(stage.playback.session, stage.camera, stage.renderer, span, self.stage.fitted_box)
+        return self.stage.film(self.playback.travel.span or last_ticks(self.playback.session, seconds))
 
     # Pointer and keys.
 
@@ -555,6 +551,7 @@ class PlayScreen:
         self.troubles.draw(surface)
         draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
+        draw_hint(surface, self._ui, self.camera, self.stage.tool)
         self.game.draw(surface)
         surface.set_clip(None)
         self.graphs.draw(surface)
