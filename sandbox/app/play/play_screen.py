@@ -38,6 +38,7 @@ from sandbox.app.play.palette import NAMES, PartsPalette, refused_tools
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import HAND_TOOL, Stage
 from sandbox.app.play.status import STATUS_HEIGHT, run_parts
+from sandbox.app.play.thing_menu import open_thing_menu
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.play.troubles import Troubles
@@ -364,7 +365,13 @@ class PlayScreen:
             self.camera.zoom_at(self.stage.cursor, steps)
 
     def open_menu(self, pixel: Pixel) -> None:
-        """Open nothing: a run has no menu."""
+        """Offer what can be made of the thing there."""
+        open_thing_menu(self._ui, self.stage, pixel, self.say)
+
+    @property
+    def takes_rest(self) -> bool:
+        """Whether the hand is in use: other tools begin something at once."""
+        return self.stage.tool_name == HAND_TOOL
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Make what is dropped larger, or zoom."""
