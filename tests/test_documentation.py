@@ -68,8 +68,10 @@ def test_the_program_that_finds_a_failure_finds_it(tmp_path, monkeypatch):
 
 
 def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_carried_out(tmp_path):
-    lines, driving, pressing, pumping, firming, joining = re.findall(r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL)
-    shown = (lines + driving + pressing + pumping + firming + joining).splitlines()
+    lines, driving, pressing, pumping, firming, weighing, joining = re.findall(
+        r"```jsonl\n(.*?)```", COMMANDS, re.DOTALL
+    )
+    shown = (lines + driving + pressing + pumping + firming + weighing + joining).splitlines()
     assert {json.loads(line)["command"]["type"] for line in shown} == set(COMMAND_TYPES)
     table = COMMANDS.split("|---|---|---|")[1]
     named = {
@@ -102,6 +104,12 @@ def test_the_commands_in_the_documentation_are_all_there_are_and_every_one_is_ca
     for _ in range(180):
         session.advance()
     assert not session.messages and outcome(level, session.world).text == "All down"
+    (tmp_path / "weigh.jsonl").write_text(weighing)
+    session = Session(load_level("jelly_pile"), read_script(tmp_path / "weigh.jsonl"))
+    mass = session.world.mass.sum()
+    for _ in range(61):
+        session.advance()
+    assert not session.messages and session.world.mass.sum() > mass
     (tmp_path / "pump.jsonl").write_text(pumping)
     session = Session(load_level("balloons"), read_script(tmp_path / "pump.jsonl"))
     wanted = session.world.constraint_rest.copy()

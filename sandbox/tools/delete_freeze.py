@@ -29,10 +29,15 @@ class FreezeTool(ClickTool):
 
     def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
         """Freeze or thaw all of its body."""
-        body = np.flatnonzero(shown_particles(snapshot) & (snapshot.owner == snapshot.owner[particle]))
-        free = body[snapshot.inverse_mass[body] > 0.0].tolist()
-        return [Pin(slot) for slot in free] or [Unpin(slot) for slot in body.tolist()]
+        return freezing(particle, snapshot)
 
 
-DELETE = PlayTool("delete", ("X",), "Delete: click takes a thing out", "Parts", DeleteTool, "remove")
+def freezing(particle: int, snapshot: Snapshot) -> list[Command]:
+    """The commands that pin what is free of the body of a particle, or let it go where nothing of it is."""
+    body = np.flatnonzero(shown_particles(snapshot) & (snapshot.owner == snapshot.owner[particle]))
+    free = body[snapshot.inverse_mass[body] > 0.0].tolist()
+    return [Pin(slot) for slot in free] or [Unpin(slot) for slot in body.tolist()]
+
+
+DELETE = PlayTool("delete", ("X",), "Erase a thing, with what hangs on it", "Parts", DeleteTool, "remove")
 FREEZE = PlayTool("freeze", ("I",), "Freeze or thaw a body", "Parts", FreezeTool, "pin")

@@ -37,8 +37,6 @@ class ThrowTool(PlacedTool):
     """Drops or throws what subclasses make. Each drop is a gesture."""
 
     adds = True
-    # Whether what it drops touches other things.
-    touches = False
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
         self._new_gesture = new_gesture

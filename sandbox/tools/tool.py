@@ -68,10 +68,12 @@ class DropPicture:
 class Tool(ABC):
     """Turns pointer events over a snapshot into commands. Methods that are not abstract may stay as they are here.
 
-    adds: it adds bodies to the world. place [m]: where the pointer is before a press; None: nowhere, or unknown.
+    adds: it adds bodies to the world; touches: whether these touch other things. place [m]: where the pointer is before
+    a press; None: nowhere, or unknown.
     """
 
     adds: ClassVar[bool] = False
+    touches: bool = False
     place: Point | None = None
 
     @abstractmethod
@@ -119,6 +121,11 @@ class Tool(ABC):
     def fits(self) -> bool:
         """Whether what it adds has room there."""
         return True
+
+    @property
+    def hint(self) -> str:
+        """What is said beside the pointer, in a sentence; nothing as a rule."""
+        return ""
 
     @property
     def preview(self) -> DropPicture | None:

@@ -20,6 +20,7 @@ from sandbox.commands import (
     Push,
     Release,
     Remove,
+    ScaleMass,
     SetAir,
     SetCoefficients,
     SetDrive,
@@ -70,6 +71,8 @@ def _move_free_and_remove(session: Session, tick: int) -> None:
         session.submit(Grab(0, plank, (0.0, 2.0), radius=0.4), 77)
     if tick == 20:
         session.submit(MoveBody(cube, (0.5, 1.5), at_rest=True))
+    if tick == 40:
+        session.submit(ScaleMass(cube, 2.5))
     if tick == 60:
         session.submit(Free(cube))
     if tick == 90:

@@ -102,7 +102,7 @@ SHORTCUTS = (
     Shortcut("melt", ("Z",), "Melt, or make whole again", "Tools", "play"),
     Shortcut("free", ("J",), "Free what is stuck in something", "Tools", "play"),
     Shortcut("bring_back", ("Shift+J",), "Bring back what left the picture", "Tools", "play"),
-    Shortcut("details", ("Shift+D",), "Details of what went out of bounds: ticks and names", "Tools", "play"),
+    Shortcut("details", ("Shift+D",), "Details of what went out of bounds", "Tools", "play"),
     Shortcut("touching", ("Shift+T",), "Contacts on or off; the run starts over", "Tools", "play"),
     Shortcut("edit", ("E",), "Edit this level, or go back to the editor", "Files", "play"),
     Shortcut("keep", ("Ctrl+K",), "Take what the run did to the sheet of the editor", "Files", "play"),

@@ -13,6 +13,7 @@ from sandbox.app.compare.twin import TwinPlayback, coefficients_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Pixel, Pointer
 from sandbox.app.draw.colours import LINE, TEXT
+from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.panel import Panel
@@ -173,7 +174,9 @@ class CompareScreen(PlayScreen):
         """Film of both runs, with their settings as captions."""
         assert self.beside is not None
         words = [f"{side}   {text}" for side, text in zip(SIDES, self._settings_words(), strict=True)]
-        films = [self._film_of(stage, seconds) for stage in (self.stage, self.beside)]
+        span = self.playback.travel.span or last_ticks(self.playback.session, seconds)
+        box, stages = self.stage.fitted_box, (self.stage, self.beside)
+        films = [Film(each.playback.session, each.camera, each.renderer, span, box) for each in stages]
         return FilmPair(films, words, self._is_wide)
 
     # Pointer: a press picks from the half that it is in, and what it does is done to both.
@@ -194,7 +197,7 @@ class CompareScreen(PlayScreen):
     _picked_beside = False
 
     def open_menu(self, pixel: Pixel) -> None:
-        """Open nothing: a run has no menu."""
+        """Open nothing: of a pair, what is done to one would not be done to the other."""
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Make what is dropped larger, or zoom both."""

@@ -64,6 +64,11 @@ class Screen(Protocol):
         """React to the right button over the world."""
         ...
 
+    @property
+    def takes_rest(self) -> bool:
+        """Whether a finger that rests on the world is the right button."""
+        ...
+
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """React to the wheel over the world."""
         ...

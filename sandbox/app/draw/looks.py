@@ -169,6 +169,6 @@ def ground_look(level: Level, name: str, wide: bool) -> str:
     return said if said in GROUNDS else word_in(name, _GROUND_WORDS) or ("soil" if wide else "metal")
 
 
-def default_look() -> Look:
-    """What a spring is drawn as that joined the level while it ran."""
-    return Look("", "steel", PAINTS["mesh"])
+def added_spring_look(stiffness: float) -> Look:
+    """What a spring of that Cs is drawn as which a command added by itself: a coil where it gives way, else a bar."""
+    return Look("", "steel" if stiffness >= FIRM else "coil", PAINTS["mesh"])

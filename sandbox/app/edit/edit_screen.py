@@ -423,6 +423,11 @@ class EditScreen:
         self.settle()
         open_context_menu(self, pixel)
 
+    @property
+    def takes_rest(self) -> bool:
+        """Never: a press selects or draws at once."""
+        return False
+
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Zoom about the pointer."""
         self.camera.turn_wheel(pixel, steps)

@@ -6,7 +6,7 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
 from sandbox.editor.edits.adopt_dropped import keep_added
-from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_pins, keep_pose, keep_settings
+from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_masses, keep_pins, keep_pose, keep_settings
 from sandbox.physics.world import World
 
 Keeper = Callable[[Document, World], Document]
@@ -14,6 +14,7 @@ KEEPERS: tuple[tuple[str, Keeper], ...] = (
     ("Cs and Cd of the materials", keep_coefficients),
     ("Settings: gravity, solver, air", keep_settings),
     ("Pose: the present positions", keep_pose),
+    ("Masses", keep_masses),
     ("Pins", keep_pins),
     # Late, as the springs have other numbers then.
     ("Cuts", keep_cuts),

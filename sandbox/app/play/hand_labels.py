@@ -1,4 +1,4 @@
-"""What hands pull with, written beside their cursors."""
+"""Words beside the pointer: what hands pull with, and why a tool did nothing."""
 
 import math
 
@@ -6,14 +6,17 @@ import numpy as np
 import pygame
 
 from sandbox.app.draw.camera import Camera
-from sandbox.app.draw.colours import BACKGROUND, TEXT, WARNING
+from sandbox.app.draw.colours import BACKGROUND, TEXT, WARNING, Colour
+from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.analysis.pulls import Pull
 from sandbox.physics.snapshot import Snapshot
+from sandbox.tools.tool import Tool
 
 # Sizes in layout units: of the text, and how far from the cursor it is.
 TEXT_SIZE = 12.0
 ASIDE, ABOVE = 14.0, 26.0
+HINT_WIDTH, MOST_LINES = 260.0, 4
 UNITS = ((1e9, "GN"), (1e6, "MN"), (1e3, "kN"), (1.0, "N"), (1e-3, "mN"))
 
 
@@ -35,15 +38,31 @@ def text_of(pull: Pull) -> list[str]:
 
 def draw_labels(surface: pygame.Surface, ui: Ui, camera: Camera, current: Snapshot, pulls: list[Pull]) -> None:
     """Write beside every cursor how much its hand pulls."""
-    font = ui.font(TEXT_SIZE)
     for pull in pulls:
         at = current.position[pull.cursor]
         if not (np.isfinite(at).all() and math.isfinite(pull.force)):
             continue
         x, y = camera.to_pixels((float(at[0]), float(at[1])))
         colour = WARNING if pull.at_limit else TEXT
-        for row, line in enumerate(text_of(pull)):
-            place = (x + ui.px(ASIDE), y - ui.px(ABOVE) + row * font.get_linesize())
-            for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
-                surface.blit(font.render(line, True, BACKGROUND), (place[0] + dx, place[1] + dy))
-            surface.blit(font.render(line, True, colour), place)
+        _write(surface, ui, (x + ui.px(ASIDE), y - ui.px(ABOVE)), text_of(pull), colour)
+
+
+def draw_hint(surface: pygame.Surface, ui: Ui, camera: Camera, tool: Tool) -> None:
+    """Write what a tool has to say beside the pointer, where that is over the world."""
+    if not tool.hint or tool.place is None:
+        return
+    left, top, width, height = camera.viewport
+    lines = wrapped(tool.hint, ui.font(TEXT_SIZE), ui.px(HINT_WIDTH), MOST_LINES)
+    size = max(ui.font(TEXT_SIZE).size(line)[0] for line in lines), ui.font(TEXT_SIZE).get_linesize() * len(lines)
+    x, y = camera.to_pixels(tool.place)
+    x, y = min(x + ui.px(ASIDE), left + width - size[0] - ui.px(ASIDE)), min(y + ui.px(ASIDE), top + height - size[1])
+    _write(surface, ui, (x, y), lines, WARNING)
+
+
+def _write(surface: pygame.Surface, ui: Ui, place: tuple[float, float], lines: list[str], colour: Colour) -> None:
+    font = ui.font(TEXT_SIZE)
+    for row, line in enumerate(lines):
+        x, y = place[0], place[1] + row * font.get_linesize()
+        for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            surface.blit(font.render(line, True, BACKGROUND), (x + dx, y + dy))
+        surface.blit(font.render(line, True, colour), (x, y))

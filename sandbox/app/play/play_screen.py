@@ -29,7 +29,7 @@ from sandbox.app.play.bake_choice import ask_to_keep
 from sandbox.app.play.drive_keys import DriveKeys
 from sandbox.app.play.earlier_runs import EarlierRuns
 from sandbox.app.play.goals.game import Game
-from sandbox.app.play.hand_labels import draw_labels
+from sandbox.app.play.hand_labels import draw_hint, draw_labels
 from sandbox.app.play.hand_strength import keep_strength, kept_strength, next_strength
 from sandbox.app.play.key_caps import KEYS_HEIGHT, ROOM_BESIDE, draw_key_caps
 from sandbox.app.play.legend import Legend
@@ -38,6 +38,7 @@ from sandbox.app.play.palette import NAMES, PartsPalette, refused_tools
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import HAND_TOOL, Stage
 from sandbox.app.play.status import STATUS_HEIGHT, run_parts
+from sandbox.app.play.thing_menu import open_thing_menu
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.play.troubles import Troubles
@@ -364,7 +365,13 @@ class PlayScreen:
             self.camera.zoom_at(self.stage.cursor, steps)
 
     def open_menu(self, pixel: Pixel) -> None:
-        """Open nothing: a run has no menu."""
+        """Offer what can be made of the thing there."""
+        open_thing_menu(self._ui, self.stage, pixel, self.say)
+
+    @property
+    def takes_rest(self) -> bool:
+        """Whether the hand is in use: other tools begin something at once."""
+        return self.stage.tool_name == HAND_TOOL
 
     def turn_wheel(self, pixel: Pixel, steps: float) -> None:
         """Make what is dropped larger, or zoom."""
@@ -446,11 +453,7 @@ class PlayScreen:
 
     def film(self, seconds: float) -> Film | FilmPair:
         """The chosen range of the run, or its last seconds [s], as it is seen now."""
-        return self._film_of(self.stage, seconds)
-
-    def _film_of(self, stage: Stage, seconds: float) -> Film:
-        span = self.playback.travel.span or last_ticks(self.playback.session, seconds)
-        return Film(stage.playback.session, stage.camera, stage.renderer, span, self.stage.fitted_box)
+        return self.stage.film(self.playback.travel.span or last_ticks(self.playback.session, seconds))
 
     # Pointer and keys.
 
@@ -555,6 +558,7 @@ class PlayScreen:
         self.troubles.draw(surface)
         draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
+        draw_hint(surface, self._ui, self.camera, self.stage.tool)
         self.game.draw(surface)
         surface.set_clip(None)
         self.graphs.draw(surface)

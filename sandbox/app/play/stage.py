@@ -14,6 +14,7 @@ from sandbox.app.draw.detail import Detail
 from sandbox.app.draw.part_pictures import PartGhost, box_of
 from sandbox.app.draw.picture import view_of
 from sandbox.app.draw.renderer import Overlay, Renderer
+from sandbox.app.film.film import Film
 from sandbox.app.play.following import Following, driven_particle
 from sandbox.app.run.playback import Playback
 from sandbox.app.run.stability_paint import StabilityPaint
@@ -26,7 +27,7 @@ from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
 from sandbox.session.session import Session
 from sandbox.tools.drag import DRAG, DragTool
-from sandbox.tools.dropping import CatalogueTool, ThrowTool
+from sandbox.tools.dropping import CatalogueTool
 from sandbox.tools.play_tools import PLAY_TOOLS
 from sandbox.tools.tool import PointerEvent, Tool
 
@@ -82,7 +83,7 @@ class Stage:
         self.tools: dict[str, Tool] = {name: tool.make(new_gesture) for name, tool in PLAY_TOOLS.items()}
         self.tools[HAND_TOOL] = self.drag
         for tool in self.tools.values():
-            if isinstance(tool, ThrowTool):
+            if tool.adds:
                 tool.touches = self.playback.level.has_contacts
         self.tool_name = HAND_TOOL
         if self.part is not None:
@@ -316,6 +317,10 @@ class Stage:
         self.tool.hover(at if self.cursor is None else self.cursor)
         within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
         self._hovered = None if at is None else self.tool.target(at, within, self.playback.current)
+
+    def film(self, span: tuple[int, int]) -> Film:
+        """These ticks of the run as it is seen."""
+        return Film(self.playback.session, self.camera, self.renderer, span, self.fitted_box)
 
     def draw(self, surface: pygame.Surface, profile: Profile) -> None:
         """Draw the world into the viewport."""

@@ -12,6 +12,8 @@ from sandbox.app.widgets.widget import ENTER_KEYS
 TAP_SECONDS = 0.35
 # The second press of a double click comes no later [s].
 DOUBLE_SECONDS = 0.4
+# A finger that rests for so long [s], within so many pixels, is the right button.
+REST_SECONDS, REST_PIXELS = 0.5, 8
 # With Ctrl these belong to the line of text: all, copy, paste, cut, undo, redo.
 EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pygame.K_y)
 # Actions that go on while their key is held down.
@@ -68,9 +70,12 @@ class Input:
         self._held_keys: dict[int, tuple[object, ...]] = {}
         self._is_repeated = self._is_from_before = False
         self._last_press: tuple[int, Pixel] | None = None
+        # When and where a finger came down that has not moved since.
+        self._finger: tuple[int, Pixel] | None = None
 
     def process(self, events: list[pygame.event.Event]) -> None:
         """Hand out the events of a frame."""
+        self._rest_finger()
         for event in map(by_place, events):
             if self._goes_on(event):
                 continue
@@ -188,8 +193,20 @@ class Input:
             self._panning, self._space_used = True, True
         elif event.button == 1:
             self._pressed = True
+            self._finger = (pygame.time.get_ticks(), pixel) if event.dict.get("touch") and screen.takes_rest else None
             screen.point("down", pixel, pygame.key.get_mods(), self._clicks(pixel))
         elif event.button == 3 and not self._pressed:
+            screen.open_menu(pixel)
+
+    def _rest_finger(self) -> None:
+        """Let a finger that rests on the world open a menu, in place of what it presses."""
+        screen = self.app.screen
+        if self._finger is None or screen is None or not self._pressed:
+            return
+        began, pixel = self._finger
+        if pygame.time.get_ticks() - began >= 1000 * REST_SECONDS:
+            self._finger, self._pressed = None, False
+            screen.point("up", pixel, pygame.key.get_mods())
             screen.open_menu(pixel)
 
     def _clicks(self, pixel: Pixel) -> int:
@@ -206,7 +223,10 @@ class Input:
         if self._panning:
             screen.camera.pan(event.rel[0] * ratio[0], event.rel[1] * ratio[1])
         elif self._pressed:
-            screen.point("move", self._pixel(event.pos), pygame.key.get_mods())
+            pixel = self._pixel(event.pos)
+            if self._finger is not None and math.dist(self._finger[1], pixel) > REST_PIXELS:
+                self._finger = None
+            screen.point("move", pixel, pygame.key.get_mods())
 
     def _button_up(self, event: pygame.event.Event) -> None:
         screen = self.app.screen
@@ -215,5 +235,5 @@ class Input:
         if self._panning and event.button in (1, 2):
             self._panning = False
         elif self._pressed and event.button == 1:
-            self._pressed = False
+            self._pressed, self._finger = False, None
             screen.point("up", self._pixel(event.pos), pygame.key.get_mods())

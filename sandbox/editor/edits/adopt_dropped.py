@@ -1,4 +1,4 @@
-"""Adopting what was dropped into a run: it becomes ordinary bodies and particles of the level."""
+"""Adopting what was added to a run: it becomes ordinary bodies, particles and springs of the level."""
 
 from dataclasses import replace
 from typing import Any
@@ -6,33 +6,50 @@ from typing import Any
 import numpy as np
 
 from sandbox.editor.document import Document, EditError, checked
+from sandbox.editor.edits.bake import as_firm, heavier, times_as_heavy
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, taken_ids
-from sandbox.level.document.model import Level, ParticleDef
+from sandbox.editor.scene import make_scene
+from sandbox.level.document.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
 from sandbox.level.format.look import look_when_added
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
+from sandbox.level.kinds.mesh import MeshDef
 from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.world import World
 
 Shift = tuple[float, float]
 # How the names begin of loose particles that commands add.
-ADDED_PARTICLE = "+."
+ADDED_PARTICLE, ADDED_SPRING = "+.", "+:"
+# What springs that commands added are of in the level: what gives way is drawn as a coil, what does not as a rod.
+COIL, ROD, FIRM = "added coil", "added rod", 0.85
 
 
 def keep_added(document: Document, world: World) -> Document:
-    """Take over the bodies and balls that joined the played world and are still there. Raises EditError.
+    """Take over the bodies, balls and springs that joined the played world and are still there. Raises EditError.
 
     They start at rest as they stand now, in their looks; what was pinned and cut stays so.
     """
-    level = document.level
-    for joined in world.joined:
-        level = _with_joined(level, world, joined)
-    level = _with_balls(level, world)
+    level, names = _with_things(document.level, world)
+    level = _with_springs(level, world, names)
     return document if level is document.level else replace(document, level=checked(level))
 
 
-def _with_joined(level: Level, world: World, joined: Joined) -> Level:
+def keep_added_things(document: Document, world: World) -> Document:
+    """As `keep_added`, without the springs that join them to others. Raises EditError."""
+    level, _ = _with_things(document.level, world)
+    return document if level is document.level else replace(document, level=checked(level))
+
+
+def _with_things(level: Level, world: World) -> tuple[Level, dict[str, str]]:
+    """The level with bodies and balls that were added, and what each is called there by its name in the world."""
+    names: dict[str, str] = {}
+    for joined in world.joined:
+        level = _with_joined(level, world, joined, names)
+    return _with_balls(level, world, names), names
+
+
+def _with_joined(level: Level, world: World, joined: Joined, names: dict[str, str]) -> Level:
     source: Level = joined.source
     found = [(body, name, _particles(world, name)) for body, name in zip(source.bodies, joined.names, strict=True)]
     staying = [(body, name, slots) for body, name, slots in found if _is_there(world, name, slots)]
@@ -43,11 +60,15 @@ def _with_joined(level: Level, world: World, joined: Joined) -> Level:
     if not np.all(np.abs(world.position[slots]) <= COORDINATE_LIMIT):
         raise EditError("something has flown out of the world; go back to before it did")
     x, y = (world.position[slots] - world.origin[slots]).mean(axis=0).tolist()
+    times = times_as_heavy(make_scene(source), world.mass[np.concatenate([slots for _, _, slots in found])])
+    of_body = dict(zip([body.id for body in source.bodies], times, strict=True))
     ids = free_ids(taken_ids(level), [_base(body) for body, _, _ in staying])
     new = {body.id: free for (body, _, _), free in zip(staying, ids, strict=True)}
+    names |= {name: new[body.id] for body, name, _ in staying}
     bodies = tuple(
-        _kept(replaced(body, id=new[body.id]), (x, y), world.position[own], _held(world, own), _cut(world, name, body))
+        _kept(each, (x, y), world.position[own], _held(world, own), _cut(world, name, body))
         for body, name, own in staying
+        for each in [_as_played(replaced(body, id=new[body.id]), world, name, of_body[body.id])]
     )
     rewire = renamed(new)
 
@@ -67,6 +88,13 @@ def _with_joined(level: Level, world: World, joined: Joined) -> Level:
         springs=(*level.springs, *springs),
         materials=materials | level.materials,
     )
+
+
+def _as_played(body: BodyDef, world: World, name: str, times: float) -> BodyDef:
+    """A body so many times as heavy, and as firm as the one of that name in a world."""
+    form = next((form for form in world.forms if form.name == name), None)
+    body = heavier(body, times)
+    return body if form is None else as_firm(body, form, world, world.source.settings)
 
 
 def _is_there(world: World, name: str, slots: Any) -> bool:
@@ -116,7 +144,7 @@ def _kept(body: BodyDef, shift: Shift, pose: Any, pinned: tuple[int, ...], cut: 
     return replaced(body, **changes, pose=tuple((x, y) for x, y in pose.tolist()))
 
 
-def _with_balls(level: Level, world: World) -> Level:
+def _with_balls(level: Level, world: World, names: dict[str, str]) -> Level:
     """The level with the loose particles that were added."""
     slots = [
         slot for slot, name in enumerate(world.particle_names)
@@ -125,6 +153,7 @@ def _with_balls(level: Level, world: World) -> Level:
     if not slots:
         return level
     ids = free_ids(taken_ids(level), ["ball"] * len(slots))
+    names |= {world.particle_names[slot]: name for slot, name in zip(slots, ids, strict=True)}
     balls = tuple(
         ParticleDef(
             id=name,
@@ -139,3 +168,44 @@ def _with_balls(level: Level, world: World) -> Level:
         for number, (name, slot) in enumerate(zip(ids, slots, strict=True))
     )
     return replaced(level, particles=(*level.particles, *balls))
+
+
+def _with_springs(level: Level, world: World, names: dict[str, str]) -> Level:
+    """The level with the springs that were added one by one; names: see `_with_things`."""
+    of_bodies = {name for joined in world.joined for name in joined.spring_names}
+    materials, springs = dict(level.materials), list(level.springs)
+    for slot, name in enumerate(world.spring_names):
+        if not name.startswith(ADDED_SPRING) or name in of_bodies or not world.spring_active[slot]:
+            continue
+        ends = [_reference(world.particle_names[end[slot]], names) for end in (world.particle_a, world.particle_b)]
+        material = NissenMaterial(stiffness=float(world.stiffness[slot]), damping=float(world.damping[slot]))
+        own = next((body.material for body in level.bodies if _goes_on(body, ends, material, level)), None)
+        if own is None:
+            own = _named(materials, ROD if material.stiffness >= FIRM else COIL, material)
+        a, b = ends
+        springs.append(SpringDef(a=a, b=b, material=own, rest_length=float(world.rest_length[slot])))
+    if len(springs) == len(level.springs):
+        return level
+    return replaced(level, materials=materials, springs=tuple(springs))
+
+
+def _reference(name: str, names: dict[str, str]) -> str:
+    """What a particle of the world is called in the level."""
+    owner, _, rest = name.partition(".")
+    return names.get(name) or f"{names.get(owner, owner)}.{rest}" if rest else name
+
+
+def _goes_on(body: BodyDef, ends: list[str], material: NissenMaterial, level: Level) -> bool:
+    """Whether a spring ties a strand: it ends at it, and is of what that is of."""
+    is_strand = isinstance(body, MeshDef) and not body.triangles and body.id in map(owner_of, ends)
+    return is_strand and material == level.materials.get(body.material)
+
+
+def _named(materials: dict[str, Material], base: str, material: NissenMaterial) -> str:
+    """The name of a material, which is added where there is none of its values."""
+    found = next((name for name, each in materials.items() if name.startswith(base) and each == material), None)
+    if found is not None:
+        return found
+    (name,) = free_ids(set(materials), [base])
+    materials[name] = material
+    return name

@@ -1,30 +1,37 @@
 """Baking: what a played world leaves in its level, where the maker wants to keep it: coefficients, pose, cuts, pins."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.fields import set_setting
 from sandbox.editor.edits.materials import set_material
 from sandbox.editor.edits.placing import repinned, without_springs
 from sandbox.editor.items import Definition, Selection, changed, items_of, with_same
+from sandbox.editor.panel.field_info import fields_of
 from sandbox.editor.scene import Mask, Scene, Slots, make_scene
 from sandbox.editor.tools.snap import PLACE_DECIMALS, SHOWN_DECIMALS
-from sandbox.level.document.model import CHANGEABLE_SETTINGS, NissenMaterial, ParticleDef, SpringDef
+from sandbox.level.document.model import CHANGEABLE_SETTINGS, NissenMaterial, ParticleDef, Settings, SpringDef
 from sandbox.level.format.limits import COORDINATE_LIMIT
-from sandbox.level.format.quantities import replaced, significant
+from sandbox.level.format.quantities import Description, replaced, significant
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.geometry import Points
+from sandbox.level.kinds.mesh import MeshDef
 from sandbox.physics.analysis.firmness import FirmnessRange
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.forms import FirmBody, Firmness
 from sandbox.physics.world import World
+
+Part = TypeVar("Part", bound=Description)
 
 # Digits of the frequency and damping ratio that a body keeps.
 FIRMNESS_DIGITS = 6
+# Digits of how many times as heavy a body is; what differs by less is rounding.
+MASS_DIGITS = 9
 _ANOTHER = "what was played is not the level as it is now"
 
 
@@ -58,26 +65,31 @@ def _keep_firmness(document: Document, world: World) -> tuple[Document, Mask]:
     level, is_firm = document.level, world.lowest_mode > 0.0
     forms = {form.name: form for form in world.forms}
 
-    def kept(_: int, body: AnyBody) -> AnyBody:
+    def kept(body: AnyBody) -> AnyBody:
         form = forms.get(body.id)
-        if form is None:
-            return body
-        reach = FirmnessRange.of(form.shape, level.settings.gravity, level.settings.tick_rate)
-        mode = float(world.lowest_mode[form.springs[0]])
-        present = float(world.stiffness[form.springs[0]]), float(world.damping[form.springs[0]])
-        if body.firmness is not None:
-            pair = reach.coefficients(body.firmness.asked)
-            if present == (pair if pair == (1.0, 1.0) else of_springs(*pair, reach.lowest_mode)):
-                is_firm[form.springs] = True
-                return body
-        if mode == 0.0:
-            return body if body.firmness is None else replaced(body, firmness=None)
-        hz, ratio = reach.reading(*of_body(*present, mode))[1:]
-        near = reach.nearest(Firmness(hz=significant(hz, FIRMNESS_DIGITS), ratio=significant(ratio, FIRMNESS_DIGITS)))
-        return replaced(body, firmness=FirmnessDef(hz=near.hz, ratio=near.ratio))
+        new = body if form is None else as_firm(body, form, world, level.settings)
+        if form is not None and new is body and body.firmness is not None:
+            is_firm[form.springs] = True
+        return new
 
-    new = with_same(level, bodies=tuple(kept(index, body) for index, body in enumerate(level.bodies)))
+    new = with_same(level, bodies=tuple(map(kept, level.bodies)))
     return (document if new is level else replace(document, level=checked(new))), is_firm
+
+
+def as_firm(body: AnyBody, form: FirmBody, world: World, settings: Settings) -> AnyBody:
+    """A body as firm as it is in a played world, by its form there; the same one where that is what it says."""
+    reach = FirmnessRange.of(form.shape, settings.gravity, settings.tick_rate)
+    mode = float(world.lowest_mode[form.springs[0]])
+    present = float(world.stiffness[form.springs[0]]), float(world.damping[form.springs[0]])
+    if body.firmness is not None:
+        pair = reach.coefficients(body.firmness.asked)
+        if present == (pair if pair == (1.0, 1.0) else of_springs(*pair, reach.lowest_mode)):
+            return body
+    if mode == 0.0:
+        return body if body.firmness is None else replaced(body, firmness=None)
+    hz, ratio = reach.reading(*of_body(*present, mode))[1:]
+    near = reach.nearest(Firmness(hz=significant(hz, FIRMNESS_DIGITS), ratio=significant(ratio, FIRMNESS_DIGITS)))
+    return replaced(body, firmness=FirmnessDef(hz=near.hz, ratio=near.ratio))
 
 
 def keep_pose(document: Document, world: World) -> Document:
@@ -185,6 +197,46 @@ def keep_pins(document: Document, world: World) -> Document:
         if not held[slot] or scene.first_of_weld[slot] == slot
     }
     return replace(document, level=repinned(document.level, scene, wanted)) if wanted else document
+
+
+def keep_masses(document: Document, world: World) -> Document:
+    """Let everything weigh what it does in the played world. Raises EditError."""
+    level, scene = document.level, make_scene(document.level)
+    times = times_as_heavy(scene, world.mass[_slots(scene, world)])
+    count = len(level.bodies)
+    new = with_same(
+        level,
+        bodies=tuple(map(heavier, level.bodies, times[:count])),
+        particles=tuple(map(heavier, level.particles, times[count:])),
+    )
+    return document if new is level else replace(document, level=checked(new))
+
+
+def times_as_heavy(scene: Scene, mass: NDArray[np.float64]) -> list[float]:
+    """How many times as heavy bodies, then loose particles, of a scene are whose particles weigh so much [kg] (n,) now.
+
+    Of particles that are one all weigh what that does.
+    """
+    own = np.zeros(len(scene.mass))
+    np.add.at(own, scene.first_of_weld, scene.mass)
+    ratio = mass / own[scene.first_of_weld]
+    # A particle that is one with another body's may have got heavier with that.
+    bodies = np.split(ratio, np.cumsum(scene.parts.bodies.counts))
+    loose = bodies.pop()
+    return [significant(float(value), MASS_DIGITS) for value in (*map(np.median, bodies), *loose)]
+
+
+def heavier(part: Part, factor: float) -> Part:
+    """A body or particle that weighs so many times as much; the same one where that is once."""
+    if factor == 1.0:
+        return part
+    changes: dict[str, Any] = {}
+    for field, value in part.__dict__.items():
+        if fields_of(type(part))[field].unit == "kg" and value is not None:
+            changes[field] = tuple(factor * each for each in value) if isinstance(value, tuple) else factor * value
+    if isinstance(part, MeshDef) and part.masses is None:
+        changes["masses"] = (factor,) * len(part.particles)
+    return replaced(part, **changes)
 
 
 def _slots(scene: Scene, world: World) -> Slots:

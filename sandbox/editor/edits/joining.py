@@ -1,20 +1,28 @@
-"""Parts of the catalogue that join a running world: the commands that add one, or why there are none."""
+"""What joins a running world: the commands that add a part of the catalogue, or a copy of a thing, or why none can."""
 
 from dataclasses import fields
 from typing import Any
 
-from sandbox.editor.document import EditError
-from sandbox.editor.edits.copying import inserted, shifted
+import numpy as np
+
+from sandbox.editor.document import Document, EditError
+from sandbox.editor.edits.adopt_dropped import keep_added_things
+from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_masses, keep_pins, keep_pose
+from sandbox.editor.edits.copying import fragment, inserted, shifted
 from sandbox.editor.edits.names import owner_of, rewired, with_owner
+from sandbox.editor.items import items_of
 from sandbox.level.assembly.joining import Joiners
 from sandbox.level.document.model import Level, Material, ParticleDef
 from sandbox.level.format.level_error import LevelError, one_line, shown
 from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import Description, Point, replaced
+from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.mesh import MeshDef
 from sandbox.physics.world import World
 from sandbox.session.commands import AddBody, AddParticle, Command
 
+# What of a run a copy of one of its things takes over.
+KEEPERS = (keep_coefficients, keep_masses, keep_pose, keep_pins, keep_cuts, keep_added_things)
 # What a loose particle has that its command says, and what only the editor or the eye knows.
 SAID = frozenset(field.name for field in fields(AddParticle))
 UNSEEN = frozenset(("id", "group", "extras", "angle"))
@@ -45,6 +53,27 @@ def joining_commands(part: Level, world: World, at: Point, velocity: Point = (0.
             raise EditError(one_line(error.faults[0])) from None
         commands.append(add)
     return *commands, *(_add_particle(each, velocity) for each in joined.particles)
+
+
+def copying_commands(level: Level, world: World, particle: int, by: Point) -> tuple[Command, ...]:
+    """The commands that add a copy of what a particle of a run of a level belongs to, moved by [m]; one gesture.
+
+    With it go the bodies that are welded to it, and their springs. It has the pose, masses, pins and cuts that it has
+    now, and no velocity. Raises EditError, with one line, where commands cannot add it.
+    """
+    document = Document(level)
+    for keeper in KEEPERS:
+        document = keeper(document, world)
+    level = document.level
+    x, y = world.position[particle].tolist()
+    first = _owner_at(level, (x, y))
+    if first is None:
+        raise EditError("there is nothing here that can be copied")
+    chosen = _joined_to(level, first)
+    part = fragment(Document(level, frozenset(item for item in items_of(level) if item.key in chosen)))
+    at_rest = tuple(replaced(body, velocity=(0.0, 0.0)) for body in part.bodies)
+    loose = tuple(replaced(each, velocity=(0.0, 0.0)) for each in part.particles)
+    return joining_commands(replaced(part, bodies=at_rest, particles=loose), world, by)
 
 
 def _materials(world: World, source: Level) -> dict[str, Material]:
@@ -119,3 +148,22 @@ def _said(part: Description) -> dict[str, Any]:
     """The fields of a definition that a level file has to write, those at their defaults left out."""
     said: dict[str, Any] = part.model_dump(mode="json", exclude_defaults=True)
     return said
+
+
+def _owner_at(level: Level, place: Point) -> str | None:
+    """The id of a body or loose particle with a particle just at a place [m]."""
+    bodies = ((body.id, expansion(body).position) for body in level.bodies)
+    loose = ((particle.id, np.array([particle.position])) for particle in level.particles)
+    found = (name for name, position in (*bodies, *loose) if (position == np.array(place)).all(axis=1).any())
+    return next(found, None)
+
+
+def _joined_to(level: Level, first: str) -> set[str]:
+    """The ids of what welds and springs join to a thing, itself included."""
+    pairs = [*level.welds, *((spring.a, spring.b) for spring in level.springs)]
+    links = [{owner_of(reference) for reference in pair} for pair in pairs]
+    found, grown = {first}, True
+    while grown:
+        more = found.union(*(link for link in links if link & found))
+        grown, found = len(more) > len(found), more
+    return found

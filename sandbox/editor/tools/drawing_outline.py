@@ -7,12 +7,10 @@ from sandbox.editor.tools.drawing_options import AnyOptions
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import Snap
 from sandbox.level.format.quantities import Point
-from sandbox.level.kinds.polygon import is_simple, simplified
+from sandbox.level.kinds.polygon import drawn_outline, is_simple
 
 # A line drawn by hand is simplified by up to this part of the reach: what a person cannot see.
 HAND_TOLERANCE = 0.5
-# At most this part of its corners is left out at the end, where a hand ran over what it began with.
-OVERSHOOT = 0.2
 
 
 class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
@@ -112,9 +110,7 @@ class OutlineDrawing(Drawing[AnyOptions], Generic[AnyOptions]):
 
     def tidied(self, stroke: list[Point]) -> list[Point]:
         """Corners of an outline drawn by hand, without an end that runs over its own beginning."""
-        corners = simplified(stroke, HAND_TOLERANCE * self.reach)
-        kept = (corners[: len(corners) - left_out] for left_out in range(int(OVERSHOOT * len(corners)) + 1))
-        return next((outline for outline in kept if is_simple(outline)), corners)
+        return drawn_outline(stroke, HAND_TOLERANCE * self.reach)
 
     def _so_far(self) -> list[Snap]:
         pointer = self.pointer

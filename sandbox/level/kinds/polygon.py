@@ -11,6 +11,8 @@ from sandbox.physics.geometry.segment import distances_from_segments, doubled_ar
 
 Corners = Sequence[tuple[float, float]] | NDArray[np.float64]
 
+# At most this part of a stroke's corners is left out at its end, where a hand ran over what it began with.
+OVERSHOOT = 0.2
 # Grid points this close to the border, in units of the spacing, count as on it: beyond rounding, below what is seen.
 BORDER = 1e-9
 
@@ -190,3 +192,10 @@ def simplified(corners: Corners, tolerance: float) -> list[tuple[float, float]]:
             kept.add(middle)
             ways += [(first, middle), (middle, last)]
     return [given[index] for index in sorted(kept)]
+
+
+def drawn_outline(stroke: Corners, tolerance: float) -> list[tuple[float, float]]:
+    """Corners of an outline drawn by hand within a tolerance [m], without an end that runs over its own beginning."""
+    corners = simplified(stroke, tolerance)
+    kept = (corners[: len(corners) - left_out] for left_out in range(int(OVERSHOOT * len(corners)) + 1))
+    return next((outline for outline in kept if is_simple(outline)), corners)

@@ -9,8 +9,9 @@ from sandbox.level.format.level_error import Fault, shown, suggestion
 from sandbox.level.format.quantities import Description, Name, empty
 
 Deed = Literal[
-    "grab", "pin", "cut", "add", "remove", "move", "push", "shake", "firmness", "material", "inflation", "air", "solver"
-]
+    "grab", "pin", "cut", "add", "remove", "move", "push", "shake", "firmness", "mass", "material", "inflation", "air",
+    "solver",
+]  # fmt: skip
 DEEDS: tuple[str, ...] = get_args(Deed)
 MOST = 1000
 
@@ -36,6 +37,7 @@ MEANINGS = {
     "push": Meaning(("push",), "push"),
     "shake": Meaning(("shake",), "shake the world"),
     "firmness": Meaning(("set_firmness",), "make bodies softer or firmer"),
+    "mass": Meaning(("scale_mass",), "make things heavier or lighter"),
     "material": Meaning(("set_coefficients",), "change Cs and Cd"),
     "inflation": Meaning(("set_inflation",), "pump things up"),
     "air": Meaning(("set_gravity", "set_air"), "change gravity or air"),

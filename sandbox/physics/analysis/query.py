@@ -54,14 +54,26 @@ def free_particle_at(state: World | Snapshot, point: Point, within: float) -> in
     pressed = nearest_particle(state, point, within)
     if pressed is not None and state.inverse_mass[pressed] > 0.0:
         return pressed
-    around = np.isin(state.owner, _bodies_around(state, point))
+    around = np.isin(state.owner, bodies_around(state, point))
     taken = shown_particles(state) & (state.inverse_mass > 0.0) & around
     distance = lengths(state.position - np.asarray(point))
     return _nearest(distance, taken, np.inf) if taken.any() else None
 
 
-def _bodies_around(state: World | Snapshot, point: Point) -> NDArray[np.integer]:
-    # Bodies that have springs to the left and right of a point, above and below.
+@_far_away
+def particle_at(state: World | Snapshot, point: Point, within: float) -> int | None:
+    """Slot of the particle at point [m], pinned or free: one at most `within` [m] away, else as `free_particle_at`, of
+    the body whose springs are around the point.
+    """
+    pressed = nearest_particle(state, point, within)
+    if pressed is not None:
+        return pressed
+    taken = shown_particles(state) & np.isin(state.owner, bodies_around(state, point))
+    return _nearest(lengths(state.position - np.asarray(point)), taken, np.inf) if taken.any() else None
+
+
+def bodies_around(state: World | Snapshot, point: Point) -> NDArray[np.integer]:
+    """Owners of the bodies that have springs to the left and right of a point [m], above and below."""
     shown = np.flatnonzero(state.spring_active & (state.material >= 0))
     a, b = state.position[state.particle_a[shown]], state.position[state.particle_b[shown]]
     owner = state.owner[state.particle_a[shown]]

@@ -18,7 +18,7 @@ from sandbox.session.commands.history import Redo, Undo
 from sandbox.session.commands.inflation import SetInflation
 from sandbox.session.commands.joining import AddBody
 from sandbox.session.commands.keys import HoldKey
-from sandbox.session.commands.materials import SetCoefficients
+from sandbox.session.commands.materials import ScaleMass, SetCoefficients
 from sandbox.session.commands.moving import MoveBody
 from sandbox.session.commands.pinning import Pin, Unpin
 from sandbox.session.commands.pushing import Push
@@ -44,6 +44,7 @@ __all__ = [
     "Redo",
     "Release",
     "Remove",
+    "ScaleMass",
     "SetAir",
     "SetCoefficients",
     "SetDrive",

@@ -65,7 +65,7 @@ class Player:
             (0.05, self._coefficients), (0.03, self._firmness), (0.03, self._inflation), (0.06, self._drive),
             (0.06, self._push), (0.03, self._shake), (0.03, self._move), (0.02, self._remove), (0.02, self._free),
             (0.03, self._add_particle), (0.03, self._add_spring), (0.03, self._add_body), (0.03, self._weather),
-            (0.04, self._solver), (0.05, self._undo), (0.08, self._key),
+            (0.04, self._solver), (0.05, self._undo), (0.08, self._key), (0.02, self._weigh),
         )  # fmt: skip
         for share, act in acts:
             if self.chance.random() < share:
@@ -136,6 +136,9 @@ class Player:
         record = {"type": "set_firmness", "body": self._chosen([form.name for form in firm_bodies(self.session.world)])}
         softness = {"sag": number(self.chance, 0.0, 0.35)}
         self._do(record | self.chance.choice([softness, {"hz": number(self.chance, 0.5, 6.0)}]))
+
+    def _weigh(self) -> None:
+        self._do({"type": "scale_mass", "particle": self._particle(), "factor": number(self.chance, 0.5, 2.0)})
 
     def _inflation(self) -> None:
         name = self._chosen(self.session.world.area_names)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.draw.looks import SOFT_SKINS, STRANDS
+from sandbox.app.draw.looks import SOFT_SKINS, STRANDS, added_spring_look
 from sandbox.app.draw.raster.bodies import Outlines
 from sandbox.app.draw.raster.painter import MarkList, Painter
 from sandbox.app.draw.raster.shadows import Thrown
@@ -31,6 +31,8 @@ WINDOW = 0xBFE6FF
 # How far a panel stands out beyond its bars, and a window back from its corners [pixels at scale 1].
 PANEL_OUT, WINDOW_IN = 4.0, -3.0
 CRATE_LINE = 1.6
+# Lengths that differ by this part are the same.
+AS_LONG = 1e-3
 
 
 def _strangers(there: Mask, own: Slots) -> Slots:
@@ -53,14 +55,15 @@ class Drawables:
         self._balloons: list[tuple[int, Actor]] = []
         self._shapes: list[Shape] = []
         self._faces: list[DrawnFace] = []
+        self._ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
+        # Springs that commands added, as far as they do not go on with a strand.
+        self._added = _strangers(springs, level_slots.springs)
         joins = [join for join in level_slots.joins if springs[join.spring]]
         for actor in level_slots.actors:
             there = springs[actor.springs]
             joins += self._add(actor, there)
-        strangers = _strangers(springs, level_slots.springs)
-        ends = np.stack([state.particle_a, state.particle_b], axis=1).astype(np.int64)
-        self._add_joins(joins, ends)
-        self.members.add_strangers(ends[strangers], strangers, state.rest_length)
+        ends = self._ends
+        self._add_joins(joins + self._added_joins(), ends)
         self.balls = Balls(level_slots, state, _strangers(particles, level_slots.particles))
         self.faces = Faces(self._faces)
         self._hems = [Shape([loop], CLOTH, 0, -1, rounds=0, line=False) for loop in self.sheets.outlines()]
@@ -103,13 +106,30 @@ class Drawables:
     def _add_lines(self, actor: Actor, there: Mask) -> list[Join]:
         look = actor.look
         if look.line in STRANDS:
-            self.strands.add(look, actor.ends[there], actor.springs[there], actor.made.rest_length[there])
+            tails = self._tails(actor, there)
+            ends, springs = np.r_[actor.ends[there], self._ends[tails]], np.r_[actor.springs[there], tails]
+            rest = np.r_[actor.made.rest_length[there], self._state.rest_length[tails]]
+            self.strands.add(look, ends, springs, rest)
         elif look.line in WORKING:
             rows = zip(actor.springs[there].tolist(), actor.ends[there].tolist(), strict=True)
             return [Join(spring, (a, b), look) for spring, (a, b) in rows]
         else:
             self.members.add_actor(actor, there)
         return []
+
+    def _tails(self, actor: Actor, there: Mask) -> Slots:
+        """Springs that commands tied a strand by: they go on from its tips, and are as long as its own."""
+        own, count = np.unique(actor.ends[there], return_counts=True)
+        added, rest = self._added, self._state.rest_length[self._added]
+        goes_on = np.isin(self._ends[added], own[count == 1]).any(axis=1)
+        is_tail = goes_on & (np.abs(rest - actor.cell) <= AS_LONG * actor.cell)
+        self._added = added[~is_tail]
+        return np.asarray(added[is_tail])
+
+    def _added_joins(self) -> list[Join]:
+        stiffness = self._state.stiffness[self._added].tolist()
+        rows = zip(self._added.tolist(), self._ends[self._added].tolist(), stiffness, strict=True)
+        return [Join(spring, (a, b), added_spring_look(firm)) for spring, (a, b), firm in rows]
 
     def _add_filled(self, actor: Actor, there: Mask) -> list[Join]:
         look, filling = actor.look, actor.filling(there, self._whole)

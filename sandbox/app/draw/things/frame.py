@@ -28,6 +28,7 @@ class Seen(Protocol):
     particle_a: NDArray[np.int32]
     particle_b: NDArray[np.int32]
     rest_length: Floats
+    stiffness: Floats
     spring_active: Mask
 
 

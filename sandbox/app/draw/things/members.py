@@ -92,12 +92,6 @@ class Members:
         none = np.zeros(0, dtype=np.int64)
         self._add(_Bars(pairs, springs, rest, LOOSE, look.width, look.line, look.colour, none, none))
 
-    def add_strangers(self, pairs: Slots, springs: Slots, rest: Floats) -> None:
-        """Add springs that joined the world while it ran."""
-        if len(springs):
-            none = np.zeros(0, dtype=np.int64)
-            self._add(_Bars(pairs, springs, rest[springs], LOOSE, 1.0, "steel", 0, none, none))
-
     def thrown(self, frame: Frame) -> Floats:
         """Lines (m, 5) [pixels] that throw shadows."""
         plan = self._plan_for(frame)

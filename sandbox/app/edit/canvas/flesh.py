@@ -37,6 +37,7 @@ class _State:
     particle_a: NDArray[np.int32]
     particle_b: NDArray[np.int32]
     rest_length: Floats
+    stiffness: Floats
     spring_active: Mask
 
 
@@ -85,5 +86,6 @@ def _state_of(scene: Scene, particles: Mask, springs: Mask) -> _State:
         scene.particle_a.astype(np.int32),
         scene.particle_b.astype(np.int32),
         scene.rest_length,
+        np.zeros_like(scene.rest_length),
         springs,
     )

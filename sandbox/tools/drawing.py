@@ -1,0 +1,178 @@
+"""Drawing: a closed stroke becomes a body of a material, which the tool meshes; the command says every particle."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from sandbox.level.kinds.fitting import fitting_spacing
+from sandbox.level.kinds.geometry import Points
+from sandbox.level.kinds.jelly import Jelly, JellyDef, PolygonShape
+from sandbox.level.kinds.polygon import drawn_outline, is_simple
+from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.snapshot import Snapshot
+from sandbox.session.commands import AddBody
+from sandbox.tools.clearance import lift
+from sandbox.tools.parts import COLOURS, DENSITY, in_pace
+from sandbox.tools.play_tool import PlayTool
+from sandbox.tools.tool import NOTHING, Loop, PlacedTool, PointerEvent, Response, Submission
+
+# Particles that the mesh is made for, and that it has at most where an outline needs a finer one.
+PARTICLES, MOST_PARTICLES = 30, 240
+# An outline drawn by hand is simplified by up to this part of the pick radius.
+HAND_TOLERANCE = 0.12
+# Decimals of a place [m]: to millimetres, or to this part of the spacing where that is finer.
+DECIMALS, FINEST = 3, 0.01
+# Radius of particles, as a share of the spacing, and at most [m].
+SKIN, THICKEST = 0.15, 0.05
+# Significant digits of a mass.
+DIGITS = 6
+
+TOO_SMALL = "Draw a larger outline: press, draw around, and let go."
+CROSSES = "The outline crosses or touches itself. Draw it without."
+TOO_FINE = "This outline is too fine for triangles to fit in. Draw it simpler, or wider where it is thin."
+NO_ROOM = "There is no room for it here. Draw it where it is free."
+
+
+@dataclass(frozen=True)
+class DrawnStuff:
+    """What a drawn body is made of: its name; Cs and Cd; mass of a square metre [kg/m^2]; and what a file says more."""
+
+    name: str
+    stiffness: float
+    damping: float
+    density: float = DENSITY
+    more: dict[str, Any] = field(default_factory=dict)
+
+
+STUFFS = {
+    stuff.name: stuff
+    for stuff in (
+        DrawnStuff("jelly", 0.75, 0.7, more={"look": {"skin": "jelly", "face": True}}),
+        DrawnStuff("wood", 0.995, 0.995, more={"friction": 0.6, "look": {"skin": "wood"}}),
+        DrawnStuff("steel", 1.0, 1.0, 5.0 * DENSITY, {"friction": 0.3, "look": {"skin": "plain", "colour": "#8E99A8"}}),
+    )
+}
+
+
+class Unfit(ValueError):
+    """An outline that no body can have; its text is a sentence for the person."""
+
+
+def meshed(corners: Loop, stuff: DrawnStuff, colour: str) -> AddBody:
+    """The command that adds a body inside an outline [m]. Raises Unfit."""
+    area, polygon = _area_of(corners), tuple(corners)
+    if len(corners) < 3 or area == 0.0:
+        raise Unfit(TOO_SMALL)
+    if not is_simple(corners):
+        raise Unfit(CROSSES)
+    spacing = fitting_spacing(polygon, (), math.sqrt(area / PARTICLES), MOST_PARTICLES)
+    if spacing is None:
+        raise Unfit(TOO_FINE)
+    shape = PolygonShape(polygon=polygon)
+    made = Jelly(JellyDef(type="jelly", id=stuff.name, shape=shape, mesh="fitted", spacing=spacing))
+    decimals = max(DECIMALS, -math.floor(math.log10(FINEST * spacing)))
+    mass = float(f"{stuff.density * area / made.form_count[0]:.{DIGITS}g}")
+    look = stuff.more["look"] | ({"colour": colour} if stuff.name == "jelly" else {})
+    name = f"drawn {stuff.name}"
+    body = {
+        "type": "mesh",
+        "id": stuff.name,
+        "particles": np.round(made.form, decimals).tolist(),
+        "masses": [mass] * made.form_count[0],
+        "springs": made.pairs.tolist(),
+        "triangles": made.polygons().tolist(),
+        "particle_radius": float(f"{min(SKIN * spacing, THICKEST):.{DIGITS}g}"),
+        "material": name,
+        **stuff.more,
+        "look": look,
+    }
+    return AddBody(body, materials={name: {"stiffness": stuff.stiffness, "damping": stuff.damping}})
+
+
+def _area_of(corners: Loop) -> float:
+    places: Points = np.array(corners, dtype=np.float64).reshape(-1, 2)
+    return abs(signed_area(places, np.roll(places, -1, axis=0)))
+
+
+class StrokeTool(PlacedTool):
+    """Draw a body of the stuff of that name: a press, a stroke around it, a release. Jellies take colours in turn."""
+
+    adds = True
+
+    def __init__(self, new_gesture: Callable[[], int], stuff: str) -> None:
+        self._new_gesture, self._stuff = new_gesture, STUFFS[stuff]
+        self._stroke: Loop = []
+        self._is_drawing = False
+        self._refusal = ""
+        self.count = 0
+
+    def handle(self, event: PointerEvent, snapshot: Snapshot) -> Response:
+        """Begin a stroke, go on with it, or make a body of it."""
+        self.place = event.position
+        if event.kind == "down" and event.button == 1:
+            self._stroke, self._is_drawing, self._refusal = [event.position], True, ""
+        if not self._is_drawing:
+            return NOTHING
+        if event.kind == "move" and math.dist(self._stroke[-1], event.position) > HAND_TOLERANCE * event.pick_radius:
+            self._stroke.append(event.position)
+        if event.kind != "up" or event.button != 1:
+            return NOTHING
+        self._is_drawing = False
+        try:
+            command = self._made(event.pick_radius, snapshot)
+        except Unfit as refusal:
+            self._refusal = str(refusal)
+            return NOTHING
+        self._stroke, self.count = [], self.count + 1
+        return Response((Submission(command, self._new_gesture()),))
+
+    def _made(self, reach: float, snapshot: Snapshot) -> AddBody:
+        """The command for the stroke. Raises Unfit."""
+        corners = drawn_outline(self._stroke, HAND_TOLERANCE * reach)
+        if len(corners) < 3 or _area_of(corners) < reach * reach:
+            raise Unfit(CROSSES if len(corners) >= 3 and not is_simple(corners) else TOO_SMALL)
+        if not is_simple(corners):
+            raise Unfit(CROSSES)
+        by = lift([[*corners, corners[0]]], snapshot) if self.touches else 0.0
+        if by is None:
+            raise Unfit(NO_ROOM)
+        raised = [(x, y + by) for x, y in corners]
+        colour = COLOURS[self.count % len(COLOURS)]
+        command = in_pace(meshed(raised, self._stuff, colour), snapshot.settings.tick_rate)
+        assert isinstance(command, AddBody)
+        return command
+
+    @property
+    def ghost(self) -> list[Loop]:
+        """The stroke [m], and the way that closes it."""
+        return [[*self._stroke, self._stroke[0]]] if len(self._stroke) > 1 else []
+
+    @property
+    def fits(self) -> bool:
+        """Whether the last stroke became a body."""
+        return not self._refusal
+
+    @property
+    def hint(self) -> str:
+        """Why it did not."""
+        return self._refusal
+
+    def cancel(self) -> Response:
+        """Give the stroke up."""
+        self._stroke, self._is_drawing, self._refusal, self.place = [], False, "", None
+        return NOTHING
+
+
+_LINES = {
+    "jelly": ("Shift+1", "Draw a jelly: press, draw around"),
+    "wood": ("Shift+2", "Draw something of wood"),
+    "steel": ("Shift+3", "Draw something of steel"),
+}
+DRAWN = tuple(
+    PlayTool(f"draw_{name}", (key,), label, "Parts", partial(StrokeTool, stuff=name), "add")
+    for name, (key, label) in _LINES.items()
+)
