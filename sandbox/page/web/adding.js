@@ -2,7 +2,10 @@
 // particle, spring and triangle, as session/commands/adding.py and level/assembly/joining.py have it, to the same bits.
 import { Refusal } from './commands.js';
 import { madeScene } from './made.js';
-/** @import { About, AddedBody, AddedParticle, AddedSpring, Counts, Family, NamedRecord, NameKind, Point, Runs, Told } from './types.js' */
+/**
+ * @import { About, AddedBody, AddedParticle, AddedSpring, Adding, Counts, Family, NamedRecord, NameKind, Point, Runs,
+ *   Told } from './types.js'
+ */
 /** @import { World } from './world.js' */
 
 const CANNOT = 'a page cannot add a body with';
@@ -147,15 +150,23 @@ function addSpring(rows, record) {
   rows.told.scene = { joins: [{ spring, ends: [a, b], skin: '', line, colour: '#8e99a8', width: 1 }] };
 }
 
-/** @type {(rows: Rows, record: AddedBody) => void} */
-function addBody(rows, record) {
-  const { body, materials = {}, ...more } = record, { about, world } = rows;
+/** Throw a Refusal where a page cannot add a body.
+ * @type {(record: NamedRecord, adding: Adding) => void} */
+export function checkBody(record, { fields, hasWater }) {
+  const { body, materials, ...more } = /** @type {AddedBody} */ (record);
   if (typeof body !== 'object' || body?.type !== 'mesh' || Object.keys(more).length > 1) {
     throw new Refusal(`${CANNOT} more than particles, springs and triangles`);
   }
-  const stranger = Object.keys(body).find((name) => !about.adding.fields.includes(name));
+  const stranger = Object.keys(body).find((name) => !fields.includes(name));
   if (stranger) throw new Refusal(`${CANNOT} ${stranger}`);
-  if (about.adding.hasWater) throw new Refusal('a page adds no bodies to a level with water');
+  if (typeof materials === 'object' && Object.keys(materials ?? {}).length > 1) throw new Refusal(`${CANNOT} this material`);
+  if (hasWater) throw new Refusal('a page adds no bodies to a level with water');
+}
+
+/** @type {(rows: Rows, record: AddedBody) => void} */
+function addBody(rows, record) {
+  const { body, materials = {} } = record, { about, world } = rows;
+  checkBody(record, about.adding);
   const { particles, springs = [], triangles = [], masses, pinned = [], velocity = [0, 0] } = body;
   const count = Array.isArray(particles) ? particles.length : 0, isPinned = new Set(pinned === true
     ? particles.map((_, k) => k) : pinned || []);

@@ -1,6 +1,6 @@
 // Link: a run in the fragment of an address, which no browser sends to a server; written and read as
 // session/link/scene_link.py does it.
-import { namesOf } from './adding.js';
+import { checkBody, namesOf } from './adding.js';
 import { adds, Commands, countedBy, Refusal } from './commands.js';
 import { LINK } from './shared.js';
 /** @import { About, Counts, Done, LevelLink, NamedRecord, NameKind, PackedLink, Recording, Told } from './types.js' */
@@ -172,7 +172,7 @@ function told(entries, about) {
   let tick = 0, counts = about.counts;
   return entries.map(({ passed, gesture, record, told: more }) => {
     tick += passed;
-    if (!more && about.commands[record.type] === null && !adds(record.type)) {
+    if (!more && about.commands[record.type] === null && !isAdded(record, about)) {
       throw new Refusal(`This run holds what no page can do, ${record.type}: open the link in Spring Sandbox.`);
     }
     const own = more || !adds(record.type) ? more : namesOf(record, names, counts);
@@ -184,6 +184,19 @@ function told(entries, about) {
     counts = own?.counts ?? counts;
     return done;
   });
+}
+
+/** Whether a page adds what a record says by itself.
+ * @type {(record: NamedRecord, about: About) => boolean} */
+function isAdded(record, { adding }) {
+  if (record.type !== 'add_body') return adds(record.type);
+  try {
+    checkBody(record, adding);
+  } catch (error) {
+    if (error instanceof Refusal) return false;
+    throw error;
+  }
+  return true;
 }
 
 /** Refuse what would write beyond rows, or make more of them than a level may have.
