@@ -37,6 +37,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import can_scale_unevenly, move
 from sandbox.editor.edits.rule_names import lost_rules
+from sandbox.editor.held_joins import with_joins_held
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.panel.field_info import Pick
@@ -145,13 +146,19 @@ class EditScreen:
         return self._box[2]
 
     def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
-        """Make an edit a step of the history; False, and a line for the person, where it cannot be made."""
+        """Make an edit a step of the history; False, and a line for the person, where it cannot be made.
+
+        What is joined to what it moves stays joined.
+        """
         try:
-            document = function(self.document)
+            made = function(self.document)
+            held = with_joins_held(self.document.level, made)
         except EditError as error:
             self.say(sentence(error))
             return False
-        self.apply(label, document, merge)
+        self.apply(label, held.document, merge)
+        if held.notice:
+            self.say(held.notice)
         return True
 
     def apply(self, label: str, document: Document, merge: str | None = None) -> None:
