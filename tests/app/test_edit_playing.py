@@ -36,6 +36,24 @@ def test_e_plays_the_document_from_its_beginning_and_comes_back_to_it_untouched(
     assert driver.playback.session.tick < 10
 
 
+@pytest.mark.parametrize(
+    "action", ["next_mark", "bookmark", "branches", "pick", "touching", "bring_back", "free", "follow"]
+)
+def test_a_line_about_a_run_ends_where_the_sheet_is_shown_again(driver, action):
+    driver.key(pygame.K_e)
+    driver.app.act(action)
+    assert len(driver.notices) == 1
+    driver.key(pygame.K_e)
+    assert driver.notices == []
+
+
+def test_a_line_about_the_sheet_ends_where_it_is_played(driver):
+    driver.key(pygame.K_z, CTRL)
+    assert driver.notices == ["There is nothing to undo."]
+    driver.key(pygame.K_e)
+    assert driver.notices == []
+
+
 def test_what_is_being_typed_is_in_the_run_and_is_asked_about_before_it_is_left(driver):
     editor = driver.editor
     editor.side.choose("level")

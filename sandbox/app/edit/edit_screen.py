@@ -190,8 +190,8 @@ class EditScreen:
         self.history.select(selection)
 
     def say(self, text: str) -> None:
-        """Show a line to the person."""
-        self.app.say(text)
+        """Show a line about the sheet, which ends with it."""
+        self.app.say(text, self)
 
     # What the panels ask.
 
