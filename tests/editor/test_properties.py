@@ -337,8 +337,14 @@ def test_a_hydraulic_begins_as_long_as_its_spring(level):
     assert driven.level.springs[0].hydraulic.__dict__ == {
         "key": None, "reverse_key": None, "shortest": 3.0, "longest": 4.5, "rate": 1.5, "force": None, "returns": False,
     }  # fmt: skip
+    assert driven.level.springs[0].rest_length == 3.0
+    throws = changed(driven, "hydraulic.shortest", "0.6")
+    assert throws.level.springs[0].given_length == 3.0, "it waits as it is drawn, whatever its shortest length"
     with pytest.raises(EditError, match="is above longest"):
         changed(driven, "hydraulic.shortest", "5")
+    bare = Document(changed(throws, "rest_length", "").level, document.selection)
+    assert fields(bare)["rest_length"].about.empty == "shortest: 0.6"
+    assert fields(document)["rest_length"].about.empty == "as placed"
     given = Document(changed(document, "rest_length", "1.25").level, document.selection)
     assert fields(given)["hydraulic"].set(given, True).level.springs[0].hydraulic.shortest == 1.25
 

@@ -160,6 +160,7 @@ class Form:
             about.title,
             about.unit,
             about.choices,
+            about.empty,
             each.axes,
             lines,
             self._is_long(each),
