@@ -15,7 +15,7 @@ from sandbox.editor.panel.level_properties import level_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
 from sandbox.editor.panel.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
-from sandbox.level.checks import METRICS
+from sandbox.level.checks import METRICS, promise_text
 from sandbox.level.document.canonical import level_text
 from sandbox.level.document.model import Level, ParticleDef, Settings, SpringDef
 from sandbox.level.kinds.bodies import KINDS, expansion
@@ -422,6 +422,12 @@ def test_a_metric_brings_bounds_of_its_own(level, metric):
     assert said == "at most -3 is gone" and (check.at_least, check.at_most) == (10.0, None)
 
 
+def test_a_new_check_is_of_what_is_selected_or_else_that_nothing_breaks(level):
+    assert promise_text(add_check(chosen(level, "rope")).level.checks[1]) == "x of rope is at least 2 m"
+    assert promise_text(add_check(chosen(level, "nail")).level.checks[1]) == "x of nail is at least 6 m"
+    assert promise_text(add_check(Document(level)).level.checks[1]) == "no spring breaks"
+
+
 def test_a_check_of_a_particle_is_one_of_a_body_once_that_is_named(level):
     document = add_check(chosen(level, "rope"))
 
@@ -436,11 +442,11 @@ def test_a_check_of_a_particle_is_one_of_a_body_once_that_is_named(level):
 
 def test_a_check_gets_a_particle_with_a_metric_that_needs_one_and_loses_it_again(level):
     document = add_check(chosen(level, "rope"))
-    assert document.level.checks[1].at_most == 0.0
 
     def of_check():
         return {each.field: each for each in check_properties(document, 1)[0].properties}
 
+    document = of_check()["metric"].set(document, "max_speed")
     assert "particle" not in of_check()
     document = of_check()["metric"].set(document, "speed")
     assert document.level.checks[1].body == "rope"

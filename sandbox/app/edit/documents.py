@@ -19,7 +19,7 @@ from sandbox.editor.storage.recent import remember
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.quantities import replaced
-from sandbox.level.reading.files import load_level
+from sandbox.level.reading.files import load_level, shipped_levels
 
 # Longest name of a level's file [characters].
 NAME_LIMIT = 200
@@ -42,15 +42,27 @@ class DocumentActions:
     # Opening.
 
     def begin(self, name: str) -> None:
-        """Edit a level file or a shipped level by its bare name, "" = an empty sheet, as the program starts."""
+        """Edit a level file, also one to come, or a shipped level by its name; "" = an empty sheet, at the start."""
         self.new()
         if name and os.path.lexists(name):
             self.open(name)
+        elif name and _is_to_come(name):
+            self._begin_file(Path(name))
         elif name:
             try:
                 self.edit_level(load_level(name))
             except LevelError as error:
                 show_lines(self.app.ui, f"{name} cannot be opened", error.faults)
+
+    def _begin_file(self, path: Path) -> None:
+        """Begin with an empty sheet that is saved to a file which is not there yet."""
+        try:
+            level_file = LevelFile.to_come(path)
+        except LevelInUse as error:
+            show_lines(self.app.ui, f"{_called(path)} is in use", [str(error)])
+            return
+        self._show(replaced(empty_level(), name=one_line(path.stem)), level_file, "New")
+        self.app.say(f"{_called(path)} is not there yet. Ctrl+S writes it.")
 
     def new(self, then: Callable[[], object] = lambda: None, level: Level | None = None) -> None:
         """Begin with a level that has no file, else an empty sheet; then: what is done once it is there."""
@@ -151,7 +163,7 @@ class DocumentActions:
         self.editor = EditScreen(self.app, History(Document(level), label), level_file)
         if level_file.warning:
             self.app.say(level_file.warning)
-        if level_file.path is not None:
+        if level_file.path is not None and level_file.path.exists():
             remember(level_file.path)
         self.app.show_screen(self.editor)
         self.app.offer_tour()
@@ -422,6 +434,12 @@ def _file_of(level: Level, source: Path | None) -> LevelFile:
         level_file.close()
         return LevelFile()
     return level_file
+
+
+def _is_to_come(name: str) -> bool:
+    """Whether a name says where a level is to be written: in a folder that is there, as no shipped level is called."""
+    path = Path(name)
+    return path.suffix == ".json" and path.parent.is_dir() and path.stem not in {each.stem for each in shipped_levels()}
 
 
 def _called(path: Path) -> str:
