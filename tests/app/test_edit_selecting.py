@@ -229,6 +229,13 @@ def test_delete_duplicate_and_next_item_work_by_key(driver):
     assert any("Nothing is selected" in text for text in driver.notices)
 
 
+def test_a_copy_lies_beside_what_it_is_of(driver):
+    driver.editor.select(frozenset([ROPE]))
+    driver.key(pygame.K_d, CTRL)
+    rope, copy = driver.editor.document.level.bodies[0], driver.editor.document.level.bodies[-1]
+    assert rope.end[0] < copy.start[0] <= rope.end[0] + 3 * driver.editor.grid and copy.start[1] == rope.start[1]
+
+
 def test_all_of_a_material_is_selected(driver):
     driver.key(pygame.K_m, CTRL)
     driver.key(pygame.K_END)

@@ -25,8 +25,9 @@ from sandbox.editor.edits.placing import unweld
 from sandbox.editor.items import Item
 from sandbox.editor.pick import items_of_material
 from sandbox.editor.tools.palette import TOOLS
+from sandbox.editor.tools.snap import PLACE_DECIMALS
 
-# A copy is put this many steps of the grid to the right of and below what it is of.
+# A copy is put beside what it is of, this many steps of the grid and less than one to the right of it.
 COPY_STEPS = 2
 COPY_LIMIT = 1_000
 FIRST_COPY = "The selection counts as the first copy."
@@ -184,8 +185,13 @@ def _step(screen: Editing, by: int) -> None:
 
 
 def _duplicate(screen: Editing) -> None:
-    step = COPY_STEPS * screen.grid
-    _edit_selection(screen, "Duplicate", lambda document: duplicate(document, step, -step))
+    """Put a copy beside what is selected, on the right, as far off as the grid has it."""
+    grid, box = screen.grid, screen.selection_box
+    width = 0.0 if box is None else box[2] - box[0]
+    step = (math.ceil(round(width / grid, PLACE_DECIMALS)) + COPY_STEPS) * grid
+    _edit_selection(screen, "Duplicate", lambda document: duplicate(document, step, 0.0))
+    if screen.document.selection:
+        screen.reveal(screen.document.selection)
 
 
 def _reorder(screen: Editing, to: Place) -> None:
