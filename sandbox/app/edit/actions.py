@@ -9,7 +9,7 @@ from sandbox.app.base.shortcuts import shortcuts, tip_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Box
-from sandbox.app.draw.colours import material_colours
+from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.part_keeping import ask_to_keep_part
@@ -270,7 +270,7 @@ def _ask_parts(screen: Editing) -> None:
 
 
 def _ask_material(screen: Editing) -> None:
-    colours = material_colours(screen.scene.materials)
+    colours = material_colours(screen.scene.level.materials)
 
     def take(index: int) -> None:
         screen.select(items_of_material(screen.document.level, list(colours)[index]))

@@ -10,7 +10,7 @@ import pygame
 
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
-from sandbox.app.draw.colours import material_colours
+from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.edit.side.side_page import SidePage
