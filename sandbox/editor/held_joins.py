@@ -95,7 +95,7 @@ class _Holding:
                 continue
             now, was = _between(self._is, a, b), self._apart[weld]
             gap = (now[0] - was[0], now[1] - was[1])
-            if _is_same(gap, (0.0, 0.0)):
+            if _is_same(gap, (0.0, 0.0)) or _is_same(now, (0.0, 0.0)):
                 continue
             given = self._give_way(a, b, gap)
             if given:

@@ -170,6 +170,15 @@ def test_a_girder_with_a_pose_keeps_it_when_its_end_is_taken_along():
     np.testing.assert_allclose(np.array(moved.pose) - expansion(moved).form, places - expansion(beam).form, atol=1e-9)
 
 
+def test_a_gap_that_an_edit_closes_stays_closed():
+    beside = replaced(ROPE, end=(4.1, -1.0))
+    before = level(JELLY, beside, welds=(("jelly.0", "rope.end"),))
+
+    held = with_joins_held(before, set_field(Document(before), [Item("body", "rope")], "end", (4.0, -1.0)))
+
+    assert body(held, "rope").end == (4.0, -1.0) and held.document.level.welds == before.welds
+
+
 def test_edits_that_move_nothing_leave_joins_alone():
     before = joined()
     for after in (rename(Document(before), Item("body", "rope"), "cable"), Document(before)):
