@@ -407,3 +407,14 @@ def test_a_name_in_no_folder_or_of_no_level_is_refused(edit, tmp_path):
         driver.frames(2)
         assert driver.editor.level_file.path is None and driver.app.ui.has_sheet
         driver.key(pygame.K_ESCAPE)
+
+
+def test_a_path_that_cannot_be_written_is_kept_for_the_next_try(edit, tmp_path):
+    driver = edit(small_level())
+    driver.key(pygame.K_s, CTRL | SHIFT)
+    driver.type("/proc/bridge")
+    driver.key(pygame.K_RETURN)
+    driver.frames(2)
+    driver.choose("Save under another name")
+    driver.frames(2)
+    assert driver.app.ui.focus.text == "/proc/bridge"

@@ -11,13 +11,15 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item, definitions, items_of
 from sandbox.editor.panel.check_form import add_check, check_properties, delete_check
 from sandbox.editor.panel.field_info import fields_of
-from sandbox.editor.panel.level_properties import level_properties
+from sandbox.editor.panel.level_properties import level_properties, look_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
 from sandbox.editor.panel.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
 from sandbox.level.checks import METRICS, promise_text
 from sandbox.level.document.canonical import level_text
-from sandbox.level.document.model import Level, ParticleDef, Settings, SpringDef
+from sandbox.level.document.model import ContactsDef, Level, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.format.look import BodyLook
+from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, expansion
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.reading.files import parse_level
@@ -570,3 +572,25 @@ def test_what_hands_may_do_is_typed_as_words_and_numbers_and_what_is_wrong_is_sa
             hands(field).set(document, hands(field).typed(text))
     document = hands("hands").set(document, False)
     assert document.level.hands is None
+
+
+def test_contacts_that_ground_or_walls_switch_on_show_the_numbers_in_force(level):
+    def section(document):
+        (found,) = (each for each in level_properties(document) if each.title == "Contacts")
+        return {each.field: each for each in found.properties}
+
+    ground = Document(replaced(level, contacts=None))
+    shown = section(ground)
+    assert shown["contacts"].value == "on: there is ground" and not shown["contacts"].editable
+    assert (shown["contacts.friction"].value, shown["contacts.restitution"].value) == (0.5, 0.0)
+    assert shown["contacts.restitution"].about.title == "Bounce"
+    icy = shown["contacts.friction"].set(ground, 0.1)
+    assert icy.level.contacts == ContactsDef(friction=0.1) and section(icy)["contacts"].value is True
+    bare = Document(replaced(level, contacts=None, terrain=(), walls=None, zones=()))
+    assert section(bare)["contacts"].value is False and "contacts.friction" not in section(bare)
+
+
+def test_a_look_of_a_material_has_no_window_for_particles_that_it_has_not():
+    material = NissenMaterial(look=BodyLook(face=False))
+    assert "look.face" in {each.field for each in look_properties("jelly", material)}
+    assert "look.window" not in {each.field for each in look_properties("jelly", material)}

@@ -187,8 +187,13 @@ class DocumentActions:
         else:
             self._write(lambda replace: editor.level_file.save(editor.document.level, replace), then)
 
-    def _write(self, write: Callable[[bool], str | None], then: Callable[[], object], replace: bool = False) -> None:
-        """Write the file, then go on; where a file is in the way, the person is asked."""
+    def _write(
+        self, write: Callable[[bool], str | None], then: Callable[[], object], replace: bool = False, typed: str = ""
+    ) -> None:
+        """Write the file, then go on; where a file is in the way, or it cannot be, the person is asked.
+
+        typed: what was typed for its name.
+        """
         editor = self.editor
         assert editor is not None
         before = editor.level_file.path
@@ -198,13 +203,14 @@ class DocumentActions:
             title = "Replace the file?" if isinstance(error, FileExists) else "The file has changed"
             # Enter, pressed unawares, loses nothing.
             choices = [
-                ("Save under another name", lambda: self._ask_name(then)),
-                ("Replace it", lambda: self._write(write, then, True)),
+                ("Save under another name", lambda: self._ask_name(then, typed)),
+                ("Replace it", lambda: self._write(write, then, True, typed)),
             ]
             choose(self.app.ui, title, f"{error}.", choices)
             return
         except StorageError as error:
-            show_lines(self.app.ui, "Not saved", [str(error), "The level is still here, and in the autosave."])
+            text = f"{error}. The level is still here, and in the autosave."
+            choose(self.app.ui, "Not saved", text, [("Save under another name", lambda: self._ask_name(then, typed))])
             return
         editor.history.mark_saved()
         self._told_of_change = False
@@ -217,7 +223,8 @@ class DocumentActions:
             self.app.say(editor.level_file.warning)
         then()
 
-    def _ask_name(self, then: Callable[[], object]) -> None:
+    def _ask_name(self, then: Callable[[], object], typed: str = "") -> None:
+        """Ask for the file's name; typed: what was typed before, that could not be."""
         editor = self.editor
         if editor is None:
             return
@@ -227,7 +234,8 @@ class DocumentActions:
         except OSError as error:
             folder = Path.cwd()
             self.app.say(f"The documents' folder cannot be used: {error.strerror or error}.")
-        suggestion = one_line(present.stem) if present is not None else plain_name(editor.document.level.name)
+        suggestion = typed or (one_line(present.stem) if present is not None else "")
+        suggestion = suggestion or plain_name(editor.document.level.name)
 
         def path_of(typed: str) -> Path:
             path = folder / os.path.expanduser(typed)
@@ -256,7 +264,7 @@ class DocumentActions:
                     editor.apply("Name it as its file", replace(editor.document, level=level))
                 return warning
 
-            self._write(save_as, then)
+            self._write(save_as, then, typed=typed)
 
         ask(
             self.app.ui,

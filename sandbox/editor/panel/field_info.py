@@ -62,6 +62,7 @@ _TITLES = {
     "touches_mount": "Touches mount",
     "licence": "Licence",
     "warm_start": "Warm start",
+    "restitution": "Bounce",
 }
 
 
