@@ -115,6 +115,24 @@ def test_the_settled_pose_is_kept_and_undo_takes_it_back(driver):
     assert driver.editor.document.level is before
 
 
+def test_only_what_differs_is_offered_and_the_chosen_material_stays_chosen(driver):
+    driver.editor.turn_to("materials")
+    page = driver.editor.side.page
+    page.chosen = "rubber"
+    driver.key(pygame.K_ESCAPE)
+    driver.key(pygame.K_e)
+    driver.frames(30)
+    driver.key(pygame.K_p)
+    driver.app.act("pause")
+    driver.click(driver.pixel_of("pair.1"))
+    driver.key(pygame.K_k, CTRL)
+    offered = [button.text for button in driver.app.ui.buttons() if ":" in button.text or button.text == "Pins"]
+    assert offered == ["Pose: the present positions", "Pins"]
+    driver.choose("Pins")
+    driver.key(pygame.K_e)
+    assert driver.editor.side.page is not page and driver.editor.side.page.chosen == "rubber"
+
+
 def test_coefficients_cuts_and_pins_are_kept_together(driver):
     driver.key(pygame.K_e)
     driver.playback.submit(SetCoefficients(stiffness=0.11, damping=0.22, material=None))
@@ -129,7 +147,7 @@ def test_coefficients_cuts_and_pins_are_kept_together(driver):
     assert level.bodies[0].cut == (1,)
     assert len(driver.editor.history.labels) == 2
     driver.key(pygame.K_k, CTRL)
-    driver.choose("Pose: the present positions")
+    assert driver.notices[-1] == "The level has all of the run already." and not driver.app.ui.has_sheet
     driver.key(pygame.K_e)
     assert driver.editor.scene.pinned[driver.editor.scene.slot("pair.1")]
     assert driver.editor.history.index == len(driver.editor.history.labels) - 1

@@ -82,6 +82,7 @@ class EditScreen:
         self.tool = "select"
         self.snapping = True
         self.folds: dict[str, bool] = {}
+        self.chosen_on_pages: dict[str, tuple[Selection, Any]] = {}
         self.shows_lattice = True
         self.grid_step: float | None = None
         # What is picked on the sheet now, in place of what the tool does.

@@ -47,9 +47,11 @@ LAWS = (
 class MaterialsPage(SidePage):
     """Materials as swatches; below, what the chosen one is made of."""
 
+    follows_selection = True
+
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
-        self.chosen = _of_selection(screen.document)
+        self.chosen: str = _of_selection(screen.document)
         self.fields: dict[str, Field] = {}
         self.sliders: dict[str, Slider] = {}
         self._made_for: tuple[object, ...] = ()
