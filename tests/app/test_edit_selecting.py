@@ -136,6 +136,14 @@ def test_an_end_that_is_dropped_on_a_particle_joins_it_and_undo_parts_them(drive
     assert not driver.editor.document.level.welds
 
 
+def test_a_rope_alone_is_made_longer_by_its_ends_and_has_no_squares_beside_them(driver):
+    driver.editor.select(frozenset([ROPE]))
+    handles = driver.editor.pointer_tool.handles()
+    assert handles.places == {} and handles.at(handles.knob) == "turn"
+    driver.editor.select(frozenset([ROPE, PAIR]))
+    assert "top right" in driver.editor.pointer_tool.handles().places
+
+
 def test_handles_scale_about_the_other_side_and_the_knob_turns(driver):
     driver.click_at(1, 0)
     handles = driver.editor.pointer_tool.handles()

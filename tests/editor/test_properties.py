@@ -590,6 +590,11 @@ def test_contacts_that_ground_or_walls_switch_on_show_the_numbers_in_force(level
     assert section(bare)["contacts"].value is False and "contacts.friction" not in section(bare)
 
 
+def test_tips_of_menus_speak_of_menus_and_those_of_fields_of_fields():
+    assert fields_of(BodyLook)["skin"].tooltip == "What it is filled with. If nothing is chosen: automatic."
+    assert fields_of(SpringDef)["rest_length"].tooltip.count("Empty: as placed.") == 1
+
+
 def test_a_look_of_a_material_has_no_window_for_particles_that_it_has_not():
     material = NissenMaterial(look=BodyLook(face=False))
     assert "look.face" in {each.field for each in look_properties("jelly", material)}
