@@ -43,8 +43,8 @@ DIGITS = 3
 def add_object(document: Document, items: Iterable[Item], field: str) -> Document:
     """Give items an object in a field, where they have none; all of them have the field. Raises EditError.
 
-    A spring that becomes a hydraulic gets its drawn length as its rest length, so that it begins as drawn whatever
-    its shortest length becomes.
+    A spring that becomes a hydraulic gets its drawn length as its rest length, so that it begins as drawn however short
+    it may become.
     """
     items = frozenset(items)
     scene = make_scene(document.level) if field in ("hydraulic", "motor") else None
