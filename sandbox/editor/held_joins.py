@@ -20,6 +20,7 @@ from sandbox.level.document.model import Level, ParticleDef
 from sandbox.level.format.level_error import shown
 from sandbox.level.format.quantities import Point, replaced
 from sandbox.level.kinds.bodies import AnyBody, expansion
+from sandbox.level.kinds.geometry import Points
 
 # Two places this near [m] are one, far above rounding.
 SAME = 1e-6
@@ -74,10 +75,17 @@ class _Holding:
         self._level, self.let_go = level, list[Weld]()
         self._was, self._is = _parts(before), _parts(level)
         same = _same_welds(before, level)
-        # How far apart the two particles of each weld were before; new ones are not among them.
-        self._apart = {new: _between(self._was, *old) for old, new in same}
+        # What each weld was called before; new ones are not among them.
+        self._before = {new: old for old, new in same}
+        # Places of particles by the object that they are of, most of which stay the same ones.
+        self._places: dict[int, Points] = {}
+        self._alive: list[AnyBody] = []
         names = {name: old for pair in same for old, name in zip(*pair, strict=True)}
-        moved = {name for name, old in names.items() if not _is_same(_place(self._was, old), _place(self._is, name))}
+        moved = {
+            name for name, old in names.items()
+            if self._was[owner_of(old)] is not self._is[owner_of(name)]
+            and not _is_same(self._place(self._was, old), self._place(self._is, name))
+        }  # fmt: skip
         # What does not give way: bodies, by id, that the edit moved or that have come along, and ends that are set.
         self._settled = {owner_of(name) for name in moved}
         self._set: set[End] = set()
@@ -88,21 +96,21 @@ class _Holding:
 
     def held(self) -> Level:
         """The level with all joins held, or let go. Raises EditError where it could not be saved so."""
-        todo = list(self._apart)
+        todo = [weld for weld in self._before if self._settled & {owner_of(name) for name in weld}]
         while todo:
             a, b = weld = todo.pop(0)
-            if weld not in self._apart:
+            if weld not in self._before:
                 continue
-            now, was = _between(self._is, a, b), self._apart[weld]
+            now, was = self._between(self._is, weld), self._between(self._was, self._before[weld])
             gap = (now[0] - was[0], now[1] - was[1])
             if _is_same(gap, (0.0, 0.0)) or _is_same(now, (0.0, 0.0)):
                 continue
             given = self._give_way(a, b, gap)
             if given:
                 # All that hangs on what gave way is looked at again.
-                todo += [other for other in self._apart if given & {owner_of(name) for name in other}]
+                todo += [other for other in self._before if given & {owner_of(name) for name in other}]
             else:
-                del self._apart[weld]
+                del self._before[weld]
                 self.let_go.append(weld)
         level = self._level
         gone = set(self.let_go)
@@ -171,6 +179,24 @@ class _Holding:
         slot = named[part] if part in named else int(part)
         return next(((owner, field) for field in ENDS if named[field] == slot), None)
 
+    def _place(self, parts: dict[str, Any], name: str) -> Point:
+        """Where a particle lies [m], by itself: of one that is welded its own place."""
+        owner, _, part = name.partition(".")
+        body = parts[owner]
+        if isinstance(body, ParticleDef):
+            return body.position
+        if id(body) not in self._places:
+            self._places[id(body)] = expansion(body).position
+            self._alive.append(body)
+        named = expansion(body).named_particles
+        x, y = self._places[id(body)][named[part] if part in named else int(part)].tolist()
+        return x, y
+
+    def _between(self, parts: dict[str, Any], weld: Weld) -> Point:
+        """The way from the first particle of a weld to the second [m]."""
+        (ax, ay), (bx, by) = (self._place(parts, name) for name in weld)
+        return bx - ax, by - ay
+
     def _is_alone(self, old_name: str, end: End) -> bool:
         """Whether the other end of the body is where it was."""
         owner, field = end
@@ -191,23 +217,6 @@ def _same_welds(before: Level, after: Level) -> list[tuple[Weld, Weld]]:
 def _parts(level: Level) -> dict[str, Any]:
     """Bodies, loose particles and terrain, by id."""
     return {part.id: part for name in _KINDS for part in getattr(level, name)}
-
-
-def _place(parts: dict[str, AnyBody | ParticleDef], name: str) -> Point:
-    """Where a particle lies [m], by itself: of one that is welded its own place."""
-    owner, _, part = name.partition(".")
-    body = parts[owner]
-    if isinstance(body, ParticleDef):
-        return body.position
-    known = expansion(body)
-    named = known.named_particles
-    x, y = known.position[named[part] if part in named else int(part)].tolist()
-    return x, y
-
-
-def _between(parts: dict[str, AnyBody | ParticleDef], a: str, b: str) -> Point:
-    (ax, ay), (bx, by) = _place(parts, a), _place(parts, b)
-    return bx - ax, by - ay
 
 
 def _is_same(one: Point, other: Point) -> bool:
