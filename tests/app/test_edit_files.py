@@ -12,7 +12,7 @@ from sandbox.editor.edits.fields import set_level_field
 from sandbox.editor.storage.autosave import Autosave, orphans
 from sandbox.editor.storage.level_file import LevelFile
 from sandbox.level.document.canonical import level_text
-from sandbox.level.reading.files import read_level, shipped_levels, write_level
+from sandbox.level.reading.files import load_level, read_level, shipped_levels, write_level
 from tests.app.conftest import small_level
 
 CTRL, SHIFT = pygame.KMOD_CTRL, pygame.KMOD_SHIFT
@@ -386,3 +386,35 @@ def test_arrow_keys_go_through_a_question_and_a_folder_alone_is_no_name(driver, 
         driver.key(pygame.K_RETURN)
         assert driver.app.ui.has_sheet
     assert sorted(documents.parent.glob("*.json")) == before
+
+
+def test_a_file_that_is_not_there_yet_begins_as_an_empty_sheet_that_is_saved_there(edit, tmp_path):
+    driver, path = edit(), tmp_path / "cart.json"
+    driver.app.documents.begin(str(path))
+    driver.frames(2)
+    assert driver.editor.level_file.path == path and driver.editor.document.level.name == "cart"
+    assert "cart.json is not there yet. Ctrl+S writes it." in driver.notices and not path.exists()
+    driver.key(pygame.K_r)
+    driver.drag((0, 0), (2, 0), (4, 0))
+    driver.key(pygame.K_s, CTRL)
+    assert [body.id for body in load_level(path).bodies] == ["rope"] and driver.editor.history.is_saved
+
+
+def test_a_name_in_no_folder_or_of_no_level_is_refused(edit, tmp_path):
+    driver = edit()
+    for name in (str(tmp_path / "nowhere" / "cart.json"), "ropee"):
+        driver.app.documents.begin(name)
+        driver.frames(2)
+        assert driver.editor.level_file.path is None and driver.app.ui.has_sheet
+        driver.key(pygame.K_ESCAPE)
+
+
+def test_a_path_that_cannot_be_written_is_kept_for_the_next_try(edit, tmp_path):
+    driver = edit(small_level())
+    driver.key(pygame.K_s, CTRL | SHIFT)
+    driver.type("/proc/bridge")
+    driver.key(pygame.K_RETURN)
+    driver.frames(2)
+    driver.choose("Save under another name")
+    driver.frames(2)
+    assert driver.app.ui.focus.text == "/proc/bridge"

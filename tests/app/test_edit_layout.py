@@ -45,6 +45,34 @@ def test_the_panel_folds_in_a_narrow_window_comes_back_with_room_and_obeys_the_p
     assert driver.editor.side is None
 
 
+def test_in_a_narrow_window_the_panel_lies_over_the_sheet_and_closes_once_something_is_drawn(driver):
+    resize(driver, 640, 480)
+    before = driver.editor.camera.viewport
+    driver.app.act("panel")
+    driver.frames(2)
+    side = driver.editor.side
+    assert side is not None and driver.editor.camera.viewport == before
+    driver.key(pygame.K_r)
+    left, top, width, height = before
+    driver.click((left + 60, top + 60))
+    assert driver.editor.side is side, "a click may be one on what the panel then shows"
+    driver.key(pygame.K_ESCAPE)
+    driver.key(pygame.K_r)
+    points = [(left + 60, top + 60), (left + 100, top + 80), (left + width - 40, top + height - 60)]
+    assert side.back.rect.collidepoint(points[-1])
+    driver.press(points[0])
+    driver.move(points[1])
+    assert driver.editor.side is None
+    driver.move(points[-1])
+    driver.release(points[-1])
+    assert [body.id for body in driver.editor.document.level.bodies] == ["rope"]
+    driver.app.act("panel")
+    driver.frames(2)
+    assert driver.editor.side is not None, "it comes back by its key"
+    driver.move(driver.editor.side.back.rect.center)
+    assert driver.app.input.pointer_over_world() is None
+
+
 def test_a_tip_of_the_panel_lies_beside_it_and_there_is_one_at_a_time(driver):
     side, tip, places = driver.editor.side, driver.app.ui.tip, []
     for tab in ("materials", "level"):

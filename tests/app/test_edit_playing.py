@@ -36,6 +36,24 @@ def test_e_plays_the_document_from_its_beginning_and_comes_back_to_it_untouched(
     assert driver.playback.session.tick < 10
 
 
+@pytest.mark.parametrize(
+    "action", ["next_mark", "bookmark", "branches", "pick", "touching", "bring_back", "free", "follow"]
+)
+def test_a_line_about_a_run_ends_where_the_sheet_is_shown_again(driver, action):
+    driver.key(pygame.K_e)
+    driver.app.act(action)
+    assert len(driver.notices) == 1
+    driver.key(pygame.K_e)
+    assert driver.notices == []
+
+
+def test_a_line_about_the_sheet_ends_where_it_is_played(driver):
+    driver.key(pygame.K_z, CTRL)
+    assert driver.notices == ["There is nothing to undo."]
+    driver.key(pygame.K_e)
+    assert driver.notices == []
+
+
 def test_what_is_being_typed_is_in_the_run_and_is_asked_about_before_it_is_left(driver):
     editor = driver.editor
     editor.side.choose("level")
@@ -97,6 +115,24 @@ def test_the_settled_pose_is_kept_and_undo_takes_it_back(driver):
     assert driver.editor.document.level is before
 
 
+def test_only_what_differs_is_offered_and_the_chosen_material_stays_chosen(driver):
+    driver.editor.turn_to("materials")
+    page = driver.editor.side.page
+    page.chosen = "rubber"
+    driver.key(pygame.K_ESCAPE)
+    driver.key(pygame.K_e)
+    driver.frames(30)
+    driver.key(pygame.K_p)
+    driver.app.act("pause")
+    driver.click(driver.pixel_of("pair.1"))
+    driver.key(pygame.K_k, CTRL)
+    offered = [button.text for button in driver.app.ui.buttons() if ":" in button.text or button.text == "Pins"]
+    assert offered == ["Pose: the present positions", "Pins"]
+    driver.choose("Pins")
+    driver.key(pygame.K_e)
+    assert driver.editor.side.page is not page and driver.editor.side.page.chosen == "rubber"
+
+
 def test_coefficients_cuts_and_pins_are_kept_together(driver):
     driver.key(pygame.K_e)
     driver.playback.submit(SetCoefficients(stiffness=0.11, damping=0.22, material=None))
@@ -111,7 +147,7 @@ def test_coefficients_cuts_and_pins_are_kept_together(driver):
     assert level.bodies[0].cut == (1,)
     assert len(driver.editor.history.labels) == 2
     driver.key(pygame.K_k, CTRL)
-    driver.choose("Pose: the present positions")
+    assert driver.notices[-1] == "The level has all of the run already." and not driver.app.ui.has_sheet
     driver.key(pygame.K_e)
     assert driver.editor.scene.pinned[driver.editor.scene.slot("pair.1")]
     assert driver.editor.history.index == len(driver.editor.history.labels) - 1

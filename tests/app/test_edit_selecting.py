@@ -136,6 +136,14 @@ def test_an_end_that_is_dropped_on_a_particle_joins_it_and_undo_parts_them(drive
     assert not driver.editor.document.level.welds
 
 
+def test_a_rope_alone_is_made_longer_by_its_ends_and_has_no_squares_beside_them(driver):
+    driver.editor.select(frozenset([ROPE]))
+    handles = driver.editor.pointer_tool.handles()
+    assert handles.places == {} and handles.at(handles.knob) == "turn"
+    driver.editor.select(frozenset([ROPE, PAIR]))
+    assert "top right" in driver.editor.pointer_tool.handles().places
+
+
 def test_handles_scale_about_the_other_side_and_the_knob_turns(driver):
     driver.click_at(1, 0)
     handles = driver.editor.pointer_tool.handles()
@@ -227,6 +235,13 @@ def test_delete_duplicate_and_next_item_work_by_key(driver):
     driver.key(pygame.K_ESCAPE)
     driver.key(pygame.K_DELETE)
     assert any("Nothing is selected" in text for text in driver.notices)
+
+
+def test_a_copy_lies_beside_what_it_is_of(driver):
+    driver.editor.select(frozenset([ROPE]))
+    driver.key(pygame.K_d, CTRL)
+    rope, copy = driver.editor.document.level.bodies[0], driver.editor.document.level.bodies[-1]
+    assert rope.end[0] < copy.start[0] <= rope.end[0] + 3 * driver.editor.grid and copy.start[1] == rope.start[1]
 
 
 def test_all_of_a_material_is_selected(driver):

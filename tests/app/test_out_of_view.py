@@ -94,3 +94,14 @@ def test_no_level_has_lost_anything_by_itself_after_some_seconds(open_app, name)
     driver.pass_unseen(240)
     driver.frames(1)
     assert not button(driver).visible and NOTICE not in driver.notices
+
+
+def test_a_flat_bridge_that_sags_under_its_weight_is_in_the_picture(open_app):
+    rope = {"type": "rope", "id": "rope", "start": [0, 0], "end": [8, 0], "segments": 32, "pin": ["start", "end"],
+            "rest_length": 0.2875, "material": "steel"}  # fmt: skip
+    weight = {"id": "weight", "position": [4, 0], "mass": 2000.0}
+    level = small_level(bodies=[rope], particles=[weight], welds=[["rope.16", "weight"]], view=None,
+                        settings={"gravity": [0, -9.81], "solver": "direct"})  # fmt: skip
+    driver = open_app(level)
+    driver.frames(300)
+    assert not button(driver).visible and NOTICE not in driver.notices

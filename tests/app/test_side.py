@@ -534,7 +534,7 @@ def test_checks_are_added_changed_run_and_deleted(driver):
     page.trial.wait()
     driver.frames(2)
     assert [row.detail.split()[0] for row in page.list.rows] == ["holds", "fails", "holds"]
-    assert page.list.rows[2].detail == "holds with 0: every place and speed is a number, after 0.1 s"
+    assert page.list.rows[2].detail == "holds with 0: no spring breaks, after 0.1 s"
     press(driver, page.buttons[1])
     assert [check.name for check in level(driver).checks] == ["still", "low"]
     assert page.list.rows[0].detail.startswith("holds")

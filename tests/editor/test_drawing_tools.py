@@ -143,7 +143,7 @@ def test_options_stay_for_the_next_drawing_and_adjust_counts_from_what_fits(empt
     drawing.down(at(empty, (0.0, 0.0)))
     drawing.move(at(empty, (3.0, 0.0)))
     drawing.adjust(+3)
-    assert "15 links" in drawing.measure
+    assert "15 segments" in drawing.measure
     drawing.up(at(empty, (3.0, 0.0)))
     assert last_body(drawing.done(empty)).segments == 15
     assert last_body(drag(drawing, empty, (0.0, 0.0), (9.0, 0.0))).segments == 15

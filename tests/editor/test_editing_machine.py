@@ -17,6 +17,7 @@ from hypothesis.stateful import (
 
 from sandbox.editor.document import Document, EditError, empty_level, select
 from sandbox.editor.edits import bake, copying, deleting, fields, grouping, materials, moving, placing, terrain
+from sandbox.editor.held_joins import with_joins_held
 from sandbox.editor.history import History
 from sandbox.editor.items import Item, chosen_items, items_of
 from sandbox.editor.scene import make_scene
@@ -133,7 +134,7 @@ class EditingMachine(RuleBasedStateMachine):
     def _edit(self, edit, *values, merge=None) -> None:
         before = self.document
         try:
-            after = edit(before, *values)
+            after = with_joins_held(before.level, edit(before, *values)).document
         except EditError as error:
             assert str(error) and "\n" not in str(error)
             return

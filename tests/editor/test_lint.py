@@ -26,7 +26,7 @@ from sandbox.level.document.model import (
     TerrainDef,
     WallsDef,
 )  # fmt: skip
-from sandbox.level.format.actuator_defs import MotorDef
+from sandbox.level.format.actuator_defs import HydraulicDef, MotorDef
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.bridge import BridgeDef
@@ -184,6 +184,25 @@ def test_a_motor_that_turns_nothing_that_cannot_climb_or_that_no_solver_carries_
     assert any("turns nothing" in text for text in texts(cart(99.0, cut=tuple(range(6)))))
     assert any("single pass solver cannot carry wheels" in text for text in texts(cart(99.0, "single_pass")))
     assert not any("cannot carry" in text for text in texts(cart(99.0, "iterative")))
+
+
+@pytest.mark.parametrize(
+    ("shortest", "longest", "way"),
+    [(0.6, 1.5, "0.9 m shorter than it is drawn and pulls"), (2.0, 3.0, "0.5 m longer than it is drawn and pushes")],
+)
+def test_a_hydraulic_that_begins_at_another_length_than_it_is_drawn_is_found(shortest, longest, way):
+    piston = HydraulicDef(shortest=shortest, longest=longest, rate=1.0, key="x")
+    ends = tuple(ParticleDef(id=name, position=(x, 0.0), pinned=not x) for name, x in (("nail", 0.0), ("rod", 1.5)))
+    spring = SpringDef(a="nail", b="rod", name="piston", hydraulic=piston)
+    (finding,) = found(level_of(particles=ends, springs=(spring,)))
+    assert finding.text.startswith(f'the spring "piston" begins {way} at once') and finding.items == {Item("spring", 0)}
+    if shortest > 1.5:
+        assert finding.remedy is None, "it cannot begin as it is drawn"
+    else:
+        mended = finding.remedy.edit(Document(level_of(particles=ends, springs=(spring,)))).level
+        assert mended.springs[0].rest_length == 1.5 and found(mended) == []
+    asked = replaced(spring, rest_length=shortest)
+    assert found(level_of(particles=ends, springs=(asked,))) == [], "a length of its own is meant so"
 
 
 def test_particles_that_lie_on_each_other_are_found_until_they_are_joined():

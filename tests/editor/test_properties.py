@@ -11,13 +11,15 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item, definitions, items_of
 from sandbox.editor.panel.check_form import add_check, check_properties, delete_check
 from sandbox.editor.panel.field_info import fields_of
-from sandbox.editor.panel.level_properties import level_properties
+from sandbox.editor.panel.level_properties import level_properties, look_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
 from sandbox.editor.panel.typed import line_text, list_text, number_text, read_line, read_pairs, read_words
-from sandbox.level.checks import METRICS
+from sandbox.level.checks import METRICS, promise_text
 from sandbox.level.document.canonical import level_text
-from sandbox.level.document.model import Level, ParticleDef, Settings, SpringDef
+from sandbox.level.document.model import ContactsDef, Level, NissenMaterial, ParticleDef, Settings, SpringDef
+from sandbox.level.format.look import BodyLook
+from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, expansion
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.reading.files import parse_level
@@ -337,8 +339,14 @@ def test_a_hydraulic_begins_as_long_as_its_spring(level):
     assert driven.level.springs[0].hydraulic.__dict__ == {
         "key": None, "reverse_key": None, "shortest": 3.0, "longest": 4.5, "rate": 1.5, "force": None, "returns": False,
     }  # fmt: skip
+    assert driven.level.springs[0].rest_length == 3.0
+    throws = changed(driven, "hydraulic.shortest", "0.6")
+    assert throws.level.springs[0].given_length == 3.0, "it waits as it is drawn, whatever its shortest length"
     with pytest.raises(EditError, match="is above longest"):
         changed(driven, "hydraulic.shortest", "5")
+    bare = Document(changed(throws, "rest_length", "").level, document.selection)
+    assert fields(bare)["rest_length"].about.empty == "shortest: 0.6"
+    assert fields(document)["rest_length"].about.empty == "as placed"
     given = Document(changed(document, "rest_length", "1.25").level, document.selection)
     assert fields(given)["hydraulic"].set(given, True).level.springs[0].hydraulic.shortest == 1.25
 
@@ -416,6 +424,12 @@ def test_a_metric_brings_bounds_of_its_own(level, metric):
     assert said == "at most -3 is gone" and (check.at_least, check.at_most) == (10.0, None)
 
 
+def test_a_new_check_is_of_what_is_selected_or_else_that_nothing_breaks(level):
+    assert promise_text(add_check(chosen(level, "rope")).level.checks[1]) == "x of rope is at least 2 m"
+    assert promise_text(add_check(chosen(level, "nail")).level.checks[1]) == "x of nail is at least 6 m"
+    assert promise_text(add_check(Document(level)).level.checks[1]) == "no spring breaks"
+
+
 def test_a_check_of_a_particle_is_one_of_a_body_once_that_is_named(level):
     document = add_check(chosen(level, "rope"))
 
@@ -430,11 +444,11 @@ def test_a_check_of_a_particle_is_one_of_a_body_once_that_is_named(level):
 
 def test_a_check_gets_a_particle_with_a_metric_that_needs_one_and_loses_it_again(level):
     document = add_check(chosen(level, "rope"))
-    assert document.level.checks[1].at_most == 0.0
 
     def of_check():
         return {each.field: each for each in check_properties(document, 1)[0].properties}
 
+    document = of_check()["metric"].set(document, "max_speed")
     assert "particle" not in of_check()
     document = of_check()["metric"].set(document, "speed")
     assert document.level.checks[1].body == "rope"
@@ -558,3 +572,30 @@ def test_what_hands_may_do_is_typed_as_words_and_numbers_and_what_is_wrong_is_sa
             hands(field).set(document, hands(field).typed(text))
     document = hands("hands").set(document, False)
     assert document.level.hands is None
+
+
+def test_contacts_that_ground_or_walls_switch_on_show_the_numbers_in_force(level):
+    def section(document):
+        (found,) = (each for each in level_properties(document) if each.title == "Contacts")
+        return {each.field: each for each in found.properties}
+
+    ground = Document(replaced(level, contacts=None))
+    shown = section(ground)
+    assert shown["contacts"].value == "on: there is ground" and not shown["contacts"].editable
+    assert (shown["contacts.friction"].value, shown["contacts.restitution"].value) == (0.5, 0.0)
+    assert shown["contacts.restitution"].about.title == "Bounce"
+    icy = shown["contacts.friction"].set(ground, 0.1)
+    assert icy.level.contacts == ContactsDef(friction=0.1) and section(icy)["contacts"].value is True
+    bare = Document(replaced(level, contacts=None, terrain=(), walls=None, zones=()))
+    assert section(bare)["contacts"].value is False and "contacts.friction" not in section(bare)
+
+
+def test_tips_of_menus_speak_of_menus_and_those_of_fields_of_fields():
+    assert fields_of(BodyLook)["skin"].tooltip == "What it is filled with. If nothing is chosen: automatic."
+    assert fields_of(SpringDef)["rest_length"].tooltip.count("Empty: as placed.") == 1
+
+
+def test_a_look_of_a_material_has_no_window_for_particles_that_it_has_not():
+    material = NissenMaterial(look=BodyLook(face=False))
+    assert "look.face" in {each.field for each in look_properties("jelly", material)}
+    assert "look.window" not in {each.field for each in look_properties("jelly", material)}

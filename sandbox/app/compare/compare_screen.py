@@ -82,7 +82,7 @@ class CompareScreen(PlayScreen):
         return {**of_one, **{name: partial(self._keep_one, do) for name, do in keepers.items()}}
 
     def _keep_one(self, do: Callable[[], object]) -> None:
-        self._app.say(f"A recording, and what is saved, is of one run: it holds {SIDES[0]} alone.")
+        self.say(f"A recording, and what is saved, is of one run: it holds {SIDES[0]} alone.")
         do()
 
     # Where the halves are.
@@ -139,10 +139,10 @@ class CompareScreen(PlayScreen):
 
     def set_contacts(self, contacts: ContactSettings) -> None:
         """Change nothing, and say why: A and B are runs of one level."""
-        self._app.say("A and B are of one level. Leave the comparison (F9) to change how things touch.")
+        self.say("A and B are of one level. Leave the comparison (F9) to change how things touch.")
 
     def _ask_rate(self, typed: str) -> None:
-        self._app.say(f"A and B go by one clock. Leave the comparison (F9) to play at {typed} ticks a second.")
+        self.say(f"A and B go by one clock. Leave the comparison (F9) to play at {typed} ticks a second.")
 
     def choose_side(self, side: str) -> None:
         """Let the panel show and set that run's springs and solver."""

@@ -132,6 +132,8 @@ class Editing(Protocol):
     pointer: Pixel | None
     # Whether sections of the panel are folded away, by their titles, where the person said so.
     folds: dict[str, bool]
+    # What was chosen on each page of the panel, and with what selected.
+    chosen_on_pages: dict[str, tuple[Selection, Any]]
     # Whether springs and particles are drawn over what they look like.
     shows_lattice: bool
 

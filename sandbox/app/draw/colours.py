@@ -1,10 +1,7 @@
 """Colours of all that is drawn over the world, in the theme that is shown; those of widgets: `widgets/styles.py`."""
 
-from collections.abc import Iterable, Sequence
-from itertools import cycle
+from collections.abc import Sequence
 from typing import Literal, overload
-
-from sandbox.level.format.limits import DEFAULT_MATERIAL
 
 ThemeName = Literal["dark", "light"]
 THEME_NAMES: tuple[ThemeName, ...] = ("dark", "light")
@@ -86,15 +83,14 @@ MATERIAL_COLOURS: tuple[Colour, ...] = (
 RELAXED = Tone((150, 161, 180), (112, 122, 140))
 
 
-def material_colours(names: Iterable[str]) -> dict[str, Colour]:
-    """Colours of the materials of a level, in its order, and of the one that needs no definition."""
-    own = (name for name in names if name != DEFAULT_MATERIAL)
-    return {DEFAULT_MATERIAL: RELAXED, **dict(zip(own, cycle(MATERIAL_COLOURS), strict=False))}
-
-
 def packed(colour: Colour) -> int:
     """A colour as 0xRRGGBB."""
     return (colour[0] << 16) | (colour[1] << 8) | colour[2]
+
+
+def unpacked(colour: int) -> Colour:
+    """A colour of 0xRRGGBB."""
+    return colour >> 16, colour >> 8 & 255, colour & 255
 
 
 def mixed(first: Colour, second: Colour, share: float) -> tuple[int, int, int]:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sandbox.app.draw.colours import Colour, mixed, shown_theme
+from sandbox.app.draw.colours import Colour, mixed, shown_theme, unpacked
 
 
 @dataclass(frozen=True)
@@ -36,31 +36,27 @@ class Theme:
     past: Colour
 
 
-def _rgb(code: int) -> Colour:
-    return code >> 16, (code >> 8) & 255, code & 255
-
-
 def _pair(first: int, second: int) -> tuple[Colour, Colour]:
-    return _rgb(first), _rgb(second)
+    return unpacked(first), unpacked(second)
 
 
 DARK = Theme(
     "dark", stage=_pair(0x202A3E, 0x10141D), lamp=(34, 40, 52), vignette=0.42,
-    shadow=_rgb(0x04060A), shadow_strength=0.50, soil=_pair(0x463C42, 0x2A262E), turf=_pair(0x6CC58B, 0x2F7A5C),
-    rock=_pair(0x59627A, 0x2A2F3D), metal=_pair(0x7D8AA5, 0x39425A), text=_rgb(0xE8ECF4), accent=_rgb(0x5ED0B2),
-    card=_rgb(0x1A202C), line=_rgb(0x2E384A), tyre=_rgb(0x4C5362), dust=_rgb(0xCDBFA6),
-    water=_pair(0x3C9FD0, 0x163E74), foam=_rgb(0xCFF1FF),
-    strain=(_rgb(0x4D8DFF), _rgb(0xC9CFDA), _rgb(0xFFB03A)),
-    contact=_rgb(0xFF6AD5), force=_rgb(0xFFE45C), velocity=_rgb(0x6FF2E0), past=_rgb(0xFF4D8B),
+    shadow=unpacked(0x04060A), shadow_strength=0.50, soil=_pair(0x463C42, 0x2A262E), turf=_pair(0x6CC58B, 0x2F7A5C),
+    rock=_pair(0x59627A, 0x2A2F3D), metal=_pair(0x7D8AA5, 0x39425A), text=unpacked(0xE8ECF4), accent=unpacked(0x5ED0B2),
+    card=unpacked(0x1A202C), line=unpacked(0x2E384A), tyre=unpacked(0x4C5362), dust=unpacked(0xCDBFA6),
+    water=_pair(0x3C9FD0, 0x163E74), foam=unpacked(0xCFF1FF),
+    strain=(unpacked(0x4D8DFF), unpacked(0xC9CFDA), unpacked(0xFFB03A)),
+    contact=unpacked(0xFF6AD5), force=unpacked(0xFFE45C), velocity=unpacked(0x6FF2E0), past=unpacked(0xFF4D8B),
 )  # fmt: skip
 LIGHT = Theme(
     "light", stage=_pair(0xCFE4F1, 0xFBF3E3), lamp=(14, 12, 6), vignette=0.14,
-    shadow=_rgb(0x4A4030), shadow_strength=0.26, soil=_pair(0xB08459, 0xBF966A), turf=_pair(0x93CF63, 0x5C9C44),
-    rock=_pair(0xA3A9B5, 0x7F8794), metal=_pair(0xAEB8C8, 0x78859A), text=_rgb(0x27303F), accent=_rgb(0x12907A),
-    card=_rgb(0xFFFDF8), line=_rgb(0xDDD5C6), tyre=_rgb(0x42444C), dust=_rgb(0xE9DCC2),
-    water=_pair(0x46B2E4, 0x1F6FB4), foam=_rgb(0xFFFFFF),
-    strain=(_rgb(0x1446C0), _rgb(0x8A8F98), _rgb(0xD9730B)),
-    contact=_rgb(0x9C1FB0), force=_rgb(0x7A4B00), velocity=_rgb(0x006E75), past=_rgb(0xC2004F),
+    shadow=unpacked(0x4A4030), shadow_strength=0.26, soil=_pair(0xB08459, 0xBF966A), turf=_pair(0x93CF63, 0x5C9C44),
+    rock=_pair(0xA3A9B5, 0x7F8794), metal=_pair(0xAEB8C8, 0x78859A), text=unpacked(0x27303F), accent=unpacked(0x12907A),
+    card=unpacked(0xFFFDF8), line=unpacked(0xDDD5C6), tyre=unpacked(0x42444C), dust=unpacked(0xE9DCC2),
+    water=_pair(0x46B2E4, 0x1F6FB4), foam=unpacked(0xFFFFFF),
+    strain=(unpacked(0x1446C0), unpacked(0x8A8F98), unpacked(0xD9730B)),
+    contact=unpacked(0x9C1FB0), force=unpacked(0x7A4B00), velocity=unpacked(0x006E75), past=unpacked(0xC2004F),
 )  # fmt: skip
 THEMES = {theme.name: theme for theme in (DARK, LIGHT)}
 
@@ -82,16 +78,16 @@ SPARK, SPARK_GLOW = 0xFFE9A8, 0xFF9A2E
 
 def outline_of(colour: int) -> int:
     """The line around something of a colour: its own hue, darker."""
-    r, g, b = mixed(_rgb(colour), (40, 0, 60), 0.46)
+    r, g, b = mixed(unpacked(colour), (40, 0, 60), 0.46)
     return (r << 16) | (g << 8) | b
 
 
 def dark_edge(colour: int) -> int:
     """The line around something of wood or stone: its own hue, nearly black."""
-    r, g, b = mixed(_rgb(colour), (24, 10, 0), 0.66)
+    r, g, b = mixed(unpacked(colour), (24, 10, 0), 0.66)
     return (r << 16) | (g << 8) | b
 
 
 def rgb_of(colour: int) -> Colour:
     """A colour 0xRRGGBB as its channels."""
-    return _rgb(colour)
+    return unpacked(colour)

@@ -9,7 +9,7 @@ from sandbox.app.base.shortcuts import shortcuts, tip_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Box
-from sandbox.app.draw.colours import material_colours
+from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.edit.clipboard import Clipboard
 from sandbox.app.edit.part_keeping import ask_to_keep_part
@@ -25,8 +25,9 @@ from sandbox.editor.edits.placing import unweld
 from sandbox.editor.items import Item
 from sandbox.editor.pick import items_of_material
 from sandbox.editor.tools.palette import TOOLS
+from sandbox.editor.tools.snap import PLACE_DECIMALS
 
-# A copy is put this many steps of the grid to the right of and below what it is of.
+# A copy is put beside what it is of, this many steps of the grid and less than one to the right of it.
 COPY_STEPS = 2
 COPY_LIMIT = 1_000
 FIRST_COPY = "The selection counts as the first copy."
@@ -184,8 +185,13 @@ def _step(screen: Editing, by: int) -> None:
 
 
 def _duplicate(screen: Editing) -> None:
-    step = COPY_STEPS * screen.grid
-    _edit_selection(screen, "Duplicate", lambda document: duplicate(document, step, -step))
+    """Put a copy beside what is selected, on the right, as far off as the grid has it."""
+    grid, box = screen.grid, screen.selection_box
+    width = 0.0 if box is None else box[2] - box[0]
+    step = (math.ceil(round(width / grid, PLACE_DECIMALS)) + COPY_STEPS) * grid
+    _edit_selection(screen, "Duplicate", lambda document: duplicate(document, step, 0.0))
+    if screen.document.selection:
+        screen.reveal(screen.document.selection)
 
 
 def _reorder(screen: Editing, to: Place) -> None:
@@ -264,7 +270,7 @@ def _ask_parts(screen: Editing) -> None:
 
 
 def _ask_material(screen: Editing) -> None:
-    colours = material_colours(screen.scene.materials)
+    colours = material_colours(screen.scene.level.materials)
 
     def take(index: int) -> None:
         screen.select(items_of_material(screen.document.level, list(colours)[index]))

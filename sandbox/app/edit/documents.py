@@ -19,7 +19,7 @@ from sandbox.editor.storage.recent import remember
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError, one_line
 from sandbox.level.format.quantities import replaced
-from sandbox.level.reading.files import load_level
+from sandbox.level.reading.files import load_level, shipped_levels
 
 # Longest name of a level's file [characters].
 NAME_LIMIT = 200
@@ -42,15 +42,27 @@ class DocumentActions:
     # Opening.
 
     def begin(self, name: str) -> None:
-        """Edit a level file or a shipped level by its bare name, "" = an empty sheet, as the program starts."""
+        """Edit a level file, also one to come, or a shipped level by its name; "" = an empty sheet, at the start."""
         self.new()
         if name and os.path.lexists(name):
             self.open(name)
+        elif name and _is_to_come(name):
+            self._begin_file(Path(name))
         elif name:
             try:
                 self.edit_level(load_level(name))
             except LevelError as error:
                 show_lines(self.app.ui, f"{name} cannot be opened", error.faults)
+
+    def _begin_file(self, path: Path) -> None:
+        """Begin with an empty sheet that is saved to a file which is not there yet."""
+        try:
+            level_file = LevelFile.to_come(path)
+        except LevelInUse as error:
+            show_lines(self.app.ui, f"{_called(path)} is in use", [str(error)])
+            return
+        self._show(replaced(empty_level(), name=one_line(path.stem)), level_file, "New")
+        self.app.say(f"{_called(path)} is not there yet. Ctrl+S writes it.")
 
     def new(self, then: Callable[[], object] = lambda: None, level: Level | None = None) -> None:
         """Begin with a level that has no file, else an empty sheet; then: what is done once it is there."""
@@ -151,7 +163,7 @@ class DocumentActions:
         self.editor = EditScreen(self.app, History(Document(level), label), level_file)
         if level_file.warning:
             self.app.say(level_file.warning)
-        if level_file.path is not None:
+        if level_file.path is not None and level_file.path.exists():
             remember(level_file.path)
         self.app.show_screen(self.editor)
         self.app.offer_tour()
@@ -175,8 +187,13 @@ class DocumentActions:
         else:
             self._write(lambda replace: editor.level_file.save(editor.document.level, replace), then)
 
-    def _write(self, write: Callable[[bool], str | None], then: Callable[[], object], replace: bool = False) -> None:
-        """Write the file, then go on; where a file is in the way, the person is asked."""
+    def _write(
+        self, write: Callable[[bool], str | None], then: Callable[[], object], replace: bool = False, typed: str = ""
+    ) -> None:
+        """Write the file, then go on; where a file is in the way, or it cannot be, the person is asked.
+
+        typed: what was typed for its name.
+        """
         editor = self.editor
         assert editor is not None
         before = editor.level_file.path
@@ -186,13 +203,14 @@ class DocumentActions:
             title = "Replace the file?" if isinstance(error, FileExists) else "The file has changed"
             # Enter, pressed unawares, loses nothing.
             choices = [
-                ("Save under another name", lambda: self._ask_name(then)),
-                ("Replace it", lambda: self._write(write, then, True)),
+                ("Save under another name", lambda: self._ask_name(then, typed)),
+                ("Replace it", lambda: self._write(write, then, True, typed)),
             ]
             choose(self.app.ui, title, f"{error}.", choices)
             return
         except StorageError as error:
-            show_lines(self.app.ui, "Not saved", [str(error), "The level is still here, and in the autosave."])
+            text = f"{error}. The level is still here, and in the autosave."
+            choose(self.app.ui, "Not saved", text, [("Save under another name", lambda: self._ask_name(then, typed))])
             return
         editor.history.mark_saved()
         self._told_of_change = False
@@ -205,7 +223,8 @@ class DocumentActions:
             self.app.say(editor.level_file.warning)
         then()
 
-    def _ask_name(self, then: Callable[[], object]) -> None:
+    def _ask_name(self, then: Callable[[], object], typed: str = "") -> None:
+        """Ask for the file's name; typed: what was typed before, that could not be."""
         editor = self.editor
         if editor is None:
             return
@@ -215,7 +234,8 @@ class DocumentActions:
         except OSError as error:
             folder = Path.cwd()
             self.app.say(f"The documents' folder cannot be used: {error.strerror or error}.")
-        suggestion = one_line(present.stem) if present is not None else plain_name(editor.document.level.name)
+        suggestion = typed or (one_line(present.stem) if present is not None else "")
+        suggestion = suggestion or plain_name(editor.document.level.name)
 
         def path_of(typed: str) -> Path:
             path = folder / os.path.expanduser(typed)
@@ -244,7 +264,7 @@ class DocumentActions:
                     editor.apply("Name it as its file", replace(editor.document, level=level))
                 return warning
 
-            self._write(save_as, then)
+            self._write(save_as, then, typed=typed)
 
         ask(
             self.app.ui,
@@ -422,6 +442,12 @@ def _file_of(level: Level, source: Path | None) -> LevelFile:
         level_file.close()
         return LevelFile()
     return level_file
+
+
+def _is_to_come(name: str) -> bool:
+    """Whether a name says where a level is to be written: in a folder that is there, as no shipped level is called."""
+    path = Path(name)
+    return path.suffix == ".json" and path.parent.is_dir() and path.stem not in {each.stem for each in shipped_levels()}
 
 
 def _called(path: Path) -> str:

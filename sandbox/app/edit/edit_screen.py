@@ -21,7 +21,7 @@ from sandbox.app.edit.bar import Bar, Palette, palette_width
 from sandbox.app.edit.canvas.canvas import SNAP_STEP
 from sandbox.app.edit.canvas.overlay import draw_snap
 from sandbox.app.edit.canvas.picking import PickTool
-from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
+from sandbox.app.edit.canvas.pointer import CLICK_REACH, DrawTool, SelectTool
 from sandbox.app.edit.canvas.rulers import RULER, Rulers
 from sandbox.app.edit.canvas.view import View
 from sandbox.app.edit.clipboard import Clipboard
@@ -37,6 +37,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import can_scale_unevenly, move
 from sandbox.editor.edits.rule_names import lost_rules
+from sandbox.editor.held_joins import with_joins_held
 from sandbox.editor.history import History
 from sandbox.editor.items import Selection
 from sandbox.editor.panel.field_info import Pick
@@ -81,12 +82,15 @@ class EditScreen:
         self.tool = "select"
         self.snapping = True
         self.folds: dict[str, bool] = {}
+        self.chosen_on_pages: dict[str, tuple[Selection, Any]] = {}
         self.shows_lattice = True
         self.grid_step: float | None = None
         # What is picked on the sheet now, in place of what the tool does.
         self._picking: PickTool | None = None
         self.cursor: Point | None = None
         self.pointer: Pixel | None = None
+        # Where the mouse was pressed last.
+        self._pressed: Pixel = (0.0, 0.0)
         self._scenes: deque[Scene] = deque(maxlen=SCENES_KEPT)
         # What is hidden and locked, of items that were deleted too: they may come back.
         self._visibility = self._visible_now = Visibility()
@@ -145,13 +149,19 @@ class EditScreen:
         return self._box[2]
 
     def edit(self, label: str, function: Callable[[Document], Document], merge: str | None = None) -> bool:
-        """Make an edit a step of the history; False, and a line for the person, where it cannot be made."""
+        """Make an edit a step of the history; False, and a line for the person, where it cannot be made.
+
+        What is joined to what it moves stays joined.
+        """
         try:
-            document = function(self.document)
+            made = function(self.document)
+            held = with_joins_held(self.document.level, made)
         except EditError as error:
             self.say(sentence(error))
             return False
-        self.apply(label, document, merge)
+        self.apply(label, held.document, merge)
+        if held.notice:
+            self.say(held.notice)
         return True
 
     def apply(self, label: str, document: Document, merge: str | None = None) -> None:
@@ -183,8 +193,8 @@ class EditScreen:
         self.history.select(selection)
 
     def say(self, text: str) -> None:
-        """Show a line to the person."""
-        self.app.say(text)
+        """Show a line about the sheet, which ends with it."""
+        self.app.say(text, self)
 
     # What the panels ask.
 
@@ -236,7 +246,8 @@ class EditScreen:
         left, _, width, height = self.camera.viewport
         if min(width, height) < ROOM_FOR_NOTICES * self.scale:
             return None
-        return self._palette_width + RULER + 12.0, 0.0, (left + width) / self.scale
+        over = SIDE_WIDTH if self.show_side and self._side_lies_over else 0.0
+        return self._palette_width + RULER + 12.0, 0.0, (left + width) / self.scale - over
 
     @property
     def without_button(self) -> tuple[str, ...]:
@@ -246,7 +257,7 @@ class EditScreen:
     def _viewport(self) -> tuple[int, int, int, int]:
         ui, (width, height) = self.ui, self.ui.size
         left, top = ui.px(self._palette_width) + ui.px(RULER), ui.px(BAR_HEIGHT + OPTIONS_HEIGHT) + ui.px(RULER)
-        right = ui.px(SIDE_WIDTH) if self.show_side else 0
+        right = ui.px(SIDE_WIDTH) if self.show_side and not self._side_lies_over else 0
         return left, top, max(width - left - right, 1), max(height - top - ui.px(STATUS_HEIGHT), 1)
 
     def build(self, ui: Ui) -> None:
@@ -280,6 +291,11 @@ class EditScreen:
     def show_side(self) -> bool:
         """Whether the panel at the side is shown."""
         return self.ui.units[0] >= ROOM_FOR_PANEL if self._wants_side is None else self._wants_side
+
+    @property
+    def _side_lies_over(self) -> bool:
+        """Whether the panel at the side lies over the sheet: beside it, a narrow window has no room for both."""
+        return self.ui.units[0] < ROOM_FOR_PANEL
 
     def toggle_side(self) -> None:
         """Hide or show the panel at the side."""
@@ -391,7 +407,8 @@ class EditScreen:
 
     def contains(self, pixel: Pixel) -> bool:
         """Whether a pixel shows the level."""
-        return pygame.Rect(self.camera.viewport).collidepoint(pixel)
+        is_covered = self.side is not None and self.side.back.rect.collidepoint(pixel)
+        return not is_covered and pygame.Rect(self.camera.viewport).collidepoint(pixel)
 
     def point(self, kind: Pointer, pixel: Pixel, modifiers: int, clicks: int = 1) -> None:
         """Hand a pointer event to the tool."""
@@ -400,12 +417,24 @@ class EditScreen:
         if kind == "down":
             self.cursor = None
             self.history.end_merge()
+            self._pressed = pixel
             self.pointer_tool.down(point, modifiers, clicks)
         elif kind == "move":
+            self._make_room(pixel)
             self.pointer_tool.move(point, modifiers)
         else:
             self.pointer_tool.up(point, modifiers)
         self._end_picking()
+
+    def _make_room(self, pixel: Pixel) -> None:
+        """Close a panel that lies over the sheet, once something is dragged there."""
+        if (
+            self.side is not None
+            and self._side_lies_over
+            and math.dist(pixel, self._pressed) > CLICK_REACH * self.scale
+        ):
+            self._wants_side = False
+            self._close_side()
 
     def _end_picking(self) -> None:
         if self._picking is not None and self._picking.is_over:

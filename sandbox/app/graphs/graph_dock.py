@@ -121,7 +121,7 @@ class GraphDock:
     def pick(self, particle: int | None) -> None:
         """Follow a particle, or no longer; shows the graph of speeds where none of particles is seen."""
         if particle is None:
-            self._app.say("Point at a particle first, or press N to move the cursor to one.")
+            self._app.say("Point at a particle first, or press N to move the cursor to one.", self._app.screen)
             return
         if particle in self.picked:
             self.picked.remove(particle)
@@ -218,7 +218,7 @@ class GraphDock:
         """Keep what is shown as a table, CSV."""
         lines, unit = self.lines(), MEASURES[self.shown].unit
         if not lines:
-            self._app.say("There is nothing to save yet.")
+            self._app.say("There is nothing to save yet.", self._app.screen)
             return
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")

@@ -47,15 +47,15 @@ def level_with_contacts(playback: Playback, contacts: ContactSettings) -> Level:
 def restart_with_contacts(app: Application, playback: Playback, contacts: ContactSettings, of_document: bool) -> None:
     """Begin a run again with these contacts, or say why that cannot be."""
     if of_document:
-        app.say("This run belongs to the editor. Change it there, on the page Level.")
+        app.say("This run belongs to the editor. Change it there, on the page Level.", app.screen)
         return
     if contacts.fixed and not contacts.is_on:
-        app.say("This level has terrain or walls, so contacts stay on.")
+        app.say("This level has terrain or walls, so contacts stay on.", app.screen)
         return
     try:
         level = level_with_contacts(playback, contacts)
     except EditError as error:
-        app.say(sentence(error))
+        app.say(sentence(error), app.screen)
         return
     app.start(Playback(level))
-    app.say(f"From the beginning: things {'touch' if contacts.is_on else 'pass through'} each other.")
+    app.say(f"From the beginning: things {'touch' if contacts.is_on else 'pass through'} each other.", app.screen)

@@ -32,10 +32,10 @@ def ask_for_pace(app: Application, playback: Playback, rate: int) -> None:
         try:
             level = level_at_rate(playback.level, playback.session.world, rate, in_pace)
         except EditError as error:
-            app.say(sentence(error))
+            app.say(sentence(error), app.screen)
             return
         app.start(Playback(level))
-        app.say(f"The run starts over at {rate} ticks a second; E edits the level with them.")
+        app.say(f"The run starts over at {rate} ticks a second; E edits the level with them.", app.screen)
 
     choices = [
         ("Keep the behaviour per second", partial(begin, True)), ("Keep Cs and Cd as they are", partial(begin, False)),

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import pygame
 
 from sandbox.app.contracts.screen import Pixel
-from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, shown_theme
+from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, mixed, shown_theme
 from sandbox.app.draw.picture_cache import draw_in_slices, find_picture, forget_old_pictures, keep_picture, kept_picture
 from sandbox.app.draw.picture_cache import picture_key as key_of_level
 from sandbox.app.widgets.texts import wrapped
@@ -28,6 +28,8 @@ FAULT_LINES = 4
 ROOM_FOR_NAME, SMALL_TEXT = 100.0, 11.0
 # How much of the picture is veiled of a part that cannot be had here, of 255.
 VEIL = 165
+# How much of the accent the ground of a part that is taken has.
+TAKEN = 0.3
 # Arrow keys: cards to the right, and rows down.
 STEPS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, -1), pygame.K_DOWN: (0, 1)}
 
@@ -85,7 +87,9 @@ class PartCard(Widget):
         """Picture and name, or what is wrong with the file."""
         ui, corner = self.ui, self.ui.px(CORNER)
         card = pygame.Surface(size, pygame.SRCALPHA)
-        pygame.draw.rect(card, SURFACE, card.get_rect(), border_radius=corner)
+        # What is taken is filled; the keyboard and the mouse light the rim alone.
+        ground = mixed(SURFACE, ACCENT, TAKEN) if self.is_taken else SURFACE
+        pygame.draw.rect(card, ground, card.get_rect(), border_radius=corner)
         place = pygame.Rect(1, 1, *self.picture_size)
         pygame.draw.rect(card, BACKGROUND, place, border_top_left_radius=corner, border_top_right_radius=corner)
         is_broken = self.is_read and self.part.level is None

@@ -4,16 +4,16 @@ from collections.abc import Callable
 
 from sandbox.app.contracts.application import Application
 from sandbox.app.widgets.dialogs import choose
-from sandbox.editor.document import Document
+from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.adopt_dropped import keep_added
 from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_masses, keep_pins, keep_pose, keep_settings
 from sandbox.physics.world import World
 
 Keeper = Callable[[Document, World], Document]
 KEEPERS: tuple[tuple[str, Keeper], ...] = (
+    ("Pose: the present positions", keep_pose),
     ("Cs and Cd of the materials", keep_coefficients),
     ("Settings: gravity, solver, air", keep_settings),
-    ("Pose: the present positions", keep_pose),
     ("Masses", keep_masses),
     ("Pins", keep_pins),
     # Late, as the springs have other numbers then.
@@ -50,10 +50,25 @@ def ask_to_keep(app: Application) -> None:
         else:
             app.documents.edit_run(playback.level, source, lambda: edit(label, keepers))
 
+    editor = app.documents.editor
+    document = editor.document if of_document and editor is not None else Document(playback.level)
+    differing = tuple((name, keeper) for name, keeper in KEEPERS if _differs(document, keeper, world))
+    if not differing:
+        app.say("The level has all of the run already.", app.screen)
+        return
     choices: list[tuple[str, Callable[[], object]]] = [
         (name, lambda name=name, keeper=keeper: keep(f"Keep {name[0].lower()}{name[1:]}", (keeper,)))  # type: ignore[misc]
-        for name, keeper in KEEPERS
+        for name, keeper in differing
     ]
-    everything = tuple(keeper for _, keeper in KEEPERS)
-    choices.append(("All of it", lambda: keep("Keep all of the run", everything)))
+    if len(differing) > 1:
+        everything = tuple(keeper for _, keeper in KEEPERS)
+        choices.append(("All of it", lambda: keep("Keep all of the run", everything)))
     choose(app.ui, "Keep in the level", "What should the sheet take over from this run?", choices)
+
+
+def _differs(document: Document, keeper: Keeper, world: World) -> bool:
+    """Whether a keeper finds something in the world that the level has otherwise, and can take it over."""
+    try:
+        return keeper(document, world).level != document.level
+    except EditError:
+        return False

@@ -259,7 +259,7 @@ class PlayScreen:
     def _ask_rate(self, typed: str) -> None:
         """Ask how to start over at another tick rate."""
         if self.of_document:
-            self._app.say("This run belongs to the editor. Change its ticks a second there, on the page Level.")
+            self.say("This run belongs to the editor. Change its ticks a second there, on the page Level.")
         else:
             ask_for_pace(self._app, self.playback, int(typed))
 

@@ -151,7 +151,9 @@ class TimeBar:
         self._reveal()
         mark = playback.travel.mark_beside(playback.session.tick, by)
         if mark is None or mark.tick > playback.length:
-            self._app.say("There is no mark after this." if by > 0 else "There is no mark before this.")
+            self._app.say(
+                "There is no mark after this." if by > 0 else "There is no mark before this.", self._app.screen
+            )
         else:
             playback.seek(mark.tick)
 
@@ -160,7 +162,9 @@ class TimeBar:
         self._reveal()
         tick = playback.session.tick
         marked = playback.travel.toggle_bookmark(tick)
-        self._app.say(f"Bookmark at tick {tick:,}." if marked else f"No bookmark at tick {tick:,} any more.")
+        self._app.say(
+            f"Bookmark at tick {tick:,}." if marked else f"No bookmark at tick {tick:,} any more.", self._app.screen
+        )
 
     def _set_end(self, end: int) -> None:
         playback = self._playback()
@@ -187,7 +191,10 @@ class TimeBar:
         playback = self._playback()
         branches = playback.session.branches
         if not branches:
-            self._app.say("There is no earlier version yet. Go back in time and change something: the old run is kept.")
+            self._app.say(
+                "There is no earlier version yet. Go back in time and change something: the old run is kept.",
+                self._app.screen,
+            )
             return
         rate = playback.session.world.settings.tick_rate
         choices = [(_told(branch, rate), partial(playback.return_to, branch)) for branch in reversed(branches)]

@@ -41,14 +41,31 @@ DIGITS = 3
 
 
 def add_object(document: Document, items: Iterable[Item], field: str) -> Document:
-    """Give items an object in a field, where they have none; all of them have the field. Raises EditError."""
+    """Give items an object in a field, where they have none; all of them have the field. Raises EditError.
+
+    A spring that becomes a hydraulic gets its drawn length as its rest length, so that it begins as drawn however short
+    it may become.
+    """
+    items = frozenset(items)
     scene = make_scene(document.level) if field in ("hydraulic", "motor") else None
 
     def with_object(part: Definition) -> Any:
         present = part.__dict__[field]
         return _FIRST[field](part, scene) if present is None else present
 
-    return change_items(document, items, field, with_object)
+    added = change_items(document, items, field, with_object)
+    return _begun_as_drawn(document, added, items) if field == "hydraulic" else added
+
+
+def _begun_as_drawn(before: Document, added: Document, items: Iterable[Item]) -> Document:
+    springs = before.level.springs
+    new = [item for item in items if springs[int(item.key)].hydraulic is None]
+
+    def length(part: Definition) -> float | None:
+        assert isinstance(part, SpringDef) and part.hydraulic is not None
+        return part.hydraulic.shortest if part.rest_length is None else part.rest_length
+
+    return change_items(added, new, "rest_length", length)
 
 
 def first_torque(level: Level, index: int) -> float:

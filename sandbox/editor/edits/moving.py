@@ -121,10 +121,10 @@ def _moved(document: Document, by: Callable[[list[str]], Points]) -> Document:
     if len(outside):
         raise _beyond(particles[outside[0]])
     shifts = zip(bodies, by([body.id for body in bodies]).tolist(), strict=True)
-    moved = [_within(without_dust(shifted(body, dx, dy))) for body, (dx, dy) in shifts]
+    moved = [within(without_dust(shifted(body, dx, dy))) for body, (dx, dy) in shifts]
     terrain = chosen_terrain(level, document.selection)
     ways = zip(terrain, by([piece.id for piece in terrain]).tolist(), strict=True)
-    ground = [_within(without_dust(shifted(piece, dx, dy))) for piece, (dx, dy) in ways]
+    ground = [within(without_dust(shifted(piece, dx, dy))) for piece, (dx, dy) in ways]
     zones = chosen_zones(level, document.selection)
     aside = zip(zones, by([zone.id for zone in zones]).tolist(), strict=True)
     areas = all_validated([without_dust(shifted_zone(zone, dx, dy)) for zone, (dx, dy) in aside])
@@ -146,7 +146,7 @@ def _beyond(part: Definition) -> EditError:
     return EditError(f"{subject(part)} would lie beyond the limit {COORDINATE_LIMIT:.15g}")
 
 
-def _within(body: Placed) -> Placed:
+def within(body: Placed) -> Placed:
     """A body or piece of terrain whose points all lie inside the world. Raises EditError."""
     for name in ("start", "end", "position"):
         if max(map(abs, body.__dict__.get(name, (0.0,)))) > COORDINATE_LIMIT:

@@ -28,9 +28,9 @@ SLACK_RANGE = (-0.5, 4.0)
 
 @dataclass(frozen=True)
 class RopeOptions(LineOptions):
-    """A rope; segments None: links of about 0.25 m."""
+    """A rope; segments None: of about 0.25 m each."""
 
-    segments: int | None = count_option("links", "Number of links; empty = links of about 0.25 m.", 1)
+    segments: int | None = count_option("segments", "Number of segments; empty = segments of about 0.25 m.", 1)
     slack: float = option(
         0.0,
         OptionInfo(
@@ -49,7 +49,7 @@ class RopeDrawing(LineDrawing[RopeOptions]):
 
     defaults = RopeOptions()
     kind = "rope"
-    parts = "links"
+    parts = "segments"
     start_hint = "Drag from the rope's start to its end, or click both"
 
     def fitting(self, points: list[Snap]) -> int:

@@ -13,6 +13,7 @@ from sandbox.editor.lint.columns import buckling_columns
 from sandbox.editor.lint.contacts import buried_particles, overlapping_discs, turning_in_vain
 from sandbox.editor.lint.finding import Finding, Rule, called, falling_particles, listed, middle_of, place_of
 from sandbox.editor.lint.hopeless_rules import hopeless_rules, idle_counters
+from sandbox.editor.lint.hydraulics import hydraulics_at_another_length
 from sandbox.editor.lint.looks import unknown_looks
 from sandbox.editor.lint.motors import motors_in_vain
 from sandbox.editor.lint.places import crossing_bodies, overlapping_particles
@@ -36,6 +37,7 @@ def findings(level: Level, scene: Scene) -> Iterator[Finding | None]:
         falling_parts(level, scene),
         idle_items(scene),
         motors_in_vain(level, scene),
+        hydraulics_at_another_length(level, scene),
         unknown_looks(level),
         overlapping_particles(scene),
         crossing_bodies(level, scene),

@@ -1,5 +1,6 @@
 """The form of a check: what is measured, of what, its bounds, when, and the keys that are held meanwhile."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -85,11 +86,22 @@ def _hold_properties(document: Document, check: CheckDef, index: int) -> list[Pr
 
 
 def add_check(document: Document) -> Document:
-    """Add a check that holds of every sound level. Raises EditError where it has too many."""
+    """Add a check: of how far right what is selected comes, or else that nothing breaks. Raises EditError.
+
+    It holds of a level in which nothing moves or breaks.
+    """
     taken = {check.name for check in document.level.checks}
     number = next(k for k in range(1, len(taken) + 2) if f"check {k}" not in taken)
-    check = CheckDef(name=f"check {number}", metric="non_finite", at_most=0.0)
-    return set_checks(document, [*document.level.checks, check])
+    name, level = f"check {number}", document.level
+    bodies, loose = chosen_bodies(level, document.selection), chosen_particles(level, document.selection)
+    if bodies:
+        x = float(expansion(bodies[0]).position[:, 0].mean())
+        check = CheckDef(name=name, metric="x", body=bodies[0].id, at_least=float(math.floor(x)))
+    elif loose:
+        check = CheckDef(name=name, metric="x", particle=loose[0].id, at_least=float(math.floor(loose[0].position[0])))
+    else:
+        check = CheckDef(name=name, metric="broken_springs", at_most=0.0)
+    return set_checks(document, [*level.checks, check])
 
 
 def delete_check(document: Document, index: int) -> Document:

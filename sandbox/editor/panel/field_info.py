@@ -1,5 +1,6 @@
 """fields_of(): what the models of the level format declare of each field, for people who edit it."""
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal, get_args
@@ -44,6 +45,9 @@ _OWN_KINDS: dict[str, Kind] = {
     "follow": "thing", "always": "list", "eventually": "list",
     "line": "choice", "ball": "choice", "colour": "colour", "panel": "colour",
 }  # fmt: skip
+# What is chosen from a menu, which has no room to be empty and no need for words on names in a file.
+_MENUS = ("choice", "colour", "material", "touches", "thing", "yes_no")
+_OF_FILES = re.compile(r": a name of an? \w+\.")
 # Names to choose from that the format takes as text, since one that it does not know counts as automatic.
 _NAMES = {"skin": SKINS, "line": LINES, "ball": BALLS, "colour": tuple(PALETTE), "panel": tuple(PALETTE)}
 _TITLES = {
@@ -62,6 +66,7 @@ _TITLES = {
     "touches_mount": "Touches mount",
     "licence": "Licence",
     "warm_start": "Warm start",
+    "restitution": "Bounce",
 }
 
 
@@ -132,7 +137,11 @@ def _about(name: str, schema: dict[str, Any], part: type[BaseModel] | None) -> F
         empty=schema.get("empty", ""),
         model=part,
     )
-    return FieldInfo(**{**about.__dict__, "tooltip": _tooltip(about, described(schema, "Empty").replace("`", ""))})
+    is_menu = kind in _MENUS
+    text = described(schema, "If nothing is chosen" if is_menu else "Empty").replace("`", "")
+    if is_menu:
+        text = _OF_FILES.sub(".", text)
+    return FieldInfo(**{**about.__dict__, "tooltip": _tooltip(about, text)})
 
 
 def _choices(name: str, kind: Kind, value: dict[str, Any]) -> tuple[str, ...]:

@@ -11,10 +11,10 @@ from sandbox.editor.document import Document, EditError, first_fault
 from sandbox.editor.edits.fields import set_level_field, set_setting
 from sandbox.editor.edits.materials import set_material
 from sandbox.editor.panel.extra_values import extras_properties
-from sandbox.editor.panel.field_info import fields_of
+from sandbox.editor.panel.field_info import FieldInfo, fields_of
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
-from sandbox.level.document.model import Level, Material, MaterialDef, NissenMaterial, Settings
+from sandbox.level.document.model import ContactsDef, Level, Material, MaterialDef, NissenMaterial, Settings
 from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import replaced
 from sandbox.level.rules.hands import BudgetDef, HandsDef
@@ -38,7 +38,7 @@ def level_properties(document: Document) -> tuple[Section, ...]:
     return (
         Section("Level", (*of_level, *_object(document, "look"), *_hands(document))),
         Section("Time and solver", tuple(settings)),
-        Section("Contacts", tuple(_object(document, "contacts") + _object(document, "walls"))),
+        Section("Contacts", tuple(_contacts(document) + _object(document, "walls"))),
         Section("Other", tuple(extras_properties(about["extras"], [level.extras], _change_extras))),
     )
 
@@ -57,6 +57,24 @@ def _object(document: Document, name: str) -> list[Property]:
         return change(document, lambda old: _FIRST[name](document) if old is None else old)
 
     return part_properties(name, fields_of(Level)[name], [getattr(document.level, name)], change, add)
+
+
+def _contacts(document: Document) -> list[Property]:
+    """Properties of contacts: where ground or walls alone make things touch, the numbers that are in force."""
+    level = document.level
+    if level.contacts is not None or not level.has_contacts:
+        return _object(document, "contacts")
+
+    def write(field: str, document: Document, value: Any) -> Document:
+        return set_level_field(document, "contacts", {field: value})
+
+    usual = ContactsDef()
+    about = FieldInfo("text", fields_of(Level)["contacts"].title, tooltip="Ground and walls make things touch.")
+    numbers = fields_of(ContactsDef).items()
+    return [
+        Property("contacts", about, "on: there is ground" if level.terrain else "on: there are walls"),
+        *(Property(f"contacts.{name}", each, getattr(usual, name), partial(write, name)) for name, each in numbers),
+    ]
 
 
 def _hands(document: Document) -> list[Property]:
@@ -97,7 +115,9 @@ def look_properties(name: str, material: Material) -> list[Property]:
     def add(document: Document) -> Document:
         return change(document, lambda old: {} if old is None else old.__dict__)
 
-    return part_properties("look", fields_of(MaterialDef)["look"], [material.look], change, add)
+    found = part_properties("look", fields_of(MaterialDef)["look"], [material.look], change, add)
+    # Corners of a window are particles, of which a material has none.
+    return [each for each in found if each.field != "look.window"]
 
 
 def _first_walls(document: Document) -> dict[str, Any]:

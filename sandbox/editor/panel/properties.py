@@ -175,6 +175,8 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: F
         states = {choice: same(choice in chosen for chosen in lists) for choice in about.choices}
         return [Property(name, about, states, partial(_set_flags, selection, name, about.choices))]
     value = same([part.__dict__[name] for part in parts])
+    if name == "rest_length":
+        about = _told_start(about, parts)
     if about.kind == "extras":
         return extras_properties(about, [part.extras for part in parts], partial(_change_extras, selection))
 
@@ -182,6 +184,15 @@ def _made(selection: Selection, parts: Sequence[Definition], name: str, about: F
         return set_field(document, selection, name, value)
 
     return [Property(name, about, value, write)]
+
+
+def _told_start(about: FieldInfo, parts: Sequence[Definition]) -> FieldInfo:
+    """A rest length that says what a hydraulic begins at where it has none."""
+    shortest = {part.hydraulic.shortest for part in parts if isinstance(part, SpringDef) and part.hydraulic is not None}
+    if not shortest:
+        return about
+    each = number_text(shortest.pop()) if len(shortest) == 1 else "of each"
+    return replace(about, empty=f"shortest: {each}")
 
 
 def _change_extras(

@@ -64,6 +64,14 @@ class LevelFile:
             raise
 
     @classmethod
+    def to_come(cls, path: str | os.PathLike[str], folder: Path | None = None) -> "LevelFile":
+        """A file that is written once the level is saved. Raises LevelInUse."""
+        wanted = cls(folder)
+        wanted._lock = wanted._locked(Path(path))
+        wanted.path = Path(path)
+        return wanted
+
+    @classmethod
     def copy_of(cls, path: str | os.PathLike[str], folder: Path | None = None) -> tuple["LevelFile", Level]:
         """Open a level as a copy that has no file yet. Raises LevelError where it cannot be read."""
         source = os.fspath(path)

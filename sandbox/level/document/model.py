@@ -410,7 +410,13 @@ class Level(Description):
     def _known(cls, version: int) -> int:
         if version == VERSION:
             return version
-        raise ValueError(f"this program reads version {VERSION} of the format")
+        raise ValueError(version_fault(version))
+
+
+def version_fault(version: int) -> str:
+    """What is wrong with a level of another version than the present one."""
+    known = f"this program reads version {VERSION} of the format"
+    return f"made by a newer program; {known}, update it" if version > VERSION else known
 
 
 def keys_of(model: type[BaseModel]) -> list[str]:

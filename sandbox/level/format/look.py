@@ -57,7 +57,7 @@ class LevelLook(Description):
     material: Name | None = Field(
         default=None,
         description="Material that the panel shows first.",
-        json_schema_extra=empty("the one of most springs"),
+        json_schema_extra=empty("of most springs"),
     )
     follow: Id | None = Field(
         default=None,

@@ -10,7 +10,15 @@ from pydantic import ValidationError
 
 from sandbox.level.checks import CheckDef
 from sandbox.level.document.messages import place, worded
-from sandbox.level.document.model import LEVEL_KEYS, Level, ParticleDef, SpringDef, TerrainDef, ZoneDef
+from sandbox.level.document.model import (
+    LEVEL_KEYS,
+    Level,
+    ParticleDef,
+    SpringDef,
+    TerrainDef,
+    ZoneDef,
+    version_fault,
+)
 from sandbox.level.faults.validate import level_faults
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import FAULT_LIMIT, FILE_LIMIT, FORMAT, VERSION
@@ -120,7 +128,7 @@ def _of_this_version(raw: dict[str, Any], faults: list[Fault]) -> dict[str, Any]
         return None
     if raw["version"] == VERSION:
         return raw
-    faults.append(("version", f"{shown(version)}: this program reads version {VERSION} of the format"))
+    faults.append(("version", f"{shown(version)}: {version_fault(version)}"))
     return None
 
 

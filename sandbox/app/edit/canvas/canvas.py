@@ -20,11 +20,11 @@ from sandbox.app.draw.colours import (
     PINNED,
     WELD,
     Colour,
-    material_colours,
     mixed,
     packed,
 )
 from sandbox.app.draw.lines import Canvas
+from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.draw.renderer import (
     CROWDED,
     DENSITY,
@@ -260,7 +260,7 @@ class ScenePainter:
 
     def _colours(self, part: Part) -> NDArray[np.int64]:
         """Colours (materials,) of the springs."""
-        by_name = material_colours(part.scene.materials)
+        by_name = material_colours(part.scene.level.materials)
         share = GHOST_SHARE if part.ghost else 0.0
         return np.array([packed(mixed(by_name[name], BACKGROUND, share)) for name in part.scene.materials])
 

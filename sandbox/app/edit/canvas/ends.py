@@ -12,6 +12,7 @@ from sandbox.app.edit.canvas.overlay import CORNER, draw_corner
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_field
 from sandbox.editor.edits.placing import unweld, weld
+from sandbox.editor.held_joins import Held
 from sandbox.editor.items import Item, chosen_bodies
 
 # Fields of a body that has ends.
@@ -66,11 +67,14 @@ class EndMoving(Placing):
         return set_field(document, frozenset({self._item}), self._field, self._snap.point)
 
     def _changed(self, document: Document) -> Document:
-        own = f"{self._item.key}.{self._field}"
+        own, joined = f"{self._item.key}.{self._field}", document.level.welds
         with contextlib.suppress(EditError):  # it may be joined to nothing
             document = unweld(document, own)
+        gone = tuple(pair for pair in joined if pair not in document.level.welds)
         document = self._placed(document)
         if self._snap.name is None:
+            if gone:
+                self._screen.say(Held(document, gone).notice)
             return document
         try:
             return weld(document, self._snap.name, own)

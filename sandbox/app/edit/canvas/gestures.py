@@ -15,8 +15,10 @@ from sandbox.app.edit.canvas.handles import Handles, Scaling, Turn
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.copying import duplicate
 from sandbox.editor.edits.moving import move, rotate, scale
+from sandbox.editor.edits.names import owner_of
 from sandbox.editor.edits.placing import weld
-from sandbox.editor.items import Selection
+from sandbox.editor.held_joins import with_joins_held
+from sandbox.editor.items import Selection, definitions, items_of
 from sandbox.editor.pick import Mode, combined, items_in_box, items_in_lasso
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap, snap
 
@@ -78,6 +80,10 @@ class Moving(_Matrix):
         self._taken = snap(screen.scene, start, screen.reach, skip=others)
         self._anchor = self._taken.point
         self._by = (0.0, 0.0)
+        self._held: Document | None = None
+        chosen = {str(item.key) for item in screen.document.selection if item.kind != "spring"}
+        owners = [{owner_of(name) in chosen for name in pair} for pair in screen.document.level.welds]
+        self._crosses = any(len(sides) == 2 for sides in owners)
 
     @property
     def measure(self) -> str:
@@ -95,7 +101,27 @@ class Moving(_Matrix):
             self._snap = replace(self._snap, point=(self._anchor[0] + self._by[0], self._anchor[1] + self._by[1]))
         else:
             self._by = (self._snap.point[0] - self._anchor[0], self._snap.point[1] - self._anchor[1])
-        self.transform = np.array([[1.0, 0.0, self._by[0]], [0.0, 1.0, self._by[1]]])
+        self._held = self._with_joins() if self._crosses else None
+        self.transform = (
+            None if self._held is not None else np.array([[1.0, 0.0, self._by[0]], [0.0, 1.0, self._by[1]]])
+        )
+
+    def _with_joins(self) -> Document | None:
+        """The document as it would be where joins change more than the selection, with all that moves selected."""
+        before = self._screen.document
+        try:
+            moved = move(before, *self._by)
+            held = with_joins_held(before.level, moved).document.level
+        except EditError:
+            return None
+        if held is moved.level:
+            return None
+        pairs = zip(items_of(held), definitions(held), definitions(before.level), strict=True)
+        return Document(held, frozenset(item for item, now, was in pairs if now is not was))
+
+    def ghost(self) -> Document | None:
+        """The document as it would be, where the selection alone cannot show it."""
+        return self._held
 
     def _steps(self, wanted: Point) -> Point:
         """The way in whole steps of the grid, for what is not taken by an end: what stands on the grid stays on it."""
@@ -129,6 +155,8 @@ class Copying(Moving):
 
     def __init__(self, screen: Editing, start: Point) -> None:
         super().__init__(screen, start)
+        # A copy is joined to nothing but itself.
+        self._crosses = False
         self._copy: tuple[Point, Document | None] = ((0.0, 0.0), None)
 
     @property

@@ -57,15 +57,19 @@ class Turn:
 
 
 class Handles:
-    """The handles of a box [m] as a camera shows it; uneven: whether its sides can be scaled apart."""
+    """The handles of a box [m] as a camera shows it; uneven: whether its sides can be scaled apart.
 
-    def __init__(self, box: Box, camera: Camera, scale: float, uneven: bool) -> None:
+    is_line: whether it is about a line from end to end, which its ends alone make longer.
+    """
+
+    def __init__(self, box: Box, camera: Camera, scale: float, uneven: bool, is_line: bool = False) -> None:
         self.box, self._camera, self._scale = box, camera, scale
         left, bottom, right, top = box
         (x0, y0), (x1, y1) = camera.to_pixels((left, top)), camera.to_pixels((right, bottom))
         pad = PADDING * scale
         self.frame = (x0 - pad, y0 - pad, x1 + pad, y1 + pad)
-        names = [name for name, (x, y) in SIDES.items() if self._fits(x, y) and (uneven or (x and y))]
+        sides = {} if is_line else SIDES
+        names = [name for name, (x, y) in sides.items() if self._fits(x, y) and (uneven or (x and y))]
         self.places = {name: self._place(*SIDES[name]) for name in names}
         self.knob = ((self.frame[0] + self.frame[2]) / 2, self.frame[1] - KNOB * scale)
 

@@ -17,11 +17,12 @@ from sandbox.app.edit.canvas.overlay import draw_outline
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.grouping import groups_of, taken_groups, with_groups
 from sandbox.editor.edits.terrain import corners_of, delete_corner, move_corner, piece_of
-from sandbox.editor.items import Item, Selection, keys
+from sandbox.editor.items import Item, Selection, chosen_bodies, keys
 from sandbox.editor.pick import Mode, combined, edge_at, item_at
 from sandbox.editor.tools.drawing_tool import Drawing
 from sandbox.editor.tools.snap import PLACE_DECIMALS, Snap
 from sandbox.level.document.model import Level
+from sandbox.level.kinds.rope import RopeDef
 
 # A drag shorter than this is a click [layout units].
 CLICK_REACH = 4.0
@@ -155,7 +156,9 @@ class SelectTool:
         box = screen.selection_box
         if box is None or len(keys(selection, "spring")) == len(selection):
             return None
-        return Handles(box, screen.camera, screen.scale, screen.scales_unevenly)
+        bodies = chosen_bodies(screen.document.level, selection) if len(selection) == 1 else []
+        is_line = any(isinstance(body, RopeDef) and body.pose is None for body in bodies)
+        return Handles(box, screen.camera, screen.scale, screen.scales_unevenly, is_line)
 
     def down(self, point: Point, modifiers: int, clicks: int) -> None:
         """Take a handle or an item at a point [m], or begin a box there."""

@@ -11,7 +11,8 @@ from sandbox.app.base.desktop import copied_text, copy_text
 from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import action_of, tip_of
 from sandbox.app.contracts.editing import Editing
-from sandbox.app.draw.colours import MUTED, material_colours
+from sandbox.app.draw.colours import MUTED
+from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.draw.themes import rgb_of
 from sandbox.app.play.drive_keys import code_of
 from sandbox.app.widgets.boxes import CheckBox, KeyBox, Scrub
@@ -160,6 +161,7 @@ class Form:
             about.title,
             about.unit,
             about.choices,
+            about.empty,
             each.axes,
             lines,
             self._is_long(each),

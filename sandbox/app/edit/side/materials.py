@@ -10,7 +10,7 @@ import pygame
 
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
-from sandbox.app.draw.colours import material_colours
+from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead
 from sandbox.app.edit.side.side_page import SidePage
@@ -47,9 +47,11 @@ LAWS = (
 class MaterialsPage(SidePage):
     """Materials as swatches; below, what the chosen one is made of."""
 
+    follows_selection = True
+
     def __init__(self, screen: Editing, place: pygame.Rect, container: Any) -> None:
         self._screen, self._ui = screen, screen.ui
-        self.chosen = _of_selection(screen.document)
+        self.chosen: str = _of_selection(screen.document)
         self.fields: dict[str, Field] = {}
         self.sliders: dict[str, Slider] = {}
         self._made_for: tuple[object, ...] = ()

@@ -8,7 +8,8 @@ import pygame
 
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
-from sandbox.app.draw.colours import DISABLED, TEXT, material_colours
+from sandbox.app.draw.colours import DISABLED, TEXT
+from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import ask
@@ -73,7 +74,7 @@ class ObjectsPage(SidePage):
     def _show(self, wanted: str) -> None:
         screen, level = self._screen, self._screen.document.level
         self.lines = object_lines(level, wanted)
-        colours = material_colours(screen.scene.materials)
+        colours = material_colours(screen.scene.level.materials)
         rows = [self._row(line, colours) for line in self.lines[:LISTED]]
         if len(self.lines) > LISTED:
             rows.append(Row(f"{len(self.lines) - LISTED:,} more: find them by words", colour=DISABLED))

@@ -10,7 +10,7 @@ import pygame
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.draw.camera import Point
-from sandbox.app.draw.colours import material_colours
+from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
 from sandbox.app.widgets.field import Field
 from sandbox.app.widgets.picker import Picker
@@ -217,7 +217,7 @@ class OptionsRow:
         for name, button in self.flags.items():
             button.is_selected = getattr(options, name)
         for name, picker in self.menus.items():
-            colours = material_colours(self._screen.scene.materials)
+            colours = material_colours(self._screen.scene.level.materials)
             rows = tuple(Row(material, swatch=colour) for material, colour in colours.items())
             picker.show_value(rows, Row(getattr(options, name), swatch=colours[getattr(options, name)]))
 

@@ -104,6 +104,9 @@ class Side:
         make = UNLISTED[self.tab] if self.tab in UNLISTED else PAGES[self.tab][2]
         self._holder = self._ui.area(self._place, self.back)
         page = make(self._screen, pygame.Rect((0, 0), self._place.size), self._holder)
+        selection, chosen = self._screen.chosen_on_pages.get(self.tab, (frozenset(), None))
+        if chosen is not None and (not page.follows_selection or selection == self._screen.document.selection):
+            page.chosen = chosen
         page.refresh()
         return page
 
@@ -111,6 +114,8 @@ class Side:
         if self._ui.typing:
             # What is being typed counts.
             self._ui.blur()
+        if self.page.chosen is not None:
+            self._screen.chosen_on_pages[self.tab] = self._screen.document.selection, self.page.chosen
         self.page.close()
         self._holder.remove()
 
