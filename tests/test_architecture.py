@@ -30,7 +30,7 @@ BOTH_WAYS: dict[str, list[tuple[str, str]]] = {"physics": [], "level": []}
 LIBRARIES = {
     "physics": {"numpy", "platformdirs", "filelock"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
-    "bring": {"numpy", "shapely", "svgelements", "defusedxml", "contourpy", "PIL"},
+    "bring": {"numpy", "pydantic", "shapely", "svgelements", "defusedxml", "contourpy", "PIL"},
     "export": {"numpy", "pydantic"},
     "session": {"numpy", "pydantic", "filelock", "distributed"},
     "page": {"numpy"},

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from sandbox.bring.shapes import Region, polygons_of
 from sandbox.bring.sketch import LeftOut
+from sandbox.level.format.limits import CORNER_LIMIT, POLYGON_WORK_LIMIT
 from sandbox.level.format.look import BodyLook
-from sandbox.level.format.quantities import replaced, significant
+from sandbox.level.format.quantities import significant
+from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.fitting import ROW, fitting_spacing
 from sandbox.level.kinds.jelly import JellyDef, PolygonShape
@@ -17,7 +19,9 @@ from sandbox.level.kinds.polygon import is_simple, loops_touch
 if TYPE_CHECKING:
     from shapely import Polygon
 
-BODY_LIMIT = 100
+BODY_LIMIT = 60
+# Corners of all jellies, and the work of their meshes, of what a level may have.
+MOST_CORNERS, MOST_WORK = CORNER_LIMIT - 500, POLYGON_WORK_LIMIT // 2
 # Particles of all jellies, of one, and at least.
 ALL_PARTICLES, MOST_PARTICLES, FEWEST_PARTICLES = 1_600, 500, 24
 # A mesh may have so many times the particles that its area asks for, where its outline is fine.
@@ -49,21 +53,27 @@ def jellies(shapes: Sequence[Region], names: Sequence[str], left_out: LeftOut, m
     if len(kept) < len(shapes):
         left_out.add(f"outline that is smaller than the {BODY_LIMIT} largest", len(shapes) - len(kept))
     spacing = common_spacing([shape.polygon.area for shape in kept])
-    made = []
+    made: list[JellyDef] = []
+    corners = work = 0
     for shape, name in zip(kept, names, strict=False):
         body = jelly(shape, name, spacing, making)
         if body is None:
             left_out.add("outline too fine for a mesh")
-        else:
-            made.append(body)
+            continue
+        more, harder = expansion(body).polygon_work
+        if corners + more > MOST_CORNERS or work + harder > MOST_WORK:
+            left_out.add("outline too much for one level")
+            continue
+        corners, work = corners + more, work + harder
+        made.append(body)
     return made
 
 
-def common_spacing(areas: Sequence[float]) -> float:
-    """The spacing [m] at which jellies of these areas [m^2] have as many particles as they may."""
+def common_spacing(areas: Sequence[float], particles: int = ALL_PARTICLES) -> float:
+    """The spacing [m] at which jellies of these areas [m^2] have that many particles, and none too many."""
     if not areas:
         return 1.0
-    return math.sqrt(max(sum(areas) / ALL_PARTICLES, max(areas) / MOST_PARTICLES) / ROW)
+    return math.sqrt(max(sum(areas) / particles, max(areas) / MOST_PARTICLES) / ROW)
 
 
 def jelly(shape: Region, name: str, spacing: float, making: Making) -> JellyDef | None:
@@ -127,8 +137,3 @@ def _is_sound(outline: Loop, holes: tuple[Loop, ...]) -> bool:
     if any(len(loop) < 3 or len(loop) > 1_000 or not is_simple(loop) for loop in loops):
         return False
     return sum(map(len, loops)) <= 2_000 and not loops_touch(loops)
-
-
-def moved(body: JellyDef, dx: float, dy: float) -> JellyDef:
-    """A jelly moved by dx, dy [m]."""
-    return replaced(body, position=(body.position[0] + dx, body.position[1] + dy))

@@ -4,16 +4,21 @@ import importlib.util
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
 
 from sandbox.bring.making import level_of_drawing, tidy
 from sandbox.bring.picture import read_picture
 from sandbox.bring.rube import level_of_rube
-from sandbox.bring.sketch import Kind, Sketch, Unreadable, check_points
+from sandbox.bring.sketch import Kind, LeftOut, Sketch, Unreadable, check_points
 from sandbox.bring.svg import read_svg
 from sandbox.bring.tiled import read_tiled
 from sandbox.bring.tiled_xml import map_data, tileset_data
 from sandbox.bring.values import Object
 from sandbox.bring.xml_tree import local_name, xml_tree
+from sandbox.level.document.messages import worded
 from sandbox.level.document.model import Level
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.foreign import BROUGHT, PNG, RUBE, SVG, TILED_XML, foreign_bytes, foreign_keys
@@ -81,21 +86,32 @@ def bring(path: str | os.PathLike[str], kind: Kind | None = None, width: float |
     if name not in BROUGHT:
         said = f"is {name}" if name else "is nothing that is known here"
         raise LevelError(source, [("", f"{said}; SVG, PNG, Tiled maps and R.U.B.E. scenes (JSON) come in")])
-    title = tidy(Path(source).stem) or "Brought in"
     try:
-        if name == RUBE:
-            assert raw is not None
-            level, left_out = level_of_rube(raw, kind, width, title)
-        else:
-            drawing = _drawing(name, data, raw, Path(source).parent)
-            check_points(drawing)
-            level, left_out = level_of_drawing(drawing, kind or drawing.usual, width, title), drawing.left_out
+        # Numbers beyond all bounds are found where they have come to.
+        with np.errstate(all="ignore"):
+            level, left_out = _level(name, data, raw, source, kind, width)
         check_level(level, source)
     except Unreadable as error:
         raise LevelError(source, [("", str(error))]) from None
+    except ValidationError as error:
+        errors: list[Any] = error.errors(include_url=False)
+        place, text = next(worded(errors))
+        raise LevelError(source, [("", f"holds a value that no level may have: {place}: {text}")]) from None
     except (MemoryError, RecursionError):
         raise LevelError(source, [("", "is too large or too deep to be read")]) from None
     return Brought(level, left_out.words())
+
+
+def _level(
+    name: str, data: bytes, raw: Object | None, source: str, kind: Kind | None, width: float | None
+) -> tuple[Level, LeftOut]:
+    title = tidy(Path(source).stem) or "Brought in"
+    if name == RUBE:
+        assert raw is not None
+        return level_of_rube(raw, kind, width, title)
+    drawing = _drawing(name, data, raw, Path(source).parent)
+    check_points(drawing)
+    return level_of_drawing(drawing, kind or drawing.usual, width, title), drawing.left_out
 
 
 def _recognised(data: bytes, source: str) -> tuple[str | None, Object | None]:

@@ -20,6 +20,8 @@ LARGEST = 10_000.0
 # Corners of all ground: as many as a level holds, with some left for what is drawn beside it.
 GROUND_CORNERS = 3_000
 PIECES = TERRAIN_LIMIT - 100
+# Regions that become ground: boxes alone bring no more corners than these.
+REGIONS = 700
 # How far ground is simplified first and how much more at each try, of its size; nothing is seen of the first.
 GROUND_TOLERANCE, COARSER, TRIES = 1.0 / 1500.0, 1.6, 12
 # Lines thinner than this, of the drawing's size, are no jelly.
@@ -135,6 +137,9 @@ def ground_of(shapes: Sequence[Region], lines: Sequence[OpenLine], base: str, le
     size = _size(shapes, lines)
     tolerance = GROUND_TOLERANCE * size
     pieces: list[tuple[str, str, list[tuple[float, float]]]] = []
+    if len(shapes) > REGIONS:
+        left_out.add(f"outline that is smaller than the {REGIONS} largest", len(shapes) - REGIONS)
+        shapes = shapes[:REGIONS]
     for _ in range(TRIES):
         pieces, lost = [], 0
         least = (2.0 * tolerance) ** 2

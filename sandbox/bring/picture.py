@@ -31,7 +31,8 @@ def read_picture(data: bytes) -> Sketch:
     kept = [rings for rings in pieces if abs(_area(rings[0])) >= SMALLEST][:PIECE_LIMIT]
     if len(kept) < len(pieces):
         drawing.left_out.add("speck", len(pieces) - len(kept))
-    for rings in kept or pieces[:1]:
+    for outer, *holes in kept or pieces[:1]:
+        rings = [outer, *(hole for hole in holes if abs(_area(hole)) >= SMALLEST)]
         mean = _mean_colour(colours, alpha, rings)
         height = alpha.shape[0]
         drawing.outlines.append(FilledShape(tuple(_upright(ring, height) for ring in rings), "evenodd", mean))

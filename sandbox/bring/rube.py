@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sandbox.bring.bodies import BODY_LIMIT, DENSITY, Making, common_spacing, jelly
 from sandbox.bring.joints import JoinedBodies, Joint, joined, let_pass
-from sandbox.bring.making import check_found, free_name, ground_of
+from sandbox.bring.making import LARGEST, check_found, free_name, ground_of
 from sandbox.bring.shapes import Region, solid_shapes
 from sandbox.bring.sketch import FilledShape, Kind, LeftOut, OpenLine, Ring, Sketch, Unreadable, check_points
 from sandbox.bring.values import Object, number, objects, text, whole
@@ -24,8 +24,11 @@ STATIC, KINEMATIC, DYNAMIC = 0, 1, 2
 RIGID = FirmnessDef(sag=0.0)
 # Bodies and fixtures of a scene.
 SCENE_LIMIT = 2_000
-# Rings of a disc, and corners of a circle of ground.
-DISC_RINGS, ROUND = 3, 32
+MOVING_LIMIT = 300
+# Particles of all that moves, but for small bodies: what is stiff needs few.
+STIFF_PARTICLES = 600
+# Rings of a disc (one of fewer stops at its corners), and corners of a circle of ground.
+DISC_RINGS, ROUND = 4, 32
 FRICTION_LIMIT = 100.0
 GROUND, JELLY = "ground", "jelly"
 
@@ -61,17 +64,24 @@ def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: s
     bodies = [_body(each, left_out) for each in _some(scene, "body")]
     scale = _scale(bodies, width)
     bodies = [_scaled(body, scale) for body in bodies]
+    places = [ring for body in bodies for outline in body.outlines for ring in outline.rings]
+    if any(
+        np.max(np.abs(ring)) > LARGEST for ring in [*places, *(line.points for body in bodies for line in body.lines)]
+    ):
+        raise Unreadable(f"has places beyond {LARGEST:,.0f} m; give it a smaller width")
     taken: set[str] = set()
     owners: list[list[BodyDef]] = [[] for _ in bodies]
     terrain: list[TerrainDef] = []
-    spacing = common_spacing([_area(body) for body in bodies if body.kind == DYNAMIC and kind != GROUND])
+    spacing = common_spacing(
+        [_area(body) for body in bodies if body.kind == DYNAMIC and kind != GROUND], STIFF_PARTICLES
+    )
     for index, body in enumerate(bodies):
         if kind == JELLY or (kind is None and body.kind == DYNAMIC and not _is_chain(body)):
             owners[index] = _jellies(body, name, spacing, taken, left_out)
         else:
             terrain += _terrain(body, name, taken, left_out)
-    if sum(map(len, owners)) > 4 * BODY_LIMIT:
-        raise Unreadable(f"has more than {4 * BODY_LIMIT} bodies that move; make it smaller")
+    if sum(map(len, owners)) > MOVING_LIMIT:
+        raise Unreadable(f"has more than {MOVING_LIMIT} bodies that move; make it smaller")
     found = JoinedBodies([body for made in owners for body in made], taken)
     for joint in _joints(scene, bodies, scale, left_out):
         one, other = (owners[index][0] if owners[index] else None for index in joint.bodies)

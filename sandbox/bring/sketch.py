@@ -15,6 +15,8 @@ Kind = Literal["jelly", "ground"]
 
 # Points of all outlines and lines; reading and uniting them takes time in proportion to these.
 POINT_LIMIT = 40_000
+# Points of one outline or line: simplifying it goes as deep into itself as it has points.
+RING_LIMIT = 20_000
 # Farthest point from [0, 0] in units of the file.
 PLACE_LIMIT = 1e9
 
@@ -112,6 +114,8 @@ def check_points(drawing: Sketch) -> None:
     total = 0
     for ring in drawing.points():
         total += len(ring)
+        if len(ring) > RING_LIMIT:
+            raise Unreadable(f"has an outline of more than {RING_LIMIT:,} points; simplify it")
         if not np.all(np.abs(ring) <= PLACE_LIMIT):
             raise Unreadable(f"has places beyond {PLACE_LIMIT:,.0f}; draw it nearer to its origin")
     if total > 10 * POINT_LIMIT:

@@ -51,9 +51,8 @@ def read_svg(data: bytes) -> Sketch:
     if local_name(root) != "svg":
         raise Unreadable("is XML, but no SVG drawing")
     reader = _Reader(root)
-    with np.errstate(all="ignore"):
-        reader.read(root, np.eye(3), Style(), 0, "")
-        reader.take_background()
+    reader.read(root, np.eye(3), Style(), 0, "")
+    reader.take_background()
     return reader.drawing
 
 

@@ -11,8 +11,8 @@ from sandbox.bring.xml_tree import local_name
 
 # Points of a curve, and of a whole turn of an arc.
 CURVE_POINTS, TURN_POINTS = 14, 48
-# Characters of all paths of a drawing: reading them takes seconds for each million.
-PATH_LIMIT = 2_000_000
+# Characters of all paths of a drawing: reading a million of them takes five seconds.
+PATH_LIMIT = 1_000_000
 SHAPES = ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")
 
 _T = np.linspace(0.0, 1.0, CURVE_POINTS + 1)[1:, None]

@@ -27,6 +27,8 @@ SOLID_LAYER = re.compile(
 )
 # A layer that fills this share of its map is a background.
 BACKGROUND = 0.95
+# Shapes of a map, tiles that lie together counted as one.
+BLOCK_LIMIT = 10_000
 _AXES = np.array([1.0, -1.0])
 
 
@@ -194,7 +196,7 @@ class _Map:
         numbers = cells & NUMBER
         shaped = np.isin(numbers, np.fromiter(self._tiles.shapes, np.int64, len(self._tiles.shapes)))
         solid = np.isin(numbers, np.fromiter(self._tiles.solid, np.int64, len(self._tiles.solid))) & ~shaped
-        if marked or (not shaped.any() and not solid.any() and SOLID_LAYER.search(name)):
+        if marked or (not solid.any() and SOLID_LAYER.search(name)):
             solid = (cells != 0) & ~shaped
         self._take_blocks(solid, corner, offset)
         width, height = self._tile
@@ -212,6 +214,8 @@ class _Map:
     def _take_blocks(self, solid: NDArray[np.bool_], corner: tuple[int, int], offset: tuple[float, float]) -> None:
         width, height = self._tile
         for left, top, right, bottom in _blocks(solid):
+            if len(self.drawing.outlines) >= BLOCK_LIMIT:
+                raise Unreadable(f"has solid tiles in more than {BLOCK_LIMIT:,} blocks; make it smaller")
             x0, x1 = ((corner[0] + k) * width + offset[0] for k in (left, right))
             y0, y1 = ((corner[1] + k) * height + offset[1] for k in (top, bottom))
             ring = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]) * _AXES

@@ -31,7 +31,7 @@ def xml_tree(data: bytes) -> Element:
         raise Unreadable("declares entities of XML; save it without them, as plain XML") from None
     except ParseError as error:
         line, column = error.position
-        raise Unreadable(f"line {line}, column {column + 1}: not XML: {error.msg.partition(':')[0]}") from None
+        raise Unreadable(f"line {line}, column {column + 1}: not XML: {str(error).partition(':')[0]}") from None
     except (LookupError, ValueError) as error:
         if isinstance(error, Unreadable):
             raise
