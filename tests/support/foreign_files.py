@@ -67,7 +67,8 @@ TMX = f"""<?xml version="1.0"?>
 <map version="1.10" orientation="orthogonal" width="5" height="3" tilewidth="16" tileheight="16" infinite="0">
 <tileset firstgid="1" name="t" tilewidth="16" tileheight="16"><tile id="1"><objectgroup>
 <object id="1" x="0" y="0"><polygon points="0,16 16,0 16,16"/></object></objectgroup></tile></tileset>
-<layer id="1" name="ground" width="5" height="3"><data encoding="base64" compression="zlib">{packed(CELLS)}</data></layer>
+<layer id="1" name="ground" width="5" height="3"><data encoding="base64" compression="zlib">
+{packed(CELLS)}</data></layer>
 <objectgroup id="2" name="collision"><object id="1" name="ball" x="0" y="0" width="8" height="8"><ellipse/></object>
 <object id="2" name="wire" x="20" y="4"><polyline points="0,0 30,4"/></object>
 <object id="3" name="spawn" x="3" y="3"><point/></object></objectgroup>
@@ -79,7 +80,7 @@ def _box(x, y):
 
 
 def rube(**changes):
-    """A pendulum of two bars that hangs from the ground, a disc, a weld of two boxes, and a joint without counterpart."""
+    """A pendulum of two bars that hangs from the ground, a disc, a weld of two boxes, a joint without counterpart."""
     bodies = [
         {"name": "ground", "type": 0, "position": {"x": 0, "y": -1}, "fixture": [_box(6, 0.5)]},
         {"name": "upper", "type": 2, "position": {"x": 0, "y": 4}, "fixture": [_box(0.15, 0.6)]},
