@@ -78,3 +78,13 @@ def test_what_cannot_come_in_is_said_in_a_line_and_nothing_changes(driver, tmp_p
     assert driver.app.ui.has_sheet
     driver.key(pygame.K_RETURN)
     assert driver.playback is before and not driver.app.ui.has_sheet
+
+
+def test_the_editor_that_is_begun_with_a_drawing_asks_what_it_is_to_become(edit, tmp_path):
+    driver, path = edit(), tmp_path / "a.svg"
+    path.write_bytes(SVG)
+    driver.app.documents.begin(str(path))
+    driver.frames(2)
+    driver.key(pygame.K_RETURN)
+    close_page(driver)
+    assert len(driver.editor.document.level.bodies) == 3
