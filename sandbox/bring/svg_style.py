@@ -41,7 +41,7 @@ def style_sheet(root: Element, left_out: LeftOut) -> Sheet:
             continue
         for count, rule in enumerate(_RULE.finditer(_COMMENT.sub("", element.text))):
             if count > RULE_LIMIT:
-                left_out.add("style rule")
+                left_out.add(f"style sheet too long (its first {RULE_LIMIT:,} rules came in)")
                 break
             for selector in rule[1].split(","):
                 if _SIMPLE.fullmatch(selector.strip()):
