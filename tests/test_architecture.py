@@ -17,7 +17,7 @@ PACKAGE = ROOT / "sandbox"
 # What users import: modules that only pass names on. They stand above the rooms that they take those from.
 PUBLIC = ("commands", "replay", "bodies")
 ROOMS = (
-    "physics", "level", "export", "session", "page", *PUBLIC, "tools", "editor", "app", "testing", "terminal",
+    "physics", "level", "bring", "export", "session", "page", *PUBLIC, "tools", "editor", "app", "testing", "terminal",
     "cli", "__main__",
 )  # fmt: skip
 # Rooms of the window, from the ground up.
@@ -30,6 +30,7 @@ BOTH_WAYS: dict[str, list[tuple[str, str]]] = {"physics": [], "level": []}
 LIBRARIES = {
     "physics": {"numpy", "platformdirs", "filelock"},
     "level": {"numpy", "pydantic", "pydantic_core", "shapely", "mapbox_earcut"},
+    "bring": {"numpy", "pydantic", "shapely", "svgelements", "defusedxml", "contourpy", "PIL"},
     "export": {"numpy", "pydantic"},
     "session": {"numpy", "pydantic", "filelock", "distributed"},
     "page": {"numpy"},
@@ -187,7 +188,7 @@ def test_every_name_of_the_package_itself_can_be_had():
 
 
 def test_physics_level_export_and_session_load_no_pygame():
-    without = ("physics", "level", "export", "session", *PUBLIC, "tools", "editor")
+    without = ("physics", "level", "bring", "export", "session", *PUBLIC, "tools", "editor")
     rooms = [name for name in sources() if room(name) in without]
     loaded = loaded_after(f"import {', '.join(rooms)}")
     assert "sandbox.physics.step" in loaded

@@ -10,6 +10,7 @@ from typing import Any
 from sandbox import __version__
 from sandbox.cli import (
     bisect,
+    bring,
     check,
     diff,
     edit,
@@ -41,7 +42,7 @@ COMMANDS: tuple[Subcommand[Any], ...] = tuple(
     for module in (
         play, toy, run, replay, info, resume, show, check, diff, bisect, shrink, sweep, render, page, site, link,
         take_home, export,
-        format, edit, schema,
+        bring, format, edit, schema,
     )
 )  # fmt: skip
 # What the program does where no command is named.

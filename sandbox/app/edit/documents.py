@@ -11,6 +11,7 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.edit.edit_screen import EditScreen
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import ask, choose, show_lines
+from sandbox.bring.bring import is_brought
 from sandbox.editor.document import UNTITLED, Document, empty_level, new_level
 from sandbox.editor.history import History
 from sandbox.editor.storage.autosave import Autosave, Orphan, orphans
@@ -44,7 +45,9 @@ class DocumentActions:
     def begin(self, name: str) -> None:
         """Edit a level file, also one to come, or a shipped level by its name; "" = an empty sheet, at the start."""
         self.new()
-        if name and os.path.lexists(name):
+        if name and is_brought(name):
+            self.app.files.open_path(name)
+        elif name and os.path.lexists(name):
             self.open(name)
         elif name and _is_to_come(name):
             self._begin_file(Path(name))

@@ -20,6 +20,8 @@ from sandbox.app.contracts.application import Application
 from sandbox.app.gallery.sections import in_sections
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.dialogs import ask
+from sandbox.app.window.bringing import offer_to_bring
+from sandbox.bring.bring import is_brought
 from sandbox.editor.document import UNTITLED
 from sandbox.editor.storage.recent import remember_played
 from sandbox.level.document.model import Level
@@ -50,13 +52,16 @@ class FileActions:
     # Opening.
 
     def open_path(self, path: str | Path) -> bool:
-        """Open a level, a recording or a scene, whichever the file is; True where it could be."""
+        """Open a level, a recording or a scene, or offer to bring in a drawing or map; True where it could be."""
         if Path(path).suffix.lower() == TABLE:
             return self.open_sweep(Path(path))
         try:
             if begins_as_scene(path):
                 return self.open_scene(Path(path))
             is_replay = begins_as_replay(path)
+            if not is_replay and is_brought(path):
+                offer_to_bring(self.app, Path(path))
+                return True
         except OSError as error:
             self._refuse(path, [one_line(f"{path}: cannot be read: {refusal_of(error)}")])
             return False
@@ -140,7 +145,7 @@ class FileActions:
 
     def ask_to_open(self) -> None:
         """Ask for the path of a level or replay, or a shipped level's name."""
-        hint = "A path, or the name of a shipped level. Files can be dropped on the window too."
+        hint = "The path of a file, or the name of a shipped level. Drawings and maps of other programs come in, too."
         ask(self.app.ui, "Open a level or a recording", hint, "", "Open", self._fault_of, then=self._open_typed)
 
     def _fault_of(self, typed: str) -> str | None:

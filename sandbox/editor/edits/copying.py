@@ -49,6 +49,11 @@ def paste(document: Document, text: str, at: Point | None = None) -> Document:
         raise EditError(error.faults[0]) from None
     if not (found.bodies or found.particles or found.terrain or found.zones):
         raise EditError("the copied level is empty")
+    return put_in(document, found, at)
+
+
+def put_in(document: Document, found: Level, at: Point | None = None) -> Document:
+    """Add what another level holds, as `paste` does."""
     box = make_scene(found).bounds()
     if at is not None and box is not None:
         found = shifted(found, at[0] - (box[0] + box[2]) / 2.0, at[1] - (box[1] + box[3]) / 2.0)

@@ -18,7 +18,7 @@ from sandbox.level.document.messages import place, worded
 from sandbox.level.document.model import LEVEL_KEYS, Level
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.early_end import early_end
-from sandbox.level.format.foreign import foreign_bytes, foreign_keys
+from sandbox.level.format.foreign import foreign_bytes, foreign_fault, foreign_keys
 from sandbox.level.format.gc_pause import collector_paused
 from sandbox.level.format.level_error import Fault, LevelError, json_path, shown
 from sandbox.level.format.limits import (
@@ -80,7 +80,7 @@ def _parse(data: bytes, source: str) -> Level:
         raise LevelError(source, [("", f"a level is an object {{...}}; this is {shown(raw)}")])
     kind = None if "format" in raw else foreign_keys(raw)
     if kind:
-        raise LevelError(source, [("", f"is {kind}, not a Spring Sandbox level")])
+        raise LevelError(source, [("", foreign_fault(kind))])
     if raw.get("format", FORMAT) != FORMAT:
         fault = "format", f'{shown(raw["format"])} is not "{FORMAT}"; this is no level'
         raise LevelError(source, [fault])
@@ -136,7 +136,7 @@ def _not_text(data: bytes) -> Fault | None:
         return "", "is empty; a level is a JSON object {...}"
     kind = foreign_bytes(data)
     if kind:
-        return "", f"is {kind}, not a Spring Sandbox level"
+        return "", foreign_fault(kind)
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "line 1", "is UTF-16 text; save it as UTF-8"
     try:

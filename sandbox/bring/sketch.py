@@ -1,0 +1,122 @@
+"""Sketch: what a reader finds in a file, as closed outlines and open lines; y points up."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Ring = NDArray[np.float64]
+Rule = Literal["nonzero", "evenodd"]
+# What can be made of a drawing, in the words of the shell.
+Kind = Literal["jelly", "ground"]
+
+# Points of all outlines and lines; reading and uniting them takes time in proportion to these.
+POINT_LIMIT = 40_000
+# Points of one outline or line: simplifying it goes as deep into itself as it has points.
+RING_LIMIT = 20_000
+# Farthest point from [0, 0] in units of the file.
+PLACE_LIMIT = 1e9
+
+
+class Unreadable(ValueError):
+    """A file that cannot be brought in; its text is one line, to be read after the file's name."""
+
+
+@dataclass(frozen=True)
+class FilledShape:
+    """A filled shape: closed rings (n, 2) and the rule that says what is inside; colour: "#RRGGBB" or None."""
+
+    rings: tuple[Ring, ...]
+    rule: Rule = "nonzero"
+    colour: str | None = None
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class OpenLine:
+    """An open line (n, 2), and how wide it is drawn."""
+
+    points: Ring
+    width: float = 0.0
+    colour: str | None = None
+    name: str = ""
+
+
+@dataclass
+class LeftOut:
+    """What of a file did not come in: how many of what, by names in the singular."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+
+    def add(self, name: str, count: int = 1) -> None:
+        """Count things of a name."""
+        self.counts[name] += count
+
+    def words(self) -> list[str]:
+        """ "3 text elements", "1 gradient": the most frequent first."""
+        return [f"{count:,} {name if count == 1 else plural(name)}" for name, count in self.counts.most_common()]
+
+
+@dataclass
+class Sketch:
+    """Outlines and lines in the file's own unit, and what was left out.
+
+    usual: what a drawing of this kind becomes unless told otherwise. tolerance: how far an outline may be moved without
+    a loss that is seen. metre: what becomes a metre. Both are in the file's unit.
+    """
+
+    usual: Kind
+    outlines: list[FilledShape] = field(default_factory=list)
+    lines: list[OpenLine] = field(default_factory=list)
+    left_out: LeftOut = field(default_factory=LeftOut)
+    tolerance: float = 0.0
+    metre: float | None = None
+
+    def points(self) -> Iterator[Ring]:
+        """All rings and lines."""
+        for outline in self.outlines:
+            yield from outline.rings
+        for line in self.lines:
+            yield line.points
+
+
+def plural(name: str) -> str:
+    """The plural of a name: of its last word before "of", "that" and the like; what stands in brackets stays."""
+    name, bracket, rest = name.partition(" (")
+    words = name.split(" ")
+    stop = next((k for k, word in enumerate(words) if word in _AFTER), len(words))
+    noun = words[stop - 1]
+    ending = "ies" if noun.endswith("y") else "es" if noun.endswith(("s", "h", "x")) else "s"
+    words[stop - 1] = (noun[:-1] if noun.endswith("y") else noun) + ending
+    many = " ".join(words).replace(" that has ", " that have ").replace(" that is ", " that are ")
+    return many + bracket + rest
+
+
+_AFTER = ("of", "that", "without", "too", "in", "with", "for")
+
+
+def bounds(rings: Iterable[Ring]) -> tuple[float, float, float, float] | None:
+    """Left, bottom, right, top of all points; None where there are none."""
+    found = [ring for ring in rings if len(ring)]
+    if not found:
+        return None
+    lows, highs = np.array([ring.min(axis=0) for ring in found]), np.array([ring.max(axis=0) for ring in found])
+    left, bottom = lows.min(axis=0).tolist()
+    right, top = highs.max(axis=0).tolist()
+    return left, bottom, right, top
+
+
+def check_points(drawing: Sketch) -> None:
+    """Raise Unreadable for a drawing of too many points, or of places that no level could hold."""
+    total = 0
+    for ring in drawing.points():
+        total += len(ring)
+        if len(ring) > RING_LIMIT:
+            raise Unreadable(f"has an outline of more than {RING_LIMIT:,} points; simplify it")
+        if not np.all(np.abs(ring) <= PLACE_LIMIT):
+            raise Unreadable(f"has places beyond {PLACE_LIMIT:,.0f}; draw it nearer to its origin")
+    if total > 10 * POINT_LIMIT:
+        raise Unreadable(f"has more than {10 * POINT_LIMIT:,} points; simplify it")

@@ -1,0 +1,285 @@
+"""Reads a Tiled map: shapes of object layers, and tiles that are solid."""
+
+import math
+import re
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sandbox.bring.sketch import POINT_LIMIT, FilledShape, OpenLine, Sketch, Unreadable
+from sandbox.bring.tile_cells import layer_cells
+from sandbox.bring.values import Object, number, objects, text, whole
+
+# Gives the tile set of a file that a map names, or None where it is not there.
+Beside = Callable[[str], Object | None]
+
+LAYER_DEPTH = 8
+# Corners of an ellipse.
+ROUND = 32
+# Bits of a tile's number: mirrored left and right, up and down, along the diagonal; and those of hexagonal maps.
+MIRRORED, UPSIDE, SWAPPED, NUMBER = 0x80000000, 0x40000000, 0x20000000, 0x0FFFFFFF
+# Properties and names of layers that say what is solid, in the words that makers of games use.
+SOLID_PROPERTY = re.compile(r"collides?|collision|solid|blocks?|blocking|wall|impassable", re.IGNORECASE)
+SOLID_LAYER = re.compile(
+    r"collision|collide|solid|wall|(?<!back)(?<!fore)ground|platform|terrain|block|floor|obstacle|world|main",
+    re.IGNORECASE,
+)
+# A layer that fills this share of its map is a background.
+BACKGROUND = 0.95
+# Shapes of a map, tiles that lie together counted as one.
+BLOCK_LIMIT = 10_000
+_AXES = np.array([1.0, -1.0])
+
+
+def read_tiled(data: Object, beside: Beside) -> Sketch:
+    """The shapes of a map, in its pixels; beside: gives the tile sets that it names. Raises Unreadable."""
+    orientation = text(data, "orientation", "orthogonal")
+    if orientation != "orthogonal":
+        raise Unreadable(f"is an {orientation[:20]} map of Tiled; only orthogonal maps come in")
+    tile = number(data, "tilewidth"), number(data, "tileheight")
+    if not (0.0 < tile[0] <= 1e5 and 0.0 < tile[1] <= 1e5):
+        raise Unreadable("tilewidth, tileheight: a map needs tiles of 1 pixel or more")
+    drawing = Sketch("ground", metre=tile[0])
+    layers = objects(data, "layers")
+    reader = _Map(drawing, tile, _Tiles(data, beside, drawing), layers)
+    reader.read(layers, (0.0, 0.0), 0)
+    reader.take_tiles()
+    return drawing
+
+
+class _Tiles:
+    """What tiles are: their collision shapes, and whether they are marked as solid."""
+
+    def __init__(self, data: Object, beside: Beside, drawing: Sketch) -> None:
+        self.shapes: dict[int, list[Object]] = {}
+        self.solid: set[int] = set()
+        self.sizes: list[tuple[int, float, float]] = []
+        for entry in objects(data, "tilesets"):
+            first, source = whole(entry, "firstgid", 1), text(entry, "source")
+            found = beside(source) if source else entry
+            if found is None:
+                drawing.left_out.add("tile set that is not beside the map")
+                continue
+            self.sizes.append((first, number(found, "tilewidth"), number(found, "tileheight")))
+            tiles = found.get("tiles")
+            if isinstance(tiles, dict):
+                raise Unreadable("has tile sets of a Tiled before 1.2; save it with a newer one")
+            for tile in objects(found, "tiles"):
+                group = tile.get("objectgroup")
+                index = first + whole(tile, "id")
+                if isinstance(group, dict) and objects(group, "objects"):
+                    self.shapes[index] = objects(group, "objects")
+                if _is_marked(tile):
+                    self.solid.add(index)
+        self.sizes.sort()
+
+    def height_of(self, index: int, default: float) -> float:
+        """The height of a tile of a number [pixels]."""
+        return next((height for first, _, height in reversed(self.sizes) if first <= index), default) or default
+
+
+class _Map:
+    def __init__(self, drawing: Sketch, tile: tuple[float, float], tiles: _Tiles, layers: list[Object]) -> None:
+        self.drawing, self._tile, self._tiles = drawing, tile, tiles
+        self._layers: list[tuple[str, bool, NDArray[np.int64], tuple[int, int], tuple[float, float]]] = []
+        self._points = 0
+        self._says_solid = _says_solid(layers, 0)
+
+    def read(self, layers: list[Object], offset: tuple[float, float], depth: int) -> None:
+        """Take in layers, those of groups too; tiles are kept for later."""
+        if depth > LAYER_DEPTH:
+            raise Unreadable(f"nests groups of layers more than {LAYER_DEPTH} deep; make it flatter")
+        for layer in layers:
+            kind = text(layer, "type")
+            if layer.get("visible") is False and not SOLID_LAYER.search(text(layer, "name")):
+                self.drawing.left_out.add("hidden layer")
+                continue
+            place = offset[0] + number(layer, "offsetx"), offset[1] + number(layer, "offsety")
+            if kind == "group":
+                self.read(objects(layer, "layers"), place, depth + 1)
+            elif kind == "objectgroup":
+                is_solid = _is_marked(layer) or bool(SOLID_LAYER.search(text(layer, "name")))
+                for each in objects(layer, "objects"):
+                    if is_solid or self._may_be_solid(each):
+                        self._take_object(each, place)
+                    else:
+                        self.drawing.left_out.add("object of the game")
+            elif kind == "tilelayer":
+                for cells, corner in layer_cells(layer, self.drawing.left_out):
+                    self._layers.append((text(layer, "name"), _is_marked(layer), cells, corner, place))
+            else:
+                self.drawing.left_out.add("image layer" if kind == "imagelayer" else "layer of another kind")
+
+    def _may_be_solid(self, each: Object) -> bool:
+        """Whether an object of a layer that nothing says of is solid: where its own kind says so, or none does."""
+        kind = text(each, "type") or text(each, "class")
+        return bool(SOLID_LAYER.search(kind)) or _is_marked(each) or not (kind or self._says_solid)
+
+    def _take_object(self, each: Object, offset: tuple[float, float]) -> None:
+        x, y = number(each, "x") + offset[0], number(each, "y") + offset[1]
+        name = text(each, "name")
+        if each.get("visible") is False:
+            self.drawing.left_out.add("hidden object")
+        elif "gid" in each:
+            self._take_tile_object(each, x, y)
+        elif "template" in each:
+            self.drawing.left_out.add("object of a template")
+        elif each.get("text"):
+            self.drawing.left_out.add("text object")
+        elif each.get("point"):
+            self.drawing.left_out.add("point")
+        else:
+            self._take_shape(each, (x, y), np.eye(2), name)
+
+    def _take_tile_object(self, each: Object, x: float, y: float) -> None:
+        index = whole(each, "gid") & NUMBER
+        if index not in self._tiles.shapes:
+            self.drawing.left_out.add("tile object without a collision shape")
+            return
+        high = self._tiles.height_of(index, self._tile[1])
+        share = (number(each, "height") or high) / high
+        angle = math.radians(number(each, "rotation"))
+        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]) * share
+        lower = turn @ np.array([0.0, -high])
+        for shape in self._tiles.shapes[index]:
+            self._take_shape(shape, (x + lower[0], y + lower[1]), turn, text(each, "name"), inner=True)
+
+    def _take_shape(
+        self, each: Object, at: tuple[float, float], matrix: NDArray[np.float64], name: str, inner: bool = False
+    ) -> None:
+        """Add a shape; at: where its place is; matrix turns it; inner: its own x and y count as well."""
+        form = _form(each)
+        if form is None:
+            self.drawing.left_out.add("shape of another kind")
+            return
+        points, closed = form
+        angle = math.radians(number(each, "rotation"))
+        if angle:
+            points = points @ np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        if inner:
+            points = points + np.array([number(each, "x"), number(each, "y")])
+        placed = (points @ matrix.T + np.array(at)) * _AXES
+        self._points += len(placed)
+        if self._points > 10 * POINT_LIMIT:
+            raise Unreadable(f"has more than {10 * POINT_LIMIT:,} points of shapes; make it smaller")
+        if closed:
+            if len(placed) > 2 and np.ptp(placed, axis=0).min() > 0.0:
+                self.drawing.outlines.append(FilledShape((placed,), "nonzero", None, name))
+            else:
+                self.drawing.left_out.add("shape without an area")
+        elif len(placed) > 1:
+            self.drawing.lines.append(OpenLine(placed, 0.0, None, name))
+
+    def take_tiles(self) -> None:
+        """Take in what of the layers of tiles is solid; where nothing says what is, all that is no background."""
+        found = False
+        taken: list[str] = []
+        for layer in self._layers:
+            count = self._take_marked(layer)
+            found = found or count > 0
+            if count == 0 and layer[2].any():
+                taken.append(layer[0])
+        unmarked = [layer for layer in self._layers if layer[0] in taken and layer[2].any()]
+        if not found and not self.drawing.outlines and not self.drawing.lines:
+            for layer in unmarked:
+                if np.mean(layer[2] != 0) >= BACKGROUND and len(unmarked) > 1:
+                    self.drawing.left_out.add("tile layer that is a background")
+                else:
+                    self._take_blocks(layer[2] != 0, layer[3], layer[4])
+        elif unmarked:
+            self.drawing.left_out.add("tile layer without collision shapes", len({layer[0] for layer in unmarked}))
+
+    def _take_marked(self, layer: tuple[str, bool, NDArray[np.int64], tuple[int, int], tuple[float, float]]) -> int:
+        """Add the solid tiles of a layer, and give their number."""
+        name, marked, cells, corner, offset = layer
+        numbers = cells & NUMBER
+        shaped = np.isin(numbers, np.fromiter(self._tiles.shapes, np.int64, len(self._tiles.shapes)))
+        solid = np.isin(numbers, np.fromiter(self._tiles.solid, np.int64, len(self._tiles.solid))) & ~shaped
+        if marked or (not solid.any() and SOLID_LAYER.search(name)):
+            solid = (cells != 0) & ~shaped
+        self._take_blocks(solid, corner, offset)
+        width, height = self._tile
+        for row, column in np.argwhere(shaped).tolist():
+            cell = int(cells[row, column])
+            x = (corner[0] + column) * width + offset[0]
+            # Tiles larger than those of the map stand on the lower edge of their cell.
+            high = self._tiles.height_of(cell & NUMBER, height)
+            y = (corner[1] + row + 1) * height - high + offset[1]
+            turn, move = _mirroring(cell, width, high)
+            for shape in self._tiles.shapes[cell & NUMBER]:
+                self._take_shape(shape, (x + move[0], y + move[1]), turn, "", inner=True)
+        return int(shaped.sum() + solid.sum())
+
+    def _take_blocks(self, solid: NDArray[np.bool_], corner: tuple[int, int], offset: tuple[float, float]) -> None:
+        width, height = self._tile
+        for left, top, right, bottom in _blocks(solid):
+            if len(self.drawing.outlines) >= BLOCK_LIMIT:
+                raise Unreadable(f"has solid tiles in more than {BLOCK_LIMIT:,} blocks; make it smaller")
+            x0, x1 = ((corner[0] + k) * width + offset[0] for k in (left, right))
+            y0, y1 = ((corner[1] + k) * height + offset[1] for k in (top, bottom))
+            ring = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]) * _AXES
+            self.drawing.outlines.append(FilledShape((ring,)))
+
+
+def _says_solid(layers: list[Object], depth: int) -> bool:
+    """Whether a layer of objects or tiles says that it is solid."""
+    return depth <= LAYER_DEPTH and any(
+        _says_solid(objects(layer, "layers"), depth + 1)
+        if layer.get("type") == "group"
+        else _is_marked(layer) or SOLID_LAYER.search(text(layer, "name"))
+        for layer in layers
+    )
+
+
+def _blocks(solid: NDArray[np.bool_]) -> Iterator[tuple[int, int, int, int]]:
+    """Left, top, right, bottom of rectangles that cover the cells: runs of a row, as far down as they are the same."""
+    running: dict[tuple[int, int], int] = {}
+    for row in range(len(solid) + 1):
+        runs = set()
+        if row < len(solid):
+            turns = np.flatnonzero(np.diff(np.concatenate([[False], solid[row], [False]]).astype(np.int8)))
+            runs = set(zip(turns[0::2].tolist(), turns[1::2].tolist(), strict=True))
+        for ended in sorted(running.keys() - runs):
+            yield ended[0], running.pop(ended), ended[1], row
+        for run in runs:
+            running.setdefault(run, row)
+
+
+def _form(each: Object) -> tuple[NDArray[np.float64], bool] | None:
+    """Points of a shape about its place, y downward, and whether it is closed."""
+    for key in ("polygon", "polyline"):
+        if key in each:
+            places = [(number(place, "x"), number(place, "y")) for place in objects(each, key)]
+            return np.array(places, dtype=np.float64).reshape(-1, 2), key == "polygon"
+    width, height = number(each, "width"), number(each, "height")
+    if each.get("ellipse"):
+        turn = np.arange(ROUND) * (math.tau / ROUND)
+        unit = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        return (unit + 1.0) * np.array([width, height]) / 2.0, True
+    if each.get("capsule") or each.get("text") or each.get("point"):
+        return None
+    return np.array([(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)]), True
+
+
+def _mirroring(cell: int, width: float, height: float) -> tuple[NDArray[np.float64], tuple[float, float]]:
+    """How a tile's bits turn and mirror it, and how that is moved back into its cell."""
+    matrix, move = np.eye(2), [0.0, 0.0]
+    if cell & SWAPPED:
+        matrix = np.array([[0.0, 1.0], [1.0, 0.0]])
+    if cell & MIRRORED:
+        matrix, move[0] = np.array([[-1.0, 0.0], [0.0, 1.0]]) @ matrix, width
+    if cell & UPSIDE:
+        matrix, move[1] = np.array([[1.0, 0.0], [0.0, -1.0]]) @ matrix, height
+    return matrix, (move[0], move[1])
+
+
+def _is_marked(holder: Object) -> bool:
+    """Whether a property says that a tile or a layer is solid."""
+    properties = holder.get("properties")
+    if not isinstance(properties, list):
+        return False
+    return any(
+        isinstance(each, dict) and each.get("value") is True and SOLID_PROPERTY.fullmatch(str(each.get("name")))
+        for each in properties
+    )
