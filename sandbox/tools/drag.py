@@ -1,5 +1,6 @@
 """DragTool: hold particles and move them, several at once with Shift; while time stands, put things elsewhere."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,6 +15,9 @@ from sandbox.tools.tool import CLICK_SHARE, NOTHING, Point, PointerEvent, Respon
 # How strong a hand can be: its largest force over the mass of the body that it holds [m/s^2]. Gentle carries three
 # times a body's weight and spares what tears, strong moves what stands under a load.
 STRENGTHS = {"gentle": 30.0, "normal": HAND_STRENGTH, "strong": 300.0}
+
+# Decimals of a place [m] that a hand moves to, more where this part of a pick radius is finer.
+DECIMALS, FINEST = 3, 1 / 28
 
 
 @dataclass
@@ -124,7 +128,7 @@ class DragTool(Tool):
         hold = Hold(particle, self._new_gesture(), _beside(snapshot, particle, event))
         self.holds[hand] = hold
         self._dragged = hand
-        target, strength = _shifted(event.position, hold.beside), STRENGTHS[self.strength]
+        target, strength = _shifted(event, hold.beside), STRENGTHS[self.strength]
         grab = Grab(hand, particle, target, strength, grip_radius(snapshot, particle))
         return Response((Submission(grab, hold.gesture),))
 
@@ -134,7 +138,7 @@ class DragTool(Tool):
         if dx * dx + dy * dy > (CLICK_SHARE * event.pick_radius) ** 2:
             self._moved = True
         hold = self.holds[self._dragged]
-        return Response((Submission(MoveGrab(self._dragged, _shifted(event.position, hold.beside)), hold.gesture),))
+        return Response((Submission(MoveGrab(self._dragged, _shifted(event, hold.beside)), hold.gesture),))
 
     def _carry(self, event: PointerEvent, carried: Carried) -> Response:
         if event.kind == "up" and event.button == 1:
@@ -155,8 +159,10 @@ class DragTool(Tool):
         return Response((Submission(Release(hand), self.holds.pop(hand).gesture),))
 
 
-def _shifted(place: Point, by: Point) -> Point:
-    return place[0] + by[0], place[1] + by[1]
+def _shifted(event: PointerEvent, by: Point) -> Point:
+    # To millimetres, or to what nobody sees where that is finer: links to runs are short for it.
+    decimals = max(DECIMALS, math.ceil(-math.log10(FINEST * event.pick_radius)))
+    return round(event.position[0] + by[0], decimals), round(event.position[1] + by[1], decimals)
 
 
 def _beside(snapshot: Snapshot, particle: int, event: PointerEvent) -> Point:

@@ -1,4 +1,4 @@
-// Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut, make; what holds nothing moves the view.
+// Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut, make; what is empty moves the view.
 import { HANDS } from './shared.js';
 /** @import { Camera } from './draw.js' */
 /** @import { Maker } from './maker.js' */
@@ -28,9 +28,17 @@ const LONG = 500;
  *   hand: number | null, point: Point, within: number, gesture: number, asks: number | null, timer: number }} Pointer
  */
 /**
- * What a hand holds, where it draws it [m], how far that is from the pointer, and its largest force [N].
- * @typedef {{ particle: number, gesture: number, beside: Point, target: Point, isMoved: boolean, limit: number }} Held
+ * What a hand holds, where it draws it [m], how far that is from the pointer, how far that reaches [m], and its largest
+ * force [N].
+ * @typedef {{ particle: number, gesture: number, beside: Point, within: number, target: Point, isMoved: boolean,
+ *   limit: number }} Held
  */
+/** A place [m] beside a point, to millimetres or to what nobody sees where that is finer: links are short for it.
+ * @type {(point: Point, beside: Point, within: number) => Point} */
+function shifted(point, beside, within) {
+  const grains = 10 ** Math.max(3, Math.ceil(-Math.log10(within / 28)));
+  return [Math.round((point[0] + beside[0]) * grains) / grains, Math.round((point[1] + beside[1]) * grains) / grains];
+}
 /** @type {(one: Pixel, two: Pixel) => boolean} */
 const isNear = (one, two) => Math.hypot(one.x - two.x, one.y - two.y) < BESIDE;
 
@@ -178,7 +186,7 @@ export class Hands {
   #tapped = null;
   #closing = new AbortController();
 
-  /** changed: called when the view has been moved by hand; fit: shows all again; say: tells a person something in a line;
+  /** changed: called when the view has been moved by hand; fit: shows all again; say: tells a person a line;
    * menu: asks what is to be done to a particle.
    * @param {HTMLCanvasElement} canvas @param {Run} run @param {Camera} camera @param {Maker} maker
    * @param {HandEvents} events */
@@ -294,8 +302,7 @@ export class Hands {
     /** A particle at the pointer goes to it; one that is farther off keeps its distance, so that nothing jumps.
      * @type {Point} */
     const beside = Math.hypot(dx, dy) <= within + near.radius[particle] ? [0, 0] : [dx, dy];
-    /** @type {Point} */
-    const target = [point[0] + beside[0], point[1] + beside[1]];
+    const target = shifted(point, beside, within);
     // What a command changes may lie elsewhere after it: all is asked before.
     const limit = STRENGTH * near.bodyMass(particle);
     /** @type {Command} */
@@ -304,7 +311,7 @@ export class Hands {
       this.say(this.run.refused);
       return null;
     }
-    this.#held.set(hand, { particle, gesture, beside, target, isMoved: false, limit });
+    this.#held.set(hand, { particle, gesture, beside, within, target, isMoved: false, limit });
     return hand;
   }
 
@@ -346,8 +353,8 @@ export class Hands {
   }
 
   /** @type {(held: Held, point: Point) => void} */
-  #aim(held, [x, y]) {
-    held.target = [x + held.beside[0], y + held.beside[1]];
+  #aim(held, point) {
+    held.target = shifted(point, held.beside, held.within);
     held.isMoved = true;
   }
 
@@ -428,7 +435,8 @@ export class Hands {
       this.releaseAll();
     } else if (way && held) {
       const step = (NUDGE * this.camera.height) / this.camera.zoom;
-      this.#aim(held, [held.target[0] + way[0] * step, held.target[1] + way[1] * step]);
+      const [x, y] = [0, 1].map((u) => held.target[u] - held.beside[u] + way[u] * step);
+      this.#aim(held, [x, y]);
     } else return false;
     return true;
   }
