@@ -18,6 +18,7 @@ from sandbox.cli import (
     format,
     info,
     link,
+    open_link,
     page,
     play,
     render,
@@ -41,8 +42,7 @@ COMMANDS: tuple[Subcommand[Any], ...] = tuple(
     module.COMMAND
     for module in (
         play, toy, run, replay, info, resume, show, check, diff, bisect, shrink, sweep, render, page, site, link,
-        take_home, export,
-        bring, format, edit, schema,
+        open_link, take_home, export, bring, format, edit, schema,
     )
 )  # fmt: skip
 # What the program does where no command is named.

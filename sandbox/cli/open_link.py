@@ -1,0 +1,30 @@
+"""`sandbox open`."""
+
+from dataclasses import dataclass
+
+from sandbox.cli.base.command import Subcommand, WindowOptions
+from sandbox.cli.base.inputs import Refused
+from sandbox.cli.base.options import argument
+from sandbox.cli.play import PlayOptions, play
+
+
+@dataclass(frozen=True, kw_only=True)
+class OpenOptions(WindowOptions):
+    """Which link to open, and how."""
+
+    link: str = argument(str, "LINK", "a link to a run, with or without the address before its #")
+
+
+def open_link(options: OpenOptions) -> int:
+    """Open the app with the run of a link. Raises Refused."""
+    from sandbox.session.link.scene_link import is_link
+
+    if not is_link(options.link):
+        raise Refused(
+            f"{options.link[:60]}: is no link to a run; it has no #scene=. sandbox play opens files and levels"
+        )
+    given = {name: getattr(options, name) for name in WindowOptions.__dataclass_fields__}
+    return play(PlayOptions(level=options.link, profile=False, seconds=None, **given))
+
+
+COMMAND = Subcommand("open", "open the app with the run of a link", OpenOptions, open_link)
