@@ -5,6 +5,7 @@ from collections.abc import Generator
 
 from sandbox.app.base.desktop import copy_text
 from sandbox.app.contracts.application import Application
+from sandbox.app.draw.colours import ACCENT, Colour
 from sandbox.app.share.links import link_to
 from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.storage.preferences import preference, set_preference
@@ -20,7 +21,7 @@ SITE = "link_site"
 BUDGET = 0.02
 HINT = (
     "The address of the site where the page of this level lies (sandbox site writes one). Empty: the run alone, "
-    "for sandbox play."
+    "for sandbox open."
 )
 
 
@@ -30,6 +31,7 @@ class LinkCopying:
     def __init__(self, app: Application) -> None:
         self._app = app
         self._slices: Generator[float, None, str] | None = None
+        self._done = 0.0
 
     def ask(self) -> None:
         """Ask for the site, and begin."""
@@ -39,6 +41,10 @@ class LinkCopying:
         site = preference(SITE)
         known = site if isinstance(site, str) else ""
         ask(self._app.ui, "Copy a link to this run", HINT, known, "Copy link", self._begin)
+
+    def status(self) -> list[tuple[str, Colour]]:
+        """What the status line says of the work."""
+        return [] if self._slices is None else [(f"making the link: {100.0 * self._done:.0f} %", ACCENT)]
 
     def _begin(self, site: str) -> str | None:
         if site and not site.startswith(("https://", "http://")):
@@ -59,7 +65,7 @@ class LinkCopying:
         end = time.perf_counter() + BUDGET
         while self._slices is not None and time.perf_counter() < end:
             try:
-                next(self._slices)
+                self._done = next(self._slices)
             except StopIteration as done:
                 self._slices = None
                 self._copy(done.value)

@@ -10,10 +10,12 @@ from sandbox.app.draw.scene import joined_scene
 from sandbox.app.share.recorded import recorded
 from sandbox.level.document.model import Level
 from sandbox.level.plan.actuators import actuators as driven_parts
+from sandbox.page.about import is_done_by_pages
 from sandbox.page.adding import is_added_by_pages
 from sandbox.page.room import Counts
 from sandbox.physics.world import World
 from sandbox.session.commands.command import CommandError
+from sandbox.session.commands.records import ScriptLine
 from sandbox.session.link.scene_link import fragment_of, level_record
 from sandbox.session.replay.recording import Replay, ReplayError
 
@@ -27,6 +29,20 @@ def link_to(replay: Replay, site: str, at: int) -> Generator[float, None, str]:
     site: the address of the folder that `write_site` wrote; "": the fragment alone. What was undone is left out. Pages
     are told nothing of what they cannot be given while they run, such as motors. Raises ReplayError.
     """
+    told: dict[int, Any] = {}
+    if not all(_is_known_to_pages(line.record) for line in replay.script):
+        script, told = yield from _told(replay)
+        replay = replace(replay, script=script)
+    return f"{page_address(replay.level, site)}#{fragment_of(replay, at, told)}"
+
+
+def _is_known_to_pages(record: dict[str, Any]) -> bool:
+    """Whether a page carries out a command by itself."""
+    return is_done_by_pages(record["type"]) or is_added_by_pages(record)
+
+
+def _told(replay: Replay) -> Generator[float, None, tuple[tuple[ScriptLine, ...], dict[int, Any]]]:
+    """The commands of a run without what was undone; what pages are told of some, by their places. Raises ReplayError."""
     level = replay.level
 
     def beside(before: Counts, world: World) -> dict[str, Any]:
@@ -35,7 +51,7 @@ def link_to(replay: Replay, site: str, at: int) -> Generator[float, None, str]:
         return {"names": _names(before, world), "scene": joined_scene(level, world, before)}
 
     try:
-        played = yield from recorded(level, replay.script, replay.ticks, beside)
+        played = yield from recorded(level, replay.script, replay.ticks, beside, hash_of=lambda _: "")
     except CommandError as error:
         raise ReplayError(f"{replay.source}: {error}") from None
     told = {
@@ -43,8 +59,7 @@ def link_to(replay: Replay, site: str, at: int) -> Generator[float, None, str]:
         for place, done in enumerate(played.commands)
         if "changes" in done and ("counts" in done) == ("names" in done) and not is_added_by_pages(done["record"])
     }
-    fragment = fragment_of(replace(replay, script=tuple(played.script)), at, told)
-    return f"{page_address(level, site)}#{fragment}"
+    return tuple(played.script), told
 
 
 def page_address(level: Level, site: str) -> str:

@@ -50,8 +50,17 @@ def nothing_beside(counts: Counts, world: World) -> dict[str, Any]:
     return {}
 
 
+def tick_hash(world: World) -> str:
+    """What a page compares a tick with."""
+    return state_hash(world)[:TICK_DIGITS]
+
+
 def recorded(
-    level: Level, script: Sequence[ScriptLine], ticks: int, beside: Beside = nothing_beside
+    level: Level,
+    script: Sequence[ScriptLine],
+    ticks: int,
+    beside: Beside = nothing_beside,
+    hash_of: Callable[[World], str] = tick_hash,
 ) -> Generator[float, None, Recorded]:
     """What a page plays of a recording, a slice of the work at a time: each gives the part that is done, 0..1.
 
@@ -70,14 +79,22 @@ def recorded(
     world, commands = build_world(level), []
     if script and world.grab_particle < 0:
         raise CommandError("a page cannot play a recording that begins with nothing")
-    hashes, actions = [_tick_hash(world)], RuleActions(level, world)
+    hashes, actions = [hash_of(world)], RuleActions(level, world)
+
+    def stepped(tick: int) -> Iterator[int]:
+        while world.tick < tick:
+            actions.act(world)
+            step(world)
+            hashes.append(hash_of(world))
+            yield world.tick
+
     for line in script:
-        yield from map(part, _stepped(world, actions, line.tick, hashes))
+        yield from map(part, stepped(line.tick))
         try:
             commands.append(_carried_out(world, line, beside))
         except CommandError as error:
             raise CommandError(f"line {line.line}: {error}") from None
-    yield from map(part, _stepped(world, actions, ticks, hashes))
+    yield from map(part, stepped(ticks))
     return Recorded(commands, script, hashes, world)
 
 
@@ -90,18 +107,6 @@ def _without_undone(
         yield 0.5 * session.tick / ticks
     session.apply_pending()
     return script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
-
-
-def _stepped(world: World, actions: RuleActions, tick: int, hashes: list[str]) -> Iterator[int]:
-    while world.tick < tick:
-        actions.act(world)
-        step(world)
-        hashes.append(_tick_hash(world))
-        yield world.tick
-
-
-def _tick_hash(world: World) -> str:
-    return state_hash(world)[:TICK_DIGITS]
 
 
 def _carried_out(world: World, line: ScriptLine, beside: Beside) -> dict[str, Any]:

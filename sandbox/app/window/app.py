@@ -407,7 +407,7 @@ class App:
             self.screen.draw(surface, self.profile)
         with self.profile.part("ui"):
             if self.screen is not None:
-                parts = self.sharing.status() + self.screen.status(self._figures)
+                parts = self.sharing.status() + self.link_copying.status() + self.screen.status(self._figures)
                 self.status.draw(surface, parts)
                 if self.gallery is None:
                     is_under = False if self.ui.has_sheet else None
