@@ -363,7 +363,7 @@ export class Toy extends EventTarget {
   }
 }
 
-/** Play a toy's file on a canvas. kernels: the address of kernels.wasm, where it is not beside this module.
+/** Play a toy's file on a canvas. kernels: the address of kernels.wasm.gz, where it is not beside this module.
  * @type {(canvas: HTMLCanvasElement, address: string, options?: { kernels?: string | URL }) => Promise<Toy>} */
 export async function open(canvas, address, { kernels } = {}) {
   return new Toy(canvas, ...await load(address, kernels));
