@@ -41,6 +41,14 @@ class Run(Screen, Protocol):
         """Film of its last seconds [s], as the camera shows it now."""
         ...
 
+    def press_control(self, control: str) -> None:
+        """Press the key that a control of a gamepad is for."""
+        ...
+
+    def release_control(self, control: str) -> None:
+        """Let go the key that a control of a gamepad has pressed."""
+        ...
+
     def show_sweep(self, path: Path) -> None:
         """Show a table that `sandbox sweep` made of its level. Raises SweepError and OSError."""
         ...

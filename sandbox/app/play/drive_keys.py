@@ -2,6 +2,7 @@
 
 import pygame
 
+from sandbox.app.base.gamepads import controls_of
 from sandbox.app.run.playback import Playback
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.session.commands import HoldKey, SetDrive
@@ -32,6 +33,11 @@ class DriveKeys:
     def has_arrows(self) -> bool:
         """Whether arrow keys drive something, or answer a rule."""
         return any(code in self._codes for code in ARROWS.values())
+
+    def code_at(self, control: str) -> int | None:
+        """The key that a control of a gamepad presses; None: none."""
+        keys = [name for name, _ in self.shown()]
+        return next((code_of(key) for key, on_pad in controls_of(keys).items() if on_pad == control), None)
 
     def shown(self) -> list[tuple[str, bool]]:
         """The keys that have a meaning in the level, by name, each with whether it is held."""

@@ -1,9 +1,10 @@
 """Keys that a level gives a meaning, shown while it is played; those that are held down are lit."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import pygame
 
+from sandbox.app.base.gamepads import controls_of
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, LINE, MUTED, NOTICE, TEXT
 from sandbox.app.widgets.ui import Ui
 
@@ -15,20 +16,33 @@ KEYS_HEIGHT, ROOM_BESIDE = CAP + INSET, 720.0
 
 
 def draw_key_caps(
-    surface: pygame.Surface, ui: Ui, keys: Iterable[tuple[str, bool]], viewport: tuple[int, int, int, int]
+    surface: pygame.Surface,
+    ui: Ui,
+    keys: Sequence[tuple[str, bool]],
+    viewport: tuple[int, int, int, int],
+    on_pad: bool = False,
 ) -> None:
-    """Draw the caps of keys, (name, whether it is held) each, at the lower right of a viewport [pixels]."""
+    """Draw the caps of keys, (name, whether it is held) each, at the lower right of a viewport [pixels].
+
+    on_pad: show what presses them on a gamepad, in round caps.
+    """
     left, top, width, height = viewport
     font, side = ui.font(TEXT_SIZE, True), ui.px(CAP)
     x, y = left + width - ui.px(INSET), top + height - ui.px(INSET) - side
-    for name, is_held in reversed(list(keys)):
+    if on_pad:
+        held = dict(keys)
+        keys = [(control, held[name]) for name, control in controls_of(held).items()]
+    for name, is_held in reversed(keys):
         picture = font.render(name.upper() if len(name) == 1 else name, True, BACKGROUND if is_held else TEXT)
-        cap = pygame.Rect(0, y, max(side, picture.get_width() + ui.px(12)), side)
+        cap = pygame.Rect(
+            0, y, max(side, picture.get_width() + ui.px(12 if not on_pad or len(name) == 1 else 18)), side
+        )
         cap.right = x
-        pygame.draw.rect(surface, ACCENT if is_held else NOTICE, cap, border_radius=ui.px(6))
-        pygame.draw.rect(surface, ACCENT if is_held else LINE, cap, max(1, ui.px(1.2)), border_radius=ui.px(6))
+        rounding = side // 2 if on_pad else ui.px(6)
+        pygame.draw.rect(surface, ACCENT if is_held else NOTICE, cap, border_radius=rounding)
+        pygame.draw.rect(surface, ACCENT if is_held else LINE, cap, max(1, ui.px(1.2)), border_radius=rounding)
         surface.blit(picture, picture.get_rect(center=cap.center))
         x = cap.left - ui.px(GAP)
     if x < left + width - ui.px(INSET):
-        word = ui.font(TEXT_SIZE).render("keys", True, MUTED)
+        word = ui.font(TEXT_SIZE).render("gamepad" if on_pad else "keys", True, MUTED)
         surface.blit(word, word.get_rect(midright=(x - ui.px(3), y + side // 2)))

@@ -135,18 +135,19 @@ def _section(
 def _card(each: SiteLevel, state: Snapshot, words: str) -> str:
     seen = Camera(viewport=(0, 0, *SIZE)).picture_of(crop_of(each.level, state))
     return (
-        f'<li><a href="{each.page}" data-toy="{each.toy}" data-view="{_numbers(seen)}">{_picture(each)}'
+        f'<li><a href="{each.page}" data-toy="{each.toy}" data-view="{_numbers(seen)}">{_picture(each, "data-")}'
         f"<h3>{html.escape(each.level.name)}</h3><p>{html.escape(words)}</p></a></li>"
     )
 
 
-def _picture(each: SiteLevel) -> str:
+def _picture(each: SiteLevel, before: str = "") -> str:
+    """The picture of a level; before: what stands before the names of its addresses until a script fetches it."""
     names = [f"{PICTURES}/{each.address}-{theme}" for theme in ("dark", "light")]
     dark, light = (f"{name}-small{SUFFIX} {SMALL[0]}w, {name}{SUFFIX} {SIZE[0]}w" for name in names)
     return (
-        f'<picture><source media="(prefers-color-scheme: light)" srcset="{light}" sizes="{SHOWN}">'
-        f'<img src="{names[0]}{SUFFIX}" srcset="{dark}" sizes="{SHOWN}" alt="" width="{SIZE[0]}" height="{SIZE[1]}" '
-        f'loading="lazy"></picture>'
+        f'<picture><source media="(prefers-color-scheme: light)" {before}srcset="{light}" sizes="{SHOWN}">'
+        f'<img {before}src="{names[0]}{SUFFIX}" {before}srcset="{dark}" sizes="{SHOWN}" alt="" '
+        f'width="{SIZE[0]}" height="{SIZE[1]}"></picture>'
     )
 
 

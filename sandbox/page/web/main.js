@@ -1,6 +1,7 @@
 // Main: the page around a toy: its bars, panel, timeline and keys, and what it says.
 import { Refusal } from './commands.js';
 import { read } from './files.js';
+import { controlsOf, Gamepads } from './gamepad.js';
 import { Goals } from './goals.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
@@ -157,9 +158,22 @@ class Page {
     /** @type {Map<string, HTMLButtonElement>} */
     const buttons = new Map();
     drives.told = (name, isHeld) => press(buttons.get(name), isHeld);
+    const controls = controlsOf(Object.keys(drives.keys));
+    /** Caps say what presses them on what was used last: 'keyboard', 'gamepad' or 'touch'.
+     * @type {(device: string) => void} */
+    const show = (device) => {
+      if (byId('keys').dataset.device === device) return;
+      byId('keys').dataset.device = device;
+      for (const [name, button] of buttons) {
+        const said = device === 'gamepad' ? controls.get(name) ?? name : name;
+        button.textContent = ARROWS[said] ?? said.toUpperCase();
+      }
+      this.#makeRoom();
+    };
+    addEventListener('keydown', (event) => { if (drives.has(event)) show('keyboard'); });
+    addEventListener('pointerdown', ({ pointerType }) => { if (pointerType === 'touch') show('touch'); }, true);
     for (const name of Object.keys(drives.keys)) {
-      const button = element('button', { type: 'button', textContent: ARROWS[name] ?? name.toUpperCase(),
-        className: 'key' });
+      const button = element('button', { type: 'button', className: 'key' });
       button.setAttribute('aria-label', `Key ${name}`);
       button.addEventListener('pointerdown', (event) => {
         if (event.button !== 0) return;
@@ -174,6 +188,8 @@ class Page {
       buttons.set(name, button);
     }
     byId('keys').append(...buttons.values());
+    show(matchMedia('(hover: none)').matches ? 'touch' : 'keyboard');
+    this.gamepads = new Gamepads(drives, () => show('gamepad'));
   }
 
   async #verify() {

@@ -75,9 +75,10 @@ export class Toy extends EventTarget {
     const on = (target, name, act) => target.addEventListener(name, /** @type {EventListener} */ (act), { signal });
     if (!canvas.hasAttribute('tabindex')) canvas.tabIndex = 0;
     canvas.style.touchAction = 'none';
-    const size = new ResizeObserver(() => this.#resize()), sight = new IntersectionObserver(([{ isIntersecting }]) => {
-      this.#isSeen = isIntersecting;
-      if (!isIntersecting) this.#letGo();
+    const size = new ResizeObserver(() => this.#resize()), sight = new IntersectionObserver((seen) => {
+      // Several may be told at once, the newest last.
+      this.#isSeen = seen[seen.length - 1].isIntersecting;
+      if (!this.#isSeen) this.#letGo();
     });
     size.observe(canvas);
     sight.observe(canvas);
