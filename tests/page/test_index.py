@@ -130,6 +130,20 @@ def test_a_finger_drags_what_it_meets_and_else_moves_the_page(browser: Browser, 
     assert tab.evaluate(view) == whole and not tab.evaluate("page.toy.world.isHeld(0)")
 
 
+def test_a_phone_that_draws_too_slowly_draws_fewer_pixels(browser: Browser, address: str) -> None:
+    tab = browser.tab(**PHONE).open(address)
+    slow = """new Promise((done) => {
+      const { toy } = page, tick = toy.tick.bind(toy);
+      toy.tick = () => {
+        for (const end = performance.now() + 30; performance.now() < end;);
+        tick();
+      };
+      toy.addEventListener('draw', () => { if (toy.canvas.width <= toy.camera.width + 1) done(true); });
+    })"""
+    assert tab.evaluate("page.toy.canvas.width > 1.4 * page.toy.camera.width")
+    assert tab.evaluate(slow)
+
+
 def test_the_toy_stands_while_it_is_out_of_view(browser: Browser, address: str) -> None:
     tab = browser.tab(width=1280, height=800).open(address)
     tab.evaluate("scrollTo(0, 3000)")
