@@ -87,7 +87,7 @@ def test_two_fingers_hold_two_large_keys_at_once(browser: Browser, tmp_path: Pat
     tab.touch("touchStart", (200, 300))
     tab.touch("touchEnd")
     keys = tab.evaluate(KEYS)
-    assert len(keys) == 2 and min(size for _, _, size in keys) >= 64
+    assert len(keys) == 2 and min(size for _, _, size in keys) >= 52
     # One for each thumb.
     assert keys[0][0] < 100 and keys[1][0] > 290
     first, second = ((x, y) for x, y, _ in keys)

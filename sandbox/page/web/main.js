@@ -159,24 +159,26 @@ class Page {
     const buttons = new Map();
     drives.told = (name, isHeld) => press(buttons.get(name), isHeld);
     const controls = controlsOf(Object.keys(drives.keys));
-    /** Caps say what presses them on what was used last: 'keyboard', 'gamepad' or 'touch'.
-     * @type {(device: string) => void} */
-    const show = (device) => {
-      if (byId('keys').dataset.device === device) return;
-      byId('keys').dataset.device = device;
+    /** Caps say what presses them on what was used last.
+     * @type {(isOnPad: boolean) => void} */
+    const show = (isOnPad) => {
+      byId('keys').classList.toggle('on-pad', isOnPad);
       for (const [name, button] of buttons) {
-        const said = device === 'gamepad' ? controls.get(name) ?? name : name;
+        const said = isOnPad ? controls.get(name) ?? name : name;
         button.textContent = ARROWS[said] ?? said.toUpperCase();
       }
-      this.#makeRoom();
     };
-    addEventListener('keydown', (event) => { if (drives.has(event)) show('keyboard'); });
-    addEventListener('pointerdown', ({ pointerType }) => { if (pointerType === 'touch') show('touch'); }, true);
+    // Who touches has them below both thumbs from then on.
+    const spread = () => byId('keys').classList.add('spread');
+    if (matchMedia('(hover: none)').matches) spread();
+    addEventListener('keydown', (event) => { if (drives.has(event)) show(false); });
+    addEventListener('pointerdown', ({ pointerType }) => { if (pointerType === 'touch') spread(); }, true);
     for (const name of Object.keys(drives.keys)) {
       const button = element('button', { type: 'button', className: 'key' });
       button.setAttribute('aria-label', `Key ${name}`);
       button.addEventListener('pointerdown', (event) => {
         if (event.button !== 0) return;
+        show(false);
         button.setPointerCapture(event.pointerId);
         drives.press(name);
       });
@@ -188,8 +190,8 @@ class Page {
       buttons.set(name, button);
     }
     byId('keys').append(...buttons.values());
-    show(matchMedia('(hover: none)').matches ? 'touch' : 'keyboard');
-    this.gamepads = new Gamepads(drives, () => show('gamepad'));
+    show(false);
+    this.gamepads = new Gamepads(drives, () => show(true));
   }
 
   async #verify() {
