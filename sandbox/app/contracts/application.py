@@ -22,6 +22,18 @@ from sandbox.level.document.model import Level
 from sandbox.session.scene import RunScene
 
 
+class Keys(Protocol):
+    """Keys that a level gives a meaning, by the controls of a gamepad."""
+
+    def press_control(self, control: str) -> None:
+        """Press the key that a control is for."""
+        ...
+
+    def release_control(self, control: str) -> None:
+        """Let go the key that a control has pressed."""
+        ...
+
+
 class Run(Screen, Protocol):
     """A run on the screen; of_document: of the level that the editor has open; source: the file of its level.
 
@@ -41,12 +53,9 @@ class Run(Screen, Protocol):
         """Film of its last seconds [s], as the camera shows it now."""
         ...
 
-    def press_control(self, control: str) -> None:
-        """Press the key that a control of a gamepad is for."""
-        ...
-
-    def release_control(self, control: str) -> None:
-        """Let go the key that a control of a gamepad has pressed."""
+    @property
+    def keys(self) -> Keys:
+        """The keys of its level."""
         ...
 
     def show_sweep(self, path: Path) -> None:

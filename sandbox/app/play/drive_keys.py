@@ -16,10 +16,16 @@ def code_of(key: str) -> int:
 
 
 class DriveKeys:
-    """Drives parts of one run, and answers its rules, while keys are held; a press and its release are one gesture."""
+    """Drives parts of one run, and answers its rules, while keys are held; a press and its release are one gesture.
 
-    def __init__(self, playback: Playback) -> None:
+    is_on_pad: whether a gamepad has pressed the last one.
+    """
+
+    def __init__(self, playback: Playback, is_on_pad: bool = False) -> None:
         self.playback = playback
+        self.is_on_pad = is_on_pad
+        # The key that each control of a gamepad holds.
+        self._controlled: dict[str, int] = {}
         self._joined: object = None
         self._all: dict[int, list[tuple[int, float]]] = {}
         asked = playback.session.world.rule_keys
@@ -33,11 +39,6 @@ class DriveKeys:
     def has_arrows(self) -> bool:
         """Whether arrow keys drive something, or answer a rule."""
         return any(code in self._codes for code in ARROWS.values())
-
-    def code_at(self, control: str) -> int | None:
-        """The key that a control of a gamepad presses; None: none."""
-        keys = [name for name, _ in self.shown()]
-        return next((code_of(key) for key, on_pad in controls_of(keys).items() if on_pad == control), None)
 
     def shown(self) -> list[tuple[str, bool]]:
         """The keys that have a meaning in the level, by name, each with whether it is held."""
@@ -66,6 +67,7 @@ class DriveKeys:
         if modifiers & pygame.KMOD_SHIFT and key in ARROWS.values():
             # With Shift they move the marked particle, as they do elsewhere.
             return False
+        self.is_on_pad = False
         if key not in self._held:
             self._held[key] = self.playback.session.new_gesture()
             for part, value in self._keys.get(key, []):
@@ -84,3 +86,16 @@ class DriveKeys:
             self.playback.submit(SetDrive(part, still[-1] if still else 0.0), gesture)
         if key in self._asked:
             self.playback.submit(HoldKey(self._asked[key], False), gesture)
+
+    def press_control(self, control: str) -> None:
+        """Press the key that a control of a gamepad is for."""
+        controls = controls_of(name for name, _ in self.shown())
+        key = next((code_of(name) for name, found in controls.items() if found == control), None)
+        if key is not None and self.press(key, 0):
+            self._controlled[control], self.is_on_pad = key, True
+
+    def release_control(self, control: str) -> None:
+        """Let go the key that a control of a gamepad has pressed."""
+        key = self._controlled.pop(control, None)
+        if key is not None:
+            self.release(key)

@@ -103,9 +103,6 @@ class PlayScreen:
                 self.shape.open[name] = is_open
         self.stage.drag.strength = kept_strength(self.stage.drag.strength)
         self._keys = DriveKeys(playback)
-        # The key that each control of a gamepad holds; whether a gamepad was used last.
-        self._on_pad: dict[str, int] = {}
-        self._is_on_pad = False
         self.troubles = Troubles(app, lambda: self.stage, self.say)
         self._legend = Legend()
         can_end = self.is_game and bool(playback.level.rules or playback.level.goal)
@@ -399,7 +396,7 @@ class PlayScreen:
     def _reset(self) -> None:
         """Go back to the last checkpoint, or else to the beginning."""
         if self.game.go_back():
-            self._keys = DriveKeys(self.playback)
+            self._keys = DriveKeys(self.playback, self._keys.is_on_pad)
         else:
             self.restart()
 
@@ -470,30 +467,20 @@ class PlayScreen:
         if clicked is not None and isinstance(self.panel, Panel):
             self.panel.choose_particle(clicked)
 
+    @property
+    def keys(self) -> DriveKeys:
+        """The keys of the run that is shown now."""
+        if self._keys.playback is not self.playback:
+            self._keys = DriveKeys(self.playback, self._keys.is_on_pad)
+        return self._keys
+
     def press_key(self, key: int, modifiers: int) -> bool:
         """Drive what the level lets a key drive."""
-        if self._keys.playback is not self.playback:
-            self._keys = DriveKeys(self.playback)
-        is_of_level = self._keys.press(key, modifiers)
-        self._is_on_pad &= not is_of_level
-        return is_of_level
-
-    def press_control(self, control: str) -> None:
-        """Press the key that a control of a gamepad is for."""
-        key = self._keys.code_at(control)
-        if key is not None and self.press_key(key, 0):
-            self._on_pad[control], self._is_on_pad = key, True
-
-    def release_control(self, control: str) -> None:
-        """Let go the key that a control of a gamepad has pressed."""
-        key = self._on_pad.pop(control, None)
-        if key is not None:
-            self.release_key(key)
+        return self.keys.press(key, modifiers)
 
     def release_key(self, key: int) -> None:
         """Stop driving."""
-        if self._keys.playback is self.playback:
-            self._keys.release(key)
+        self.keys.release(key)
 
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Move the keyboard cursor; where the level has arrow keys of its own, Shift is what tells them apart."""
@@ -570,7 +557,7 @@ class PlayScreen:
         self.stage.draw(surface, profile)
         surface.set_clip(self.viewport)
         self.troubles.draw(surface)
-        draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport, self._is_on_pad)
+        draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport, self._keys.is_on_pad)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
         self.game.draw(surface)
         surface.set_clip(None)

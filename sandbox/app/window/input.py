@@ -151,9 +151,9 @@ class Input:
             if play is None:
                 continue
             if not is_down:
-                play.release_control(control)
+                play.keys.release_control(control)
             elif not self.app.ui.has_sheet and self.app.gallery is None:
-                play.press_control(control)
+                play.keys.press_control(control)
 
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app
