@@ -16,6 +16,11 @@ class SiteOptions:
     levels: list[str] = arguments(str, "LEVEL", "default: all that are shipped", at_least=0)
     output: Path = needed_option(Path, "-o", metavar="FOLDER")
     title: str = option_or("Spring Sandbox", str, help="what the site is called")
+    address: str | None = option(
+        str,
+        metavar="ADDRESS",
+        help="where the site will be, https://...; links to its pages then show pictures in chats",
+    )
     document: Path | None = option(
         Path,
         metavar="FILE.md",
@@ -25,7 +30,9 @@ class SiteOptions:
 
 def site(options: SiteOptions) -> int:
     """Write the site, and tell how large it is. Raises Refused."""
-    from sandbox.app.site.site import SiteLevel, write_site
+    from sandbox.app.site.index_page import IndexPage, SiteLevel
+    from sandbox.app.site.link_card import is_address
+    from sandbox.app.site.site import write_site
     from sandbox.level.reading.files import shipped_levels
 
     shipped = {path.stem: path for path in shipped_levels()}
@@ -35,9 +42,11 @@ def site(options: SiteOptions) -> int:
         raise Refused("two levels have files of one name; their pages would have one address")
     if options.output.exists() and not options.output.is_dir():
         raise Refused(f"{options.output}: is no folder")
+    if options.address is not None and not is_address(options.address):
+        raise Refused(f"--address: {options.address} is no address of a site, such as https://example.org/toys")
     links = _write_documents(options.document, options.output) if options.document else {}
     with Progress(len(levels)) as bar:
-        for _ in write_site(levels, options.output, options.title, links):
+        for _ in write_site(levels, options.output, IndexPage(options.title, links, options.address)):
             bar.update()
     size = sum(path.stat().st_size for path in options.output.rglob("*") if path.is_file())
     print(f"{options.output}: {len(levels)} levels, {size / 1e6:.1f} MB; begin at {options.output / 'index.html'}")

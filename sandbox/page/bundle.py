@@ -14,8 +14,13 @@ WEB = Path(__file__).with_name("web")
 BUNDLE = Path(__file__).with_name("bundle.js")
 # Where npm puts it, by package-lock.json.
 ESBUILD = Path(__file__).resolve().parents[2] / "node_modules" / "esbuild" / "bin" / "esbuild"
-# What a page does that holds all it needs.
-_BEGIN = "import { start, unpack } from './main.js';\nstart(unpack());\n"
+# What pages begin with that have an address of the bundle; one that holds all it needs begins by itself.
+_BEGIN = """export { load } from './files.js';
+export { list } from './index.js';
+export { start };
+import { start, unpack } from './main.js';
+if ('unpacked' in globalThis) start(unpack());
+"""
 _OPTIONS = ("--bundle", "--minify", "--format=esm", "--target=es2022", "--charset=utf8", "--log-level=warning")
 
 

@@ -47,19 +47,24 @@ def page_text(title: str, hints: str, content: bytes) -> str:
         "DIGITS": DIGITS,
     }
     # The page makes a script of what it has unpacked.
-    return _page(title, hints, "", filled("packed", **held), f"<script>{whole}</script>", script=COMPILING)
+    return _page(title, hints, filled("packed", **held), f"<script>{whole}</script>", script=COMPILING)
 
 
-def linked_page_text(title: str, hints: str, toy: str, modules: str, home: str) -> str:
-    """The page of a toy whose files lie beside it. toy, modules, home: quoted addresses of file, scripts and list."""
-    back, parts = f'<a href="{home}">All levels</a>', filled("linked", TOY=toy, MODULES=modules)
-    return _page(title, hints, back, parts, script=f"'self' {COMPILING}", connect="'self'")
+def linked_page_text(title: str, hints: str, toy: str, bundle: str, home: str, shown: str = "") -> str:
+    """The page of a toy whose files lie beside it. toy, bundle, home: quoted addresses of file, script and list.
+
+    shown: elements of its head for who shows a link to it.
+    """
+    back, parts = f'<a href="{home}">All levels</a>', filled("linked", TOY=toy, BUNDLE=bundle)
+    return _page(title, hints, parts, home=back, shown=shown, script=f"'self' {COMPILING}", connect="'self'")
 
 
-def _page(title: str, hints: str, home: str, parts: str, made: str = "", **sources: str) -> str:
+def _page(
+    title: str, hints: str, parts: str, made: str = "", *, home: str = "", shown: str = "", **sources: str
+) -> str:
     """A page of these parts, which may run them and what it makes of them, and has these sources."""
     held_to = policy(_template("page"), parts, made, img=ICON, **sources)
-    given = {"TITLE": html.escape(title), "HINTS": html.escape(hints), "HOME": home, "PARTS": parts}
+    given = {"TITLE": html.escape(title), "HINTS": html.escape(hints), "HOME": home, "PARTS": parts, "SHOWN": shown}
     return filled("page", POLICY=held_to, **given)
 
 

@@ -153,6 +153,7 @@ def test_a_name_of_a_level_is_an_address_and_no_script(browser: Browser, tmp_pat
     assert main(["site", str(own), "-o", str(site)]) == 0
     with served(site) as at:
         tab = browser.tab().show(f"{at}index.html")
+        tab.evaluate(FRAMES)
         assert (
             tab.evaluate("Promise.all([...document.images].map((each) => each.decode())).then(() => 'seen')") == "seen"
         )

@@ -45,7 +45,9 @@ class _Page(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         given = dict(attrs)
         self.tags.append((tag, given))
-        self.linked += [value for key in ("href", "src", "srcset") if (value := given.get(key))]
+        self.linked += [value for key in ("href", "src", "data-src") if (value := given.get(key))]
+        for several in (given.get("srcset"), given.get("data-srcset")):
+            self.linked += [each.split()[0] for each in (several or "").split(",") if each]
         if given.get("id"):
             self.names.add(str(given["id"]))
 
@@ -128,13 +130,15 @@ def test_text_can_be_read_and_nothing_is_wider_than_a_phone(
 
 
 def test_the_keyboard_reaches_every_level_and_opens_it(browser: Browser, address: str) -> None:
-    tab = browser.tab().show(f"{address}index.html")
+    tab = browser.tab().open(f"{address}index.html")
     reached = []
-    for _ in LEVELS:
+    # Before them come the toy at the top, its button and its link.
+    for _ in range(3 + len(LEVELS)):
         tab.key("Tab")
         reached.append(tab.evaluate("document.activeElement.getAttribute('href')"))
         assert tab.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
-    assert sorted(reached) == sorted(f"levels/{stem}.html" for stem in LEVELS)
+    assert reached[:3] == [None, None, "levels/trampoline.html"]
+    assert sorted(reached[3:]) == sorted(f"levels/{stem}.html" for stem in LEVELS)
 
 
 def test_levels_of_ones_own_are_a_site_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -157,6 +161,7 @@ def test_what_cannot_be_a_site_is_one_line(tmp_path: Path, capsys: pytest.Captur
         (["rope", "--document", str(document)], "there is no gone.md"),
         (["rope", "--document", str(outside)], "../rope.json lies outside of the folder"),
         (["nothing_like_it"], "there is no such file"),
+        (["rope", "--address", "example.org"], "example.org is no address of a site"),
     )
     document.write_text("# Broken\n\n[gone](gone.md), [mail](mailto:nobody@example.org)\n", encoding="utf-8")
     for given, said in refused:

@@ -22,6 +22,18 @@ from sandbox.level.document.model import Level
 from sandbox.session.scene import RunScene
 
 
+class Keys(Protocol):
+    """Keys that a level gives a meaning, by the controls of a gamepad."""
+
+    def press_control(self, control: str) -> None:
+        """Press the key that a control is for."""
+        ...
+
+    def release_control(self, control: str) -> None:
+        """Let go the key that a control has pressed."""
+        ...
+
+
 class Run(Screen, Protocol):
     """A run on the screen; of_document: of the level that the editor has open; source: the file of its level.
 
@@ -39,6 +51,11 @@ class Run(Screen, Protocol):
 
     def film(self, seconds: float) -> Film | FilmPair:
         """Film of its last seconds [s], as the camera shows it now."""
+        ...
+
+    @property
+    def keys(self) -> Keys:
+        """The keys of its level."""
         ...
 
     def show_sweep(self, path: Path) -> None:

@@ -4,6 +4,7 @@ import io
 import os
 from collections.abc import Generator
 from pathlib import Path
+from typing import cast
 
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
@@ -32,11 +33,20 @@ def crop_of(level: Level, snapshot: Snapshot) -> Box:
     return bounds(np.clip(_points(snapshot), (left, bottom), (right, top)))
 
 
-def _points(snapshot: Snapshot) -> NDArray[np.float64]:
-    # Corners of all that is drawn.
+def particles_of(snapshot: Snapshot) -> Box:
+    """The box [m] around all particles."""
+    return bounds(_corners(snapshot))
+
+
+def _corners(snapshot: Snapshot) -> NDArray[np.float64]:
     shown = shown_particles(snapshot)
     position, radius = snapshot.position[shown], snapshot.radius[shown, None]
-    return np.concatenate([position - radius, position + radius, snapshot.terrain.vertex])
+    return np.concatenate([position - radius, position + radius])
+
+
+def _points(snapshot: Snapshot) -> NDArray[np.float64]:
+    # Corners of all that is drawn.
+    return np.concatenate([_corners(snapshot), snapshot.terrain.vertex])
 
 
 def draw_picture(
@@ -85,3 +95,13 @@ def run_ahead(level: Level, ticks: int, most_particles: int) -> Generator[bool, 
         with np.errstate(over="ignore", invalid="ignore"):
             session.advance()
     return session.snapshot()
+
+
+def run_at_once(level: Level, ticks: int, most_particles: int) -> Snapshot:
+    """As `run_ahead`, in one slice."""
+    slices = run_ahead(level, ticks, most_particles)
+    while True:
+        try:
+            next(slices)
+        except StopIteration as end:
+            return cast(Snapshot, end.value)

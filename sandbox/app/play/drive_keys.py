@@ -2,6 +2,7 @@
 
 import pygame
 
+from sandbox.app.base.gamepads import controls_of
 from sandbox.app.run.playback import Playback
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.session.commands import HoldKey, SetDrive
@@ -15,10 +16,16 @@ def code_of(key: str) -> int:
 
 
 class DriveKeys:
-    """Drives parts of one run, and answers its rules, while keys are held; a press and its release are one gesture."""
+    """Drives parts of one run, and answers its rules, while keys are held; a press and its release are one gesture.
 
-    def __init__(self, playback: Playback) -> None:
+    is_on_pad: whether a gamepad has pressed the last one.
+    """
+
+    def __init__(self, playback: Playback, is_on_pad: bool = False) -> None:
         self.playback = playback
+        self.is_on_pad = is_on_pad
+        # The key that each control of a gamepad holds.
+        self._controlled: dict[str, int] = {}
         self._joined: object = None
         self._all: dict[int, list[tuple[int, float]]] = {}
         asked = playback.session.world.rule_keys
@@ -60,6 +67,7 @@ class DriveKeys:
         if modifiers & pygame.KMOD_SHIFT and key in ARROWS.values():
             # With Shift they move the marked particle, as they do elsewhere.
             return False
+        self.is_on_pad = False
         if key not in self._held:
             self._held[key] = self.playback.session.new_gesture()
             for part, value in self._keys.get(key, []):
@@ -78,3 +86,16 @@ class DriveKeys:
             self.playback.submit(SetDrive(part, still[-1] if still else 0.0), gesture)
         if key in self._asked:
             self.playback.submit(HoldKey(self._asked[key], False), gesture)
+
+    def press_control(self, control: str) -> None:
+        """Press the key that a control of a gamepad is for."""
+        controls = controls_of(name for name, _ in self.shown())
+        key = next((code_of(name) for name, found in controls.items() if found == control), None)
+        if key is not None and self.press(key, 0):
+            self._controlled[control], self.is_on_pad = key, True
+
+    def release_control(self, control: str) -> None:
+        """Let go the key that a control of a gamepad has pressed."""
+        key = self._controlled.pop(control, None)
+        if key is not None:
+            self.release(key)

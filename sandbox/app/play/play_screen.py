@@ -403,7 +403,7 @@ class PlayScreen:
     def _reset(self) -> None:
         """Go back to the last checkpoint, or else to the beginning."""
         if self.game.go_back():
-            self._keys = DriveKeys(self.playback)
+            self._keys = DriveKeys(self.playback, self._keys.is_on_pad)
         else:
             self.restart()
 
@@ -470,16 +470,20 @@ class PlayScreen:
         if clicked is not None and isinstance(self.panel, Panel):
             self.panel.choose_particle(clicked)
 
+    @property
+    def keys(self) -> DriveKeys:
+        """The keys of the run that is shown now."""
+        if self._keys.playback is not self.playback:
+            self._keys = DriveKeys(self.playback, self._keys.is_on_pad)
+        return self._keys
+
     def press_key(self, key: int, modifiers: int) -> bool:
         """Drive what the level lets a key drive."""
-        if self._keys.playback is not self.playback:
-            self._keys = DriveKeys(self.playback)
-        return self._keys.press(key, modifiers)
+        return self.keys.press(key, modifiers)
 
     def release_key(self, key: int) -> None:
         """Stop driving."""
-        if self._keys.playback is self.playback:
-            self._keys.release(key)
+        self.keys.release(key)
 
     def press_arrow(self, dx: int, dy: int, modifiers: int) -> None:
         """Move the keyboard cursor; where the level has arrow keys of its own, Shift is what tells them apart."""
@@ -556,7 +560,7 @@ class PlayScreen:
         self.stage.draw(surface, profile)
         surface.set_clip(self.viewport)
         self.troubles.draw(surface)
-        draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport)
+        draw_key_caps(surface, self._ui, self._keys.shown(), self.viewport, self._keys.is_on_pad)
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
         draw_hint(surface, self._ui, self.camera, self.stage.tool)
         self.game.draw(surface)

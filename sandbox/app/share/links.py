@@ -42,7 +42,7 @@ def _is_known_to_pages(record: dict[str, Any]) -> bool:
 
 
 def _told(replay: Replay) -> Generator[float, None, tuple[tuple[ScriptLine, ...], dict[int, Any]]]:
-    """The commands of a run without what was undone; what pages are told of some, by their places. Raises ReplayError."""
+    """The commands of a run without what was undone; what pages are told of some, by place. Raises ReplayError."""
     level = replay.level
 
     def beside(before: Counts, world: World) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
-from sandbox.app.site.site import OWN, STYLE, link_list
+from sandbox.app.site.index_page import OWN, STYLE, link_list
 from sandbox.export.policy import policy
 from sandbox.level.format.writing import write_file
 from sandbox.page.page import filled

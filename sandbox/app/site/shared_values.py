@@ -7,7 +7,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from sandbox.app.base import coefficient_scale, loop
+from sandbox.app.base import coefficient_scale, gamepads, loop
 from sandbox.app.draw import effects, looks, themes, water
 from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, treads, wheels
 from sandbox.app.panel import readings
@@ -40,6 +40,7 @@ def shared_values() -> dict[str, dict[str, Any]]:
             "STRENGTH": world.HAND_STRENGTH, "SOFT_REACH": query.REACH, "AT_LIMIT": pulls.AT_LIMIT,
             "PICK_RADIUS": stage.PICK_RADIUS, "UNITS": hand_labels.UNITS,
         },
+        "GAMEPAD": _of(gamepads, "ACROSS", "UPWARDS", "BUTTONS", "PRESSES", "LETS_GO"),
         "PAD": _of(coefficient_scale, "NUMBERED", "DIGITS", "END")
         | {"LOWEST": coefficient_scale.PLAIN.lowest, "REST": coefficient_scale.PLAIN.rest}
         | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},

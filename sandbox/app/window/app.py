@@ -465,6 +465,7 @@ def run_app(
     app.says_states = says_states
     show_progress()
     app.guide.may_offer = True
+    app.input.gamepads.begin()
     app.open(wanted)
     app.documents.offer_recovery()
     show_progress()

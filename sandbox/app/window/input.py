@@ -4,6 +4,7 @@ import math
 
 import pygame
 
+from sandbox.app.base.gamepads import EVENTS, Gamepads
 from sandbox.app.base.shortcuts import action_of
 from sandbox.app.contracts.application import Application
 from sandbox.app.widgets.widget import ENTER_KEYS
@@ -62,6 +63,7 @@ class Input:
 
     def __init__(self, app: Application) -> None:
         self.app = app
+        self.gamepads = Gamepads()
         self._panning = False
         self._pressed = False
         self._space_down: int | None = None
@@ -89,6 +91,8 @@ class Input:
                 self.app.display.hidden = False
             elif event.type == pygame.AUDIODEVICEREMOVED:
                 self.app.sounds.look_again()
+            elif event.type in EVENTS:
+                self._to_controls(self.gamepads.take(event))
             elif event.type == pygame.WINDOWFOCUSGAINED:
                 self.app.documents.look_at_disk()
             elif self._follows_world(event) or not self.app.ui.process(event):
@@ -144,6 +148,17 @@ class Input:
             pixel = self.pointer_over_world()
             if pixel is not None:
                 self.app.screen.turn_wheel(pixel, event.precise_y or event.y)
+
+    def _to_controls(self, changes: list[tuple[str, bool]]) -> None:
+        """Let controls of gamepads press the keys of the level that is played, and let them go."""
+        play = self.app.play
+        for control, is_down in changes:
+            if play is None:
+                continue
+            if not is_down:
+                play.keys.release_control(control)
+            elif not self.app.ui.has_sheet and self.app.gallery is None:
+                play.keys.press_control(control)
 
     def _key(self, event: pygame.event.Event) -> None:
         app = self.app

@@ -25,6 +25,10 @@ const BOLTS = { bone: ['#4a3a28', '#fff4de'], brass: ['#3a2a10', '#f2ce7c'], woo
 const INK = '#2a1030', DARK = '#161b26', LARGEST_PIN = 0.1;
 
 // The place in the middle of the picture [m], pixels to a metre, and the size of the picture [pixels].
+/** Which parts of width and height a box takes that is shown as large as it goes.
+ * @type {Point} */
+export const FIT = [0.92, 0.88];
+
 export class Camera {
   x = 0;
   y = 0;
@@ -36,8 +40,8 @@ export class Camera {
    * @type {(box: Box, bottom?: number) => void} */
   fit([left, low, right, high], bottom = 0) {
     const height = Math.max(this.height - bottom, 1);
-    this.zoom = Math.min((this.width * 0.92) / Math.max(right - left, 0.5),
-      (height * 0.88) / Math.max(high - low, 0.5));
+    this.zoom = Math.min((this.width * FIT[0]) / Math.max(right - left, 0.5),
+      (height * FIT[1]) / Math.max(high - low, 0.5));
     this.x = (left + right) / 2;
     this.y = (low + high) / 2 - bottom / 2 / this.zoom;
   }
@@ -78,6 +82,8 @@ export class Picture {
   camera = new Camera();
   // Of the present picture: pixels of the screen to one of the page, and how large what has a size in pixels is.
   ratio = 1;
+  // The largest ratio, where the screen has more.
+  sharpest = 2;
   scale = 1;
   seconds = 0;
   /** Where particles are [pixels].
@@ -109,8 +115,8 @@ export class Picture {
   /** previous: positions a tick ago; part: how much of the way from them to the present ones, 0..1.
    * @type {(camera: Camera, theme: Theme, previous: Float64Array, part: number, seconds: number) => void} */
   draw(camera, theme, previous, part, seconds) {
-    const { width, height } = camera, ratio = Math.min(devicePixelRatio || 1, 2), context = this.#context;
-    const canvas = this.#canvas;
+    const { width, height } = camera, ratio = Math.min(devicePixelRatio || 1, this.sharpest);
+    const context = this.#context, canvas = this.#canvas;
     /** @type {[number, number]} */
     const size = [Math.round(width * ratio), Math.round(height * ratio)];
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;

@@ -6,6 +6,10 @@
  * @type {(event: Pick<KeyboardEvent, 'code' | 'key'>) => string} */
 const placeOf = ({ code, key }) => code || key.toLowerCase();
 
+/** What a level calls a key.
+ * @type {(key: string) => string} */
+const nameOf = (key) => key.replace('Arrow', '').toLowerCase();
+
 export class Drives {
   /** @type {Map<string, number>} */
   #held = new Map();
@@ -24,11 +28,17 @@ export class Drives {
     this.told = told;
   }
 
+  /** Whether a key of a keyboard drives something.
+   * @type {(event: KeyboardEvent) => boolean} */
+  has({ key, ctrlKey, metaKey, altKey, shiftKey }) {
+    return nameOf(key) in this.keys && !(ctrlKey || metaKey || altKey || shiftKey);
+  }
+
   /** Whether a key that went down drives something; it does so until the key goes up.
    * @type {(event: KeyboardEvent) => boolean} */
   typed(event) {
-    const name = event.key.replace('Arrow', '').toLowerCase();
-    if (!(name in this.keys) || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return false;
+    if (!this.has(event)) return false;
+    const name = nameOf(event.key);
     if (!event.repeat) {
       this.press(name);
       this.#typed.set(placeOf(event), name);

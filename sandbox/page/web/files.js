@@ -1,4 +1,4 @@
-// Files: a toy's file, which has the level and the image of its world, and the kernels that all toys share.
+// Files: a toy's file, which has the level and the image of its world, and the kernels that all toys share; compressed.
 import { Refusal } from './commands.js';
 import { World } from './world.js';
 /** @import { Fresh, Kernels, Level } from './types.js' */
@@ -25,16 +25,25 @@ async function fetched(address) {
   return answer;
 }
 
+/** The content of a compressed file; kernels may be plain WebAssembly, which begins with a zero.
+ * @type {(address: string) => Promise<ArrayBuffer>} */
+async function unpacked(address) {
+  const file = await fetched(address);
+  try {
+    const blob = await file.blob(), [first] = new Uint8Array(await blob.slice(0, 1).arrayBuffer());
+    if (first === 0) return await blob.arrayBuffer();
+    return await new Response(blob.stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+  } catch {
+    throw new Refusal(`${address} was cut off or damaged.`);
+  }
+}
+
 /** The level and the worlds of files at addresses; kernels are fetched once for all toys of a page.
  * @type {(address: string, kernels?: string | URL) => Promise<[Level, Fresh]>} */
-export async function load(address, kernels = new URL('kernels.wasm', import.meta.url)) {
+export async function load(address, kernels = new URL('kernels.wasm.gz', import.meta.url)) {
   if (!globalThis.WebAssembly || !globalThis.DecompressionStream) throw new Refusal('This browser is too old for it.');
   const key = String(kernels);
-  const module = modules.get(key) ?? fetched(key).then((answer) => answer.arrayBuffer()).then(WebAssembly.compile);
+  const module = modules.get(key) ?? unpacked(key).then(WebAssembly.compile);
   modules.set(key, module);
-  const file = await fetched(address);
-  const unpacked = async () => (await file.blob()).stream().pipeThrough(new DecompressionStream('gzip'));
-  const content = await unpacked().then((stream) => new Response(stream).arrayBuffer()).catch(
-    () => { throw new Refusal(`${address} was cut off or damaged.`); });
-  return read(content, module);
+  return read(await unpacked(address), module);
 }

@@ -215,6 +215,18 @@ export class Hands {
     this.#closing.abort();
   }
 
+  // Whether a pointer or a key holds something.
+  get isBusy() {
+    return this.#held.size > 0;
+  }
+
+  /** The free particle that a press on the picture takes; null: none.
+   * @type {(event: PointerEvent) => number | null} */
+  reached({ offsetX, offsetY, pointerType }) {
+    const within = REACH[pointerType] / this.camera.zoom;
+    return new Near(this.run.world).free(this.camera.toWorld(offsetX, offsetY), within);
+  }
+
   /** A wheel zooms, unless it would scroll the page and the picture was not clicked before.
    * @type {(event: WheelEvent) => void} */
   #turn(event) {

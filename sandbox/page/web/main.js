@@ -1,6 +1,7 @@
 // Main: the page around a toy: its bars, panel, timeline and keys, and what it says.
 import { Refusal } from './commands.js';
 import { read } from './files.js';
+import { controlsOf, Gamepads } from './gamepad.js';
 import { Goals } from './goals.js';
 import { isLink, linked } from './link.js';
 import { Menu } from './menu.js';
@@ -170,12 +171,27 @@ class Page {
     /** @type {Map<string, HTMLButtonElement>} */
     const buttons = new Map();
     drives.told = (name, isHeld) => press(buttons.get(name), isHeld);
+    const controls = controlsOf(Object.keys(drives.keys));
+    /** Caps say what presses them on what was used last.
+     * @type {(isOnPad: boolean) => void} */
+    const show = (isOnPad) => {
+      byId('keys').classList.toggle('on-pad', isOnPad);
+      for (const [name, button] of buttons) {
+        const said = isOnPad ? controls.get(name) ?? name : name;
+        button.textContent = ARROWS[said] ?? said.toUpperCase();
+      }
+    };
+    // Who touches has them below both thumbs from then on.
+    const spread = () => byId('keys').classList.add('spread');
+    if (matchMedia('(hover: none)').matches) spread();
+    addEventListener('keydown', (event) => { if (drives.has(event)) show(false); });
+    addEventListener('pointerdown', ({ pointerType }) => { if (pointerType === 'touch') spread(); }, true);
     for (const name of Object.keys(drives.keys)) {
-      const button = element('button', { type: 'button', textContent: ARROWS[name] ?? name.toUpperCase(),
-        className: 'key' });
+      const button = element('button', { type: 'button', className: 'key' });
       button.setAttribute('aria-label', `Key ${name}`);
       button.addEventListener('pointerdown', (event) => {
         if (event.button !== 0) return;
+        show(false);
         button.setPointerCapture(event.pointerId);
         drives.press(name);
       });
@@ -187,6 +203,8 @@ class Page {
       buttons.set(name, button);
     }
     byId('keys').append(...buttons.values());
+    show(false);
+    this.gamepads = new Gamepads(drives, () => show(true));
   }
 
   async #verify() {

@@ -10,6 +10,7 @@ const parse = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2
 const mean = (first, second, share) => first.map((value, k) => value + (second[k] - value) * share);
 
 /** @typedef {{ width: number, height: number }} Size */
+/** @typedef {[number, number, number]} Point3 */
 /** A colour over a line at a spring, and how much of that.
  * @typedef {(spring: number) => [colour: string, alpha: number] | null} TintOf */
 
@@ -356,37 +357,65 @@ export function disc(context, x, y, radius, colour, alpha = 1) {
   context.globalAlpha = 1;
 }
 
-/** Waves that tile and look like noise, of about so many to a picture; u and v: angles across and down.
- * @type {(u: number, v: number, count: number) => number} */
-const noise = (u, v, count) => [1, 2, 3, 4, 5, 6, 7].reduce((sum, k) => {
-  const way = 2.4 * k + count, across = Math.round(count * Math.cos(way)), down = Math.round(count * Math.sin(way));
-  return sum + Math.sin(across * u + down * v + k * k) / 1.9;
-}, 0);
-const GRAIN = 256, PEBBLES = 16;
+/** Waves that tile, of about so many to a picture: how many across, how many down, and where they begin.
+ * @type {(count: number) => Point3[]} */
+const wavesOf = (count) => [1, 2, 3, 4, 5, 6, 7].map((k) => {
+  const way = 2.4 * k + count;
+  return [Math.round(count * Math.cos(way)), Math.round(count * Math.sin(way)), k * k];
+});
+const FINE = wavesOf(10), COARSE = wavesOf(4);
+/** Waves together look like noise; u and v: angles across and down.
+ * @type {(u: number, v: number, waves: Point3[]) => number} */
+function noise(u, v, waves) {
+  let sum = 0;
+  for (const [across, down, start] of waves) sum += Math.sin(across * u + down * v + start);
+  return sum / 1.9;
+}
+const GRAIN = 256, PEBBLES = 16, LARGEST_PEBBLE = 4;
 /** @type {(k: number) => number} */
 const chance = (k) => ((Math.sin(12.99 * k) * 43758.55) % 1 + 1) % 1;
-const PLACES = Array.from({ length: PEBBLES }, (_, k) => [1, 40, 80].map((from) => chance(k + from)));
-/** @type {Record<string, (u: number, v: number, x: number, y: number) => number>} */
+/** @type {Record<string, (u: number, v: number) => number>} */
 const GRAINS = {
   wood: (u, v) => 5 * Math.sin(18 * v + 1.5 * Math.sin(u)) + 3 * Math.sin(46 * v + Math.sin(2 * u)),
-  earth: (u, v, x, y) => PLACES.reduce((sum, [left, top, size], k) => sum + (k % 2 ? 18 : -15)
-    * clamp(1.4 + 2 * size - Math.hypot(x - GRAIN * left, y - GRAIN * top)),
-  1.3 * noise(u, v, 10) + 4 * Math.tanh(2 * Math.sin(4 * v + Math.sin(u) + 0.6 * noise(u, v, 4)))),
+  earth: (u, v) => 1.3 * noise(u, v, FINE)
+    + 4 * Math.tanh(2 * Math.sin(4 * v + Math.sin(u) + 0.6 * noise(u, v, COARSE))),
 };
+
+/** Strew pebbles over the rows of a grain.
+ * @type {(values: Float64Array) => void} */
+function strew(values) {
+  for (let k = 0; k < PEBBLES; k++) {
+    const [left, top, size] = [1, 40, 80].map((from) => chance(k + from)), x = GRAIN * left, y = GRAIN * top;
+    const [first, above] = [x, y].map((middle) => Math.max(Math.ceil(middle - LARGEST_PEBBLE), 0));
+    for (let row = above; row < Math.min(y + LARGEST_PEBBLE, GRAIN); row++) {
+      for (let column = first; column < Math.min(x + LARGEST_PEBBLE, GRAIN); column++) {
+        values[GRAIN * row + column] += (k % 2 ? 18 : -15) * clamp(1.4 + 2 * size - Math.hypot(column - x, row - y));
+      }
+    }
+  }
+}
+
+/** What a grain makes lighter, and what it makes darker.
+ * @type {(kind: string) => CanvasPattern[]} */
+function grainOf(kind) {
+  const unit = (2 * Math.PI) / GRAIN, values = new Float64Array(GRAIN * GRAIN);
+  for (let k = 0; k < values.length; k++) {
+    values[k] = 3 * chance(k) - 1.5 + GRAINS[kind](unit * (k % GRAIN), unit * Math.floor(k / GRAIN));
+  }
+  if (kind === 'earth') strew(values);
+  return [1, -1].map((sign) => {
+    const image = new ImageData(GRAIN, GRAIN), pixels = new Uint32Array(image.data.buffer);
+    for (let k = 0; k < pixels.length; k++) {
+      pixels[k] = 0xff000000 | (0x010101 * clamp(Math.round(sign * values[k]), 0, 255));
+    }
+    return patternOf(image);
+  });
+}
 
 /** Lay the grain of earth or wood over a path; its place on the page moves with x and y.
  * @type {(context: CanvasRenderingContext2D, path: Path2D, kind: string, x: number, y: number) => void} */
 export function layGrain(context, path, kind, x, y) {
-  const grain = once(`grain ${kind}`, () => [1, -1].map((sign) => {
-    const image = new ImageData(GRAIN, GRAIN), unit = (2 * Math.PI) / GRAIN;
-    for (let k = 0; k < GRAIN * GRAIN; k++) {
-      const column = k % GRAIN, row = Math.floor(k / GRAIN), fine = 3 * chance(k) - 1.5;
-      const value = fine + GRAINS[kind](unit * column, unit * row, column, row);
-      image.data.fill(Math.round(sign * value), 4 * k, 4 * k + 3);
-      image.data[4 * k + 3] = 255;
-    }
-    return patternOf(image);
-  }));
+  const grain = once(`grain ${kind}`, () => grainOf(kind));
   /** What is lighter is added, and what is darker taken away.
    * @type {const} */ (['lighter', 'difference']).forEach((how, k) => {
     context.globalCompositeOperation = how;

@@ -32,6 +32,13 @@ export const HANDS = {
   PICK_RADIUS: 14,
   UNITS: [[1000000000, 'GN'], [1000000, 'MN'], [1000, 'kN'], [1, 'N'], [0.001, 'mN']],
 };
+export const GAMEPAD = {
+  ACROSS: [['a', 'd'], ['left', 'right']],
+  UPWARDS: [['s', 'w'], ['down', 'up']],
+  BUTTONS: ['A', 'B', 'X', 'Y'],
+  PRESSES: 0.5,
+  LETS_GO: 0.35,
+};
 export const PAD = {
   NUMBERED: [1e-05, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1],
   DIGITS: 3,

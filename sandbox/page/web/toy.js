@@ -79,9 +79,10 @@ export class Toy extends EventTarget {
     const on = (target, name, act) => target.addEventListener(name, /** @type {EventListener} */ (act), { signal });
     if (!canvas.hasAttribute('tabindex')) canvas.tabIndex = 0;
     canvas.style.touchAction = 'none';
-    const size = new ResizeObserver(() => this.#resize()), sight = new IntersectionObserver(([{ isIntersecting }]) => {
-      this.#isSeen = isIntersecting;
-      if (!isIntersecting) this.#letGo();
+    const size = new ResizeObserver(() => this.#resize()), sight = new IntersectionObserver((seen) => {
+      // Several may be told at once, the newest last.
+      this.#isSeen = seen[seen.length - 1].isIntersecting;
+      if (!this.#isSeen) this.#letGo();
     });
     size.observe(canvas);
     sight.observe(canvas);
@@ -381,7 +382,7 @@ export class Toy extends EventTarget {
   }
 }
 
-/** Play a toy's file on a canvas. kernels: the address of kernels.wasm, where it is not beside this module.
+/** Play a toy's file on a canvas. kernels: the address of kernels.wasm.gz, where it is not beside this module.
  * @type {(canvas: HTMLCanvasElement, address: string, options?: { kernels?: string | URL }) => Promise<Toy>} */
 export async function open(canvas, address, { kernels } = {}) {
   return new Toy(canvas, ...await load(address, kernels));

@@ -1,0 +1,163 @@
+"""Index page: the list of a site's levels, with a toy at its top, and what plays each level as a preview."""
+
+import html
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import quote
+
+from sandbox.app.draw.camera import Box, Camera
+from sandbox.app.draw.picture import crop_of, particles_of, view_of
+from sandbox.app.draw.picture_cache import SIZE, SUFFIX
+from sandbox.app.gallery.sections import SECTIONS, GallerySection
+from sandbox.app.site.link_card import link_card
+from sandbox.export.policy import policy
+from sandbox.level.document.model import Level
+from sandbox.page.bundle import BUNDLE
+from sandbox.page.page import COMPILING, ICON, KERNELS, filled
+from sandbox.physics.snapshot import Snapshot
+
+# Folders of a site: pages of levels, their pictures, and the modules with the kernels.
+LEVELS, PICTURES, SCRIPTS = "levels", "pictures", "sandbox"
+STYLE = "site.css"
+# Beside pictures in the size of the gallery's there are such [pixels], for screens of one pixel to a pixel of a page.
+SMALL = (384, 216)
+# What pages may load that are read from a disk too. To some browsers no file of a disk belongs to the page itself.
+OWN = "'self' file:"
+# The level at the top, where the site has it: light, it goes on for half a minute, and there is something to pull at.
+HERO = "trampoline"
+WORDS = "Springs, jelly, bridges and machines that play in your browser: drag, cut, and set Cs and Cd."
+# How wide a picture is shown, in the style sheet's words.
+SHOWN = "(max-width: 560px) 92vw, 290px"
+# How much more of the height is shown at the top of the page above and below what is there at first.
+ROOM = 0.45
+# Digits of boxes [m].
+DIGITS = 2
+
+
+@dataclass(frozen=True)
+class SiteLevel:
+    """A level of a site; stem: of its files, path: of the level's own."""
+
+    stem: str
+    path: Path
+    level: Level
+
+    @property
+    def address(self) -> str:
+        """The stem as addresses have it."""
+        return quote(self.stem)
+
+    @property
+    def page(self) -> str:
+        """The address of its page in the site."""
+        return f"{LEVELS}/{self.address}.html"
+
+    @property
+    def toy(self) -> str:
+        """The address of what plays it."""
+        return f"{LEVELS}/{self.address}.toy"
+
+    @property
+    def card_picture(self) -> str:
+        """The address of the picture of links to its page."""
+        return f"{PICTURES}/{self.address}-card{SUFFIX}"
+
+
+@dataclass(frozen=True)
+class IndexPage:
+    """What the list of levels says beside them; links: addresses of other pages of the site by what they are called.
+
+    address: absolute, where the site will be; None: unknown.
+    """
+
+    title: str
+    links: Mapping[str, str]
+    address: str | None
+
+
+def index_text(levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], page: IndexPage) -> str:
+    """The page of levels by stem, each in a state as pictures show it."""
+    sections = sections_of(levels)
+    words = {stem: said or levels[stem].level.description for each in sections for stem, said in each.levels.items()
+             if stem in levels}  # fmt: skip
+    hero = levels[HERO if HERO in words else next(iter(words))]
+    link = '<h2>Documents</h2><nav aria-label="Documents"><ul>{}</ul></nav>'
+    script = filled("listed", BUNDLE=f"./{SCRIPTS}/{BUNDLE.name}")
+    return filled(
+        "index", TITLE=html.escape(page.title), WORDS=WORDS, SCRIPT=script,
+        POLICY=policy(script, script=f"'self' {COMPILING}", connect="'self'", style=OWN, img=f"{OWN} {ICON}"),
+        SHOWN=link_card(page.title, WORDS, "", hero.card_picture, page.address),
+        PRELOADS=_preloads(hero),
+        HERO=_hero(hero, states[hero.stem], words[hero.stem]),
+        LEVELS="".join(_section(each, levels, states, words) for each in sections),
+        DOCUMENTS=link.format(link_list(page.links)) if page.links else "",
+    )  # fmt: skip
+
+
+def sections_of(levels: Mapping[str, SiteLevel]) -> Sequence[GallerySection]:
+    """Headings with the levels that a site has below them: those of the gallery, then all others."""
+    known = {stem for section in SECTIONS for stem in section.levels}
+    own = {stem: "" for stem in levels if stem not in known}
+    sections = [*SECTIONS, GallerySection("Levels", "", own)]
+    return [section for section in sections if set(section.levels) & set(levels)]
+
+
+def link_list(links: Mapping[str, str]) -> str:
+    """Links as items of a list; links: addresses by what they are called."""
+    return "".join(f'<li><a href="{html.escape(at)}">{html.escape(name)}</a></li>' for name, at in links.items())
+
+
+def _preloads(hero: SiteLevel) -> str:
+    """What the toy at the top needs, all at once and not one after the other."""
+    files = f"{SCRIPTS}/{KERNELS.name}.gz", hero.toy
+    return "".join(f'<link rel="preload" as="fetch" crossorigin href="{at}">\n' for at in files)
+
+
+def _hero(each: SiteLevel, state: Snapshot, words: str) -> str:
+    name = html.escape(each.level.name)
+    return (
+        f'<section id="hero" aria-label="A toy to begin with" data-toy="{each.toy}" '
+        f'data-view="{_numbers(_around(each.level, state))}">{_picture(each)}'
+        f'<canvas tabindex="0" role="application" aria-label="{name}. N marks a particle, Enter takes it, arrows move '
+        f'it, Space pauses."></canvas><button type="button" hidden><svg viewBox="0 0 24 24"><path d=""/></svg></button>'
+        f'<p><a href="{each.page}">{name}</a> <span>{html.escape(words)}</span></p></section>\n'
+    )
+
+
+def _section(
+    section: GallerySection, levels: Mapping[str, SiteLevel], states: Mapping[str, Snapshot], words: Mapping[str, str]
+) -> str:
+    cards = "".join(_card(levels[stem], states[stem], words[stem]) for stem in section.levels if stem in levels)
+    return f"<section><h2>{section.title}</h2><p>{section.line}</p><ul class=cards>{cards}</ul></section>\n"
+
+
+def _card(each: SiteLevel, state: Snapshot, words: str) -> str:
+    seen = Camera(viewport=(0, 0, *SIZE)).picture_of(crop_of(each.level, state))
+    return (
+        f'<li><a href="{each.page}" data-toy="{each.toy}" data-view="{_numbers(seen)}">{_picture(each, "data-")}'
+        f"<h3>{html.escape(each.level.name)}</h3><p>{html.escape(words)}</p></a></li>"
+    )
+
+
+def _picture(each: SiteLevel, before: str = "") -> str:
+    """The picture of a level; before: what stands before the names of its addresses until a script fetches it."""
+    names = [f"{PICTURES}/{each.address}-{theme}" for theme in ("dark", "light")]
+    dark, light = (f"{name}-small{SUFFIX} {SMALL[0]}w, {name}{SUFFIX} {SIZE[0]}w" for name in names)
+    return (
+        f'<picture><source media="(prefers-color-scheme: light)" {before}srcset="{light}" sizes="{SHOWN}">'
+        f'<img {before}src="{names[0]}{SUFFIX}" {before}srcset="{dark}" sizes="{SHOWN}" alt="" '
+        f'width="{SIZE[0]}" height="{SIZE[1]}"></picture>'
+    )
+
+
+def _around(level: Level, state: Snapshot) -> Box:
+    """What moves at first [m], with room above and below it for where it goes, as far as the level is shown at all."""
+    left, low, right, high = particles_of(state)
+    _, bottom, _, top = view_of(level, state)
+    room = ROOM * (high - low)
+    return left, max(low - room, bottom), right, min(high + room, top)
+
+
+def _numbers(box: Box) -> str:
+    return ",".join(f"{value:.{DIGITS}f}" for value in box)
