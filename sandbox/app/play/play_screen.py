@@ -564,12 +564,10 @@ class PlayScreen:
         draw_labels(surface, self._ui, self.camera, self.playback.current, self.stage.pulls())
         draw_hint(surface, self._ui, self.camera, self.stage.tool)
         self.game.draw(surface)
-        surface.set_clip(None)
-        self.graphs.draw(surface)
-        surface.set_clip(self.viewport)
         renderer, solver = self.stage.renderer, self.playback.current.settings.solver
         self._legend.draw(surface, self._ui, renderer.overlays, renderer.theme, solver, self._legend_room)
         surface.set_clip(None)
+        self.graphs.draw(surface)
 
     @property
     def _legend_room(self) -> pygame.Rect:
@@ -595,10 +593,8 @@ class PlayScreen:
         words = [f"tick {self.playback.session.tick}", self._state()]
         if self.stage.drag.holds:
             words.append(f"holding {len(self.stage.drag.holds)}")
-        if self.playback.session.recording is not None:
-            words.append("recording")
-        if self.playback.replay is not None:
-            words.append(self.playback.outcome or "watching")
+        words += [] if self.playback.session.recording is None else ["recording"]
+        words += [] if self.playback.replay is None else [self.playback.outcome or "watching"]
         if (result := self.game.result) is not None:
             words.append("won" if result.is_won else "lost")
         return words
