@@ -57,11 +57,11 @@ export function namesOf(record, names, counts) {
   if (record.type === 'add_spring') {
     return { names: { spring: [`+:${unused(names.spring, counts.spring, /^\+:(\d+)$/)}`] }, counts: grown({ spring: 1 }) };
   }
-  const { body, materials = {} } = /** @type {AddedBody} */ (record);
+  const { body, materials } = /** @type {AddedBody} */ (record);
   const { particles, springs = [], triangles = [], material = 'default' } = body ?? {};
   if (![particles, springs, triangles].every(Array.isArray)) refuse(record);
   const number = Math.max(1, unused(names.particle, counts.particle, /^\+(\d+)\./));
-  const isKnown = names.material.slice(0, counts.material).includes(material) || !(material in materials);
+  const isKnown = names.material.slice(0, counts.material).includes(material) || !(material in (materials ?? {}));
   return {
     names: { particle: particles.map((_, k) => `+${number}.${k}`), spring: springs.map((_, k) => `+${number}:${k}`),
       material: isKnown ? [] : [material] },
@@ -159,13 +159,16 @@ export function checkBody(record, { fields, hasWater }) {
   }
   const stranger = Object.keys(body).find((name) => !fields.includes(name));
   if (stranger) throw new Refusal(`${CANNOT} ${stranger}`);
-  if (typeof materials === 'object' && Object.keys(materials ?? {}).length > 1) throw new Refusal(`${CANNOT} this material`);
+  const given = Object.values(materials ?? {}), isTable = typeof (materials ?? {}) === 'object';
+  if (!isTable || given.length > 1 || given.some((each) => typeof each !== 'object' || each === null)) {
+    throw new Refusal(`${CANNOT} this material`);
+  }
   if (hasWater) throw new Refusal('a page adds no bodies to a level with water');
 }
 
 /** @type {(rows: Rows, record: AddedBody) => void} */
 function addBody(rows, record) {
-  const { body, materials = {} } = record, { about, world } = rows;
+  const { body, materials } = record, { about, world } = rows;
   checkBody(record, about.adding);
   const { particles, springs = [], triangles = [], masses, pinned = [], velocity = [0, 0] } = body;
   const count = Array.isArray(particles) ? particles.length : 0, isPinned = new Set(pinned === true
@@ -174,7 +177,7 @@ function addBody(rows, record) {
     && areRows(springs, 2, count) && areRows(triangles, 3, count)
     && (masses === undefined || (masses.length === count && masses.every((mass) => isNumber(mass, 1e-9))));
   if (!isRight) refuse(record);
-  const [material, stiffness, damping] = materialOf(rows, body.material ?? 'default', materials);
+  const [material, stiffness, damping] = materialOf(rows, body.material ?? 'default', materials ?? {});
   const surface = surfaceOf(rows, body), owners = world.view('state.owner');
   const owner = 1 + owners.reduce((most, each) => Math.max(most, each), -1);
   const first = rows.told.counts.particle;
