@@ -19,8 +19,10 @@ FIELDS = (
 _LIMITS = ("tension_limit", "compression_limit", "yield_strain")
 
 
-def is_added_by_pages(record: Mapping[str, Any]) -> bool:
-    """Whether a page adds what a command says, by itself."""
+def is_done_without_kernel(record: Mapping[str, Any]) -> bool:
+    """Whether a page adds or removes what a command says, by itself."""
+    if record["type"] == "remove":
+        return record.get("particle") is not None
     if record["type"] in ("add_particle", "add_spring"):
         return True
     if record["type"] != "add_body" or record.keys() - {"type", "body", "materials"}:

@@ -20,6 +20,7 @@ from sandbox.commands import (
     MoveGrab,
     Pin,
     Release,
+    Remove,
     SetCoefficients,
     SetFirmness,
 )
@@ -77,6 +78,9 @@ def played(folder: Path, level: str, seed: int) -> Replay:
             session.submit(Pin(chance.choice(there)))
         if tick == 200 and world.spring_active[:20].any():
             session.submit(CutSprings((int(world.spring_active.nonzero()[0][0]),)))
+        if tick in (120, 170):
+            session.do(Remove(particle=chance.choice(there)))
+            continue
         if tick % 40 == 10:
             session.submit(Grab(0, chance.choice(there), place), gesture)
         elif 10 < tick % 40 < 30:

@@ -11,7 +11,7 @@ from sandbox.app.share.recorded import recorded
 from sandbox.level.document.model import Level
 from sandbox.level.plan.actuators import actuators as driven_parts
 from sandbox.page.about import is_done_by_pages
-from sandbox.page.adding import is_added_by_pages
+from sandbox.page.adding import is_done_without_kernel
 from sandbox.page.room import Counts
 from sandbox.physics.world import World
 from sandbox.session.commands.command import CommandError
@@ -38,7 +38,7 @@ def link_to(replay: Replay, site: str, at: int) -> Generator[float, None, str]:
 
 def _is_known_to_pages(record: dict[str, Any]) -> bool:
     """Whether a page carries out a command by itself."""
-    return is_done_by_pages(record["type"]) or is_added_by_pages(record)
+    return is_done_by_pages(record["type"]) or is_done_without_kernel(record)
 
 
 def _told(replay: Replay) -> Generator[float, None, tuple[tuple[ScriptLine, ...], dict[int, Any]]]:
@@ -57,7 +57,7 @@ def _told(replay: Replay) -> Generator[float, None, tuple[tuple[ScriptLine, ...]
     told = {
         place: {name: done[name] for name in _TOLD if name in done}
         for place, done in enumerate(played.commands)
-        if "changes" in done and ("counts" in done) == ("names" in done) and not is_added_by_pages(done["record"])
+        if "changes" in done and ("counts" in done) == ("names" in done) and not is_done_without_kernel(done["record"])
     }
     return tuple(played.script), told
 

@@ -57,6 +57,7 @@ export function namesOf(record, names, counts) {
   if (record.type === 'add_spring') {
     return { names: { spring: [`+:${unused(names.spring, counts.spring, /^\+:(\d+)$/)}`] }, counts: grown({ spring: 1 }) };
   }
+  if (record.type === 'remove') return { names: {}, counts };
   const { body, materials } = /** @type {AddedBody} */ (record);
   const { particles, springs = [], triangles = [], material = 'default' } = body ?? {};
   if (![particles, springs, triangles].every(Array.isArray)) refuse(record);

@@ -44,10 +44,10 @@ function shown(text) {
 const placed = (parts) => [...parts.map((part) => (PLAIN.test(String(part)) ? part : shown(String(part)))).join('.')]
   .slice(0, PLACE).join('');
 
-const ADDING = ['add_particle', 'add_spring', 'add_body'];
-/** Whether a type of command adds something, which a world does by itself.
+const WITHOUT_KERNEL = ['add_particle', 'add_spring', 'add_body', 'remove'];
+/** Whether a world of a page carries out a type of command by itself, without a kernel.
  * @type {(type: string) => boolean} */
-export const adds = (type) => ADDING.includes(type);
+export const isWithoutKernel = (type) => WITHOUT_KERNEL.includes(type);
 
 export class Commands {
   #about;
@@ -88,8 +88,8 @@ export class Commands {
     if (typeof record !== 'object' || !record || typeof type !== 'string') throw new Refusal(messages.noCommand);
     if (!types.includes(type)) throw new Refusal(fill(messages.unknown, shown(type), types.join(', ')));
     const entry = commands[type];
-    // A world reads it when it adds it.
-    if (adds(type)) return /** @type {Command} */ (record);
+    // A world reads it when it carries it out.
+    if (isWithoutKernel(type)) return /** @type {Command} */ (record);
     if (!entry) {
       throw new Refusal(`a page cannot do ${type}; it can do ${types.filter((each) => commands[each]).join(', ')}`);
     }

@@ -256,6 +256,7 @@ export class Hands {
       Object.assign(pointer, { kind: 'cut', gesture: this.run.newGesture() });
       this.#cut(pointer.gesture, near.spring(point, within / 2));
     } else if (this.tool === 'pin') this.#pin(near, touched, pointer);
+    else if (this.tool === 'erase') this.#erase(touched ?? free, pointer);
     else if (this.maker.makes(this.tool)) {
       // A second finger moves the view.
       if (this.maker.isAtWork) this.maker.forget();
@@ -294,6 +295,20 @@ export class Hands {
     pointer.kind = 'done';
     const type = near.inverse_mass[particle] > 0 ? 'pin' : 'unpin';
     if (!this.run.submit({ type, particle }, this.run.newGesture())) this.say(this.run.refused);
+  }
+
+  /** @type {(particle: number | null, pointer: Pointer) => void} */
+  #erase(particle, pointer) {
+    if (particle === null) return;
+    pointer.kind = 'done';
+    this.remove(particle);
+  }
+
+  /** Take a particle out, with what hangs on it.
+   * @type {(particle: number) => void} */
+  remove(particle) {
+    const record = /** @type {any} */ ({ type: 'remove', particle: this.run.world.names.particle[particle] });
+    if (!this.run.submit(record, this.run.newGesture())) this.say(this.run.refused);
   }
 
   /** @type {(gesture: number, springs: number[]) => void} */

@@ -1,7 +1,7 @@
 // Link: a run in the fragment of an address, which no browser sends to a server; written and read as
 // session/link/scene_link.py does it.
 import { checkBody, namesOf } from './adding.js';
-import { adds, Commands, countedBy, Refusal } from './commands.js';
+import { Commands, countedBy, isWithoutKernel, Refusal } from './commands.js';
 import { LINK } from './shared.js';
 /** @import { About, Counts, Done, LevelLink, NamedRecord, NameKind, PackedLink, Recording, Told } from './types.js' */
 /** @import { World } from './world.js' */
@@ -172,10 +172,10 @@ function told(entries, about) {
   let tick = 0, counts = about.counts;
   return entries.map(({ passed, gesture, record, told: more }) => {
     tick += passed;
-    if (!more && about.commands[record.type] === null && !isAdded(record, about)) {
+    if (!more && about.commands[record.type] === null && !isDoneHere(record, about)) {
       throw new Refusal(`This run holds what no page can do, ${record.type}: open the link in Spring Sandbox.`);
     }
-    const own = more || !adds(record.type) ? more : namesOf(record, names, counts);
+    const own = more || !isWithoutKernel(record.type) ? more : namesOf(record, names, counts);
     if (more) checkTold(more, about, counts);
     const done = more ? { tick, gesture, record, ...more } : { tick, gesture, record: commands.read(record, counts) };
     for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(own?.names ?? {}))) {
@@ -186,10 +186,11 @@ function told(entries, about) {
   });
 }
 
-/** Whether a page adds what a record says by itself.
+/** Whether a page carries out by itself what a record says.
  * @type {(record: NamedRecord, about: About) => boolean} */
-function isAdded(record, { adding }) {
-  if (record.type !== 'add_body') return adds(record.type);
+function isDoneHere(record, { adding }) {
+  if (record.type === 'remove') return record.particle !== undefined;
+  if (record.type !== 'add_body') return isWithoutKernel(record.type);
   try {
     checkBody(record, adding);
   } catch (error) {

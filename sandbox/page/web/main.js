@@ -13,13 +13,13 @@ import { Toy } from './toy.js';
 const SLOW = 0.2, NARROW = 640;
 /** @type {Record<string, string | undefined>} */
 const ARROWS = { left: '←', right: '→', up: '↑', down: '↓' };
-const TOOLS = ['drag', 'pin', 'cut', 'jelly', 'wood', 'steel', 'rope', 'spring', 'rod'];
+const TOOLS = ['drag', 'pin', 'cut', 'jelly', 'wood', 'steel', 'rope', 'spring', 'rod', 'erase'];
 const DRAW = 'Draw around a shape: it becomes ', PULL = 'Pull from one thing to another, or to the air: ';
 /** @type {Record<string, string | undefined>} */
 const MAKES = { jelly: `${DRAW}jelly.`, wood: `${DRAW}wood.`, steel: `${DRAW}steel.`, rope: `${PULL}a rope.`,
-  spring: `${PULL}a spring.`, rod: `${PULL}a rod.` };
+  spring: `${PULL}a spring.`, rod: `${PULL}a rod.`, erase: 'Touch a thing: it goes, with what hangs on it.' };
 /** @type {Record<string, string | undefined>} */
-const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', b: 'make', j: 'jelly', o: 'rope', m: 'sound', h: 'tune', '?': 'hint' };
+const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', b: 'make', j: 'jelly', o: 'rope', x: 'erase', m: 'sound', h: 'tune', '?': 'hint' };
 /** Parts of the page that are no plain elements.
  * @typedef {{ picture: HTMLCanvasElement, time: HTMLInputElement }} Parts */
 /** @template {string} I @typedef {I extends keyof Parts ? Parts[I] : HTMLElement} Part */

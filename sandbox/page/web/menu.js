@@ -36,7 +36,7 @@ export class Menu {
     const softness = material === null ? [] : Object.entries(this.words).map(([word, [stiffness, damping]]) =>
       button(word, () => this.#soften(material, word, stiffness, damping)));
     box.replaceChildren(...softness, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
-      { type: isFixed ? 'unpin' : 'pin', particle })));
+      { type: isFixed ? 'unpin' : 'pin', particle })), button('erase', () => toy.hands.remove(particle)));
     box.hidden = false;
     box.style.left = `${Math.max(8, Math.min(x, innerWidth - box.offsetWidth - 8))}px`;
     box.style.top = `${Math.max(8, Math.min(y, innerHeight - box.offsetHeight - 8))}px`;

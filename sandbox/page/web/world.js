@@ -1,7 +1,8 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
 import { addedTo } from './adding.js';
-import { adds, Commands, countedBy } from './commands.js';
+import { Commands, countedBy, isWithoutKernel } from './commands.js';
 import { blake2b, hexOf } from './hash.js';
+import { removedFrom } from './removing.js';
 /**
  * @import { About, Action, AnyArray, Column, Command, Counts, Done, Kernels, NameKind, Outcome, Runs, SavedState,
  *   Joined, NamedRecord, Settings, StateHash, View } from './types.js'
@@ -328,9 +329,9 @@ export class World {
   /** Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
    * @type {(record: Command) => void} */
   command(record) {
-    if (adds(record.type)) {
-      const named = /** @type {NamedRecord} */ (record);
-      this.carryOut({ tick: this.time, gesture: 0, record: named, ...addedTo(this, this.#about, named) });
+    if (isWithoutKernel(record.type)) {
+      const named = /** @type {NamedRecord} */ (record), tell = named.type === 'remove' ? removedFrom : addedTo;
+      this.carryOut({ tick: this.time, gesture: 0, record: named, ...tell(this, this.#about, named) });
       return;
     }
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
