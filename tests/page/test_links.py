@@ -80,7 +80,7 @@ def played(folder: Path, level: str, seed: int) -> Replay:
             session.submit(CutSprings((int(world.spring_active.nonzero()[0][0]),)))
         if tick in (120, 170):
             session.do(Remove(particle=chance.choice(there)))
-            continue
+            there = [slot for slot in there if world.particle_active[slot]]
         if tick % 40 == 10:
             session.submit(Grab(0, chance.choice(there), place), gesture)
         elif 10 < tick % 40 < 30:
