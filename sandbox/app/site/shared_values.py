@@ -21,6 +21,7 @@ from sandbox.physics.analysis import body_motion, pulls, query
 from sandbox.session import summary
 from sandbox.session.link import packing, scene_link
 from sandbox.session.replay import format
+from sandbox.tools import drawing, pulling
 
 MODULE = WEB / "shared.js"
 _HEAD = """// Shared: values that the window goes by too. Made by `python -m sandbox.app.site.shared_values`.
@@ -41,6 +42,9 @@ def shared_values() -> dict[str, dict[str, Any]]:
             "PICK_RADIUS": stage.PICK_RADIUS, "UNITS": hand_labels.UNITS,
         },
         "GAMEPAD": _of(gamepads, "ACROSS", "UPWARDS", "BUTTONS", "PRESSES", "LETS_GO"),
+        "MAKING": _of(pulling, "SEGMENTS", "ROPE_MASS", "SHARE", "PIN_RADIUS", "PIN_SHARE", "TOO_SHORT")
+        | {"ROPE_RADIUS": pulling.THICKEST}
+        | _of(drawing, "PARTICLES", "HAND_TOLERANCE", "SKIN", "THICKEST", "TOO_SMALL", "CROSSES", "TOO_FINE"),
         "PAD": _of(coefficient_scale, "NUMBERED", "DIGITS", "END")
         | {"LOWEST": coefficient_scale.PLAIN.lowest, "REST": coefficient_scale.PLAIN.rest}
         | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},

@@ -1,14 +1,12 @@
 // Maker: what is drawn or pulled on the picture joins the world: a body inside an outline, a rope, a spring, a rod.
 import { Refusal } from './commands.js';
-import { areaOf, meshed, outlineOf, TOO_SMALL } from './mesh.js';
+import { areaOf, meshed, outlineOf } from './mesh.js';
+import { MAKING } from './shared.js';
 /** @import { Run } from './run.js' */
 /** @import { Adding, NamedRecord, Point, Theme } from './types.js' */
 
-// Parts of the reach of a pointer: how much an outline is simplified, and how large it is at least.
-const TOLERANCE = 0.12, MOST_POINTS = 400;
-const TOO_SHORT = 'Drag from one thing to another, or to the air: what you let go of in the air is pinned there.';
-// A rope: its lengths, mass of a metre [kg/m]; widest radius, and as a part of a length. A pin: widest radius, and as one.
-const SEGMENTS = 12, ROPE_MASS = 2, THICKEST = 0.05, SHARE = 0.3, PIN_SHARE = 0.05, SKIN = 0.15;
+const { SEGMENTS, ROPE_MASS, ROPE_RADIUS, SHARE, PIN_RADIUS, PIN_SHARE, SKIN, THICKEST, HAND_TOLERANCE, TOO_SHORT,
+  TOO_SMALL } = MAKING, MOST_POINTS = 400;
 
 /** @typedef {{ place: Point, name: string | null }} End */
 
@@ -51,7 +49,7 @@ export class Maker {
   /** @type {(point: Point, within: number) => void} */
   go(point, within) {
     const [x, y] = this.#stroke[this.#stroke.length - 1];
-    const isFar = Math.hypot(point[0] - x, point[1] - y) > TOLERANCE * within;
+    const isFar = Math.hypot(point[0] - x, point[1] - y) > HAND_TOLERANCE * within;
     if (isFar && this.#stroke.length < MOST_POINTS) this.#stroke.push(point);
   }
 
@@ -86,7 +84,7 @@ export class Maker {
   /** @type {(stuff: string, stroke: Point[], within: number) => NamedRecord} */
   #body(stuff, stroke, within) {
     if (stroke.length < 3 || Math.abs(areaOf(stroke)) < within * within) throw new Refusal(TOO_SMALL);
-    const outline = outlineOf(stroke, TOLERANCE * within);
+    const outline = outlineOf(stroke, HAND_TOLERANCE * within);
     if (outline.length < 3) throw new Refusal(TOO_SMALL);
     const mesh = meshed(outline), { stiffness, damping, density, colours, more } = this.adding.made.stuffs[stuff];
     const area = areaOf(outline), mass = rounded((density * area) / mesh.particles.length), name = `drawn ${stuff}`;
@@ -113,7 +111,7 @@ export class Maker {
     const { stiffness, damping } = this.adding.made.firmest, rest = rounded(length / SEGMENTS), name = 'drawn rope';
     const pinned = steps.flatMap((k, n) => (k === 0 || k === SEGMENTS ? [n] : []));
     const body = { type: 'mesh', particles, masses: steps.map(() => rounded((ROPE_MASS * length) / SEGMENTS)),
-      springs: steps.slice(1).map((_, k) => [k, k + 1]), pinned, particle_radius: rounded(Math.min(THICKEST, SHARE * rest)),
+      springs: steps.slice(1).map((_, k) => [k, k + 1]), pinned, particle_radius: rounded(Math.min(ROPE_RADIUS, SHARE * rest)),
       collides: ['terrain'], material: name, look: { line: 'rope' } };
     const own = this.#nextBody;
     const ties = [[start.name, `${own}.0`], [end.name, `${own}.${steps.length - 1}`]].filter(([name_]) => name_ !== null);
@@ -128,7 +126,7 @@ export class Maker {
     const pins = [];
     const ends = [start, end].map(({ place, name }) => {
       if (name !== null) return name;
-      pins.push({ type: 'add_particle', position: place, radius: rounded(Math.min(THICKEST, PIN_SHARE * length)),
+      pins.push({ type: 'add_particle', position: place, radius: rounded(Math.min(PIN_RADIUS, PIN_SHARE * length)),
         pinned: true });
       return `+.${this.#nextPin + pins.length - 1}`;
     });

@@ -1,12 +1,13 @@
 // Mesh: an outline that was drawn, filled with particles and even triangles. What comes of it is written into a command
 // whole, so that it need not be the mesh of another program.
 import { Refusal } from './commands.js';
+import { MAKING } from './shared.js';
 /** @import { Point } from './types.js' */
 
-const PARTICLES = 30, MOST_TRIES = 5, FINER = 0.8, INSIDE = 0.6, CORNER = 0.8, EPSILON = 1e-12, HALF = Math.sqrt(3) / 2;
-const CROSSES = 'The outline crosses or touches itself. Draw it without.';
-const TOO_FINE = 'This outline is too fine for triangles to fit in. Draw it simpler, or wider where it is thin.';
-export const TOO_SMALL = 'Draw a larger outline: press, draw around, and let go.';
+const { PARTICLES, CROSSES, TOO_FINE } = MAKING, EPSILON = 1e-12, HALF = Math.sqrt(3) / 2;
+// How often the spacing is made finer, and by what; how far places inside keep from the border, in spacings; and which part
+// of an outline its triangles may leave.
+const MOST_TRIES = 5, FINER = 0.8, INSIDE = 0.6, UNFILLED = 0.02;
 
 /** @typedef {[a: number, b: number, c: number]} Triangle */
 /** @typedef {{ particles: Point[], springs: [number, number][], triangles: Triangle[] }} Mesh */
@@ -129,7 +130,7 @@ export function meshed(outline) {
     });
     const filled = triangles.reduce((sum, [a, b, c]) => sum + doubled(particles[a], particles[b], particles[c]) / 2, 0);
     const used = new Set(triangles.flat());
-    if (Math.abs(filled - area) < (1 - CORNER) * 0.1 * area && used.size === particles.length) {
+    if (Math.abs(filled - area) < UNFILLED * area && used.size === particles.length) {
       return { particles, springs: sidesOf(triangles), triangles };
     }
   }
