@@ -1,4 +1,4 @@
-"""Growth: which arrays of a block have a row for each particle, spring, constraint, corner or material.
+"""Growth: which arrays of a block have a row for each particle, spring, constraint, corner, driven part or material.
 
 A page gives them more rows when something is added to its world. Looked up by trying: the block of the same world with
 a few rows more.
@@ -18,7 +18,7 @@ from sandbox.physics.state import Family
 from sandbox.physics.world import World
 
 # By family, so many rows as no other has: where an array has so many more, it is of that family.
-_MORE = {Family.PARTICLE: 11, Family.SPRING: 23, Family.CONSTRAINT: 41, Family.CORNER: 79}
+_MORE = {Family.PARTICLE: 11, Family.SPRING: 23, Family.CONSTRAINT: 41, Family.CORNER: 79, Family.ACTUATOR: 131}
 _MATERIALS = 5
 _NAMES = {count: family.name.lower() for family, count in _MORE.items()} | {_MATERIALS: "material"}
 

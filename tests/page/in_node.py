@@ -6,6 +6,9 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
+from sandbox.app.draw.scene import made_looks
+from sandbox.app.share.stuffs import stuffs_for
+from sandbox.page.adding import adding
 from sandbox.page.page import KERNELS, WEB
 from sandbox.page.room import row_counts
 from sandbox.page.start import start_of
@@ -55,7 +58,12 @@ def tried_in_node(
     """What comes of each record, after others and a tick, in a page of a world at its start: words, hash, whether a
     refused one has changed anything. are_slots: what is tried has slots, and goes to the kernel as it is."""
     start = start_of(world, row_counts(world))
-    given = {"about": start.about, "before": list(map(literal, before)), "tried": list(map(literal, tried))}
+    added = adding(world) | {"made": made_looks() | stuffs_for(world.settings.tick_rate)}
+    given = {
+        "about": start.about | {"adding": added},
+        "before": list(map(literal, before)),
+        "tried": list(map(literal, tried)),
+    }
     given["areSlots"] = are_slots
     (folder / "given.json").write_text(json.dumps(given), encoding="utf-8")
     (folder / "image").write_bytes(start.image.content)

@@ -200,8 +200,8 @@ def test_what_a_page_refuses_it_refuses_in_the_words_of_the_desktop(browser: Bro
     said = tab.evaluate(f"{literal(tried)}.map((record) => {{ {trial} }})")
     assert [(words, hashed) for words in said] == tried_on_the_desktop(world, before, tried)
     assert tab.evaluate("[toy.world.hash().whole, toy.run.commands.length]") == [hashed, len(before)]
-    told = tab.evaluate("try { toy.command({ type: 'add_body' }) } catch (error) { error.message }")
-    assert told.startswith("a page cannot do add_body; it can do cut_springs, set_drive, grab, move_grab, release, ")
+    told = tab.evaluate("try { toy.command({ type: 'set_solver' }) } catch (error) { error.message }")
+    assert told.startswith("a page cannot do set_solver; it can do cut_springs, set_drive, grab, move_grab, release, ")
 
 
 def test_what_cannot_be_opened_is_one_line(browser: Browser, address: str) -> None:

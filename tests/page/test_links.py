@@ -22,11 +22,12 @@ from sandbox.commands import (
     Release,
     Remove,
     SetCoefficients,
+    SetDrive,
     SetFirmness,
 )
 from sandbox.level.kinds.jelly import Jelly, JellyDef
 from sandbox.replay import Replay, read_replay
-from sandbox.session.link.scene_link import replay_of
+from sandbox.session.link.scene_link import fragment_of, replay_of
 from sandbox.session.replay.verify import verify
 from sandbox.tools.parts import PARTS
 from tests.page.browser import Browser, Tab
@@ -164,16 +165,38 @@ def test_a_broken_link_is_said_and_the_level_plays(browser: Browser, address: st
     assert tab.evaluate("page.toy.run.commands.length") == 0
 
 
-def test_what_no_page_can_do_is_said(browser: Browser, address: str, tmp_path: Path) -> None:
+@pytest.fixture
+def with_a_cart(tmp_path: Path) -> Replay:
+    """A run into which a cart was dropped: it has motors and keys."""
     session = Session(load_level("rope"))
     session.record_to(tmp_path / "cart.replay.gz")
-    session.do(PARTS["cart"].make(1.0, (0.0, 4.0), (0.0, 0.0), "sky"))
-    for _ in range(10):
+    for tick in range(80):
+        if tick == 20:
+            session.do(PARTS["cart"].make(1.0, (0.0, 4.0), (0.0, 0.0), "sky"))
+        if tick == 40:
+            session.do(SetDrive(len(session.world.actuator_value) - 1, 1.0))
         session.advance()
     session.stop_recording()
-    link = all_at_once(link_to(read_replay(tmp_path / "cart.replay.gz"), address, 0))
-    assert verify(replay_of(link)) is None
-    said = browser.tab().open(link).evaluate(VERDICT)
+    return read_replay(tmp_path / "cart.replay.gz")
+
+
+def test_a_cart_drives_on_a_page_and_goes_and_comes_with_time(
+    browser: Browser, address: str, with_a_cart: Replay
+) -> None:
+    tab = browser.tab().open(all_at_once(link_to(with_a_cart, address, 0)))
+    assert str(tab.evaluate(VERDICT)).startswith("Verified: the state after 80 ticks")
+    assert tab.evaluate("Object.keys(page.toy.drives.keys)") == ["q", "w"]
+    tab.evaluate("page.toy.pause(); page.toy.seek(80); globalThis.end = page.toy.world.hash().whole")
+    assert tab.evaluate(
+        "[10, 50, 19, 80].every((tick) => { page.toy.seek(tick); return page.toy.world.time === tick; })"
+    )
+    assert tab.evaluate("page.toy.world.hash().whole === end")
+    tab.evaluate("page.toy.seek(60); page.toy.command({ type: 'set_gravity', gravity: [0, -5] }); page.toy.tick()")
+    assert verify(replay_of(_link(tab))) is None
+
+
+def test_what_a_page_is_not_told_of_and_cannot_do_is_said(browser: Browser, address: str, with_a_cart: Replay) -> None:
+    said = browser.tab().open(f"{address}levels/rope.html#{fragment_of(with_a_cart)}").evaluate(VERDICT)
     assert said == "This run holds what no page can do, add_body: open the link in Spring Sandbox."
 
 

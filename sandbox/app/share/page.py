@@ -30,6 +30,7 @@ KINDS = (
     ("mp4", "MP4", "A film: sharper and smaller, for chats and players"),
     ("png", "PNG", "One picture, of the moment that you choose"),
 )
+LINK = ("link", "Link", "The whole run as an address: it opens on a page of this level")
 SIZE_NAMES = [(f"{width}x{height}", f"{width} x {height}", "") for width, height in SIZES]
 NAMED = (("yes", "Shown", "Small, in the corner"), ("no", "Hidden", "Nothing but the run"))
 
@@ -132,9 +133,7 @@ class ShareForm:
         self.caption = ui.label(
             ui.rect(MARGIN, self._below + 6, self._preview_width, CAPTION), "", self._box, "muted"
         )  # fmt: skip
-        self.kinds = ui.choice(
-            self._row("Format", TOP - 4), KINDS, lambda kind: sharing.choose(kind=kind), self._box
-        )  # fmt: skip
+        self.kinds = ui.choice(self._row("Format", TOP - 4), [*KINDS, LINK], self._choose_kind, self._box)
         self.sizes = ui.choice(self._row("Size", TOP - 4 + step), SIZE_NAMES, self._choose_size, self._box)
         self.named = ui.choice(
             self._row("Show the level's name", TOP - 4 + 2 * step), NAMED,
@@ -161,7 +160,6 @@ class ShareForm:
         self._build_note(TOP + 4 * step)
         self._add_button("Save", self._save, 0, "primary")
         self._add_button("Close", self._leave, 1)
-        self._add_button("Copy link", self._copy_link, 2, tip="A link to the whole run, for a page of this level")
 
     @property
     def _preview_width(self) -> float:
@@ -173,7 +171,7 @@ class ShareForm:
         place = self._ui.rect(self._right, top, self._side, max(bottom - top, 18))
         if self.step == "choose":
             # Left of both buttons.
-            wide = min(self._preview_width, self._width - 2 * MARGIN - 3 * BUTTON_WIDTH - 30)
+            wide = min(self._preview_width, self._width - 2 * MARGIN - 2 * BUTTON_WIDTH - 20)
             place = self._ui.rect(MARGIN, self._height - MARGIN - BUTTON, wide, BUTTON + 14)
         self.note = TextBlock(self._ui, place, "", self._box, 12.0, TEXT)
 
@@ -210,6 +208,12 @@ class ShareForm:
             self._ui.focus_on(button)
 
     # What the person does.
+
+    def _choose_kind(self, kind: str) -> None:
+        if kind == "link":
+            self._copy_link()
+        else:
+            self._sharing.choose(kind=kind)
 
     def _choose_size(self, text: str) -> None:
         width, height = text.split("x")

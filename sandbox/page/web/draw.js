@@ -161,8 +161,10 @@ export class Picture {
     const position = this.#state('position'), { camera } = this, count = position.length;
     const at = (this.at = new Float64Array(count));
     for (let k = 0; k < count; k += 2) {
-      const x = previous[k] + (position[k] - previous[k]) * part;
-      const y = previous[k + 1] + (position[k + 1] - previous[k + 1]) * part;
+      // What has just joined was nowhere.
+      const from = k < previous.length ? previous : position;
+      const x = from[k] + (position[k] - from[k]) * part;
+      const y = from[k + 1] + (position[k + 1] - from[k + 1]) * part;
       [at[k], at[k + 1]] = camera.toPixels(x, y);
     }
     const a = this.#state('particle_a'), b = this.#state('particle_b');

@@ -7,7 +7,7 @@ import { LINK } from './shared.js';
 /** @import { World } from './world.js' */
 
 const { MARK, VERSION, LONGEST, UNPACKED_LIMIT, RUN_LIMIT, COMMAND_LIMIT, FARTHEST, PER_METRE, HANDS, MOVE } = LINK;
-const COLUMNS = 4;
+const COLUMNS = 4, EQUIPMENT = /^(drives|wheels|limits|water)\./;
 const BROKEN = 'This link is broken: copy it again, whole.';
 
 /** @typedef {{ places: Map<number, [number, number]>, gestures: Map<number, number> }} Held */
@@ -202,17 +202,22 @@ function isDoneHere(record, { adding }) {
 
 /** Refuse what would write beyond rows, or make more of them than a level may have.
  * @type {(told: Told, about: About, before: Counts) => void} */
-function checkTold({ changes, counts, names, scene }, { columns, counts: first }, before) {
+function checkTold({ changes, counts, names, scene, equipment, keys }, { columns, counts: first, table }, before) {
   const paths = new Set([...columns.map(({ path }) => path), 'numbers', 'choices']);
-  const isTable = [changes, counts ?? {}, names ?? {}, scene ?? {}].every((each) => typeof each === 'object' && each !== null);
+  const isTable = [changes, counts ?? {}, names ?? {}, scene ?? {}, equipment ?? {}, keys ?? {}].every((each) => typeof each === 'object' && each !== null);
   const isCounts = !counts || Object.keys(first).every((family) => {
     const family_ = /** @type {keyof Counts} */ (family);
     return isWhole(counts[family_], before[family_], before[family_] + LONGEST);
   });
-  const isNames = Object.entries(names ?? {}).every(([kind, added]) => kind in first && Array.isArray(added)
+  const isNames = Object.entries(names ?? {}).every(([kind, added]) => countedBy(/** @type {NameKind} */ (kind)) in first && Array.isArray(added)
     && added.length <= LONGEST && added.every((name) => typeof name === 'string'));
   const isChanges = isTable && Object.entries(changes).every(([path, runs]) => paths.has(path)
     && Array.isArray(runs) && runs.every((run) => Array.isArray(run) && isWhole(run[0], 0, UNPACKED_LIMIT)
       && isWhole(run[1], 0, UNPACKED_LIMIT) && run.slice(2).every((value) => Number.isFinite(Number(value)))));
-  if (!isTable || !isCounts || !isNames || !isChanges) throw new Refusal(BROKEN);
+  const isEquipment = Object.entries(equipment ?? {}).every(([path, values]) => EQUIPMENT.test(path) && path in table
+    && Array.isArray(values) && values.length <= UNPACKED_LIMIT && values.every((value) => table[path][0] === 'f8'
+      ? !Number.isNaN(Number(value)) : Number.isSafeInteger(value)));
+  const isKeys = Object.values(keys ?? {}).every((parts) => Array.isArray(parts) && parts.every((pair) => Array.isArray(pair)
+    && pair.length === 2 && isWhole(pair[0], 0, LONGEST) && Number.isFinite(pair[1])));
+  if (![isTable, isCounts, isNames, isChanges, isEquipment, isKeys].every(Boolean)) throw new Refusal(BROKEN);
 }

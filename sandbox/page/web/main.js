@@ -260,6 +260,8 @@ async function follow(level) {
   if (!isLink(location.hash)) return '';
   try {
     [level.recording, level.begin] = await linked(location.hash, level.link, level.about);
+    const keys = Object.assign({}, level.keys, ...level.recording.commands.map((done) => done.keys));
+    level.keys = Object.fromEntries(Object.entries(keys).sort());
     return '';
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;

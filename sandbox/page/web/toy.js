@@ -12,7 +12,7 @@ import { contextOf } from './paint.js';
 import { written } from './recording.js';
 import { Run } from './run.js';
 import { Sound } from './sound.js';
-/** @import { Fresh, Level, NamedRecord, Theme, ToyEvents } from './types.js' */
+/** @import { Command, Fresh, Level, NamedRecord, Theme, ToyEvents } from './types.js' */
 
 const KEY_ZOOM = 1.15;
 const TYPED_INTO = 'input, select, textarea, [contenteditable], .pad';
@@ -364,11 +364,11 @@ export class Toy extends EventTarget {
   async link() {
     const { run, world, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
     let tick = 0;
-    const entries = commands.map(({ tick: at, gesture, record, changes, counts, names, scene }) => {
+    const entries = commands.map(({ tick: at, gesture, record, ...told }) => {
       const passed = at - tick;
       tick = at;
-      if (!changes) return { passed, gesture, record: world.commands.named(record) };
-      return { passed, gesture, record: /** @type {NamedRecord} */ (record), told: { changes, counts, names, scene } };
+      if (!told.changes) return { passed, gesture, record: world.commands.named(/** @type {Command} */ (record)) };
+      return { passed, gesture, record: /** @type {NamedRecord} */ (record), told };
     });
     return linkOf(level.link, { commands: entries, ticks: run.time, at: 0, hash: world.hash().whole });
   }

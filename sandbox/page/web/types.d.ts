@@ -137,6 +137,13 @@ export interface SavedState {
   counts: Counts;
   arrays: Map<string, AnyArray>;
   contacts: AnyArray[];
+  joined: { scene: Joined; laid: Map<string, Laid> }[];
+}
+
+// Where an array lies, and its rows.
+export interface Laid {
+  address: number;
+  rows: number;
 }
 
 export interface Settings {
@@ -169,7 +176,7 @@ export type Runs = [first: number, count: number, ...row: (number | string | boo
 
 // Something done. What no kernel carries out comes as what it changes, by array, and is written down as it is.
 export type Done = { tick: number; gesture: number; record: Command; changes?: undefined; counts?: undefined;
-    names?: undefined; scene?: undefined }
+    names?: undefined; scene?: undefined; equipment?: undefined; keys?: undefined }
   | { tick: number; gesture: number; record: NamedRecord; } & Told;
 
 // What a page is told of a command that no kernel carries out: what it changes, and of what it adds the rows in use since
@@ -179,7 +186,12 @@ export interface Told {
   counts?: Counts;
   names?: Partial<Record<NameKind, string[]>>;
   scene?: Joined;
+  equipment?: Equipment;
+  keys?: Level['keys'];
 }
+
+// What a world has of driven parts, limits and hulls since something joined it: whole arrays by their paths.
+export type Equipment = Record<string, (number | string)[]>;
 
 export interface Recording {
   commands: Done[];

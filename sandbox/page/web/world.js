@@ -4,8 +4,8 @@ import { Commands, countedBy, isWithoutKernel } from './commands.js';
 import { blake2b, hexOf } from './hash.js';
 import { removedFrom } from './removing.js';
 /**
- * @import { About, Action, AnyArray, Column, Command, Counts, Done, Kernels, NameKind, Outcome, Runs, SavedState,
- *   Joined, NamedRecord, Settings, StateHash, View } from './types.js'
+ * @import { About, Action, AnyArray, Column, Command, Counts, Done, Equipment, Kernels, NameKind, Outcome, Runs, SavedState,
+ *   Laid, NamedRecord, Settings, StateHash, View } from './types.js'
  */
 
 const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
@@ -63,9 +63,12 @@ export class World {
   /** Names of rows in use, and of others that there were once.
    * @type {Record<NameKind, string[]>} */
   names;
-  /** What people see of what joined, and the rows in use since then.
-   * @type {{ counts: Counts, scene: Joined }[]} */
+  /** What people see of what joined, and where arrays lie that came with it.
+   * @type {SavedState['joined']} */
   #joined = [];
+  /** Where arrays lay before others came in their place.
+   * @type {Map<string, Laid>} */
+  #bare = new Map();
   /** What of records is right, and what kernels take of it.
    * @type {Commands} */
   commands;
@@ -144,6 +147,49 @@ export class World {
     return new Uint32Array(this.#kernels.memory.buffer)[this.#place(word) + 2 * SHAPE];
   }
 
+  /** Numbers in a row of an array.
+   * @type {(path: string) => number} */
+  #width(path) {
+    const { word, dimensions } = this.#table.get(path) ?? { word: 0, dimensions: 1 };
+    return dimensions > 1 ? new Uint32Array(this.#kernels.memory.buffer)[this.#place(word) + 2 * (SHAPE + 1)] : 1;
+  }
+
+  /** Let an array lie elsewhere, with so many rows.
+   * @type {(path: string, laid: Laid) => void} */
+  #lay(path, { address, rows }) {
+    const { word } = this.#table.get(path) ?? { word: 0 };
+    const words = [[2, rows * this.#width(path)], [ADDRESS, address], [SHAPE, rows]];
+    for (const buffer of [this.#kernels.memory.buffer, this.#given.buffer]) {
+      const from = buffer === this.#given.buffer ? 0 : this.#base, all = new Uint32Array(buffer);
+      for (const [at, value] of words) all[(from + WORD * (word + at)) / 4] = value;
+    }
+    this.#views.delete(path);
+  }
+
+  /** Put arrays that are constant otherwise in place of those there are; where they lie.
+   * @type {(equipment: Equipment) => Map<string, Laid>} */
+  #equip(equipment) {
+    /** @type {Map<string, Laid>} */
+    const laid = new Map();
+    for (const [path, values] of Object.entries(equipment)) {
+      const before = this.view(path), rows = values.length / this.#width(path), size = before.BYTES_PER_ELEMENT;
+      if (!this.#bare.has(path)) this.#bare.set(path, { address: before.byteOffset, rows: this.#dimension(path) });
+      laid.set(path, { address: this.#reserve(Math.max(values.length, 1) * size), rows });
+      this.#layAgain(path, /** @type {Laid} */ (laid.get(path)));
+      const view = this.view(path);
+      put(view, view instanceof BigInt64Array ? BigInt64Array.from(values, BigInt) : Float64Array.from(values, Number));
+    }
+    return laid;
+  }
+
+  /** The same, of one that may be of those that grow.
+   * @type {(path: string, laid: Laid) => void} */
+  #layAgain(path, laid) {
+    const known = this.#rows.get(path);
+    if (known) known.room = laid.rows;
+    this.#lay(path, laid);
+  }
+
   /** Give all arrays as many rows as are in use. It is derived again afterwards.
    * @type {(counts: Counts) => void} */
   #grow(counts) {
@@ -151,19 +197,11 @@ export class World {
       const known = this.#rows.get(path) ?? { room: 0, least: 0 };
       const rows = Math.max(counts[family], known.least), before = this.view(path), had = this.#dimension(path);
       if (rows === had) continue;
-      const { word, dimensions } = /** @type {{ word: number, dimensions: number }} */ (
-        this.#table.get(path));
-      const width = dimensions > 1 ? new Uint32Array(this.#kernels.memory.buffer)[this.#place(word) + 2 * (SHAPE + 1)] : 1;
-      const kept = before.slice(), size = kept.BYTES_PER_ELEMENT, isMoved = rows > known.room;
+      const width = this.#width(path), kept = before.slice(), isMoved = rows > known.room;
       if (isMoved) known.room = MORE * rows;
-      const address = isMoved ? this.#reserve(known.room * width * size) : before.byteOffset;
-      const words = [[2, rows * width], [ADDRESS, address], [SHAPE, rows]];
-      for (const buffer of [this.#kernels.memory.buffer, this.#given.buffer]) {
-        const from = buffer === this.#given.buffer ? 0 : this.#base, all = new Uint32Array(buffer);
-        for (const [at, value] of words) all[(from + WORD * (word + at)) / 4] = value;
-      }
+      const address = isMoved ? this.#reserve(known.room * width * kept.BYTES_PER_ELEMENT) : before.byteOffset;
       this.#rows.set(path, known);
-      this.#views.delete(path);
+      this.#lay(path, { address, rows });
       const view = this.view(path);
       put(view, kept.subarray(0, Math.min(kept.length, view.length)));
       if (view instanceof BigInt64Array) view.fill(BigInt(fill), had * width);
@@ -293,13 +331,13 @@ export class World {
       this.commandByHand(done.record);
       return;
     }
-    const { changes, counts, names, scene } = done;
+    const { changes, counts, names, scene, equipment = {} } = done;
     if (counts) this.#grow(counts);
     for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(names ?? {}))) {
       this.names[kind].splice(this.counts[countedBy(kind)], Infinity, ...added);
     }
     this.counts = counts ?? this.counts;
-    if (scene) this.#joined.push({ counts: this.counts, scene });
+    if (scene) this.#joined.push({ scene, laid: this.#equip(equipment) });
     for (const [path, runs] of Object.entries(changes)) {
       this.#change(path, runs);
       const good = path.replace('state', 'good');
@@ -465,14 +503,17 @@ export class World {
       arrays.set(path, last && isEqual(last, present) ? last : present.slice());
     }
     this.#saved = arrays;
-    return { time: this.time, counts: this.counts, arrays, contacts: this.#contactRows() };
+    return { time: this.time, counts: this.counts, arrays, contacts: this.#contactRows(), joined: [...this.#joined] };
   }
 
   /** @type {(state: SavedState) => void} */
-  restore({ time, counts, arrays, contacts }) {
+  restore({ time, counts, arrays, contacts, joined }) {
     const isOther = this.#about.topology.some((path) => !isEqual(this.view(path), arrays.get(path) ?? NONE));
+    this.#joined = [...joined];
+    for (const [path, bare] of this.#bare) {
+      this.#layAgain(path, this.#joined.findLast(({ laid }) => laid.has(path))?.laid.get(path) ?? bare);
+    }
     this.#grow(counts);
-    this.#joined = this.#joined.filter((each) => isWithin(each.counts, counts));
     for (const [path, kept] of arrays) put(this.view(path), kept);
     [this.time, this.counts, this.broken] = [time, counts, []];
     if (isOther) this.#derive(DERIVATIONS, contacts);
@@ -529,10 +570,6 @@ function put(array, values, at = 0) {
   // Both are of 64 bits and whole, or neither is.
   /** @type {Float64Array} */ (array).set(/** @type {Float64Array} */ (values), at);
 }
-
-/** @type {(one: Counts, other: Counts) => boolean} */
-const isWithin = (one, other) => one.particle <= other.particle && one.spring <= other.spring
-  && one.constraint <= other.constraint;
 
 /** @type {(one: AnyArray, other: AnyArray) => boolean} */
 function isEqual(one, other) {
