@@ -184,12 +184,25 @@ def interpreted_call(function: Callable[..., Any], arguments: list[Any]) -> Any:
 
     # What kernels lay out themselves counts from no end either.
     vars(interpreted)["memoryview"] = Strict
+    modules = [vars(module) for name, module in list(sys.modules.items()) if name.startswith("sandbox.")]
+    for module in modules:
+        module["int"] = whole
     sys.settrace(trace)
     try:
         return function(*arguments)
     finally:
         sys.settrace(None)
         del vars(interpreted)["memoryview"]
+        for module in modules:
+            del module["int"]
+
+
+def whole(value: Any) -> int:
+    """An integer of a number. Raises OverflowError where no 64 bits hold it: machine code may make anything of that."""
+    made = int(value)
+    if not -(2**63) <= made < 2**63:
+        raise OverflowError
+    return made
 
 
 def same(one: Any, other: Any) -> bool:
