@@ -38,7 +38,7 @@ export function addedTo(world, about, record) {
 
 /** The first number from which on no name of a form is taken.
  * @type {(names: string[], count: number, form: RegExp) => number} */
-function unused(names, count, form) {
+export function unused(names, count, form) {
   const numbers = names.slice(0, count).map((name) => form.exec(name)?.[1]).filter((each) => each !== undefined);
   return numbers.reduce((most, each) => Math.max(most, Number(each) + 1), 0);
 }

@@ -2,6 +2,7 @@
 // session/link/scene_link.py does it.
 import { checkBody, namesOf } from './adding.js';
 import { Commands, countedBy, isWithoutKernel, Refusal } from './commands.js';
+import { packed } from './recording.js';
 import { LINK } from './shared.js';
 /** @import { About, Counts, Done, LevelLink, NamedRecord, NameKind, PackedLink, Recording, Told } from './types.js' */
 /** @import { World } from './world.js' */
@@ -32,20 +33,16 @@ export const isLink = (fragment) => fragment.startsWith(`#${MARK}`);
  * @type {(level: LevelLink, run: { commands: Entry[], ticks: number, at: number, hash: string }) =>
  *   Promise<string | null>} */
 export async function linkOf({ level, digest, physics }, { commands, ticks, at, hash }) {
-  const whole = { v: VERSION, physics, level, digest, ticks, at, hash, commands: packed(commands) };
+  const whole = { v: VERSION, physics, level, digest, ticks, at, hash, commands: shortened(commands) };
   const bytes = new TextEncoder().encode(JSON.stringify(whole));
   if (ticks > RUN_LIMIT || bytes.length > UNPACKED_LIMIT) return null;
-  const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream('deflate-raw'));
-  const content = new Uint8Array(await new Response(stream).arrayBuffer());
-  let text = '';
-  for (let k = 0; k < content.length; k += 0x8000) text += String.fromCharCode(...content.subarray(k, k + 0x8000));
-  const letters = btoa(text).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
+  const letters = (await packed(bytes, 'deflate-raw')).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
   return letters.length + MARK.length > LONGEST ? null : `#${MARK}${letters}`;
 }
 
 /** Commands as short lists, gestures counted from 1 on.
  * @type {(commands: Entry[]) => unknown[]} */
-function packed(commands) {
+function shortened(commands) {
   /** @type {unknown[]} */
   const found = [];
   const held = nobody(), numbers = new Map();

@@ -1,4 +1,5 @@
 // Maker: what is drawn or pulled on the picture joins the world: a body inside an outline, a rope, a spring, a rod.
+import { unused } from './adding.js';
 import { Refusal } from './commands.js';
 import { areaOf, meshed, outlineOf } from './mesh.js';
 import { MAKING } from './shared.js';
@@ -136,8 +137,7 @@ export class Maker {
   /** @type {(form: RegExp) => number} */
   #next(form) {
     const { names, counts } = this.run.world;
-    const numbers = names.particle.slice(0, counts.particle).map((name) => form.exec(name)?.[1]);
-    return numbers.reduce((most, each) => (each === undefined ? most : Math.max(most, Number(each) + 1)), 0);
+    return unused(names.particle, counts.particle, form);
   }
 
   get #nextPin() {

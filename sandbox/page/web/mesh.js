@@ -1,6 +1,7 @@
 // Mesh: an outline that was drawn, filled with particles and even triangles. What comes of it is written into a command
 // whole, so that it need not be the mesh of another program.
 import { Refusal } from './commands.js';
+import { distance } from './pieces.js';
 import { MAKING } from './shared.js';
 /** @import { Point } from './types.js' */
 
@@ -22,13 +23,6 @@ export const areaOf = (outline) => outline.reduce((sum, [x, y], k) => {
   return sum + (x * nextY - nextX * y) / 2;
 }, 0);
 
-/** @type {(place: Point, a: Point, b: Point) => number} */
-function away(place, a, b) {
-  const dx = b[0] - a[0], dy = b[1] - a[1];
-  const part = Math.min(Math.max(((place[0] - a[0]) * dx + (place[1] - a[1]) * dy) / (dx * dx + dy * dy || 1), 0), 1);
-  return apart(place, [a[0] + part * dx, a[1] + part * dy]);
-}
-
 /** A line without the corners that change it by no more than a tolerance (Ramer 1972; Douglas and Peucker 1973).
  * @type {(line: Point[], tolerance: number) => Point[]} */
 function simplified(line, tolerance) {
@@ -36,8 +30,8 @@ function simplified(line, tolerance) {
   const last = line[line.length - 1];
   let worst = 0, most = tolerance;
   for (let k = 1; k < line.length - 1; k++) {
-    const distance = away(line[k], line[0], last);
-    if (distance > most) [worst, most] = [k, distance];
+    const off = distance(line[k], line[0], last);
+    if (off > most) [worst, most] = [k, off];
   }
   if (!worst) return [line[0], last];
   return [...simplified(line.slice(0, worst + 1), tolerance), ...simplified(line.slice(worst), tolerance).slice(1)];
@@ -82,7 +76,7 @@ function within(border, outline, spacing) {
   let row = 0;
   for (let y = Math.min(...ys) + rise / 2; y < Math.max(...ys); y += rise, row++) {
     for (let x = Math.min(...xs) + (row % 2 ? spacing / 2 : 0); x < Math.max(...xs); x += spacing) {
-      const isClear = border.every((a, k) => away([x, y], a, border[(k + 1) % border.length]) > INSIDE * spacing);
+      const isClear = border.every((a, k) => distance([x, y], a, border[(k + 1) % border.length]) > INSIDE * spacing);
       if (isClear && isWithin([x, y], outline)) found.push([x, y]);
     }
   }

@@ -105,7 +105,7 @@ const middleOf = (places) => [places.reduce((sum, [x]) => sum + x, 0) / places.l
 
 /** How far a place is from a line from a to b.
  * @type {(place: Point, a: Point, b: Point) => number} */
-function distance([x, y], [ax, ay], [bx, by]) {
+export function distance([x, y], [ax, ay], [bx, by]) {
   const dx = bx - ax, dy = by - ay, along = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1);
   const part = Math.min(Math.max(along, 0), 1);
   return Math.hypot(x - ax - part * dx, y - ay - part * dy);

@@ -103,9 +103,10 @@ function spaced(value) {
   return `{${Object.entries(value).map(([key, each]) => `${JSON.stringify(key)}: ${spaced(each)}`).join(', ')}}`;
 }
 
-/** @type {(bytes: Uint8Array) => Promise<string>} */
-async function packed(bytes) {
-  const content = await through(bytes, new CompressionStream('deflate'));
+/** Bytes compressed, in the letters of base64.
+ * @type {(bytes: Uint8Array, format?: CompressionFormat) => Promise<string>} */
+export async function packed(bytes, format = 'deflate') {
+  const content = await through(bytes, new CompressionStream(format));
   let text = '';
   for (let k = 0; k < content.length; k += 0x8000) text += String.fromCharCode(...content.subarray(k, k + 0x8000));
   return btoa(text);
