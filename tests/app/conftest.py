@@ -141,6 +141,15 @@ class Driver:
         self.post(pygame.MOUSEBUTTONUP, pos=tuple(round(value) for value in pixel), button=button)
         self.frames(2)
 
+    def stroke(self, *points):
+        """Press at the first of some points [m] of the run, move along the others, and let go."""
+        pixels = [self.stage.camera.to_pixels(point) for point in points]
+        self.move(pixels[0])
+        self.press(pixels[0])
+        for pixel in pixels[1:]:
+            self.move(pixel)
+        self.release(pixels[-1])
+
     def click(self, pixel):
         self.press(pixel)
         self.release(pixel)

@@ -33,12 +33,7 @@ def at(driver, x, y):
 
 
 def drop(driver, *points):
-    pixels = [at(driver, *point) for point in points]
-    driver.move(pixels[0])
-    driver.press(pixels[0])
-    for pixel in pixels[1:]:
-        driver.move(pixel)
-    driver.release(pixels[-1])
+    driver.stroke(*points)
     driver.frames(1)
 
 
