@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-from sandbox.level.assembly.by_hand import by_hand
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
+from sandbox.level.rules.hands import words_of
 from sandbox.level.rules.rule import RuleDef
-from sandbox.physics import command
+from sandbox.physics import command, command_table, permission
 from sandbox.physics.analysis.firmness import values_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
@@ -33,7 +33,7 @@ CONTACT = "contact_"
 
 def is_done_by_pages(name: str) -> bool:
     """Whether pages carry out commands of that type themselves; of others they are told what they change."""
-    return name in command.KINDS
+    return name in command_table.KINDS
 
 
 def about(world: World, words: int) -> dict[str, Any]:
@@ -45,10 +45,14 @@ def about(world: World, words: int) -> dict[str, Any]:
         "words": words,
         "codes": {name: getattr(tick, name) for name in CODES},
         "progress": {name: getattr(block, name) for name in PROGRESS} | {"KEPT": collide.KEPT},
-        "kinds": {name: kind._asdict() for name, kind in command.KINDS.items()},
-        "badSlot": command.BAD_SLOT,
+        "kinds": {name: kind._asdict() for name, kind in command_table.KINDS.items()},
+        "choices": command_table.CHOICES,
+        "givers": {name: getattr(permission, name) for name in ("HAND", "RULE", "PROGRAM")},
+        "refusals": {"reasons": command.REASONS, "words": command_table.WORDS, "bad": command.BAD},
+        "filled": {"doing": command.FORBIDDEN, "counted": command.EXHAUSTED, "thing": command.UNTOUCHABLE},
+        "deeds": {name: words_of(name) for name in command_table.CODES},
+        "codeOf": command_table.CODES,
         **table_of(set(filter(is_done_by_pages, COMMAND_TYPES))),
-        "byHand": by_hand(world, list(COMMAND_TYPES)),
         "solvers": SOLVER_NAMES,
         "hands": {"particle": world.grab_particle, "spring": world.grab_spring, "count": GRAB_COUNT},
         "area": AREA,
@@ -61,6 +65,7 @@ def about(world: World, words: int) -> dict[str, Any]:
             "material": world.material_names,
             "part": world.actuators.names,
             "key": world.rule_keys,
+            "area": world.area_names,
         },
         "rules": [[_action(action, world) for action in rule.then] for rule in _rules(world)],
         "second": {"particle": dict(world.particle_naming.second), "spring": dict(world.spring_naming.second)},

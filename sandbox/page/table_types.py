@@ -10,7 +10,7 @@ import numpy as np
 
 from sandbox.page.about import is_done_by_pages
 from sandbox.page.bundle import WEB
-from sandbox.physics import command
+from sandbox.physics.command_table import KINDS
 from sandbox.physics.state import COLUMNS
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.for_pages import table_of
@@ -42,7 +42,7 @@ def table_types() -> str:
 
 def _commands() -> Iterator[str]:
     entries = table_of(set(filter(is_done_by_pages, COMMAND_TYPES)))["commands"]
-    for name, kind in command.KINDS.items():
+    for name, kind in KINDS.items():
         if entries.get(name):
             fields = {field: _type_of(schema) for field, schema in entries[name]["fields"].items()}
             optional = {field for field, schema in entries[name]["fields"].items() if "isRequired" not in schema}
@@ -57,9 +57,11 @@ def _commands() -> Iterator[str]:
 
 
 def _type_of(schema: dict[str, Any]) -> str:
-    if schema["type"] == "boolean":
+    if schema.get("type") == "boolean":
         return "boolean"
-    if "prefixItems" in schema:
+    if "enum" in schema:
+        found = " | ".join(map(repr, schema["enum"]))
+    elif "prefixItems" in schema:
         found = f"[{', '.join(map(_type_of, schema['prefixItems']))}]"
     elif "items" in schema:
         found = f"{_type_of(schema['items'])}[]"

@@ -1,104 +1,110 @@
-"""Commands: what people do to a world between ticks, on its arrays, as one kernel. None of it is part of a tick."""
+"""Commands: what people do to a world between ticks, on its arrays, as one kernel. None of it is part of a tick.
+
+Whoever gives a command, by mouse, script, page, link or rule: the kernel asks whether what it names is there and in
+range, whether the level lets hands do it (permission.py) and whether its budget is left, in this order; then it does it
+and takes it from the budget. A command that is refused changes nothing.
+"""
 
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots, new_tuple
-from sandbox.physics.arrays import Floats, Slots
+from sandbox.physics.arrays import Floats, SlotRows, Slots
+from sandbox.physics.changing.moving import label_what_hangs, move_labelled, scale_mass
+from sandbox.physics.changing.ramping import firm_up, inflate, set_warm_start, solve_by
 from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
-from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
-from sandbox.physics.keeping.arguments import (
-    CONSTRAINTS,
-    FARTHEST,
-    HANDS,
-    KEYS,
-    PARTICLES,
-    PARTS,
-    SPRINGS,
-    no_slot,
-    whole,
-    whole_numbers,
+from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
+from sandbox.physics.marks import (
+    BANK_EMPTIED,
+    BANK_UNOPENED,
+    GRAB_COUNT,
+    LAW_HAND,
+    LAW_NISSEN,
+    LONGEST_RAMP,
 )
-from sandbox.physics.marks import BANK_EMPTIED, BANK_UNOPENED, GRAB_COUNT, LAW_HAND, LAW_NISSEN
+from sandbox.physics.permission import GRANTED, HAND, NOT_ALLOWED, refusal, spend
 from sandbox.physics.ramps import set_constraint, set_number, set_spring
-from sandbox.physics.settings import DRAG, GRAVITY_X, WIND_X
-from sandbox.physics.state import GoodValues, State, StateArrays
+from sandbox.physics.settings import (
+    DRAG,
+    GRAVITY_X,
+    IS_AUTO,
+    ITERATIONS,
+    SOLVER,
+    SOLVER_NAMES,
+    SUBSTEP_COUNT,
+    SUBSTEPS,
+    WIND_X,
+)
+from sandbox.physics.state import GoodValues, State
 from sandbox.physics.topology.sorting import list_ends
 
 GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
-SET_GRAVITY, SET_AIR, HOLD_KEY, FIRM_SPRINGS, FIRM_CONSTRAINTS = range(12, 17)
-# In place of a result: the arena is full, and nothing was changed; the k-th of slots and numbers, counted through, is
-# BAD_SLOT - k: a slot that is not there, or a number that is not finite, and nothing was changed.
-NO_ARENA, BAD_SLOT = -1, -2
-# What has to be derived again after a command: nothing, what follows from hands, what follows from topology.
-NOTHING, OF_HANDS, OF_TOPOLOGY = "", "hands", "topology"
-
-
-class KernelCommand(NamedTuple):
-    """A kind of command: its number; what lies in `slots` and `numbers` then; what has to be derived again.
-
-    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; duration [ticks]: see ramps.py; ?name:
-    whether that is given. Others are what commands of files call so: places have two numbers, springs as many slots as
-    there are.
-    """
-
-    code: int
-    slots: tuple[str, ...]
-    numbers: tuple[str, ...] = ()
-    changes: str = NOTHING
-
-
-_HAND = ("first_cursor", "first_spring", "grab")
-_PARTICLE = ("first_cursor", "particle")
-_FIRMNESS = ("stiffness", "damping", "lowest_mode", "duration")
-# What is a list of slots, of which a command has one alone.
-_LISTS = ("springs", "constraints")
-# Kinds of commands by their names in files; files have no `break_springs`, which a tick ends with, and no
-# `part_bodies`, which building a level with cut bodies does.
-KINDS = {
-    "grab": KernelCommand(GRAB, (*_HAND, "particle"), ("target", "strength", "radius"), OF_HANDS),
-    "move_grab": KernelCommand(MOVE_GRAB, _HAND, ("target", "tick_rate")),
-    "release": KernelCommand(RELEASE, _HAND, (), OF_HANDS),
-    "pin": KernelCommand(PIN, _PARTICLE, (), OF_TOPOLOGY),
-    "unpin": KernelCommand(UNPIN, _PARTICLE, (), OF_TOPOLOGY),
-    "cut_springs": KernelCommand(CUT, ("springs",), (), OF_TOPOLOGY),
-    "break_springs": KernelCommand(BREAK, ("springs",), (), OF_TOPOLOGY),
-    "part_bodies": KernelCommand(PART, ("springs",), (), OF_TOPOLOGY),
-    "set_coefficients": KernelCommand(
-        SET_COEFFICIENTS, ("?material", "material", "?stiffness", "?damping", "duration"), ("stiffness", "damping")
-    ),
-    "set_gravity": KernelCommand(SET_GRAVITY, ("duration",), ("gravity",)),
-    # What may be left out and is a pair comes last.
-    "set_air": KernelCommand(SET_AIR, ("?wind", "?drag", "duration"), ("drag", "wind")),
-    "set_drive": KernelCommand(DRIVE, ("part",), ("value",)),
-    "hold_key": KernelCommand(HOLD_KEY, ("key", "down")),
-    "firm_springs": KernelCommand(FIRM_SPRINGS, ("springs",), _FIRMNESS),
-    "firm_constraints": KernelCommand(FIRM_CONSTRAINTS, ("constraints",), _FIRMNESS),
-    "push": KernelCommand(PUSH, ("first_cursor",), ("position", "impulse", "outward", "radius")),
-    "shake": KernelCommand(SHAKE, ("first_cursor",), ("acceleration", "tick_rate")),
-}
+SET_GRAVITY, SET_AIR, HOLD_KEY, FIRM_SPRINGS, FIRM_CONSTRAINTS, SET_INFLATION, SCALE_MASS = range(12, 19)
+MOVE_BODY, SET_SOLVER, SET_FIRMNESS, FREE, REMOVE, ADD_PARTICLE, ADD_SPRING, ADD_BODY = range(19, 27)
+# In place of a result: the arena is full, and nothing was changed.
+NO_ARENA = -1
+# Why a command was refused, and nothing was changed. A result is -(reason + REASONS k): k is the place among slots and
+# numbers, counted through, of what it is about.
+REASONS = 64
+(
+    BAD, FORBIDDEN, UNTOUCHABLE, EXHAUSTED, HOLDS, HOLDS_NOTHING, TOO_PINNED, PINNED, NOT_PINNED, NOTHING_THERE,
+    NOTHING_MOVES, TOO_FAR, TOO_HEAVY,
+) = range(2, 15)  # fmt: skip
+MOST_ITERATIONS = 1000
+_SOLVER_COUNT, _MOST_SUBSTEPS = len(SOLVER_NAMES), SUBSTEPS[-1]
 
 
 class Commanded(NamedTuple):
-    """What commands change; a world block begins with it. numbers: the settings, see settings.py."""
+    """What commands change; a world block begins with it.
+
+    numbers, choices: the settings, see settings.py. areas (k, 2): of each body that keeps areas its first constraint,
+    and the one behind its last.
+    """
 
     state: State
     good: GoodValues
     numbers: Floats
+    choices: Slots
+    areas: SlotRows
 
 
 @kernel
-def command(pointer: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
-    """Carry out a command, see KINDS; how many particles were pushed or shaken, for all others 0; or see NO_ARENA."""
+def command(pointer: Bundle[Commanded], arena: Arena, giver: int, kind: int, slots: Slots, numbers: Floats) -> int:
+    """Carry out a command of KINDS that a hand, a rule or a program gives: 0, NO_ARENA, or why it is refused."""
     world = unpack(pointer)
-    state = world.state
-    bad = _first_bad(state, kind, slots, numbers)
+    state, needs = world.state, 1
+    bad = _first_bad(world, kind, slots, numbers)
     if bad >= 0:
-        return BAD_SLOT - bad
+        return _refused(BAD, bad)
+    result = _unfit(state, kind, slots, numbers)
+    if result == 0 and kind == CUT:
+        needs = _different(slots, state.law.shape[0], arena)
+        result = NO_ARENA if needs < 0 else 0
+    if result == 0 and giver == HAND:
+        result = _not_for_hands(state, world.areas, kind, slots, needs)
+    if result == 0:
+        result = _carry_out(world, arena, kind, slots, numbers)
+    if result == 0:
+        spend(state, giver, kind, needs)
+    return result
+
+
+@kernel
+def solve(pointer: Bundle[Commanded], wanted: Slots) -> float:
+    """Solve by other choices from now on, see `solve_by`."""
+    world = unpack(pointer)
+    return solve_by(world.state, world.choices, wanted)
+
+
+@inner_kernel
+def _refused(reason: int, place: int) -> int:
+    return -(reason + REASONS * place)
+
+
+@inner_kernel
+def _carry_out(world: Commanded, arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
+    state, good = world.state, world.good
     if kind == GRAB:
         _grab(state, slots, numbers)
     elif kind == MOVE_GRAB:
@@ -112,9 +118,9 @@ def command(pointer: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, n
     elif kind == UNPIN:
         _unpin(state, slots[1])
     elif kind in (CUT, BREAK, PART):
-        return _cut(state, world.good, slots, kind, arena)
+        return _cut(state, good, slots, kind, arena)
     elif kind == SET_COEFFICIENTS:
-        _set_coefficients(state, world.good, slots, numbers)
+        _set_coefficients(state, good, slots, numbers)
     elif kind == SET_GRAVITY:
         for axis in range(2):
             set_number(state, world.numbers, GRAVITY_X + axis, numbers[axis], slots[0])
@@ -123,43 +129,145 @@ def command(pointer: Bundle[Commanded], arena: Arena, kind: int, slots: Slots, n
     elif kind == DRIVE:
         state.actuator_value[slots[0]] = numbers[0]
     elif kind in (FIRM_SPRINGS, FIRM_CONSTRAINTS):
-        _firm(state, world.good, slots, numbers, kind)
+        _firm(state, good, slots, numbers, kind)
     elif kind == HOLD_KEY:
         state.key_down[slots[0]] = slots[1] != 0
     elif kind == PUSH:
-        return _push(state, world.good, slots[0], numbers)
+        return 0 if _push(state, good, slots[0], numbers) > 0 else _refused(NOTHING_THERE, 0)
     elif kind == SHAKE:
-        return _shake(state, world.good, slots[0], numbers)
+        return 0 if _shake(state, good, slots[0], numbers) > 0 else _refused(NOTHING_MOVES, 0)
+    elif kind == SET_INFLATION:
+        inflate(state, good, world.areas, slots[0], numbers[0], slots[1])
+    elif kind == SCALE_MASS:
+        return 0 if scale_mass(state, good, slots[1], numbers[0]) else _refused(TOO_HEAVY, 1)
+    elif kind == MOVE_BODY:
+        return _move(state, good, slots, numbers, arena)
+    elif kind == SET_SOLVER:
+        return _set_solver(world, slots, numbers, arena)
     return 0
 
 
 @inner_kernel
-def _first_bad(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
-    # The first of slots and numbers, counted through, that is not there or not finite; -1: none.
+def _first_bad(world: Commanded, kind: int, slots: Slots, numbers: Floats) -> int:
+    # The first of slots and numbers, counted through, that is not there, not finite or out of range; -1: none.
+    state = world.state
     particles, springs = state.owner.shape[0], state.law.shape[0]
     if kind in (GRAB, MOVE_GRAB, RELEASE):
         has_hand = 0 <= slots[2] < state.hand_strength.shape[0]
         if not has_hand or not 0 <= slots[0] + slots[2] < particles or not 0 <= slots[1] + slots[2] < springs:
             return 2
-    if kind in (GRAB, PIN, UNPIN) and not _is_body(state, slots[0], slots[slots.shape[0] - 1]):
-        return slots.shape[0] - 1
+    place = _place_of_particle(kind)
+    if place >= 0 and not _is_body(state, slots[0], slots[place]):
+        return place
     if kind in (CUT, BREAK, PART):
         for k in range(slots.shape[0]):
             if not 0 <= slots[k] < springs or not state.spring_active[slots[k]] or state.material[slots[k]] < 0:
                 return k
-    if kind == DRIVE and not 0 <= slots[0] < state.actuator_value.shape[0]:
-        return 0
-    if kind == HOLD_KEY and not 0 <= slots[0] < state.key_down.shape[0]:
+    rows = -1
+    if kind == DRIVE:
+        rows = state.actuator_value.shape[0]
+    elif kind == HOLD_KEY:
+        rows = state.key_down.shape[0]
+    elif kind == SET_INFLATION:
+        rows = world.areas.shape[0]
+    if rows >= 0 and not 0 <= slots[0] < rows:
         return 0
     if kind in (FIRM_SPRINGS, FIRM_CONSTRAINTS):
         rows = springs if kind == FIRM_SPRINGS else state.constraint_kind.shape[0]
         for k in range(slots.shape[0]):
             if not 0 <= slots[k] < rows:
                 return k
+    place = _place_of_duration(kind)
+    if place >= 0 and not 0 <= slots[place] <= LONGEST_RAMP:
+        return place
     for k in range(numbers.shape[0]):
         if not -math.inf < numbers[k] < math.inf:
             return slots.shape[0] + k
+    return _first_bad_choice(slots) if kind == SET_SOLVER else -1
+
+
+@inner_kernel
+def _place_of_particle(kind: int) -> int:
+    if kind == GRAB:
+        return 3
+    return 1 if kind in (PIN, UNPIN, SCALE_MASS, MOVE_BODY) else -1
+
+
+@inner_kernel
+def _place_of_duration(kind: int) -> int:
+    if kind == SET_GRAVITY:
+        return 0
+    if kind == SET_INFLATION:
+        return 1
+    if kind == SET_AIR:
+        return 2
+    if kind == SET_COEFFICIENTS:
+        return 4
+    return 7 if kind == SET_SOLVER else -1
+
+
+@inner_kernel
+def _first_bad_choice(slots: Slots) -> int:
+    # Substeps are a power of two, or 0, by which each tick chooses.
+    if slots[0] != 0 and not 0 <= slots[1] < _SOLVER_COUNT:
+        return 1
+    if slots[2] != 0 and not 1 <= slots[3] <= MOST_ITERATIONS:
+        return 3
+    substeps = slots[5]
+    if slots[4] != 0 and (not 0 <= substeps <= _MOST_SUBSTEPS or (substeps & (substeps - 1)) != 0):
+        return 5
     return -1
+
+
+@inner_kernel
+def _unfit(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
+    # Why what is there cannot be done to as it is; 0: it can.
+    if kind in (GRAB, MOVE_GRAB, RELEASE):
+        holds = state.spring_active[slots[1] + slots[2]]
+        if holds and kind == GRAB:
+            return _refused(HOLDS, 2)
+        if not holds and kind != GRAB:
+            return _refused(HOLDS_NOTHING, 2)
+    if kind == GRAB and state.inverse_mass[slots[3]] == 0.0:
+        return _refused(TOO_PINNED, 3)
+    if kind == PIN and state.inverse_mass[slots[1]] == 0.0:
+        return _refused(PINNED, 1)
+    if kind == UNPIN and state.inverse_mass[slots[1]] > 0.0:
+        return _refused(NOT_PINNED, 1)
+    return 0
+
+
+@inner_kernel
+def _different(slots: Slots, bound: int, arena: Arena) -> int:
+    # How many different slots, all below a bound, a list has; below 0: the arena is full.
+    begin(arena)
+    seen, count = new_flags(arena, bound), 0
+    if is_full(arena):
+        return -1
+    for k in range(slots.shape[0]):
+        count += 0 if seen[slots[k]] else 1
+        seen[slots[k]] = True
+    return count
+
+
+@inner_kernel
+def _not_for_hands(state: State, areas: SlotRows, kind: int, slots: Slots, needs: int) -> int:
+    # Why hands may not give a command whose slots are there; 0: they may.
+    why = refusal(state, HAND, kind, needs)
+    if why == NOT_ALLOWED:
+        return _refused(FORBIDDEN, 0)
+    place = _place_of_particle(kind)
+    if place >= 0 and state.untouchable[slots[place]]:
+        return _refused(UNTOUCHABLE, place)
+    if kind == CUT:
+        for k in range(slots.shape[0]):
+            if state.spring_untouchable[slots[k]]:
+                return _refused(UNTOUCHABLE, k)
+    if kind == SET_INFLATION:
+        first = areas[slots[0], 0]
+        if first < areas[slots[0], 1] and state.untouchable[state.corner_particle[state.constraint_first[first]]]:
+            return _refused(UNTOUCHABLE, 0)
+    return 0 if why == GRANTED else _refused(EXHAUSTED, 0)
 
 
 @inner_kernel
@@ -348,57 +456,34 @@ def _shake(state: State, good: GoodValues, first_cursor: int, numbers: Floats) -
     return count
 
 
-def lend(state: State, good: GoodValues, numbers: Floats) -> Bundle[Commanded]:
-    """What commands change, as kernels take it."""
-    return bundle(Commanded(state, good, numbers))
+@inner_kernel
+def _move(state: State, good: GoodValues, slots: Slots, numbers: Floats, arena: Arena) -> int:
+    label = label_what_hangs(state, arena)
+    if is_full(arena):
+        return NO_ARENA
+    is_moved = move_labelled(state, good, label, slots[1], numbers[0], numbers[1], slots[2] != 0)
+    return 0 if is_moved else _refused(TOO_FAR, 1)
 
 
-def carry_out(pointer: Any, name: str, given: Mapping[str, Any], state: StateArrays) -> int:
-    """Carry out a command of KINDS with what it is given, by name; how many particles were pushed or shaken.
-
-    pointer: what `lend` made of the arrays of `state`. Raises IndexError for a slot that is not there or not in use,
-    and ValueError for a number that is not finite; nothing is changed then.
-    """
-    kind = KINDS[name]
-    if kind.slots[0] in _LISTS:
-        slots = whole_numbers(kind.slots[0], given[kind.slots[0]])
-    else:
-        slots = np.array([_packed(kind, each, given) for each in kind.slots], np.int64)
-    values = [given[each] for each in kind.numbers]
-    numbers = np.array(
-        [x for each in values for x in (each if isinstance(each, tuple) else (each or 0.0,))], np.float64
-    )
-    arena = np.zeros(1, np.int64)
-    while (result := command(pointer, arena, kind.code, slots, numbers)) == NO_ARENA:
-        arena = np.zeros(int(arena[0]), np.int64)
-    if result <= BAD_SLOT:
-        raise _fault(kind, BAD_SLOT - result, given, numbers, state)
-    return result
-
-
-def _packed(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> int:
-    if name[0] == "?":
-        return int(given[name[1:]] is not None)
-    is_left_out = given[name] is None and f"?{name}" in kind.slots
-    return 0 if is_left_out else max(-1, min(whole(name, given[name]), FARTHEST))
-
-
-def _fault(kind: KernelCommand, place: int, given: Mapping[str, Any], numbers: Floats, state: StateArrays) -> Exception:
-    """What is wrong with the slot or number at a place, as BAD_SLOT counts."""
-    is_list = kind.slots[0] in _LISTS
-    beyond = place - (len(given[kind.slots[0]]) if is_list else len(kind.slots))
-    if beyond >= 0:
-        return ValueError(f"{', '.join(kind.numbers)} {numbers.tolist()}: finite numbers are needed")
-    name = kind.slots[0 if is_list else place]
-    value = given[name][place] if is_list else given[name]
-    rows, count = {
-        "grab": (HANDS, len(state.hand_strength)),
-        "particle": (PARTICLES, len(state.owner)),
-        "springs": (SPRINGS, len(state.law)),
-        "constraints": (CONSTRAINTS, len(state.constraint_kind)),
-        "part": (PARTS, len(state.actuator_value)),
-        "key": (KEYS, len(state.key_down)),
-    }[name]
-    if 0 <= value < count:
-        return IndexError(f"{name} {value}: it is not in use, or a hand's")
-    return no_slot(name, value, rows, count)
+@inner_kernel
+def _set_solver(world: Commanded, slots: Slots, numbers: Floats, arena: Arena) -> int:
+    # With a duration everything is soft at first by another solver.
+    begin(arena)
+    wanted = new_slots(arena, world.choices.shape[0])
+    if is_full(arena):
+        return NO_ARENA
+    for place in range(wanted.shape[0]):
+        wanted[place] = world.choices[place]
+    if slots[0] != 0:
+        wanted[SOLVER] = slots[1]
+    if slots[2] != 0:
+        wanted[ITERATIONS] = slots[3]
+    if slots[4] != 0:
+        wanted[SUBSTEP_COUNT], wanted[IS_AUTO] = slots[5], 1 if slots[5] == 0 else 0
+    is_other = wanted[SOLVER] != world.choices[SOLVER]
+    numbers[1] = solve_by(world.state, world.choices, wanted)
+    if slots[6] != 0:
+        set_warm_start(world.state, world.numbers, numbers[0])
+    if slots[7] > 0 and is_other:
+        firm_up(world.state, slots[7])
+    return 0

@@ -19,3 +19,7 @@ GRAB_STIFFNESS, GRAB_DAMPING = 0.2, 0.3
 OWN_MATERIAL = -1
 # The longest ramp [ticks].
 LONGEST_RAMP = 1_000_000
+# How far out anything may be put [m], either way, and what it may weigh [kg]: beyond, doubles lose the digits that a
+# spring's length needs.
+FARTHEST_PLACE = 1e6
+LEAST_MASS, MOST_MASS = 1e-9, 1e9

@@ -2,15 +2,18 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
 
 # Substeps that every tick chooses for itself, see substeps.py.
 AUTO: Literal["auto"] = "auto"
 Substeps = int | Literal["auto"]
-SUBSTEPS = (1, 2, 4, 8, 16, 32, 64)  # powers of two, which the exact map of coefficients needs
+# Powers of two, which the exact map of coefficients needs, or auto.
+SubstepChoice = Literal[1, 2, 4, 8, 16, 32, 64, "auto"]
+SUBSTEPS: tuple[int, ...] = tuple(each for each in get_args(SubstepChoice) if each != AUTO)
 # The names of `SOLVERS`, which needs the world and so cannot be asked here.
-SOLVER_NAMES = ("single_pass", "iterative", "direct")
+SolverName = Literal["single_pass", "iterative", "direct"]
+SOLVER_NAMES: tuple[str, ...] = get_args(SolverName)
 # The solver of a world or a level that names none.
 DEFAULT_SOLVER = "direct"
 
@@ -61,10 +64,15 @@ class WorldSettings:
         """Its numbers as kernels read them."""
         return (*self.gravity, *self.wind, self.drag, self.warm_start)
 
-    def with_numbers(self, numbers: Sequence[float]) -> "WorldSettings":
-        """The same settings with other numbers, in the order of `numbers`."""
+    @classmethod
+    def of(cls, numbers: Sequence[float], choices: Sequence[int]) -> "WorldSettings":
+        """The settings of what kernels read."""
         x, y, wind_x, wind_y, drag, warm_start = numbers
-        return replace(self, gravity=(x, y), wind=(wind_x, wind_y), drag=drag, warm_start=warm_start)
+        solver, tick_rate, substeps, is_auto, iterations = choices
+        return cls(
+            (x, y), tick_rate, AUTO if is_auto else substeps, SOLVER_NAMES[solver], iterations, warm_start,
+            (wind_x, wind_y), drag,
+        )  # fmt: skip
 
     @property
     def choices(self) -> tuple[int, int, int, int, int]:

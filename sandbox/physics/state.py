@@ -65,6 +65,7 @@ class Family(Enum):
     PROBE = "particle whose way a rule follows"
     STILL = "question of a rule whether something has settled"
     KEY = "key that a rule asks for"
+    DEED = "kind of command, where a level says what hands may do"
 
 
 @dataclass(eq=False)
@@ -126,7 +127,7 @@ def _array(
     return cast(Any, Column(stored, family, dtype, unit, meaning, width, within, guarded, topology, sparse, usual))
 
 
-P, S, E, C, A, T, H, G, R, N, B, L, K = Family
+P, S, E, C, A, T, H, G, R, N, B, L, K, D = Family
 F64, I64, I32, I8, BOOL = np.float64, np.int64, np.int32, np.int8, np.bool_
 
 
@@ -161,6 +162,7 @@ class StateArrays:
     rolling = _array("rolling", P, F64, "1", "rolling resistance; at a contact of discs the larger one counts", within=SHARE, guarded=True, sparse=True, usual=ROLLING_RESISTANCE)
     slow_change = _array("slow_change", P, F64, "m/s", "the slow component of the change of slow_velocity in a step, for the direct solver", width=2, sparse=True)
     unmoved = _array("unmoved", P, BOOL, "", "whether it has not taken a step yet: its velocity is that of the tick, not of half a step before", sparse=True)
+    untouchable = _array("untouchable", P, BOOL, "", "whether the level lets no hand touch it", sparse=True)
 
     particle_a = _array("particle_a", S, I32, "slot", "its first end", topology=True)
     particle_b = _array("particle_b", S, I32, "slot", "its second end", topology=True)
@@ -182,6 +184,7 @@ class StateArrays:
     lowest_mode_now = _array("lowest_mode_now", S, F64, "1", "lowest_mode of the last tick, while Cs and Cd come to what is set", sparse=True)
     ramp_ticks = _array("ramp_ticks", S, I32, "tick", "ticks until Cs and Cd are what is set; 0: they are", sparse=True)
     belt = _array("belt", S, F64, "m/s", "how fast its surface runs as an edge, to the right of who stands on it", topology=True, sparse=True)
+    spring_untouchable = _array("spring_untouchable", S, BOOL, "", "whether the level lets no hand touch it", sparse=True)
 
     constraint_kind = _array("element_kind", E, I8, "", "AREA or BEND (constraints.py)", topology=True)
     constraint_first = _array("element_first", E, I32, "corner", "index of its first corner", topology=True)
@@ -227,6 +230,9 @@ class StateArrays:
     probe_position = _array("probe_position", B, F64, "m", "where it was at the end of the last tick", width=2, sparse=True)
     still_ticks = _array("still_ticks", L, I32, "tick", "for how many ticks on end it has been still", sparse=True)
     key_down = _array("key_down", K, BOOL, "", "whether it is held", sparse=True)
+
+    deed_refused = _array("deed_refused", D, BOOL, "", "whether the level lets no hand give it", sparse=True)
+    deed_budget = _array("deed_budget", D, I32, "", "the counter that says how often hands may still give it; -1: as often as they like", sparse=True, usual=-1)
     # fmt: on
     tick: int
 
@@ -247,7 +253,9 @@ FAMILIES: dict[Family, tuple[Column, ...]] = {
     family: tuple(column for column in COLUMNS if column.family is family) for family in Family
 }
 # Rows that follow from the rules of a level, and never grow.
-OF_RULES: frozenset[Family] = frozenset({Family.RULE, Family.COUNTER, Family.PROBE, Family.STILL, Family.KEY})
+OF_RULES: frozenset[Family] = frozenset(
+    {Family.RULE, Family.COUNTER, Family.PROBE, Family.STILL, Family.KEY, Family.DEED}
+)
 # Those that no state goes without.
 ALWAYS_STORED: frozenset[str] = frozenset(column.stored for column in COLUMNS if not column.sparse)
 # Those from which solvers and collision derive, which a tick seldom changes, and all others.

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
-from sandbox.physics.arrays import Floats, Slots, empty
-from sandbox.physics.command import KINDS, OF_HANDS, OF_TOPOLOGY, carry_out, lend
+from sandbox.physics.arrays import Floats, SlotRows, Slots, empty
+from sandbox.physics.command import solve
+from sandbox.physics.command_table import KINDS, OF_HANDS, OF_SOLVER, OF_TOPOLOGY, carry_out, lend, numbers_of
 from sandbox.physics.constraints import (
     AREA,
     BEND,
@@ -25,6 +26,7 @@ from sandbox.physics.keeping.equipment import Equipment, Joined
 from sandbox.physics.keeping.forms import FirmBody
 from sandbox.physics.keeping.names import Names
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS, LAW_NISSEN
+from sandbox.physics.permission import PROGRAM
 from sandbox.physics.rules.table import Rules
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, StateArrays, good_of, state_of
@@ -41,7 +43,7 @@ HAND_STRENGTH = 100.0
 
 # Attributes that another value of counts as a change of topology. From a step's contacts nothing is derived.
 _WATCHED = frozenset(
-    {"terrain", "water", "hulls", "actuators", "limits", "forms", "rules"}
+    {"terrain", "water", "hulls", "actuators", "limits", "forms", "rules", "area_constraints"}
     | {column.name for column in COLUMNS if column.family is not Family.CONTACT}
 )
 
@@ -67,7 +69,7 @@ class World(StateArrays):
         self.good: dict[str, Floats] = {}
         self.trust()
         self._settings = settings or WorldSettings()
-        self._numbers = np.array(self._settings.numbers)
+        self._numbers, self._choices = np.array(self._settings.numbers), np.array(self._settings.choices)
         self.append(Family.SETTING, len(self._numbers))
         self.tick = 0
         self.material_names = tuple(material_names)
@@ -177,29 +179,18 @@ class World(StateArrays):
 
     @settings.setter
     def settings(self, settings: WorldSettings) -> None:
-        if settings.solver != self._settings.solver:
-            self.slow_velocity[:] = self.velocity
-            self.energy_bank[:] = BANK_UNOPENED
-            self.impulse[:] = 0.0
-            self.tension[:] = 0.0
-            self.contact_impulse[:] = 0.0
-            self.actuator_impulse[:] = 0.0
-            self.hand_force[:] = 0.0
-        if (settings.substeps == AUTO) != (self._settings.substeps == AUTO):
-            self.energy_bank[:] = BANK_UNOPENED
-            self.scale_impulses(self._settings.fewest_substeps / settings.fewest_substeps)
+        before = self._settings
+        if settings.solver != before.solver or (settings.substeps == AUTO) != (before.substeps == AUTO):
+            self._choices[:] = before.choices
+            self._multiply_contacts(solve(self.derived(_lend, of_hands=False), np.array(settings.choices)))
         # What is set so is in force at once.
-        is_set = np.array(settings.numbers) != np.array(self._settings.numbers)
+        is_set = np.array(settings.numbers) != np.array(before.numbers)
         self.setting_now[is_set] = self.setting_ticks[is_set] = 0
         self._settings = settings
 
-    def scale_impulses(self, factor: float) -> None:
-        """Turn what solvers keep of the last step's impulses into those of a step of another length."""
-        if arguments.number("factor", factor) != 1.0:
-            self.impulse *= factor
-            self.tension *= factor
-            self.contact_impulse *= factor
-            self.actuator_impulse *= factor
+    def _multiply_contacts(self, factor: float) -> None:
+        # Those of another solver are nothing, whatever they were.
+        self.contact_impulse[:] = self.contact_impulse * factor if factor != 0.0 else 0.0
 
     @property
     def has_contacts(self) -> bool:
@@ -434,25 +425,19 @@ class World(StateArrays):
         """
         if material is not None:
             arguments.slot("material", material, "materials", len(self.material_names))
-        given = {"stiffness": stiffness, "damping": damping}
-        for name, value in given.items():
-            if value is not None:
-                arguments.number(name, value, 0.0, 1.0)
-        self._command("set_coefficients", material=material, duration=duration, **given)
+        self.command("set_coefficients", stiffness=stiffness, damping=damping, material=material, duration=duration)
 
     def set_gravity(self, gravity: Point, duration: int = 0) -> None:
         """Set gravity [m/s^2]; duration [ticks]: see ramps.py."""
-        self._command("set_gravity", gravity=arguments.point("gravity", gravity), duration=duration)
+        self.command("set_gravity", gravity=gravity, duration=duration)
 
     def set_air(self, wind: Point | None, drag: float | None, duration: int = 0) -> None:
         """Set the wind [m/s], the drag [1/s] or both (None: it stays); duration [ticks]: see ramps.py."""
-        wind = None if wind is None else arguments.point("wind", wind)
-        drag = None if drag is None else arguments.number("drag", drag, 0.0)
-        self._command("set_air", wind=wind, drag=drag, duration=duration)
+        self.command("set_air", wind=wind, drag=drag, duration=duration)
 
     def hold_key(self, key: int, is_down: bool) -> None:
         """Press a key that rules ask for, by its place in `rule_keys`, or let it go."""
-        self._command("hold_key", key=key, down=int(is_down))
+        self.command("hold_key", key=key, down=is_down)
 
     def reserve_grabs(self) -> None:
         """Reserve the slots of all grabs, inactive; done once, when the world is built."""
@@ -469,53 +454,70 @@ class World(StateArrays):
         self.change("particle_active", False, slice(self.grab_particle, None))
         self.change("spring_active", False, slice(self.grab_spring, None))
 
-    def _command(self, name: str, **given: Any) -> int:
-        """Carry out a command in a kernel, see command.py; nothing is changed where it raises."""
+    def command(self, name: str, giver: int = PROGRAM, /, **given: Any) -> None:
+        """Carry out a command of KINDS (command.py) that a hand, a rule or a program gives (permission.py).
+
+        given: its fields, by name, checked by whoever gives it. Raises IndexError, ValueError and Refused; nothing is
+        changed then.
+        """
+        if name == "grab" and self.grab_particle < 0:
+            # Nothing is left of a hold that cannot be, no slots of hands either.
+            arguments.slot("grab", given["grab"], HANDS, GRAB_COUNT)
+            arguments.active_particles(self, "particle", [given["particle"]])
+            numbers_of(name, given)
+            self.reserve_grabs()
         given.update(first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate)
-        arguments.ticks("duration", given.setdefault("duration", 0))
-        self._numbers[:] = self._settings.numbers
-        result = carry_out(self.derived(_lend, of_hands=False), name, given, self)
-        if name in ("set_gravity", "set_air"):
-            self._settings = self._settings.with_numbers(self._numbers.tolist())
+        given.setdefault("duration", 0)
+        self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
+        numbers = carry_out(self.derived(_lend, of_hands=False), giver, name, {"factor": 0.0, **given}, self)
         changes = KINDS[name].changes
+        if changes == OF_SOLVER:
+            self._multiply_contacts(numbers[-1])
+        if changes == OF_SOLVER or name in ("set_gravity", "set_air"):
+            self._settings = WorldSettings.of(self._numbers.tolist(), self._choices.tolist())
         if changes == OF_TOPOLOGY:
             self.topology_version += 1
         elif changes == OF_HANDS:
             self.hand_version += 1
-        return result
 
     def pin(self, particle: int) -> None:
         """Hold a particle where it is."""
-        self._command("pin", particle=particle)
+        self.command("pin", particle=particle)
 
     def unpin(self, particle: int) -> None:
         """Let a pinned particle move again, with the mass it has."""
-        self._command("unpin", particle=particle)
+        self.command("unpin", particle=particle)
 
     def cut(self, springs: Sequence[int] | Slots) -> None:
         """Take springs out of the world, and the constraints that they were a side of; their slots stay."""
-        self._command("cut_springs", springs=springs)
+        self.command("cut_springs", springs=springs)
 
     def break_springs(self, springs: Sequence[int] | Slots) -> None:
         """Take out springs that broke by themselves: the pieces of a body keep its energy."""
-        self._command("break_springs", springs=springs)
+        self.command("break_springs", springs=springs)
         self.broken = np.asarray(springs, np.int64)
 
-    def push(self, place: Point, impulse: Point, outward: float, radius: float) -> bool:
-        """Give the free particles nearer to place [m] than radius [m] an impulse [N s] together; False: there are none.
+    def push(self, position: Point, impulse: Point, outward: float, radius: float) -> None:
+        """Give the free particles nearer to position [m] than radius [m] an impulse [N s] together.
 
-        outward [N s]: the sum of the impulses that also drive each one straight away from the place. See `_push` in
+        outward [N s]: the sum of the impulses that also drive each one straight away from there. See `_push` in
         command.py: what is near moves more, whatever its mass.
         """
-        given = {"position": arguments.point("place", place), "impulse": arguments.point("impulse", impulse)}
-        outward, radius = arguments.number("outward", outward), arguments.number("radius", radius, 0.0)
-        return self._command("push", **given, outward=outward, radius=radius) > 0
+        self.command("push", position=position, impulse=impulse, outward=outward, radius=radius)
 
-    def shake(self, acceleration: Point) -> bool:
+    def shake(self, acceleration: Point) -> None:
         """Accelerate the frame that holds the world, its terrain and its pins, by `acceleration` [m/s^2] for the coming
-        tick: free particles stay behind. False: nothing can move.
+        tick: free particles stay behind.
         """
-        return self._command("shake", acceleration=arguments.point("acceleration", acceleration)) > 0
+        self.command("shake", acceleration=acceleration)
+
+    def inflate(self, body: int, inflation: float, duration: int = 0) -> None:
+        """Let each area of a body, by its place in `area_names`, want this multiple of its form's, in so many ticks."""
+        self.command("set_inflation", body=body, value=arguments.number("value", inflation, 0.0), duration=duration)
+
+    def move_body(self, particle: int, by: Point, at_rest: bool = False) -> None:
+        """Move all that springs join to a particle by a way [m]. at_rest: it stands still there."""
+        self.command("move_body", particle=particle, by=by, at_rest=at_rest)
 
     def fit(self, driven: Actuators, values: ArrayLike) -> None:
         """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
@@ -528,7 +530,7 @@ class World(StateArrays):
 
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
-        self._command("set_drive", part=part, value=arguments.number("value", value, -1.0, 1.0))
+        self.command("set_drive", part=part, value=arguments.number("value", value, -1.0, 1.0))
 
     def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
         """Give springs other rest lengths [m]; the length by which they have yielded does not change."""
@@ -545,14 +547,7 @@ class World(StateArrays):
         strength [m/s^2]: largest force over the mass of the body held. radius [m]: particles of the body that
         are nearer to this one share the force; 0: it bears all of it.
         """
-        target, strength = arguments.point("target", target), arguments.number("strength", strength, 0.0)
-        radius = arguments.number("radius", radius, 0.0)
-        if self.grab_particle < 0:
-            # Nothing is left of a hold that cannot be, no slots of hands either.
-            arguments.slot("grab", grab, HANDS, GRAB_COUNT)
-            arguments.active_particles(self, "particle", [particle])
-            self.reserve_grabs()
-        self._command("grab", grab=grab, particle=particle, target=target, strength=strength, radius=radius)
+        self.command("grab", grab=grab, particle=particle, target=target, strength=strength, radius=radius)
 
     def is_held(self, grab: int) -> bool:
         """Whether a grab holds a particle."""
@@ -565,7 +560,7 @@ class World(StateArrays):
 
     def move_grab(self, grab: int, target: Point) -> None:
         """Send a grab's cursor to target [m]: it travels there in the coming tick."""
-        self._command("move_grab", grab=grab, target=arguments.point("target", target))
+        self.command("move_grab", grab=grab, target=target)
 
     def end_tick(self) -> None:
         """Count a tick, past the watch over attributes, which takes as long as a tenth of it."""
@@ -573,7 +568,7 @@ class World(StateArrays):
 
     def release(self, grab: int) -> None:
         """Release what a hand holds; its slots wait for its next use. No bank keeps energy that the hand put in."""
-        self._command("release", grab=grab)
+        self.command("release", grab=grab)
 
     def name_slots(self, particles: Sequence[str], springs: Sequence[str]) -> None:
         """Name the slots that a restored state brought along, from the first one without a name on."""
@@ -593,7 +588,12 @@ class World(StateArrays):
 
 
 def _lend(world: World) -> Any:
-    return lend(state_of(world), good_of(world), world._numbers)
+    return lend(state_of(world), good_of(world), world._numbers, world._choices, areas_of(world))
+
+
+def areas_of(world: World) -> SlotRows:
+    """Of each body that keeps areas its first constraint, and the one behind its last (k, 2)."""
+    return np.array([(each.start, each.stop) for each in world.area_constraints], np.int64).reshape(-1, 2)
 
 
 def _collides(world: World) -> bool:

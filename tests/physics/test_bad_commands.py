@@ -13,11 +13,11 @@ import pytest
 from sandbox.physics.actuators import Actuators
 from sandbox.physics.analysis.firmness import set_firmness
 from sandbox.physics.changing.freeing import free_body
-from sandbox.physics.changing.moving import move_body
-from sandbox.physics.changing.ramping import inflate
 from sandbox.physics.changing.removing import remove_particles
-from sandbox.physics.command import carry_out, lend
+from sandbox.physics.command import BAD, REASONS, command
+from sandbox.physics.command_table import KINDS, lend
 from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.permission import PROGRAM
 from sandbox.physics.state import Family, good_of, state_of
 from sandbox.physics.step import step
 from tests.support import bad_commands
@@ -40,8 +40,12 @@ ARGUMENTS = {
     "firm_springs": ("springs", "constraints", "stiffness", "damping", "lowest_mode", "duration"),
     "firm_constraints": ("springs", "constraints", "stiffness", "damping", "lowest_mode", "duration"),
     "hold_key": ("key",),
-    "push": ("place", "impulse", "outward", "radius"),
+    "push": ("position", "impulse", "outward", "radius"),
     "shake": ("acceleration",),
+    "set_inflation": ("body", "value", "duration"),
+    "scale_mass": ("particle", "factor"),
+    "move_body": ("particle", "by"),
+    "set_solver": ("solver", "iterations", "substeps", "warm_start", "duration"),
 }
 # Other methods that change a world, or ask it: the call, and what its fault begins with.
 OTHERS = {
@@ -54,7 +58,6 @@ OTHERS = {
     "append, NaN": (lambda world: world.append(Family.HAND, 1, hand_force=[[0, NAN]]), "hand_force nan: "),
     "append, shape": (lambda world: world.append(Family.HAND, 2, hand_radius=[1.0] * 3), "hand_radius of shape (3,)"),
     "disturb": (lambda world: world.disturb(np.array([0]), -1), "particles -1: "),
-    "scale impulses": (lambda world: world.scale_impulses(NAN), "factor nan: "),
     "name a particle": (lambda world: world.name_particle(14, "second"), "slot 14: "),
     "add particles, position": (lambda world: world.add_particles(["e"], [[0, NAN]]), "position nan: "),
     "add particles, rows": (lambda world: world.add_particles(["e"], [[0, 1], [2, 3]]), "position of shape (2, 2)"),
@@ -82,7 +85,7 @@ OTHERS = {
     "add a bend, stiffness": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], stiffness=INF), "constraint_"),
     "add a bend, material": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], material=7), "material 7: "),
     "name areas": (lambda world: world.name_areas("balloon", range(1)), "constraints 0: a world without constraints"),
-    "inflate": (lambda world: inflate(world, 0, 1.0), "body 0: a world without bodies that keep areas"),
+    "inflate": (lambda world: world.inflate(0, 1.0), "body 0: a world without bodies that keep areas"),
     "fit, too many": (lambda world: world.fit(Actuators(("a",)), [0.0, 0.0]), "values of 2 parts"),
     "fit, too fast": (lambda world: world.fit(Actuators(("a",)), [2.0]), "values 2.0: "),
     "rest lengths, beyond": (lambda world: world.set_rest_lengths([0, 13], [1, 1]), "springs 13: "),
@@ -90,9 +93,9 @@ OTHERS = {
     "rest lengths, too few": (lambda world: world.set_rest_lengths([0, 1], [1, 1, 1]), "lengths of shape (3,)"),
     "is held": (lambda world: world.is_held(10), "grab 10: a world with hands 0 to 9"),
     "forget names": (lambda world: world.forget_names_beyond(-1, 0), "particle_count -1: "),
-    "move a body, removed": (lambda world: move_body(world, 3, (1.0, 0.0), 10.0), "particle 3: it is not in use"),
-    "move a body, NaN": (lambda world: move_body(world, 0, (NAN, 0.0), 10.0), "by nan: "),
-    "move a body, short": (lambda world: move_body(world, 0, (1.0,), 10.0), "by (1.0,): "),
+    "move a body, removed": (lambda world: world.move_body(3, (1.0, 0.0)), "particle 3: it is not in use"),
+    "move a body, NaN": (lambda world: world.move_body(0, (NAN, 0.0)), "by nan: "),
+    "move a body, short": (lambda world: world.move_body(0, (1.0,)), "by (1.0,): "),
     "free a body": (lambda world: free_body(world, -1), "particle -1: "),
     "remove": (lambda world: remove_particles(world, np.array([0, 14])), "particles 14: "),
     "firmness": (lambda world: set_firmness(world, 0, 0.5, 0.5), "body 0: a world without bodies"),
@@ -145,14 +148,11 @@ def test_interpreted_kernels_say_the_same_of_each():
 
 
 def test_a_number_that_is_not_finite_is_refused_by_the_kernel_itself():
-    world = made()
-    pointer, given = (
-        lend(state_of(world), good_of(world), np.zeros(6)),
-        {"first_cursor": 4, "acceleration": (NAN, 0.0), "tick_rate": 60},
-    )
-    assert outcome(world, lambda world: carry_out(pointer, "shake", given, world)) == (
-        "ValueError: acceleration, tick_rate [nan, 0.0, 60.0]: finite numbers are needed"
-    )
+    world, arena = made(), np.zeros(1, np.int64)
+    pointer = lend(state_of(world), good_of(world), np.zeros(6), np.zeros(5, np.int64), np.zeros((0, 2), np.int64))
+    slots, before = np.array([4]), bad_commands.memory_of(world)
+    result = command(pointer, arena, PROGRAM, KINDS["shake"].code, slots, np.array([NAN, 0.0, 60.0]))
+    assert result == -(BAD + REASONS * len(slots)) and bad_commands.memory_of(world) == before
 
 
 @pytest.mark.parametrize("name", OTHERS)

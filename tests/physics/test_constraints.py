@@ -10,7 +10,6 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import ContactsDef
 from sandbox.physics.analysis.energy import constraint_energies, measure_constraints, total_energy
 from sandbox.physics.analysis.stability import constraint_count, largest_eigenvalue, report
-from sandbox.physics.changing.ramping import inflate
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO, WorldSettings
@@ -157,7 +156,7 @@ def test_a_ring_takes_the_area_it_is_inflated_to_whatever_is_pinned(solver, pinn
     world = ring(inflation=1.1, coefficient=coefficient, pinned=pinned, bending=0.05, solver=solver, substeps=2)
     run(world, scaled(300, 30))
     assert measure_constraints(world)[0][0] + world.constraint_rest[0, 0] > 1.05 * world.constraint_rest[0, 1]
-    inflate(world, 0, 0.8)
+    world.inflate(0, 0.8)
     run(world, scaled(300, 30))
     assert measure_constraints(world)[0][0] + world.constraint_rest[0, 0] < 0.95 * world.constraint_rest[0, 1]
 

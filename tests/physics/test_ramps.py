@@ -1,6 +1,7 @@
 """What is set comes about in so many ticks: ramps of Cs, Cd, firmness, areas, gravity and air."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,6 @@ import pytest
 from sandbox.physics.analysis.energy import spring_energy, total_energy
 from sandbox.physics.analysis.firmness import FirmnessRange, set_firmness
 from sandbox.physics.analysis.last_tick import of_last_tick
-from sandbox.physics.changing.ramping import firm_up, inflate
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.ramps import CONSTRAINTS, SPRINGS, in_force, next_pair
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER_NAMES
@@ -62,7 +62,7 @@ def test_a_ramp_ends_with_what_is_set_at_once_else_and_leaves_nothing_behind(sol
         world.set_coefficients(0.3, 0.7, 0, duration)
         world.set_gravity((1.0, -3.0), duration)
         world.set_air((2.0, 0.5), 0.25, duration)
-        inflate(world, 0, 1.25, duration)
+        world.inflate(0, 1.25, duration)
         arrays = ("stiffness", "damping", "lowest_mode", "constraint_stiffness", "constraint_rest")
         # What is read of a world is what was set, from the start.
         assert set(world.stiffness[:-10]) == {0.3} and world.settings.gravity == (1.0, -3.0)
@@ -170,7 +170,8 @@ def test_energy_is_read_with_what_is_in_force():
 def test_what_is_made_whole_is_soft_at_first_and_has_its_own_cs_and_cd_again():
     world = standing_box(1.0, 3, {"sag": 0.02})
     own = world.stiffness.copy(), world.damping.copy()
-    firm_up(world, 15)
+    world.settings = replace(world.settings, solver="iterative")
+    world.command("set_solver", solver="direct", iterations=None, substeps=None, warm_start=None, duration=15)
     assert in_force(world, SPRINGS)[0][0] <= 0.05
     run(world, 15)
     assert np.array_equal(world.stiffness, own[0]) and np.array_equal(world.damping, own[1]) and not is_moving(world)

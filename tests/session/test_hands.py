@@ -54,24 +54,22 @@ def test_hands_are_refused_what_a_level_does_not_list_in_one_line():
 def test_what_is_counted_is_refused_once_none_is_left_and_an_undo_gives_it_back():
     session = Session(level(at_most={"add": 2}))
     assert said(session, AddParticle((0.0, 0.0)), AddParticle((1.0, 0.0))) == []
-    assert said(session, AddParticle((2.0, 0.0))) == ["not enough parts left: this level allows 2"]
+    assert said(session, AddParticle((2.0, 0.0))) == ["not enough parts left"]
     session.undo()
-    assert said(session, AddParticle((2.0, 0.0)), AddParticle((3.0, 0.0))) == [
-        "not enough parts left: this level allows 2"
-    ]
+    assert said(session, AddParticle((2.0, 0.0)), AddParticle((3.0, 0.0))) == ["not enough parts left"]
     session.undo()
     session.advance()
     session.redo()
-    assert said(session, AddParticle((3.0, 0.0))) == ["not enough parts left: this level allows 2"]
+    assert said(session, AddParticle((3.0, 0.0))) == ["not enough parts left"]
     assert session.world.counter.tolist() == [0.0, 0.0]
 
 
 def test_each_spring_that_is_cut_counts_and_letting_a_pin_go_does_not():
     session = Session(level(at_most={"cut": 2, "pin": 1}))
     ball = session.world.particle_slot("ball")
-    assert said(session, CutSprings((0, 1, 2))) == ["not enough cuts left: this level allows 2"]
+    assert said(session, CutSprings((0, 1, 2))) == ["not enough cuts left"]
     assert said(session, CutSprings((1, 1, 2)), Pin(ball), Unpin(ball)) == []
-    assert said(session, Pin(ball)) == ["not enough pins left: this level allows 1"]
+    assert said(session, Pin(ball)) == ["not enough pins left"]
     # What cannot be done takes nothing.
     session = Session(level(at_most={"pin": 1}))
     assert len(said(session, Unpin(ball))) == 1 and said(session, Pin(ball)) == []

@@ -11,10 +11,8 @@ from typing import Any
 import numpy as np
 
 from sandbox.physics.actuators import Actuators
-from sandbox.physics.changing.dividing import part_bodies
-from sandbox.physics.changing.ramping import set_rows
 from sandbox.physics.changing.removing import remove_particles
-from sandbox.physics.command import KINDS
+from sandbox.physics.command_table import KINDS
 from sandbox.physics.jit import way
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import COLUMNS, Family
@@ -43,8 +41,37 @@ POINTS = (
 FAR_LISTS = ([0, 13], [-1], [10**30], 0, None, "01", NAN, np.array([0.0]))
 KEYS = (1, 2, *_BEYOND, *_NO_WHOLE_NUMBER)
 DURATIONS = (-1, 1_000_001, 10**30, *_NO_WHOLE_NUMBER)
+FACTORS = (*(each for each in NUMBERS if each is not None), 1e30, 0.0, -1.0)
+SOLVERS = ("none", "", 3, -1, True, [0], 1.5)
 FIRMNESS = (FAR_LISTS, FAR_LISTS, (*SHARES, None), (*SHARES, None), NOT_BELOW_0, DURATIONS)
 _GIVEN_POINTS, _GIVEN_NUMBERS = (tuple(each for each in values if each is not None) for values in (POINTS, NOT_BELOW_0))
+
+
+def part_bodies(world: World, springs: Any) -> None:
+    """Divide the bodies of springs."""
+    world.command("part_bodies", springs=springs)
+
+
+def scale_mass(world: World, particle: Any, factor: Any) -> None:
+    """Make a body so many times as heavy."""
+    world.command("scale_mass", particle=particle, factor=factor)
+
+
+def set_solver(world: World, solver: Any, iterations: Any, substeps: Any, warm_start: Any, duration: Any) -> None:
+    """Solve by another solver."""
+    world.command(
+        "set_solver", solver=solver, iterations=iterations, substeps=substeps, warm_start=warm_start, duration=duration
+    )
+
+
+def set_rows(world: World, springs: Any, constraints: Any, stiffness: float, damping: float, lowest_mode: float,
+             duration: int) -> None:  # fmt: skip
+    """Set Cs, Cd and lowest mode."""
+    given = {"stiffness": stiffness, "damping": damping, "lowest_mode": lowest_mode, "duration": duration}
+    world.command("firm_springs", springs=springs, **given)
+    world.command("firm_constraints", constraints=constraints, **given)
+
+
 # Of every kind: the method of World, or a function of one, arguments that are right, and for each of these what is
 # wrong in its place.
 CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[Any, ...], ...]]] = {
@@ -68,6 +95,10 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "hold_key": ("hold_key", (0, True), (KEYS,)),
     "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),
     "shake": ("shake", ((1.0, 0.0),), (POINTS,)),
+    "set_inflation": ("inflate", (0, 1.5, 3), (PARTS, NOT_BELOW_0, DURATIONS)),
+    "scale_mass": (scale_mass, (0, 2.0), (PARTICLES, FACTORS)),
+    "move_body": ("move_body", (0, (1.0, 0.0)), (PARTICLES, POINTS)),
+    "set_solver": (set_solver, ("iterative", 5, 4, 0.5, 3), (SOLVERS, SOLVERS[2:], SOLVERS[2:], SHARES, DURATIONS)),
 }  # fmt: skip
 assert CALLS.keys() == KINDS.keys()
 

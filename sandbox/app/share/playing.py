@@ -14,11 +14,11 @@ from sandbox.app.share.stuffs import stuffs_for
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.assembly.build_world import build_world
-from sandbox.level.assembly.by_hand import left_of
 from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import GRAVITY_LIMIT
 from sandbox.level.plan.actuators import driving_keys
+from sandbox.level.rules.hands import left_of
 from sandbox.level.rules.rule import has_clock
 from sandbox.page.adding import adding
 from sandbox.page.page import page_text, toy_content
@@ -100,7 +100,7 @@ def _checks(level: Level, world: World) -> list[dict[str, Any]]:
 def _goals(level: Level, world: World) -> dict[str, Any]:
     """What a page shows of the goal of a level, of its counters, and of what hands have left."""
     counters = [[place, counter.text] for place, counter in enumerate(level.counters) if counter.text]
-    counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, world.counter)]
+    counters += [[row, f"{name} left"] for row, name, _ in left_of(level.hands, len(world.counter))]
     return {"goal": level.goal, "counters": counters, "hasClock": has_clock(level.rules)}
 
 

@@ -17,7 +17,6 @@ from sandbox.level.plan.rules import add_rules
 from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.plan.water import hulls_of, water_of
 from sandbox.level.plan.welds import Slots
-from sandbox.physics.changing.dividing import part_bodies
 from sandbox.physics.collision.filter import NO_EDGE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ROLLING_RESISTANCE
@@ -61,7 +60,7 @@ def _part_cut_bodies(world: World, level: Level, plan: Plan) -> None:
         springs += [first] if body.cut and len(made.pairs) else []
         first += len(made.pairs)
     if springs:
-        part_bodies(world, springs)
+        world.command("part_bodies", springs=springs)
 
 
 def _add_particles(world: World, level: Level, plan: Plan, slots: Slots, stays: NDArray[np.bool_]) -> None:

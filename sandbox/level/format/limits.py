@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
 from sandbox.physics.settings import DEFAULT_SOLVER as DEFAULT_SOLVER
 from sandbox.physics.settings import SUBSTEPS as SUBSTEPS
 
@@ -29,11 +30,10 @@ QUESTION_LIMIT = 1_000  # questions of a rule, and of one that asks others
 ACTION_LIMIT = 100  # actions of a rule
 COLLISION_GROUP_LIMIT = 60  # groups that bodies collide by: bits of a whole number
 
-# Beyond these, doubles lose the digits that a spring's length needs.
-COORDINATE_LIMIT = 1e6  # [m]
+COORDINATE_LIMIT = FARTHEST_PLACE  # [m]
 SPEED_LIMIT = 1e9  # [m/s]
 GRAVITY_LIMIT = 1e6  # [m/s^2]
-MASS_RANGE = (1e-9, 1e9)  # [kg]
+MASS_RANGE = (LEAST_MASS, MOST_MASS)  # [kg]
 SPACING_RANGE = (1e-6, 1e6)  # [m]
 ANGLE_LIMIT = 1e6  # [rad]
 GRAVITY_SCALE_LIMIT = 1e3  # times gravity, either way

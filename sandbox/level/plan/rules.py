@@ -12,7 +12,9 @@ from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.quantities import Point
 from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.welds import Slots
+from sandbox.level.rules.hands import HandsDef
 from sandbox.level.rules.question import WALLS, QuestionDef
+from sandbox.physics.command_table import CODES
 from sandbox.physics.rules import table
 from sandbox.physics.rules.table import NOBODY, Rules, Terms, Things
 from sandbox.physics.rules.zones import BOX, CIRCLE, POLYGON, Zones
@@ -47,8 +49,22 @@ def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     if level.rules or level.counters:
         _add_rules(world, level, plan, slots)
     if level.hands is not None:
-        lefts = [most + 0.0 for most in level.hands.budgets.values()]
-        world.append(Family.COUNTER, len(lefts), counter=lefts)
+        _add_hands(world, level.hands)
+
+
+def _add_hands(world: World, hands: HandsDef) -> None:
+    lefts = [most + 0.0 for most in hands.budgets.values()]
+    world.append(Family.COUNTER, len(lefts), counter=lefts)
+    count = len(world.counter)
+    kinds = sorted(CODES, key=CODES.__getitem__)
+    budgets = [hands.budget_of(kind) for kind in kinds]
+    rows = [hands.row(budget, count) if budget else -1 for budget in budgets]
+    world.append(
+        Family.DEED, len(kinds), deed_refused=[hands.refuses(kind) for kind in kinds],
+        deed_budget=np.array(rows, np.int64),
+    )  # fmt: skip
+    world.untouchable[:] = [not hands.lets_touch(name) for name in world.particle_names]
+    world.spring_untouchable[:] = [not hands.lets_touch(name) for name in world.spring_names]
 
 
 def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:

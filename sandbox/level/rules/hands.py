@@ -78,17 +78,13 @@ class HandsDef(Description):
     )
     at_most: BudgetDef = Field(default=BudgetDef(), description="How often they may do it.")
 
-    def refusal(self, kind: str) -> str:
-        """Why hands may not give a command of that type, in words; nothing where they may."""
-        for deed, meaning in MEANINGS.items():
-            if kind in meaning.commands and self.may is not None and deed not in self.may:
-                return f"in this level hands may not {meaning.words}"
-        return ""
+    def refuses(self, kind: str) -> bool:
+        """Whether hands may not give a command of that type."""
+        return any(kind in meaning.commands and not self.allows(deed) for deed, meaning in MEANINGS.items())
 
-    def untouched(self, name: str) -> str:
-        """The thing that a particle, spring or body of that name belongs to, where hands may not touch it."""
-        thing = name.partition(":")[0].partition(".")[0]
-        return "" if self.bodies is None or thing in self.bodies or name.startswith("+") else thing or name
+    def lets_touch(self, name: str) -> bool:
+        """Whether hands may touch what has that name: a particle, spring or body."""
+        return self.bodies is None or name.startswith("+") or thing_of(name) in self.bodies
 
     def allows(self, deed: str) -> bool:
         """Whether hands may do that."""
@@ -107,12 +103,25 @@ class HandsDef(Description):
         """The row of a budget among so many counters."""
         return count - len(self.budgets) + list(self.budgets).index(deed)
 
-    def exhausted(self, deed: str) -> str:
-        """What is said where more is asked for than is left."""
-        return f"not enough {MEANINGS[deed].left.lower()} left: this level allows {self.budgets[deed]}"
+
+def thing_of(name: str) -> str:
+    """The body, or loose particle or spring, that a particle, spring or body of that name belongs to."""
+    return name.partition(":")[0].partition(".")[0] or name
 
 
-UNTOUCHED = "in this level hands may not touch {}"
+def words_of(kind: str) -> tuple[str, str]:
+    """What a type of commands does to things, and what a budget of it counts, in words."""
+    for meaning in MEANINGS.values():
+        if kind in meaning.commands:
+            return meaning.words, meaning.left.lower()
+    return kind, ""
+
+
+def left_of(hands: HandsDef | None, count: int) -> list[tuple[int, str, int]]:
+    """Of each budget the row among so many counters, its name for players, and how many there are at the start."""
+    if hands is None:
+        return []
+    return [(hands.row(deed, count), MEANINGS[deed].left, most) for deed, most in hands.budgets.items()]
 
 
 def hand_faults(hands: HandsDef | None, things: Collection[str]) -> Iterator[Fault]:

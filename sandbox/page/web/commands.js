@@ -21,7 +21,7 @@ const LIMITS = {
 };
 /** The rows that have the names of a kind, where they are called otherwise.
  * @type {(kind: NameKind) => keyof Counts} */
-export const countedBy = (kind) => (kind === 'part' ? 'actuator' : kind);
+export const countedBy = (kind) => (kind === 'part' ? 'actuator' : /** @type {keyof Counts} */ (kind));
 
 /** @type {(message: string, ...values: unknown[]) => string} */
 const fill = (message, ...values) => message.replace(/\{\}/g, () => String(values.shift()));
@@ -76,7 +76,8 @@ export class Commands {
     if (typeof name !== 'string') throw new Refusal(fill(messages.noName, noun));
     const first = names[kind].indexOf(name), others = second[kind] ?? {};
     const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
-    if (slot < 0 || slot >= counts[countedBy(kind)]) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
+    const count = kind === 'area' ? names.area.length : counts[countedBy(kind)];
+    if (slot < 0 || slot >= count) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
     return slot;
   }
 
@@ -126,6 +127,7 @@ export class Commands {
   /** @type {(value: unknown, schema: Field, parts: Place) => Fault | null} */
   #fault(value, schema, parts) {
     const { messages } = this.#about;
+    if (schema.enum) return schema.enum.includes(value) ? null : [parts, fill(messages.choice, schema.expected)];
     if (schema.type === 'array') return this.#faultOfList(value, schema, parts);
     if (schema.type === 'boolean') return typeof value === 'boolean' ? null : [parts, messages.boolean];
     const isWhole = typeof value === 'number' && Number.isInteger(value) && Math.abs(value) < WHOLE;
@@ -154,68 +156,50 @@ export class Commands {
     return null;
   }
 
-  /** How much a record takes of a budget of hands, and of which: null: of none.
-   * @type {(record: Command) => [row: number, needs: number, words: string] | null} */
-  needs(record) {
-    const [row, words] = this.#about.byHand.budgets[record.type] ?? [];
-    if (row === undefined || words === undefined) return null;
-    return [row, record.type === 'cut_springs' ? new Set(record.springs).size : 1, words];
+  /** Why hands may not give what a page carries out without a kernel; null: they may.
+   * @type {(world: World, record: Command) => string | null} */
+  refusalOf(world, { type }) {
+    const { codeOf, filled } = this.#about, code = codeOf[type], row = world.view('state.deed_budget')[code] ?? -1;
+    if (world.view('state.deed_refused')[code]) return this.#words(filled.doing, type);
+    return row >= 0 && world.view('state.counter')[row] < 1 ? this.#words(filled.counted, type) : null;
   }
 
-  /** Why hands may not give a record with slots here and now; null: they may.
-   * @type {(world: World, record: Command) => string | null} */
-  refusalOf(world, record) {
-    const refusal = this.#about.byHand.refused[record.type], needs = this.needs(record);
-    if (refusal) return refusal;
-    if (needs && world.view('state.counter')[needs[0]] < needs[1]) return needs[2];
-    const { byHand: { bodies, untouched } } = this.#about, names = this.#names;
-    const fields = /** @type {Record<string, number | number[] | undefined>} */ ({ ...record, type: undefined });
-    for (const [field, { names: kind }] of bodies ? this.#named(record.type) : []) {
-      if (kind !== 'particle' && kind !== 'spring') continue;
-      for (const slot of [fields[field] ?? []].flat()) {
-        const name = names[kind][slot], thing = name.split(':')[0].split('.')[0];
-        if (!bodies?.includes(thing) && !name.startsWith('+')) return fill(untouched, shown(thing || name));
-      }
-    }
-    return null;
-  }
-
-  /** What of a world does not let a record with slots be carried out, in words; null: nothing.
-   * @type {(world: World, record: Command) => string | null} */
-  faultIn(world, record) {
-    const { messages, commands } = this.#about, names = this.#names, kinds = new Map(this.#named(record.type));
-    const fields = /** @type {Record<string, number | number[] | undefined>} */ ({ ...record, type: undefined });
-    for (const [field, { names: kind, noun }] of kinds) {
-      const lost = [fields[field] ?? []].flat().find((slot) => !world.isInUse(kind, slot));
-      if (lost !== undefined) return fill(messages.noSlot, noun, shown(names[kind][lost]));
-    }
-    for (const [field, array, isSet, text] of commands[record.type]?.conditions ?? []) {
-      const row = Number(fields[field]), kind = kinds.get(field)?.names;
-      const value = world.view(`state.${array}`)[row + (field === 'grab' ? world.hands.spring : 0)];
-      if (Boolean(value) !== isSet) return fill(text, kind ? names[kind][row] : row);
-    }
-    return null;
+  /** Words for why a type of command is refused, of a name or number.
+   * @type {(reason: number, type: string, name?: string | number) => string} */
+  #words(reason, type, name = '') {
+    const { refusals, filled, deeds } = this.#about, [doing, counted] = deeds[type] ?? ['', ''];
+    const thing = String(name).split(':')[0].split('.')[0] || String(name);
+    const what = { [filled.doing]: doing, [filled.counted]: counted, [filled.thing]: shown(thing) };
+    return fill(refusals.words[reason], what[reason] ?? name);
   }
 
   /** What a kernel takes for a record with slots: its number, slots and numbers; and what has to be derived again.
    * @type {(record: Command, given: Record<string, number>) => Packed} */
   packed(record, given) {
-    const kind = this.#about.kinds[record.type], fields = this.#about.commands[record.type]?.fields;
+    const { kinds, commands, choices } = this.#about, kind = kinds[record.type], fields = commands[record.type]?.fields;
     const own = /** @type {Record<string, unknown>} */ (record);
     /** @type {(name: string) => number | number[]} */
-    const value = (name) => /** @type {number | number[]} */ (name.startsWith('?') ? Number(own[name.slice(1)] != null)
-      : given[name] ?? own[name] ?? fields?.[name]?.default ?? 0);
-    const slots = kind.slots.flatMap((name) => [...new Set([value(name)].flat())].map(Number));
+    const value = (name) => {
+      if (name.startsWith('?')) return Number(own[name.slice(1)] != null);
+      const found = given[name] ?? own[name] ?? fields?.[name]?.default ?? 0;
+      return /** @type {number | number[]} */ (choices[name]?.[String(found)] ?? found);
+    };
+    const slots = kind.slots.flatMap((name) => value(name)).map(Number);
     return { ...kind, slots, numbers: kind.numbers.flatMap((name) => value(name)) };
   }
 
   /** Whether a kernel has done it: throws in words where it has not.
    * @type {(record: Command, packed: Packed, result: number) => void} */
   answer(record, { slots, numbers }, result) {
-    const place = this.#about.badSlot - result, { type } = record, { nothing } = this.#about.commands[type] ?? {};
+    if (result >= 0) return;
+    const { refusals: { reasons, bad }, messages, kinds } = this.#about, { type } = record;
+    const reason = -result % reasons, place = Math.floor(-result / reasons), names = this.#names;
     if (place >= slots.length) throw new Refusal(`${type}: ${numbers.join(', ')}: finite numbers are needed`);
-    if (place >= 0) throw new Refusal(`${type}: ${slots[place]}: it is not there, not in use, or a hand's`);
-    if (nothing && result === 0) throw new Refusal(nothing);
+    const fields = kinds[type].slots, field = fields[Math.min(place, fields.length - 1)], slot = slots[place];
+    const { names: kind, noun } = new Map(this.#named(type)).get(field) ?? {}, name = kind && names[kind][slot];
+    if (reason !== bad) throw new Refusal(this.#words(reason, type, name ?? slot));
+    if (name !== undefined) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
+    throw new Refusal(`${type}: ${slot}: it is not there, not in use, or out of range`);
   }
 
   /** A record with slots as files have it: names in place of slots, and nothing that is left out.

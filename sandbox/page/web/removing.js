@@ -11,11 +11,11 @@ export function removedFrom(world, about, record) {
   if (!world.isInUse('particle', particle)) throw new Refusal('remove: it is not there any more');
   const gone = hangingOn(world, particle), { particle_a: a, particle_b: b } = ends(world);
   for (let hand = 0; hand < world.hands.count; hand++) {
-    if (world.isHeld(hand) && gone.has(b[world.hands.spring + hand])) world.command({ type: 'release', grab: hand });
+    if (world.isHeld(hand) && gone.has(b[world.hands.spring + hand])) world.command({ type: 'release', grab: hand }, world.givers.PROGRAM);
   }
   const active = world.view('state.spring_active');
   const springs = Array.from(a.keys()).filter((s) => active[s] && (gone.has(a[s]) || gone.has(b[s])));
-  if (springs.length) world.command({ type: 'cut_springs', springs });
+  if (springs.length) world.command({ type: 'cut_springs', springs }, world.givers.PROGRAM);
   /** @type {Record<string, Runs>} */
   const changes = {};
   /** @type {(name: string, slot: number, ...values: (number | string)[]) => void} */

@@ -45,10 +45,7 @@ export class Run {
    * @type {(record: Command, gesture: number) => void} */
   command(record, gesture) {
     this.takeUp(gesture);
-    const { commands } = this.world;
-    const fault = commands.refusalOf(this.world, record) ?? commands.faultIn(this.world, record);
-    if (fault) throw new Refusal(fault);
-    this.world.commandByHand(record);
+    this.world.command(record, this.world.givers.HAND);
     this.commands.push({ tick: this.time, gesture, record });
     this.next = this.commands.length;
     this.last = this.time;

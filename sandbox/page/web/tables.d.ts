@@ -22,6 +22,7 @@ export interface StateArrays {
   rolling: Float64Array;
   slow_change: Float64Array;
   unmoved: Uint8Array;
+  untouchable: Uint8Array;
   particle_a: Int32Array;
   particle_b: Int32Array;
   rest_length: Float64Array;
@@ -42,6 +43,7 @@ export interface StateArrays {
   lowest_mode_now: Float64Array;
   ramp_ticks: Int32Array;
   belt: Float64Array;
+  spring_untouchable: Uint8Array;
   constraint_kind: Int8Array;
   constraint_first: Int32Array;
   constraint_corners: Int32Array;
@@ -81,6 +83,8 @@ export interface StateArrays {
   probe_position: Float64Array;
   still_ticks: Int32Array;
   key_down: Uint8Array;
+  deed_refused: Uint8Array;
+  deed_budget: Int32Array;
 }
 
 export interface Commands {
@@ -175,5 +179,30 @@ export interface Commands {
   shake: {
     type: 'shake';
     acceleration: [number, number];
+  };
+  set_inflation: {
+    type: 'set_inflation';
+    body: number;
+    value: number;
+    duration?: number;
+  };
+  scale_mass: {
+    type: 'scale_mass';
+    particle: number;
+    factor: number;
+  };
+  move_body: {
+    type: 'move_body';
+    particle: number;
+    by: [number, number];
+    at_rest?: boolean;
+  };
+  set_solver: {
+    type: 'set_solver';
+    solver?: 'single_pass' | 'iterative' | 'direct' | null;
+    iterations?: number | null;
+    substeps?: 1 | 2 | 4 | 8 | 16 | 32 | 64 | 'auto' | null;
+    warm_start?: number | null;
+    duration?: number;
   };
 }

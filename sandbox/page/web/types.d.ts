@@ -12,10 +12,10 @@ export type AnyArray = Float64Array | Float32Array | BigInt64Array | Uint32Array
 // ---- A world: about.py and start.py
 
 export type Family = 'particle' | 'spring' | 'constraint' | 'corner' | 'actuator' | 'hand' | 'setting' | 'rule' | 'counter'
-  | 'probe' | 'still' | 'key';
+  | 'probe' | 'still' | 'key' | 'deed';
 // Rows in use.
 export type Counts = Record<Family | 'material', number>;
-export type NameKind = 'particle' | 'spring' | 'material' | 'part' | 'key';
+export type NameKind = 'particle' | 'spring' | 'material' | 'part' | 'key' | 'area';
 
 // A line of the table of state arrays.
 export interface Column {
@@ -37,6 +37,8 @@ export interface Field {
   isNullable?: boolean;
   default?: unknown;
   maxItems?: number;
+  enum?: unknown[];
+  expected?: string;
   items?: Field;
   prefixItems?: Field[];
   minimum?: string;
@@ -47,9 +49,6 @@ export interface Field {
 
 export interface CommandEntry {
   fields: Record<string, Field>;
-  // Field, array of the state, whether it has to be set there, and words where it is not so.
-  conditions: [string, keyof StateArrays, boolean, string][];
-  nothing: string;
 }
 
 // What a kernel takes of a command.
@@ -66,7 +65,15 @@ export interface About {
   codes: Record<'FINISHED' | 'UNSOUND' | 'NO_ROOM' | 'LOST' | 'BROKE', number>;
   progress: Record<'TICK' | 'MAY_FLY' | 'COUNT' | 'DONE' | 'BROKEN' | 'CHECKED' | 'KEPT', number>;
   kinds: Record<string, Kind>;
-  badSlot: number;
+  // What goes by words in commands, as kernels have it.
+  choices: Partial<Record<string, Partial<Record<string, number>>>>;
+  givers: Record<'HAND' | 'RULE' | 'PROGRAM', number>;
+  // How a result says why and where a command was refused, and words for it; and which of these words tell what.
+  refusals: { reasons: number; words: Record<number, string>; bad: number };
+  filled: Record<'doing' | 'counted' | 'thing', number>;
+  // By types of commands what they do to things, and what a budget of them counts; and their numbers.
+  deeds: Partial<Record<string, [doing: string, counted: string]>>;
+  codeOf: Record<string, number>;
   messages: Record<string, string>;
   // null: pages do not carry it out.
   commands: Record<string, CommandEntry | null>;
@@ -77,9 +84,6 @@ export interface About {
   topology: string[];
   kept: string[];
   names: Record<NameKind, string[]>;
-  // What hands may not do, by types of commands, and what they may do so often: a row of counters, and words.
-  byHand: { refused: Partial<Record<string, string>>; budgets: Partial<Record<string, [row: number, words: string]>>;
-    bodies: string[] | null; untouched: string };
   // What each rule of the level does, in order.
   rules: Action[][];
   second: Partial<Record<NameKind, Record<string, number>>>;

@@ -1,7 +1,7 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
 import { addedTo } from './adding.js';
-import { Commands, countedBy, isWithoutKernel } from './commands.js';
-import { blake2b, hexOf } from './hash.js';
+import { Commands, countedBy, isWithoutKernel, Refusal } from './commands.js';
+import { blake2b, digestOf, hexOf } from './hash.js';
 import { removedFrom } from './removing.js';
 /**
  * @import { About, Action, AnyArray, Column, Command, Counts, Done, Equipment, Kernels, NameKind, Outcome, Runs, SavedState,
@@ -256,7 +256,7 @@ export class World {
     }
     this.broken = code === BROKE ? Array.from(this.view('limits.broken').subarray(0, this.#progress('BROKEN')), Number)
       : [];
-    if (this.broken.length) this.command({ type: 'break_springs', springs: this.broken });
+    if (this.broken.length) this.command({ type: 'break_springs', springs: this.broken }, this.#about.givers.PROGRAM);
     if (this.#about.rules.length) this.#call('judge', this.#block);
   }
 
@@ -281,7 +281,11 @@ export class World {
     const record = command.type === 'cut_springs' ? { ...command,
       springs: command.springs.filter((spring) => this.isInUse('spring', spring)) } : command;
     if (record.type === 'cut_springs' && !record.springs.length) return;
-    if (this.commands.faultIn(this, record) === null) this.command(record);
+    try {
+      this.command(record, this.#about.givers.RULE);
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+    }
   }
 
   /** How many stars a win at the end of a tick earns, as session/outcome.py has it.
@@ -328,7 +332,7 @@ export class World {
    * @type {(done: Done) => void} */
   carryOut(done) {
     if (!done.changes) {
-      this.commandByHand(done.record);
+      this.command(done.record, this.#about.givers.HAND);
       return;
     }
     const { changes, counts, names, scene, equipment = {} } = done;
@@ -356,20 +360,12 @@ export class World {
     }
   }
 
-  /** Carry out a command of hands, and take what it needs from what they have left. Throws as `command` does.
-   * @type {(record: Command) => void} */
-  commandByHand(record) {
-    this.command(record);
-    const needs = this.commands.needs(record);
-    if (needs) this.view('state.counter')[needs[0]] -= needs[1];
-  }
-
-  /** Carry out a command: the record of a recording with slots in place of names. Throws a Refusal where it cannot be.
-   * @type {(record: Command) => void} */
-  command(record) {
+  /** Carry out a command that somebody gives: the record of a recording with slots in place of names. Throws a Refusal
+   * where it cannot be carried out, or where hands may not.
+   * @type {(record: Command, giver: number) => void} */
+  command(record, giver) {
     if (isWithoutKernel(record.type)) {
-      const named = /** @type {NamedRecord} */ (record), tell = named.type === 'remove' ? removedFrom : addedTo;
-      this.carryOut({ tick: this.time, gesture: 0, record: named, ...tell(this, this.#about, named) });
+      this.#withoutKernel(record, giver);
       return;
     }
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
@@ -380,9 +376,25 @@ export class World {
     new BigInt64Array(buffer, this.#slots[0], slots.length).set(slots.map(BigInt));
     new Float64Array(buffer, at, numbers.length).set(numbers);
     /** @type {(number | Span)[]} */
-    const given = [code, [this.#slots[0], slots.length, WORD], [at, numbers.length, WORD]];
+    const given = [giver, code, [this.#slots[0], slots.length, WORD], [at, numbers.length, WORD]];
     this.commands.answer(record, packed, this.#inArena('command', ...given));
+    if (changes === 'solver') {
+      const factor = new Float64Array(this.#kernels.memory.buffer, at, numbers.length)[numbers.length - 1];
+      const impulse = this.view('collisions.kept.impulse');
+      impulse.forEach((value, k) => { impulse[k] = factor ? value * factor : 0; });
+    }
     if (changes) this.#derive(changes === 'hands' ? HANDS : DERIVATIONS);
+  }
+
+  /** @type {(record: Command, giver: number) => void} */
+  #withoutKernel(record, giver) {
+    const { givers, codeOf } = this.#about, named = /** @type {NamedRecord} */ (record);
+    const refusal = giver === givers.HAND ? this.commands.refusalOf(this, record) : null;
+    if (refusal) throw new Refusal(refusal);
+    const tell = named.type === 'remove' ? removedFrom : addedTo;
+    this.carryOut({ tick: this.time, gesture: 0, record: named, ...tell(this, this.#about, named) });
+    const row = giver === givers.HAND ? this.view('state.deed_budget')[codeOf[named.type]] ?? -1 : -1;
+    if (row >= 0) this.view('state.counter')[row] -= 1;
   }
 
   /** Whether what a command would end goes on: a hand holds something, a part is driven, or a key is held.
@@ -440,6 +452,11 @@ export class World {
   // First particle and spring of hands, and how many hands there are.
   get hands() {
     return this.#about.hands;
+  }
+
+  // Who gives a command.
+  get givers() {
+    return this.#about.givers;
   }
 
   get areaKind() {
@@ -578,18 +595,4 @@ function isEqual(one, other) {
   const b = new Uint8Array(other.buffer, other.byteOffset, other.byteLength);
   for (let k = 0; k < a.length; k++) if (a[k] !== b[k]) return false;
   return true;
-}
-
-/** The bytes that are hashed and stored: -0 as 0, and every NaN as the same.
- * @type {(array: AnyArray) => Uint8Array} */
-export function canonical(array) {
-  const copy = array instanceof Float64Array ? array.map((value) => value + 0) : array;
-  return new Uint8Array(copy.buffer, copy.byteOffset, copy.byteLength);
-}
-
-/** Nothing of an array of which all is as usual, and which is left out then.
- * @type {(column: Column, array: AnyArray) => string | null} */
-function digestOf(column, array) {
-  if (column.isSparse && array.every((value) => Number(value) === column.usual)) return null;
-  return blake2b(canonical(array), 8);
 }

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
 from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.changing.ramping import set_rows
 from sandbox.physics.equation import (
     HIGHEST_COEFFICIENT,
     coefficients_from_frequency,
@@ -169,9 +168,10 @@ def set_firmness(world: World, body: int, stiffness: float, damping: float, dura
 
 def give_firmness(world: World, body: FirmBody, stiffness: float, damping: float, duration: int = 0) -> None:
     """Give a body of a world, or a piece of one, Cs and Cd as `set_firmness` does. Raises ValueError."""
-    stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
-    damping = arguments.number("damping", damping, 0.0, 1.0)
-    set_rows(world, body.springs, body.constraints, *values_of(body, stiffness, damping), duration)
+    stiffness, damping, lowest_mode = values_of(body, stiffness, damping)
+    given = {"stiffness": stiffness, "damping": damping, "lowest_mode": lowest_mode, "duration": duration}
+    world.command("firm_springs", springs=body.springs, **given)
+    world.command("firm_constraints", constraints=body.constraints, **given)
 
 
 def values_of(body: FirmBody, stiffness: float, damping: float) -> tuple[float, float, float]:

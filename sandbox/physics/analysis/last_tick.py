@@ -6,6 +6,7 @@ from typing import TypeVar
 import numpy as np
 
 from sandbox.physics.ramps import COEFFICIENTS, CONSTRAINTS, SPRINGS, in_force
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World
 
@@ -30,5 +31,7 @@ def of_last_tick(state: AnyState) -> AnyState:
     rest[:, 0] = np.where(state.constraint_area_ticks > 0, state.constraint_area_now, rest[:, 0])
     numbers = np.where(state.setting_ticks > 0, state.setting_now, state.settings.numbers)
     settings = "_settings" if isinstance(state, World) else "settings"
-    vars(view).update(arrays, constraint_rest=rest, **{settings: state.settings.with_numbers(numbers.tolist())})
+    vars(view).update(
+        arrays, constraint_rest=rest, **{settings: WorldSettings.of(numbers.tolist(), state.settings.choices)}
+    )
     return view

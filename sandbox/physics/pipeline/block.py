@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from sandbox.physics.arrays import FloatRows, Floats, Slots
+from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.driving import Drives
 from sandbox.physics.flight import Flight
@@ -49,6 +49,7 @@ class WorldBlock(NamedTuple):
     good: GoodValues
     numbers: Floats  # numbers, choices: the settings (settings.py)
     choices: Slots
+    areas: SlotRows  # see Commanded
     plan: Slots  # plan, progress: see above
     progress: Slots
     wanted: Slots  # the most of each that a step has asked for (derive.py)

@@ -32,7 +32,7 @@ from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.tuning import tuning
 from sandbox.physics.state import RANGES, good_of, state_of
 from sandbox.physics.water.displacers import Water
-from sandbox.physics.world import World
+from sandbox.physics.world import World, areas_of
 
 
 class BlockOwner:
@@ -91,8 +91,9 @@ class BlockOwner:
             )
         water = with_empty(Water, pool=world.water, hull=world.hulls)
         self.given = self.given._replace(
-            state=state_of(world), good=good_of(world), tuning=tuning(), rules=world.rules, water=water
-        )
+            state=state_of(world), good=good_of(world), areas=areas_of(world), tuning=tuning(), rules=world.rules,
+            water=water,
+        )  # fmt: skip
         self.given.plan[GRAB_PARTICLE], self.given.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
         self._lay_out(world)
 

@@ -26,7 +26,7 @@ class AddParticle(Command):
     friction: FrictionCoefficient | None = None
     restitution: Share | None = None
 
-    def carry_out(self, world: World) -> None:
+    def carry_out(self, world: World, giver: int) -> None:
         if world.particle_count >= PARTICLE_LIMIT:
             raise CommandError(f"a world holds at most {PARTICLE_LIMIT:,} particles")
         surface = vars(world.surface)
@@ -53,7 +53,7 @@ class AddSpring(Command):
     stiffness: Share = 0.5
     damping: Share = 0.9
 
-    def carry_out(self, world: World) -> None:
+    def carry_out(self, world: World, giver: int) -> None:
         if world.spring_count >= SPRING_LIMIT:
             raise CommandError(f"a world holds at most {SPRING_LIMIT:,} springs")
         if self.particle_a == self.particle_b:

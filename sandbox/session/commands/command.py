@@ -1,17 +1,19 @@
 """The base of commands: a frozen value, checked strictly, with a name in files, that is carried out on a world."""
 
-from abc import ABC, abstractmethod
+from abc import ABC
 from collections.abc import Hashable
 from dataclasses import replace
 from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from sandbox.level.assembly.by_hand import hands_of, refusal_of, spend
 from sandbox.level.format.level_error import shown
-from sandbox.level.rules.hands import UNTOUCHED
+from sandbox.level.rules.hands import thing_of, words_of
+from sandbox.physics.analysis.firm_bodies import firm_bodies
+from sandbox.physics.command import EXHAUSTED, FORBIDDEN, UNTOUCHABLE
+from sandbox.physics.command_table import CODES, KINDS, WORDS, Refused
+from sandbox.physics.permission import HAND, RULE
 from sandbox.physics.world import World
-from sandbox.session.commands.conditions import Condition, faults_of
 from sandbox.session.commands.faults import CommandError as CommandError
 from sandbox.session.commands.faults import plain_fault
 from sandbox.session.commands.named import namespaces
@@ -33,18 +35,17 @@ class Command(ABC):
         strict=True, extra="forbid", revalidate_instances="always", allow_inf_nan=False
     )
     type: ClassVar[str]
-    # What must hold of a world, beside that all it names is there; and the fault where there is nothing to act on.
-    conditions: ClassVar[tuple[Condition, ...]] = ()
-    nothing: ClassVar[str] = ""
 
     def __init_subclass__(cls) -> None:
         if "type" in vars(cls):
             assert cls.type not in COMMAND_TYPES, f"two commands are called {cls.type}"
             COMMAND_TYPES[cls.type] = cls
 
-    @abstractmethod
-    def carry_out(self, world: World) -> None:
-        """Do it. Raises CommandError and changes nothing where it cannot be done."""
+    def carry_out(self, world: World, giver: int) -> None:
+        """Do it, for a hand or a rule. Raises CommandError, IndexError, ValueError or Refused and changes nothing where
+        it cannot be done.
+        """
+        world.command(self.type, giver, **vars(self))
 
     def begins(self) -> Hashable | None:
         """A key for the process that it begins, such as the hold of one hand; None: it is over at once. A later
@@ -84,22 +85,15 @@ def apply(world: World, command: Command) -> Command:
     Raises CommandError and changes nothing where it cannot be.
     """
     command = _validated(world, command)
-    refusal = not_for_hands(world, command)
-    if refusal:
-        raise CommandError(refusal)
-    _carry_out(world, command)
-    spend(world, command)
+    _carry_out(world, command, HAND)
     return command
 
 
 def act(world: World, command: Command) -> None:
-    """Carry out a command, whatever hands may do. Raises CommandError and changes nothing where it cannot be."""
-    _carry_out(world, _validated(world, command))
-
-
-def not_for_hands(world: World, command: Command) -> str:
-    """Why the level does not let hands give a command now, in words; nothing where it does."""
-    return refusal_of(world, command) or _untouched(world, command)
+    """Carry out a command of a rule, whatever hands may do. Raises CommandError, with nothing changed, where it cannot
+    be.
+    """
+    _carry_out(world, _validated(world, command), RULE)
 
 
 def _validated(world: World, command: Command) -> Command:
@@ -111,27 +105,59 @@ def _validated(world: World, command: Command) -> Command:
     return command
 
 
-def _untouched(world: World, command: Command) -> str:
-    """What is said where a command is about something that hands may not touch; nothing where it is not."""
-    hands = hands_of(world)
-    if hands is None or hands.bodies is None:
-        return ""
-    # Of what is taken out, a body goes by its name.
-    found = [body] if isinstance(body := getattr(command, "body", None), str) else []
-    for field, named in namespaces(type(command)).items():
-        value, names = getattr(command, field), named.names(world)
-        slots = value if isinstance(value, tuple) else () if value is None else (value,)
-        found += [names[slot] for slot in slots if named.is_thing and slot < len(names)]
-    thing = next(filter(None, map(hands.untouched, found)), "")
-    return UNTOUCHED.format(shown(thing)) if thing else ""
+def _carry_out(world: World, command: Command, giver: int) -> None:
+    try:
+        without_kernel = giver == HAND and command.type not in KINDS
+        if without_kernel:
+            _admit(world, command)
+        command.carry_out(world, giver)
+        if without_kernel and len(world.deed_budget) and world.deed_budget[CODES[command.type]] >= 0:
+            world.counter[world.deed_budget[CODES[command.type]]] -= 1
+    except CommandError:
+        raise
+    except Refused as refused:
+        raise CommandError(_words(world, command, refused)) from None
+    except (IndexError, ValueError) as error:
+        _check_names(world, command)
+        raise CommandError(str(error)) from None
 
 
-def _carry_out(world: World, command: Command) -> None:
+def _admit(world: World, command: Command) -> None:
+    """Whether hands may give a command that has no kernel yet. Raises CommandError."""
+    if command.type not in CODES or not len(world.deed_refused):
+        return
+    code = CODES[command.type]
+    if world.deed_refused[code]:
+        raise Refused(FORBIDDEN, "", 0)
+    for field, names in namespaces(type(command)).items():
+        slot = getattr(command, field)
+        if slot is None or slot >= len(names.names(world)):
+            continue
+        things = firm_bodies(world)[slot].springs if field == "body" else [slot]
+        if (world.spring_untouchable if field == "body" else world.untouchable)[things].any():
+            raise Refused(UNTOUCHABLE, field, slot)
+    body = getattr(command, "body", None)
+    if isinstance(body, str):
+        of_body = [k for k, name in enumerate(world.particle_names) if thing_of(name) == body]
+        if world.untouchable[of_body].any():
+            raise Refused(UNTOUCHABLE, "", body)
+    row = world.deed_budget[code]
+    if row >= 0 and world.counter[row] < 1:
+        raise Refused(EXHAUSTED, "", 0)
+
+
+def _check_names(world: World, command: Command) -> None:
+    """Whether all that a command names is there and in use. Raises CommandError."""
     for field, names in namespaces(type(command)).items():
         value = getattr(command, field)
         for slot in value if isinstance(value, tuple) else () if value is None else (value,):
             names.check(world, slot)
-    for condition, row in faults_of(command.conditions, command, world):
-        named = namespaces(type(command)).get(condition.field)
-        raise CommandError(condition.words.format(named.names(world)[row] if named else row))
-    command.carry_out(world)
+
+
+def _words(world: World, command: Command, refused: Refused) -> str:
+    """Why a command is refused, with the names of things."""
+    doing, counted = words_of(command.type)
+    named = namespaces(type(command)).get(refused.field)
+    name = refused.value if named is None else named.names(world)[refused.value]
+    what = {FORBIDDEN: doing, EXHAUSTED: counted, UNTOUCHABLE: shown(thing_of(str(name)))}
+    return WORDS[refused.reason].format(what.get(refused.reason, name))

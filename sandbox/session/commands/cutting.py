@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-from sandbox.physics.world import World
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import SpringSlot
 
@@ -13,6 +12,3 @@ class CutSprings(Command):
 
     type = "cut_springs"
     springs: tuple[SpringSlot, ...]
-
-    def carry_out(self, world: World) -> None:
-        world.cut(self.springs)

@@ -19,9 +19,6 @@ class SetDrive(Command):
     part: PartSlot
     value: Annotated[float, Field(ge=-1.0, le=1.0)]
 
-    def carry_out(self, world: World) -> None:
-        world.drive(self.part, self.value)
-
     def begins(self) -> Hashable:
         return "drive", self.part
 

@@ -31,6 +31,7 @@ WORDS = {
     "long": "must be a list of at most {}",
     "minimum": "must be greater than or equal to {}",
     "exclusiveMinimum": "must be greater than {}",
+    "choice": "must be {}",
     "maximum": "must be less than or equal to {}",
     "exclusiveMaximum": "must be less than {}",
 }
@@ -52,6 +53,7 @@ _WORDS_OF = {
     "greater_than": ("exclusiveMinimum", "gt"),
     "less_than_equal": ("maximum", "le"),
     "less_than": ("exclusiveMaximum", "lt"),
+    "literal_error": ("choice", "expected"),
 }
 _PLAIN = re.compile(r"\w+", re.ASCII)
 
@@ -71,5 +73,7 @@ def plain_fault(error: ValidationError, named: Collection[str] = ()) -> str:
 
 
 def digits(limit: Any) -> str:
-    """A number as JavaScript writes it, where that is without an exponent; else as Python does."""
+    """A number as JavaScript writes it, where that is without an exponent; else as Python does. Words stay."""
+    if isinstance(limit, str):
+        return limit
     return str(int(limit)) if abs(limit) < 1e21 and limit == int(limit) else repr(limit)

@@ -31,7 +31,7 @@ class SetFirmness(Command):
     ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = None
     duration: Duration = 0
 
-    def carry_out(self, world: World) -> None:
+    def carry_out(self, world: World, giver: int) -> None:
         if (self.sag is None) == (self.hz is None) or (self.hz is None and self.ratio is not None):
             raise CommandError("say sag, or hz with or without ratio")
         body = firm_bodies(world)[self.body]

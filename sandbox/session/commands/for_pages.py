@@ -7,7 +7,7 @@ from sandbox.session.commands.faults import NO_COMMAND, NO_NAME, NO_SLOT, UNKNOW
 
 # Of a schema, what is checked; beside the kind and noun of what goes by name.
 _LIMITS = ("minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum")
-_CHECKED = ("type", "names", "noun", "maxItems", *_LIMITS)
+_CHECKED = ("type", "names", "noun", "maxItems", "enum", *_LIMITS)
 
 
 def table_of(names: set[str]) -> dict[str, Any]:
@@ -22,17 +22,13 @@ def _entry(kind: type[Command]) -> dict[str, Any]:
     fields = {name: _field(each) for name, each in schema["properties"].items()}
     for name in schema.get("required", ()):
         fields[name]["isRequired"] = True
-    return {
-        "fields": fields,
-        "conditions": [[each.field, each.array, each.is_set, each.words] for each in kind.conditions],
-        "nothing": kind.nothing,
-    }
+    return {"fields": fields}
 
 
 def _field(schema: dict[str, Any]) -> dict[str, Any]:
     """A field as JSON Schema has it, and whether it may be null."""
     choices = schema.get("anyOf", [schema])
-    found = _checked(next(each for each in choices if each["type"] != "null"))
+    found = _checked(next(each for each in choices if each.get("type") != "null"))
     if schema.get("default") is not None:
         found["default"] = schema["default"]
     return found | {"isNullable": len(choices) > 1}
@@ -42,6 +38,9 @@ def _checked(schema: dict[str, Any]) -> dict[str, Any]:
     # Limits in the digits that messages have.
     found = {key: schema[key] for key in _CHECKED if key in schema}
     found |= {key: digits(schema[key]) for key in _LIMITS if key in schema}
+    if "enum" in schema:
+        *rest, last = map(repr, schema["enum"])
+        found["expected"] = f"{', '.join(rest)} or {last}"
     if "items" in schema:
         found["items"] = _checked(schema["items"])
     if "prefixItems" in schema:

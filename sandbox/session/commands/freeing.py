@@ -18,7 +18,7 @@ class Free(Command):
     type = "free"
     particle: ParticleSlot
 
-    def carry_out(self, world: World) -> None:
+    def carry_out(self, world: World, giver: int) -> None:
         name = world.particle_names[self.particle]
         if not world.has_contacts:
             raise CommandError("nothing touches anything here: there is nothing to free")

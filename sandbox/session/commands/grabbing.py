@@ -10,7 +10,6 @@ from sandbox.level.format.quantities import Length, Point
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.world import HAND_STRENGTH, World
 from sandbox.session.commands.command import Command
-from sandbox.session.commands.conditions import held_by, pinned
 from sandbox.session.commands.named import ParticleSlot
 
 # The strongest hand [m/s^2]: more than any body bears.
@@ -18,7 +17,6 @@ STRONGEST_HAND = 1e6
 Hand = Annotated[int, Field(ge=0, lt=GRAB_COUNT)]
 # Largest force of a hand over the mass of the body that it holds [m/s^2].
 Strength = Annotated[float, Field(gt=0.0, le=STRONGEST_HAND)]
-_HOLDS = held_by(True, "hand {} holds nothing")
 
 
 @dataclass(frozen=True)
@@ -35,13 +33,6 @@ class Grab(Command):
     target: Point
     strength: Strength = HAND_STRENGTH
     radius: Length = 0.0
-    conditions = (
-        held_by(False, "hand {} holds something already"),
-        pinned(False, "{} is pinned: unpin it to drag it"),
-    )
-
-    def carry_out(self, world: World) -> None:
-        world.hold(self.grab, self.particle, self.target, self.strength, self.radius)
 
     def begins(self) -> Hashable:
         return "hand", self.grab
@@ -57,10 +48,6 @@ class MoveGrab(Command):
     type = "move_grab"
     grab: Hand
     target: Point
-    conditions = (_HOLDS,)
-
-    def carry_out(self, world: World) -> None:
-        world.move_grab(self.grab, self.target)
 
 
 @dataclass(frozen=True)
@@ -69,7 +56,3 @@ class Release(Command):
 
     type = "release"
     grab: Hand
-    conditions = (_HOLDS,)
-
-    def carry_out(self, world: World) -> None:
-        world.release(self.grab)

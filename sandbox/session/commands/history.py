@@ -10,7 +10,7 @@ from sandbox.session.commands.command import Command, CommandError
 class HistoryCommand(Command):
     """A command about commands."""
 
-    def carry_out(self, world: World) -> None:
+    def carry_out(self, world: World, giver: int) -> None:
         raise CommandError(f"{type(self).__name__} is no command for a world")
 
 

@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 
 from sandbox.level.format.quantities import Inflation
-from sandbox.physics.changing.ramping import inflate
-from sandbox.physics.world import World
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import BodySlot
 from sandbox.session.commands.ramping import Duration
@@ -21,6 +19,3 @@ class SetInflation(Command):
     body: BodySlot
     value: Inflation
     duration: Duration = 0
-
-    def carry_out(self, world: World) -> None:
-        inflate(world, self.body, self.value, self.duration)

@@ -26,7 +26,7 @@ class AddBody(Command):
     welds: tuple[tuple[str, str], ...] | None = None
     materials: dict[str, Any] | None = None
 
-    def carry_out(self, world: World) -> None:
+    def carry_out(self, world: World, giver: int) -> None:
         given = {name: value for name, value in vars(self).items() if value is not None}
         try:
             Joiners(world, given).join(world)

@@ -16,9 +16,6 @@ class HoldKey(Command):
     key: KeySlot
     down: bool
 
-    def carry_out(self, world: World) -> None:
-        world.hold_key(self.key, self.down)
-
     def begins(self) -> Hashable:
         return "key", self.key
 

@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-import numpy as np
 from pydantic import Field
 
-from sandbox.level.format.limits import MASS_RANGE
 from sandbox.level.format.quantities import Share
-from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import MaterialSlot, ParticleSlot
 from sandbox.session.commands.ramping import Duration
 
@@ -24,9 +21,6 @@ class SetCoefficients(Command):
     material: MaterialSlot | None = None
     duration: Duration = 0
 
-    def carry_out(self, world: World) -> None:
-        world.set_coefficients(self.stiffness, self.damping, self.material, self.duration)
-
 
 @dataclass(frozen=True)
 class ScaleMass(Command):
@@ -38,14 +32,3 @@ class ScaleMass(Command):
     type = "scale_mass"
     particle: ParticleSlot
     factor: Annotated[float, Field(gt=0.0, le=1000.0)]
-
-    def carry_out(self, world: World) -> None:
-        body = np.flatnonzero(world.particle_active & (world.owner == world.owner[self.particle]))
-        masses = world.mass[body] * self.factor
-        least, most = MASS_RANGE
-        if not ((masses >= least) & (masses <= most)).all():
-            raise CommandError(f"{world.particle_names[self.particle]}: a mass is from {least:g} to {most:g} kg")
-        free = body[world.inverse_mass[body] > 0.0]
-        world.change("mass", masses, body)
-        world.change("inverse_mass", 1.0 / world.mass[free], free)
-        world.disturb(body)

@@ -7,9 +7,7 @@ from pydantic import Field
 
 from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import unit
-from sandbox.physics.changing.moving import move_body
-from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import ParticleSlot
 
 Way = Annotated[float, Field(ge=-COORDINATE_LIMIT, le=COORDINATE_LIMIT, json_schema_extra=unit("m"))]
@@ -26,8 +24,3 @@ class MoveBody(Command):
     particle: ParticleSlot
     by: tuple[Way, Way]
     at_rest: bool = False
-
-    def carry_out(self, world: World) -> None:
-        name = world.particle_names[self.particle]
-        if not move_body(world, self.particle, self.by, COORDINATE_LIMIT, self.at_rest):
-            raise CommandError(f"what hangs on {name} would be beyond {COORDINATE_LIMIT:g} m")

@@ -27,11 +27,6 @@ class Named:
     kind: str = ""
     active: str = ""
 
-    @property
-    def is_thing(self) -> bool:
-        """Whether it is something to touch: a particle, spring or body."""
-        return self.kind in ("particle", "spring", "")
-
     def slot(self, world: World, name: Any) -> int:
         """The slot of a name that a file holds. Raises CommandError."""
         if not isinstance(name, str):
@@ -96,7 +91,7 @@ else:
     ParticleSlot = Annotated[_Slot, PARTICLES]
     SpringSlot = Annotated[_Slot, SPRINGS]
     PartSlot = Annotated[_Slot, Named("driven part", _parts, _listed(_parts), "part")]
-    BodySlot = Annotated[_Slot, Named("body that keeps an area", _bodies, _listed(_bodies))]
+    BodySlot = Annotated[_Slot, Named("body that keeps an area", _bodies, _listed(_bodies), "area")]
     FormSlot = Annotated[_Slot, Named("body whose form may be stiff", _forms, _listed(_forms))]
     KeySlot = Annotated[_Slot, Named("key that a rule asks for", _keys, _listed(_keys), "key")]
     MaterialSlot = Annotated[_Slot, Named("material", _materials, _listed(_materials), "material")]

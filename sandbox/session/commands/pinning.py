@@ -2,9 +2,7 @@
 
 from dataclasses import dataclass
 
-from sandbox.physics.world import World
 from sandbox.session.commands.command import Command
-from sandbox.session.commands.conditions import pinned
 from sandbox.session.commands.named import ParticleSlot
 
 
@@ -14,10 +12,6 @@ class Pin(Command):
 
     type = "pin"
     particle: ParticleSlot
-    conditions = (pinned(False, "{} is pinned already"),)
-
-    def carry_out(self, world: World) -> None:
-        world.pin(self.particle)
 
 
 @dataclass(frozen=True)
@@ -26,7 +20,3 @@ class Unpin(Command):
 
     type = "unpin"
     particle: ParticleSlot
-    conditions = (pinned(True, "{} is not pinned"),)
-
-    def carry_out(self, world: World) -> None:
-        world.unpin(self.particle)

@@ -7,8 +7,7 @@ from pydantic import Field
 
 from sandbox.level.format.limits import FORCE_LIMIT
 from sandbox.level.format.quantities import Point, Size, unit
-from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.command import Command
 
 # The hardest push [N s]: more than anything bears.
 HARDEST_PUSH = FORCE_LIMIT
@@ -28,8 +27,3 @@ class Push(Command):
     radius: Size
     impulse: tuple[Impulse, Impulse] = (0.0, 0.0)
     outward: Impulse = 0.0
-    nothing = "there is nothing to push there"
-
-    def carry_out(self, world: World) -> None:
-        if not world.push(self.position, self.impulse, self.outward, self.radius):
-            raise CommandError(self.nothing)

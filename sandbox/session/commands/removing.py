@@ -26,7 +26,7 @@ class Remove(Command):
     body: Name | None = None
     particle: ParticleSlot | None = None
 
-    def carry_out(self, world: World) -> None:
+    def carry_out(self, world: World, giver: int) -> None:
         if (self.body is None) == (self.particle is None):
             raise CommandError("say body, or particle: one of the two")
         if self.particle is not None:

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from sandbox.level.format.quantities import Gravity
-from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.command import Command
 
 
 @dataclass(frozen=True)
@@ -16,8 +15,3 @@ class Shake(Command):
 
     type = "shake"
     acceleration: Gravity
-    nothing = "there is nothing that moves to be shaken"
-
-    def carry_out(self, world: World) -> None:
-        if not world.shake(self.acceleration):
-            raise CommandError(self.nothing)

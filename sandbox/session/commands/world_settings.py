@@ -1,16 +1,22 @@
 """Settings of a running world are changed: its gravity, its air, its solver."""
 
-from dataclasses import asdict, dataclass, replace
-from typing import Annotated
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from pydantic import Field
 
 from sandbox.level.format.quantities import Drag, Gravity, Share, Velocity
-from sandbox.physics.changing.ramping import firm_up
-from sandbox.physics.settings import Substeps
-from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
+from sandbox.physics.command import MOST_ITERATIONS
+from sandbox.physics.settings import SolverName, SubstepChoice, Substeps
+from sandbox.session.commands.command import Command
 from sandbox.session.commands.ramping import Duration
+
+if TYPE_CHECKING:
+    # Whatever their words say, names and numbers are checked when a command is carried out.
+    SolverChoice: TypeAlias = str
+    SubstepsChoice: TypeAlias = Substeps
+else:
+    SolverChoice, SubstepsChoice = SolverName, SubstepChoice
 
 
 @dataclass(frozen=True)
@@ -20,9 +26,6 @@ class SetGravity(Command):
     type = "set_gravity"
     gravity: Gravity
     duration: Duration = 0
-
-    def carry_out(self, world: World) -> None:
-        world.set_gravity(self.gravity, self.duration)
 
 
 @dataclass(frozen=True)
@@ -34,9 +37,6 @@ class SetAir(Command):
     drag: Drag | None = None
     duration: Duration = 0
 
-    def carry_out(self, world: World) -> None:
-        world.set_air(self.wind, self.drag, self.duration)
-
 
 @dataclass(frozen=True)
 class SetSolver(Command):
@@ -46,18 +46,8 @@ class SetSolver(Command):
     """
 
     type = "set_solver"
-    solver: str | None = None
-    iterations: Annotated[int, Field(ge=1, le=1000)] | None = None
-    substeps: Substeps | None = None
+    solver: SolverChoice | None = None
+    iterations: Annotated[int, Field(ge=1, le=MOST_ITERATIONS)] | None = None
+    substeps: SubstepsChoice | None = None
     warm_start: Share | None = None
     duration: Duration = 0
-
-    def carry_out(self, world: World) -> None:
-        before = world.settings
-        given = {name: value for name, value in asdict(self).items() if value is not None and name != "duration"}
-        try:
-            world.settings = replace(before, **given)
-        except ValueError as error:
-            raise CommandError(str(error)) from None
-        if self.duration and world.settings.solver != before.solver:
-            firm_up(world, self.duration)

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 from sandbox.app.draw.colours import ACCENT, DANGER, TEXT, WARNING, Colour
-from sandbox.level.assembly.by_hand import left_of
 from sandbox.level.document.model import Level
+from sandbox.level.rules.hands import left_of
 from sandbox.level.rules.rule import has_clock
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.outcome import Outcome
@@ -53,7 +53,7 @@ def chips_of(level: Level, state: Snapshot, result: Outcome | None) -> list[Chip
     chips += [Chip(name=counter.text, value=f"{value + 0.0:.6g}") for counter, value in values if counter.text]
     chips += [
         Chip(name=f"{name} left", value=f"{state.counter[row]:.0f} of {most}")
-        for row, name, most in left_of(level.hands, state.counter)
+        for row, name, most in left_of(level.hands, len(state.counter))
     ]
     if result is not None and result.is_won:
         chips.append(Chip("won", colour=ACCENT, stars=result.stars))

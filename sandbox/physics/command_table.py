@@ -1,0 +1,217 @@
+"""The table of commands: what kernels take of each by its name in files, how they are called, words for refusals."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sandbox.physics import command
+from sandbox.physics.arrays import Floats, SlotRows, Slots
+from sandbox.physics.jit import Bundle, bundle
+from sandbox.physics.keeping.arguments import (
+    AREAS,
+    CONSTRAINTS,
+    FARTHEST,
+    HANDS,
+    KEYS,
+    PARTICLES,
+    PARTS,
+    SPRINGS,
+    no_slot,
+    number,
+    point,
+    ticks,
+    whole,
+    whole_numbers,
+)
+from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
+from sandbox.physics.settings import AUTO, SOLVER_NAMES
+from sandbox.physics.state import GoodValues, State, StateArrays
+
+# Words for them; {}: the name of what it is about, or its number.
+WORDS = {
+    command.BAD: "{} is not there, not in use, or out of range",
+    command.FORBIDDEN: "in this level hands may not {}",
+    command.UNTOUCHABLE: "in this level hands may not touch {}",
+    command.EXHAUSTED: "not enough {} left",
+    command.HOLDS: "hand {} holds something already",
+    command.HOLDS_NOTHING: "hand {} holds nothing",
+    command.TOO_PINNED: "{} is pinned: unpin it to drag it",
+    command.PINNED: "{} is pinned already",
+    command.NOT_PINNED: "{} is not pinned",
+    command.NOTHING_THERE: "there is nothing to push there",
+    command.NOTHING_MOVES: "there is nothing that moves to be shaken",
+    command.TOO_FAR: f"what hangs on {{}} would be beyond {FARTHEST_PLACE:g} m",
+    command.TOO_HEAVY: f"{{}}: a mass is from {LEAST_MASS:g} to {MOST_MASS:g} kg",
+}
+# What has to be derived again after a command: nothing, what follows from hands, what follows from topology, all of it
+# as by another solver.
+NOTHING, OF_HANDS, OF_TOPOLOGY, OF_SOLVER = "", "hands", "topology", "solver"
+
+
+class KernelCommand(NamedTuple):
+    """A kind of command: its number; what lies in `slots` and `numbers` then; what has to be derived again.
+
+    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; duration [ticks]: see ramps.py; ?name:
+    whether that is given. Others are what commands of files call so: places have two numbers, springs as many slots as
+    there are. The last number of `set_solver` is its answer: by what the host is to multiply kept impulses of contacts.
+    """
+
+    code: int
+    slots: tuple[str, ...]
+    numbers: tuple[str, ...] = ()
+    changes: str = NOTHING
+
+
+_HAND = ("first_cursor", "first_spring", "grab")
+_PARTICLE = ("first_cursor", "particle")
+_FIRMNESS = ("stiffness", "damping", "lowest_mode", "duration")
+_SOLVER = ("?solver", "solver", "?iterations", "iterations", "?substeps", "substeps", "?warm_start", "duration")
+# Slots that are true or false.
+_FLAGS = frozenset({"down", "at_rest"})
+# Numbers that are pairs; ranges of others, where they have any. A drive is from -1 to 1, see World.drive.
+_PAIRS = frozenset({"target", "gravity", "wind", "position", "impulse", "acceleration", "by"})
+_RANGES = {
+    "strength": (0.0,), "radius": (0.0,), "stiffness": (0.0, 1.0), "damping": (0.0, 1.0), "lowest_mode": (0.0,),
+    "drag": (0.0,), "warm_start": (0.0, 1.0),
+}  # fmt: skip
+# What is a list of slots, of which a command has one alone.
+_LISTS = ("springs", "constraints")
+# Kinds of commands by their names in files; files have no `break_springs`, which a tick ends with, and no
+# `part_bodies`, which building a level with cut bodies does.
+KINDS = {
+    "grab": KernelCommand(command.GRAB, (*_HAND, "particle"), ("target", "strength", "radius"), OF_HANDS),
+    "move_grab": KernelCommand(command.MOVE_GRAB, _HAND, ("target", "tick_rate")),
+    "release": KernelCommand(command.RELEASE, _HAND, (), OF_HANDS),
+    "pin": KernelCommand(command.PIN, _PARTICLE, (), OF_TOPOLOGY),
+    "unpin": KernelCommand(command.UNPIN, _PARTICLE, (), OF_TOPOLOGY),
+    "cut_springs": KernelCommand(command.CUT, ("springs",), (), OF_TOPOLOGY),
+    "break_springs": KernelCommand(command.BREAK, ("springs",), (), OF_TOPOLOGY),
+    "part_bodies": KernelCommand(command.PART, ("springs",), (), OF_TOPOLOGY),
+    "set_coefficients": KernelCommand(
+        command.SET_COEFFICIENTS,
+        ("?material", "material", "?stiffness", "?damping", "duration"),
+        ("stiffness", "damping"),
+    ),
+    "set_gravity": KernelCommand(command.SET_GRAVITY, ("duration",), ("gravity",)),
+    # What may be left out and is a pair comes last.
+    "set_air": KernelCommand(command.SET_AIR, ("?wind", "?drag", "duration"), ("drag", "wind")),
+    "set_drive": KernelCommand(command.DRIVE, ("part",), ("value",)),
+    "hold_key": KernelCommand(command.HOLD_KEY, ("key", "down")),
+    "firm_springs": KernelCommand(command.FIRM_SPRINGS, ("springs",), _FIRMNESS),
+    "firm_constraints": KernelCommand(command.FIRM_CONSTRAINTS, ("constraints",), _FIRMNESS),
+    "push": KernelCommand(command.PUSH, ("first_cursor",), ("position", "impulse", "outward", "radius")),
+    "shake": KernelCommand(command.SHAKE, ("first_cursor",), ("acceleration", "tick_rate")),
+    "set_inflation": KernelCommand(command.SET_INFLATION, ("body", "duration"), ("value",)),
+    "scale_mass": KernelCommand(command.SCALE_MASS, _PARTICLE, ("factor",), OF_TOPOLOGY),
+    "move_body": KernelCommand(command.MOVE_BODY, (*_PARTICLE, "at_rest"), ("by",)),
+    "set_solver": KernelCommand(command.SET_SOLVER, _SOLVER, ("warm_start", "factor"), OF_SOLVER),
+}
+# What has no kernel yet, and what has, by its number: rows of the family DEED.
+CODES = {name: kind.code for name, kind in KINDS.items()} | {
+    "set_firmness": command.SET_FIRMNESS,
+    "free": command.FREE,
+    "remove": command.REMOVE,
+    "add_particle": command.ADD_PARTICLE,
+    "add_spring": command.ADD_SPRING,
+    "add_body": command.ADD_BODY,
+}
+# Rows that a slot of that name is one of, and how many there are.
+_ROWS: dict[str, tuple[str, Callable[[Any], int]]] = {
+    "grab": (HANDS, lambda world: len(world.hand_strength)),
+    "particle": (PARTICLES, lambda world: len(world.owner)),
+    "springs": (SPRINGS, lambda world: len(world.law)),
+    "constraints": (CONSTRAINTS, lambda world: len(world.constraint_kind)),
+    "part": (PARTS, lambda world: len(world.actuator_value)),
+    "key": (KEYS, lambda world: len(world.key_down)),
+    "body": (AREAS, lambda world: len(world.area_constraints)),
+}
+# What goes by words, as kernels have it.
+CHOICES: dict[str, dict[str, int]] = {
+    "solver": {name: place for place, name in enumerate(SOLVER_NAMES)},
+    "substeps": {AUTO: 0},
+}
+
+
+class Refused(ValueError):
+    """A command that is refused, as it cannot be carried out as things are, or hands may not give it.
+
+    reason: see WORDS. field: what of the command it is about, or "", and value: its slot.
+    """
+
+    def __init__(self, reason: int, field: str, value: Any) -> None:
+        super().__init__(WORDS[reason].format(value))
+        self.reason, self.field, self.value = reason, field, value
+
+
+def lend(state: State, good: GoodValues, numbers: Floats, choices: Slots, areas: SlotRows) -> Bundle[command.Commanded]:
+    """What commands change, as kernels take it."""
+    return bundle(command.Commanded(state, good, numbers, choices, areas))
+
+
+def carry_out(pointer: Any, giver: int, name: str, given: Mapping[str, Any], world: StateArrays) -> Floats:
+    """Carry out a command of KINDS with what it is given, by name; the numbers that the kernel was given, or answers.
+
+    pointer: what `lend` made of the arrays of `world`. Raises IndexError for a slot that is not there or not in use,
+    ValueError for a number that is not finite or out of range, and Refused; nothing is changed then.
+    """
+    kind = KINDS[name]
+    if kind.slots[0] in _LISTS:
+        slots = whole_numbers(kind.slots[0], given[kind.slots[0]])
+    else:
+        slots = np.array([_packed(kind, each, given) for each in kind.slots], np.int64)
+    numbers = numbers_of(name, given)
+    arena = np.zeros(1, np.int64)
+    while (result := command.command(pointer, arena, giver, kind.code, slots, numbers)) == command.NO_ARENA:
+        arena = np.zeros(int(arena[0]), np.int64)
+    if result < 0:
+        raise _fault(kind, -result % command.REASONS, -result // command.REASONS, given, world)
+    return numbers
+
+
+def numbers_of(name: str, given: Mapping[str, Any]) -> Floats:
+    """The numbers of a command of KINDS, checked. Raises ValueError."""
+    kind = KINDS[name]
+    return np.array([x for each in kind.numbers for x in _checked(kind, each, given)], np.float64)
+
+
+def _checked(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> tuple[float, ...]:
+    """The numbers that a command has by a name; none of what is left out. Raises ValueError."""
+    value = given[name]
+    if value is None and f"?{name}" in kind.slots:
+        return (0.0,)
+    if name in _PAIRS:
+        return point(name, value)
+    return (number(name, value, *_RANGES.get(name, ())),)
+
+
+def _packed(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> int:
+    if name[0] == "?":
+        return int(given[name[1:]] is not None)
+    value = given[name]
+    if value is None and f"?{name}" in kind.slots:
+        return 0
+    if isinstance(value, str) and name in CHOICES:
+        value = CHOICES[name].get(value, value)
+    if name == "duration":
+        return ticks(name, value)
+    return int(value) if isinstance(value, bool) and name in _FLAGS else max(-1, min(whole(name, value), FARTHEST))
+
+
+def _fault(kind: KernelCommand, reason: int, place: int, given: Mapping[str, Any], world: StateArrays) -> Exception:
+    """Why a command was refused, of its slot or number at a place."""
+    is_list = kind.slots[0] in _LISTS
+    beyond = place - (len(given[kind.slots[0]]) if is_list else len(kind.slots))
+    if beyond >= 0:
+        values = {each: given[each] for each in kind.numbers if each in given}
+        return ValueError(f"{', '.join(values)} {list(values.values())}: finite numbers are needed")
+    name = kind.slots[0 if is_list else place]
+    value = given[name][place] if is_list else given[name]
+    if reason != command.BAD:
+        return Refused(reason, name, value)
+    if name not in _ROWS:
+        return ValueError(f"{name} {value}: it is out of range")
+    rows, count = _ROWS[name][0], _ROWS[name][1](world)
+    if 0 <= value < count:
+        return IndexError(f"{name} {value}: it is not in use, or a hand's")
+    return no_slot(name, value, rows, count)
