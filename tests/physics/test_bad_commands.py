@@ -12,7 +12,6 @@ import pytest
 
 from sandbox.physics.actuators import Actuators
 from sandbox.physics.analysis.firmness import set_firmness
-from sandbox.physics.changing.freeing import free_body
 from sandbox.physics.changing.moving import move_body
 from sandbox.physics.changing.ramping import inflate
 from sandbox.physics.changing.removing import remove_particles
@@ -93,7 +92,6 @@ OTHERS = {
     "move a body, removed": (lambda world: move_body(world, 3, (1.0, 0.0), 10.0), "particle 3: it is not in use"),
     "move a body, NaN": (lambda world: move_body(world, 0, (NAN, 0.0), 10.0), "by nan: "),
     "move a body, short": (lambda world: move_body(world, 0, (1.0,), 10.0), "by (1.0,): "),
-    "free a body": (lambda world: free_body(world, -1), "particle -1: "),
     "remove": (lambda world: remove_particles(world, np.array([0, 14])), "particles 14: "),
     "firmness": (lambda world: set_firmness(world, 0, 0.5, 0.5), "body 0: a world without bodies"),
 }  # fmt: skip
