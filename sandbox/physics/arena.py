@@ -27,6 +27,9 @@ from sandbox.physics.jit import (
 
 Arena = Slots
 
+# What a kernel gives in place of a result where its arena is full, and nothing else was changed.
+NO_ARENA = -1
+
 FLAGS_IN_WORD, INT32S_IN_WORD = 8, 2
 # Words that one begins with, of which nothing is known.
 FIRST_ARENA = 1 << 12

@@ -8,12 +8,15 @@ and takes it from the budget. A command that is refused changes nothing.
 import math
 from typing import NamedTuple
 
-from sandbox.physics.arena import Arena, begin, is_full, new_flags, new_slots, new_tuple
+from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_flags, new_slots, new_tuple
 from sandbox.physics.arrays import Floats, SlotRows, Slots
-from sandbox.physics.changing.moving import label_what_hangs, move_labelled, scale_mass
+from sandbox.physics.changing import freeing
+from sandbox.physics.changing.freeing import free_body
+from sandbox.physics.changing.moving import move_listed, scale_mass
 from sandbox.physics.changing.ramping import firm_up, inflate, set_warm_start, solve_by
 from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
+from sandbox.physics.components import list_body
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.marks import (
     BANK_EMPTIED,
@@ -42,15 +45,13 @@ from sandbox.physics.topology.sorting import list_ends
 GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
 SET_GRAVITY, SET_AIR, HOLD_KEY, FIRM_SPRINGS, FIRM_CONSTRAINTS, SET_INFLATION, SCALE_MASS = range(12, 19)
 MOVE_BODY, SET_SOLVER, SET_FIRMNESS, FREE, REMOVE, ADD_PARTICLE, ADD_SPRING, ADD_BODY = range(19, 27)
-# In place of a result: the arena is full, and nothing was changed.
-NO_ARENA = -1
 # Why a command was refused, and nothing was changed. A result is -(reason + REASONS k): k is the place among slots and
 # numbers, counted through, of what it is about.
 REASONS = 64
 (
     BAD, FORBIDDEN, UNTOUCHABLE, EXHAUSTED, HOLDS, HOLDS_NOTHING, TOO_PINNED, PINNED, NOT_PINNED, NOTHING_THERE,
-    NOTHING_MOVES, TOO_FAR, TOO_HEAVY,
-) = range(2, 15)  # fmt: skip
+    NOTHING_MOVES, TOO_FAR, TOO_HEAVY, NOTHING_TOUCHES, BODY_PINNED, NO_PLACE,
+) = range(2, 18)  # fmt: skip
 MOST_ITERATIONS = 1000
 _SOLVER_COUNT, _MOST_SUBSTEPS = len(SOLVER_NAMES), SUBSTEPS[-1]
 
@@ -142,6 +143,8 @@ def _carry_out(world: Commanded, arena: Arena, kind: int, slots: Slots, numbers:
         return 0 if scale_mass(state, good, slots[1], numbers[0]) else _refused(TOO_HEAVY, 1)
     elif kind == MOVE_BODY:
         return _move(state, good, slots, numbers, arena)
+    elif kind == FREE:
+        return _free(state, good, slots[1], arena)
     elif kind == SET_SOLVER:
         return _set_solver(world, slots, numbers, arena)
     return 0
@@ -190,7 +193,7 @@ def _first_bad(world: Commanded, kind: int, slots: Slots, numbers: Floats) -> in
 def _place_of_particle(kind: int) -> int:
     if kind == GRAB:
         return 3
-    return 1 if kind in (PIN, UNPIN, SCALE_MASS, MOVE_BODY) else -1
+    return 1 if kind in (PIN, UNPIN, SCALE_MASS, MOVE_BODY, FREE) else -1
 
 
 @inner_kernel
@@ -458,11 +461,23 @@ def _shake(state: State, good: GoodValues, first_cursor: int, numbers: Floats) -
 
 @inner_kernel
 def _move(state: State, good: GoodValues, slots: Slots, numbers: Floats, arena: Arena) -> int:
-    label = label_what_hangs(state, arena)
+    begin(arena)
+    label, body = new_slots(arena, state.owner.shape[0]), new_slots(arena, state.owner.shape[0])
     if is_full(arena):
         return NO_ARENA
-    is_moved = move_labelled(state, good, label, slots[1], numbers[0], numbers[1], slots[2] != 0)
+    count = list_body(state, slots[1], label, body)
+    is_moved = move_listed(state, good, body[:count], numbers[0], numbers[1], slots[2] != 0)
     return 0 if is_moved else _refused(TOO_FAR, 1)
+
+
+@inner_kernel
+def _free(state: State, good: GoodValues, particle: int, arena: Arena) -> int:
+    why = free_body(state, good, arena, particle)
+    if why == freeing.NOTHING_TOUCHES:
+        return _refused(NOTHING_TOUCHES, 1)
+    if why == freeing.IS_PINNED:
+        return _refused(BODY_PINNED, 1)
+    return _refused(NO_PLACE, 1) if why == freeing.NO_PLACE else why
 
 
 @inner_kernel

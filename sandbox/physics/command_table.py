@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sandbox.physics import command
+from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.arrays import Floats, SlotRows, Slots
 from sandbox.physics.jit import Bundle, bundle
 from sandbox.physics.keeping.arguments import (
@@ -42,6 +43,9 @@ WORDS = {
     command.NOTHING_THERE: "there is nothing to push there",
     command.NOTHING_MOVES: "there is nothing that moves to be shaken",
     command.TOO_FAR: f"what hangs on {{}} would be beyond {FARTHEST_PLACE:g} m",
+    command.NOTHING_TOUCHES: "nothing touches anything here: there is nothing to free",
+    command.BODY_PINNED: "the body of {} is pinned: unpin it to free it",
+    command.NO_PLACE: "there is no free place for the body of {} near by",
     command.TOO_HEAVY: f"{{}}: a mass is from {LEAST_MASS:g} to {MOST_MASS:g} kg",
 }
 # What has to be derived again after a command: nothing, what follows from hands, what follows from topology, all of it
@@ -105,12 +109,12 @@ KINDS = {
     "set_inflation": KernelCommand(command.SET_INFLATION, ("body", "duration"), ("value",)),
     "scale_mass": KernelCommand(command.SCALE_MASS, _PARTICLE, ("factor",), OF_TOPOLOGY),
     "move_body": KernelCommand(command.MOVE_BODY, (*_PARTICLE, "at_rest"), ("by",)),
+    "free": KernelCommand(command.FREE, _PARTICLE),
     "set_solver": KernelCommand(command.SET_SOLVER, _SOLVER, ("warm_start", "factor"), OF_SOLVER),
 }
 # What has no kernel yet, and what has, by its number: rows of the family DEED.
 CODES = {name: kind.code for name, kind in KINDS.items()} | {
     "set_firmness": command.SET_FIRMNESS,
-    "free": command.FREE,
     "remove": command.REMOVE,
     "add_particle": command.ADD_PARTICLE,
     "add_spring": command.ADD_SPRING,
@@ -162,7 +166,7 @@ def carry_out(pointer: Any, giver: int, name: str, given: Mapping[str, Any], wor
         slots = np.array([_packed(kind, each, given) for each in kind.slots], np.int64)
     numbers = numbers_of(name, given)
     arena = np.zeros(1, np.int64)
-    while (result := command.command(pointer, arena, giver, kind.code, slots, numbers)) == command.NO_ARENA:
+    while (result := command.command(pointer, arena, giver, kind.code, slots, numbers)) == NO_ARENA:
         arena = np.zeros(int(arena[0]), np.int64)
     if result < 0:
         raise _fault(kind, -result % command.REASONS, -result // command.REASONS, given, world)

@@ -51,6 +51,22 @@ def find_joined(state: State, springs: Flags, particles: Flags, label: Slots) ->
         label[p] = root_of(label, p)
 
 
+@inner_kernel
+def list_body(state: State, particle: int, label: Slots, body: Slots) -> int:
+    """List the particles that springs join to one, as `body_of` does; how many they are. label, body: (n,), scratch."""
+    for p in range(label.shape[0]):
+        label[p] = p
+    for s in range(state.spring_active.shape[0]):
+        if state.spring_active[s] and state.material[s] >= 0:
+            join(label, state.particle_a[s], state.particle_b[s])
+    own, count = root_of(label, particle), 0
+    for p in range(label.shape[0]):
+        if state.particle_active[p] and root_of(label, p) == own:
+            body[count] = p
+            count += 1
+    return count
+
+
 def body_of(world: StateArrays, particle: int) -> Slots:
     """The particles that springs join to one, itself included, also by way of pinned ones; ascending.
 

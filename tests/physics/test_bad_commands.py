@@ -12,7 +12,6 @@ import pytest
 
 from sandbox.physics.actuators import Actuators
 from sandbox.physics.analysis.firmness import set_firmness
-from sandbox.physics.changing.freeing import free_body
 from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.command import BAD, REASONS, command
 from sandbox.physics.command_table import KINDS, lend
@@ -45,6 +44,7 @@ ARGUMENTS = {
     "set_inflation": ("body", "value", "duration"),
     "scale_mass": ("particle", "factor"),
     "move_body": ("particle", "by"),
+    "free": ("particle",),
     "set_solver": ("solver", "iterations", "substeps", "warm_start", "duration"),
 }
 # Other methods that change a world, or ask it: the call, and what its fault begins with.
@@ -96,7 +96,6 @@ OTHERS = {
     "move a body, removed": (lambda world: world.move_body(3, (1.0, 0.0)), "particle 3: it is not in use"),
     "move a body, NaN": (lambda world: world.move_body(0, (NAN, 0.0)), "by nan: "),
     "move a body, short": (lambda world: world.move_body(0, (1.0,)), "by (1.0,): "),
-    "free a body": (lambda world: free_body(world, -1), "particle -1: "),
     "remove": (lambda world: remove_particles(world, np.array([0, 14])), "particles 14: "),
     "firmness": (lambda world: set_firmness(world, 0, 0.5, 0.5), "body 0: a world without bodies"),
 }  # fmt: skip

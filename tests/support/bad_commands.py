@@ -52,6 +52,12 @@ def part_bodies(world: World, springs: Any) -> None:
     world.command("part_bodies", springs=springs)
 
 
+def free(world: World, particle: Any) -> None:
+    """Free a body, where anything touches."""
+    world.collides[:] = 1
+    world.command("free", particle=particle)
+
+
 def scale_mass(world: World, particle: Any, factor: Any) -> None:
     """Make a body so many times as heavy."""
     world.command("scale_mass", particle=particle, factor=factor)
@@ -97,6 +103,7 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "shake": ("shake", ((1.0, 0.0),), (POINTS,)),
     "set_inflation": ("inflate", (0, 1.5, 3), (PARTS, NOT_BELOW_0, DURATIONS)),
     "scale_mass": (scale_mass, (0, 2.0), (PARTICLES, FACTORS)),
+    "free": (free, (0,), (PARTICLES,)),
     "move_body": ("move_body", (0, (1.0, 0.0)), (PARTICLES, POINTS)),
     "set_solver": (set_solver, ("iterative", 5, 4, 0.5, 3), (SOLVERS, SOLVERS[2:], SOLVERS[2:], SHARES, DURATIONS)),
 }  # fmt: skip

@@ -9,6 +9,7 @@ from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.filter import LINE, SOLID_RIGHT
 from sandbox.physics.collision.narrow_phase import DISC, EDGE, INSIDE, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.geometry.segment import lengths, nearest_on_segments
+from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
@@ -21,6 +22,21 @@ class ContactPoints(NamedTuple):
     point: Floats
     normal: Floats
     force: Floats
+
+
+def overlapping(world: World) -> list[tuple[int, int]]:
+    """The pairs of bodies that lay in each other in the last step, by a particle of each; twice the same: in itself.
+
+    Lines that cross lines do not count.
+    """
+    if not world.has_contacts:
+        return []
+    collisions = block_of(world).arrays.collisions
+    outline, colliders = collisions.outline, collisions.colliders
+    shapes = colliders.parted[: colliders.parted_count[0], :2]
+    first = outline.member[outline.member_start[:-1]]
+    is_solid = outline.solid_of >= 0
+    return [(int(first[s]), int(first[t])) for s, t in shapes.tolist() if is_solid[s] or is_solid[t]]
 
 
 @np.errstate(over="ignore", invalid="ignore")

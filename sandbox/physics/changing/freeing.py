@@ -4,163 +4,280 @@ For bodies that do not come apart by themselves (untangling/parting.py). Not par
 """
 
 import math
-from collections.abc import Iterator
+from typing import Annotated, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.collision.outline import Outline
-from sandbox.physics.components import body_of
-from sandbox.physics.geometry.polygon import signed_area, winding_number
-from sandbox.physics.geometry.rigid import fitted
-from sandbox.physics.geometry.segment import distances_from_segments, segments_cross
+from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_slots, new_tuple
+from sandbox.physics.arrays import Flags, FloatRows, Slots
+from sandbox.physics.collision.edge_geometry import winds
+from sandbox.physics.collision.outline import Outline, new_colliders, new_outline
+from sandbox.physics.collision.types import Colliders
+from sandbox.physics.components import list_body
+from sandbox.physics.geometry.rigid import best_turn, fit_of, rotated
+from sandbox.physics.geometry.segment import segments_cross, squared_distance
+from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import BANK_UNOPENED
-from sandbox.physics.pipeline.block_owner import block_of, outline_of
-from sandbox.physics.world import World
+from sandbox.physics.state import GoodValues, State
 
-# Places are tried on rings, each so many radii of a particle farther away, in so many directions.
-RING, DIRECTIONS = 2.0, 24
-RINGS = 400
+# Why a body stays where it is: nothing touches anything here; a particle of it is pinned; there is no free place near
+# by. 0: it was freed.
+FREED, NOTHING_TOUCHES, IS_PINNED, NO_PLACE = range(4)
+# Places are tried on rings, each so many radii of a particle farther away, in so many directions; of smaller particles
+# those of this radius [m].
+RING, DIRECTIONS, RINGS, LEAST_RADIUS = 2.0, 24, 400, 1e-3
 # How far what is free is from all else, in units of what touches: a little more than nothing, so that rounding does not
 # decide.
 CLEAR = 1.01
-# Particles or edges of a body that are compared at once with all that is near: arrays of this many rows.
-BATCH = 64
 
 
-class NothingFree(Exception):
-    """There is no free place near by."""
+class Stuck(NamedTuple):
+    """A body among colliders, in which it stands where a place is tried, and what it may touch there."""
+
+    colliders: Colliders
+    outline: Outline
+    body: Slots  # (k,): its particles, ascending
+    form: Annotated[FloatRows, "rows, 2"]  # [m] (k, 2): their places, before they go anywhere
+    is_own: Annotated[Flags, "vertices"]
+    outside: Annotated[Slots, "solids"]  # how often each row of outline.solid runs round what is outside of it
+    edge: Annotated[Slots, "edges"]  # of others, near by
+    disc: Annotated[Slots, "vertices"]  # particles of others, near by
+    turn: Annotated[FloatRows, f"{DIRECTIONS}, 2"]  # cosine and sine of each direction
 
 
-def overlapping(world: World) -> list[tuple[int, int]]:
-    """The pairs of bodies that lay in each other in the last step, by a particle of each; twice the same: in itself.
+@inner_kernel
+def free_body(state: State, good: GoodValues, arena: Arena, particle: int) -> int:
+    """Move the body of a particle to the nearest place where it touches nothing, at rest: FREED, or why it stays.
 
-    Lines that cross lines do not count.
+    One solid body gets the form that it was made in; several bodies that hang together keep their present shape.
+    particle: one that is in use. NO_ARENA: see arena.py; nothing was changed.
     """
-    if not world.has_contacts:
-        return []
-    collisions = block_of(world).arrays.collisions
-    outline, colliders = collisions.outline, collisions.colliders
-    shapes = colliders.parted[: colliders.parted_count[0], :2]
-    first = outline.member[outline.member_start[:-1]]
-    is_solid = outline.solid_of >= 0
-    return [(int(first[s]), int(first[t])) for s, t in shapes.tolist() if is_solid[s] or is_solid[t]]
+    begin(arena)
+    label, body = new_slots(arena, state.owner.shape[0]), new_slots(arena, state.owner.shape[0])
+    if is_full(arena):
+        return NO_ARENA
+    count = list_body(state, particle, label, body)
+    reason = _why_not(state, body[:count])
+    if reason != FREED:
+        return reason
+    outline = new_outline(state, arena)
+    if is_full(arena):
+        return NO_ARENA
+    stuck = new_tuple(
+        Stuck, arena, rows=count, vertices=outline.owner.shape[0], solids=outline.solid.shape[0],
+        edges=outline.edge_a.shape[0], colliders=new_colliders(state.terrain, outline, 0, arena), outline=outline,
+        body=body[:count],
+    )  # fmt: skip
+    if is_full(arena):
+        return NO_ARENA
+    _set_up(state, stuck)
+    return _move(state, good, stuck) if _find_place(stuck) else NO_PLACE
 
 
-def free_body(world: World, particle: int) -> None:
-    """Move the body of a particle to the nearest place where it touches nothing, at rest and in its own form.
-
-    One solid body gets the form that it was made in; several bodies that hang together keep their present shape. Raises
-    NothingFree, and as `body_of` does.
-    """
-    body = body_of(world, particle)
-    places = world.position[body] + 0.0
-    if _is_one_solid(world, body):
-        places = fitted(world.origin[body], places)
-    surroundings = _Surroundings(world, body)
-    for way in _ways(RING * max(float(world.radius[body].max()), 1e-3)):
-        if surroundings.are_clear_of(places + way):
-            world.change("position", places + way, body)
-            world.change("velocity", 0.0, body)
-            world.slow_velocity[body] = 0.0
-            world.energy_bank[body] = BANK_UNOPENED
-            return
-    raise NothingFree
+@inner_kernel
+def _why_not(state: State, body: Slots) -> int:
+    touches = False
+    for p in range(state.collides.shape[0]):
+        touches = touches or state.collides[p] != 0
+    if not touches:
+        return NOTHING_TOUCHES
+    for i in range(body.shape[0]):
+        if state.inverse_mass[body[i]] == 0.0:
+            return IS_PINNED
+    return FREED
 
 
-def _is_one_solid(world: World, body: Slots) -> bool:
-    outline = outline_of(world)
-    shape = outline.shape[body]
-    return len(set(world.owner[body].tolist())) == 1 and shape[0] >= 0 and bool(outline.solid_of[shape[0]] >= 0)
+@inner_kernel
+def _set_up(state: State, stuck: Stuck) -> None:
+    # Fill in what holds at each place that is tried.
+    colliders, outline, body, form = stuck.colliders, stuck.outline, stuck.body, stuck.form
+    for p in range(state.radius.shape[0]):
+        for axis in range(2):
+            colliders.position[p, axis] = state.position[p, axis]
+        colliders.radius[p] = state.radius[p]
+        colliders.collides[p] = state.collides[p] if state.particle_active[p] else 0
+    for k in range(outline.solid.shape[0]):
+        # A hollow chain runs the other way round, and its outside is inside of it.
+        stuck.outside[k] = 0 if _runs_counter_clockwise(k, stuck) else -1
+    for i in range(body.shape[0]):
+        stuck.is_own[body[i]] = True
+        for axis in range(2):
+            form[i, axis] = state.position[body[i], axis] + 0.0
+    if _is_one_solid(state, stuck):
+        x, y, form_x, form_y, along, across = fit_of(state.origin, state.position, body)
+        cosine, sine = best_turn(along, across)
+        for i in range(body.shape[0]):
+            dx, dy = rotated(cosine, sine, state.origin[body[i], 0] - form_x, state.origin[body[i], 1] - form_y)
+            form[i, 0], form[i, 1] = x + dx, y + dy
+    _fill_turns(stuck.turn)
 
 
-def _ways(ring: float) -> list[Floats]:
-    """Ways [m] to try, the shortest first."""
-    ways = [np.zeros(2)]
-    # Rounded, so that no library's sine decides where a body goes.
-    turns = [(round(math.cos(math.tau * k / DIRECTIONS), 9), round(math.sin(math.tau * k / DIRECTIONS), 9))
-             for k in range(DIRECTIONS)]  # fmt: skip
-    for far in range(1, RINGS + 1):
-        ways += [np.array(turn) * (ring * far) for turn in turns]
-    return ways
+@inner_kernel
+def _runs_counter_clockwise(k: int, stuck: Stuck) -> bool:
+    outline, position, doubled_area = stuck.outline, stuck.colliders.position, 0.0
+    for e in range(outline.solid[k, 0], outline.solid[k, 1]):
+        if outline.side[e] != 0:
+            a, b = outline.edge_a[e], outline.edge_b[e]
+            doubled_area += position[a, 0] * position[b, 1] - position[a, 1] * position[b, 0]
+    return doubled_area >= 0.0
 
 
-class _Surroundings:
-    """What a body may touch: the other particles and edges, and terrain."""
-
-    def __init__(self, world: World, body: Slots) -> None:
-        outline = outline_of(world)
-        own = np.zeros(len(outline.owner), dtype=np.bool_)
-        own[body] = True
-        count, edges = world.particle_count, outline.dynamic[0]
-        vertices = np.concatenate([world.position, world.terrain.vertex])
-        radius = np.append(world.radius, np.zeros(len(world.terrain.vertex)))
-        mine = own[outline.edge_a[:edges]] & own[outline.edge_b[:edges]]
-        other = np.append(~mine, np.ones(len(outline.edge_a) - edges, dtype=np.bool_))
-        self.outline = outline
-        self.row = np.full(len(outline.owner), -1)
-        self.row[body] = np.arange(len(body))
-        self.own_a, self.own_b = (self.row[ends[:edges][mine]] for ends in (outline.edge_a, outline.edge_b))
-        a, b = outline.edge_a[other], outline.edge_b[other]
-        self.start, self.end, self.reach = vertices[a], vertices[b], radius[a]
-        touching = world.particle_active & (world.collides != 0) & ~own[:count]
-        self.discs, self.disc_reach = world.position[touching], world.radius[touching]
-        self.radius = world.radius[body]
-        self.solids = [_solid(outline, vertices, k) for k in range(len(outline.solid)) if not _is_own(outline, k, own)]
-        self.own_solids = [k for k in range(int(outline.dynamic[1])) if _is_own(outline, k, own)]
-
-    def are_clear_of(self, places: Floats) -> bool:
-        """Whether a body at these places [m] touches nothing, and nothing is inside of it or round it."""
-        # Of places beyond walls there are most, and they are found at once.
-        if any(winding_number(places[0], a, b) != outside for a, b, outside in self.solids):
+@inner_kernel
+def _is_one_solid(state: State, stuck: Stuck) -> bool:
+    outline, body = stuck.outline, stuck.body
+    for i in range(body.shape[0]):
+        if state.owner[body[i]] != state.owner[body[0]]:
             return False
-        low, high = places.min(axis=0) - 2.0 * self.radius.max(), places.max(axis=0) + 2.0 * self.radius.max()
-        near = np.all((np.maximum(self.start, self.end) >= low - self.reach[:, None])
-                      & (np.minimum(self.start, self.end) <= high + self.reach[:, None]), axis=1)  # fmt: skip
-        start, end, reach = self.start[near], self.end[near], self.reach[near]
-        around = np.all((self.discs >= low - self.disc_reach[:, None])
-                        & (self.discs <= high + self.disc_reach[:, None]), axis=1)  # fmt: skip
-        discs, disc_reach = self.discs[around], self.disc_reach[around]
-        for some in _batches(len(places)):
-            place, radius = places[some, None], self.radius[some, None]
-            if np.any(distances_from_segments(place, start, end) < CLEAR * (radius + reach)):
+    shape = outline.shape[body[0]]
+    return shape >= 0 and outline.solid_of[shape] >= 0
+
+
+@inner_kernel
+def _fill_turns(turn: FloatRows) -> None:
+    # Cosines of a quarter as they are written here, so that no library's sine decides where a body goes.
+    half, quarter = DIRECTIONS // 2, DIRECTIONS // 4
+    turn[0, 0], turn[1, 0], turn[2, 0] = 1.0, 0.965925826, 0.866025404
+    turn[3, 0], turn[4, 0], turn[5, 0] = 0.707106781, 0.5, 0.258819045
+    for k in range(quarter):
+        turn[(DIRECTIONS - k) % DIRECTIONS, 0] = turn[k, 0]
+        turn[half - k, 0] = turn[half + k, 0] = -turn[k, 0]
+    for k in range(DIRECTIONS):
+        turn[k, 1] = turn[(k + DIRECTIONS - quarter) % DIRECTIONS, 0]
+
+
+@inner_kernel
+def _find_place(stuck: Stuck) -> bool:
+    # Try ways, the shortest first, until the body is clear of all else.
+    body, form, turn, position = stuck.body, stuck.form, stuck.turn, stuck.colliders.position
+    ring = RING * max(_largest_radius(stuck), LEAST_RADIUS)
+    for k in range(DIRECTIONS - 1, DIRECTIONS * (RINGS + 1)):
+        far = ring * (k // DIRECTIONS)
+        x, y = turn[k % DIRECTIONS, 0] * far, turn[k % DIRECTIONS, 1] * far
+        for i in range(body.shape[0]):
+            position[body[i], 0], position[body[i], 1] = form[i, 0] + x, form[i, 1] + y
+        if _is_clear(stuck):
+            return True
+    return False
+
+
+@inner_kernel
+def _largest_radius(stuck: Stuck) -> float:
+    largest = 0.0
+    for i in range(stuck.body.shape[0]):
+        largest = max(largest, stuck.colliders.radius[stuck.body[i]])
+    return largest
+
+
+@inner_kernel
+def _is_clear(stuck: Stuck) -> bool:
+    # Whether a body touches nothing where it stands, and nothing is inside of it or round it.
+    colliders, outline = stuck.colliders, stuck.outline
+    x, y = colliders.position[stuck.body[0], 0], colliders.position[stuck.body[0], 1]
+    # Of places beyond walls there are most, and they are found at once.
+    for k in range(outline.solid.shape[0]):
+        first, last = outline.solid[k, 0], outline.solid[k, 1]
+        if not stuck.is_own[outline.edge_a[first]] and winds(x, y, first, last, colliders) != stuck.outside[k]:
+            return False
+    edges, discs = _list_near(stuck)
+    edge, disc = stuck.edge[:edges], stuck.disc[:discs]
+    if not (_particles_are_clear(stuck, edge, disc) and _edges_are_clear(stuck, edge, disc)):
+        return False
+    for k in range(outline.dynamic[1]):
+        first, last = outline.solid[k, 0], outline.solid[k, 1]
+        for j in range(discs if stuck.is_own[outline.edge_a[first]] else 0):
+            if winds(colliders.position[disc[j], 0], colliders.position[disc[j], 1], first, last, colliders) != 0:
                 return False
-            if np.any(distances_from_segments(place, discs, discs) < CLEAR * (radius + disc_reach)):
+    return True
+
+
+@inner_kernel
+def _list_near(stuck: Stuck) -> tuple[int, int]:
+    # List the edges and the particles of others that are near the body; how many there are.
+    colliders, outline, is_own, position = stuck.colliders, stuck.outline, stuck.is_own, stuck.colliders.position
+    left = right = position[stuck.body[0], 0]
+    bottom = top = position[stuck.body[0], 1]
+    for i in range(stuck.body.shape[0]):
+        x, y = position[stuck.body[i], 0], position[stuck.body[i], 1]
+        left, right, bottom, top = min(left, x), max(right, x), min(bottom, y), max(top, y)
+    margin, edges, discs = 2.0 * _largest_radius(stuck), 0, 0
+    left, right, bottom, top = left - margin, right + margin, bottom - margin, top + margin
+    for e in range(outline.edge_a.shape[0]):
+        a, b = outline.edge_a[e], outline.edge_b[e]
+        reach = colliders.radius[a]
+        if (
+            not (is_own[a] and is_own[b])
+            and max(position[a, 0], position[b, 0]) >= left - reach
+            and min(position[a, 0], position[b, 0]) <= right + reach
+            and max(position[a, 1], position[b, 1]) >= bottom - reach
+            and min(position[a, 1], position[b, 1]) <= top + reach
+        ):
+            stuck.edge[edges] = e
+            edges += 1
+    for p in range(colliders.shielded.shape[0]):
+        x, y, reach = position[p, 0], position[p, 1], colliders.radius[p]
+        is_other = colliders.collides[p] != 0 and not is_own[p]
+        if is_other and left - reach <= x <= right + reach and bottom - reach <= y <= top + reach:
+            stuck.disc[discs] = p
+            discs += 1
+    return edges, discs
+
+
+@inner_kernel
+def _are_near(p: int, a: int, b: int, reach: float, position: FloatRows) -> bool:
+    # Whether a particle is nearer to the segment from a to b than what is free is from what reaches so far [m].
+    squared = squared_distance(
+        position[p, 0], position[p, 1], position[a, 0], position[a, 1], position[b, 0], position[b, 1]
+    )
+    return math.sqrt(squared) < CLEAR * reach
+
+
+@inner_kernel
+def _cross(a: int, b: int, c: int, d: int, position: FloatRows) -> bool:
+    return segments_cross(
+        position[a, 0], position[a, 1], position[b, 0], position[b, 1],
+        position[c, 0], position[c, 1], position[d, 0], position[d, 1],
+    )  # fmt: skip
+
+
+@inner_kernel
+def _particles_are_clear(stuck: Stuck, edge: Slots, disc: Slots) -> bool:
+    # Whether no particle of the body touches an edge or a particle of these.
+    outline, radius, position = stuck.outline, stuck.colliders.radius, stuck.colliders.position
+    for i in range(stuck.body.shape[0]):
+        p = stuck.body[i]
+        for j in range(edge.shape[0]):
+            a, b = outline.edge_a[edge[j]], outline.edge_b[edge[j]]
+            if _are_near(p, a, b, radius[p] + radius[a], position):
                 return False
-        own = float(self.radius.max())
-        for some in _batches(len(self.own_a)):
-            a, b = places[self.own_a[some], None], places[self.own_b[some], None]
-            if np.any(segments_cross(a, b, start, end)):
+        for j in range(disc.shape[0]):
+            d = disc[j]
+            if _are_near(p, d, d, radius[p] + radius[d], position):
                 return False
-            if np.any(distances_from_segments(discs, a, b) < CLEAR * (own + disc_reach)):
+    return True
+
+
+@inner_kernel
+def _edges_are_clear(stuck: Stuck, edge: Slots, disc: Slots) -> bool:
+    # Whether no edge of the body crosses one of these edges, or touches one of these particles.
+    outline, radius, position = stuck.outline, stuck.colliders.radius, stuck.colliders.position
+    own = _largest_radius(stuck)
+    for e in range(outline.dynamic[0]):
+        a, b = outline.edge_a[e], outline.edge_b[e]
+        if not (stuck.is_own[a] and stuck.is_own[b]):
+            continue
+        for j in range(edge.shape[0]):
+            if _cross(a, b, outline.edge_a[edge[j]], outline.edge_b[edge[j]], position):
                 return False
-        loops = [_own_loop(self.outline, k, self.row, places) for k in self.own_solids]
-        return not any(winding_number(disc, a, b) != 0 for disc in discs for a, b in loops)
+        for j in range(disc.shape[0]):
+            if _are_near(disc[j], a, b, own + radius[disc[j]], position):
+                return False
+    return True
 
 
-def _batches(count: int) -> Iterator[slice]:
-    """Slices of so many, each of few enough for an array of what each has to do with all that is near."""
-    return (slice(first, first + BATCH) for first in range(0, count, BATCH))
-
-
-def _is_own(outline: Outline, k: int, own: NDArray[np.bool_]) -> bool:
-    return bool(own[outline.edge_a[outline.solid[k, 0]]])
-
-
-def _solid(outline: Outline, vertices: Floats, k: int) -> tuple[Floats, Floats, int]:
-    """The edges of a solid, and how often they run round what is outside of it."""
-    edges = _sides(outline, k)
-    a, b = vertices[outline.edge_a[edges]], vertices[outline.edge_b[edges]]
-    # A hollow chain runs the other way round, and its outside is inside of it.
-    return a, b, 0 if signed_area(a, b) >= 0.0 else -1
-
-
-def _sides(outline: Outline, k: int) -> Slots:
-    edges = np.arange(*outline.solid[k])
-    return edges[outline.side[edges] != 0]
-
-
-def _own_loop(outline: Outline, k: int, row: Slots, places: Floats) -> tuple[Floats, Floats]:
-    edges = _sides(outline, k)
-    return places[row[outline.edge_a[edges]]], places[row[outline.edge_b[edges]]]
+@inner_kernel
+def _move(state: State, good: GoodValues, stuck: Stuck) -> int:
+    for i in range(stuck.body.shape[0]):
+        p = stuck.body[i]
+        for axis in range(2):
+            state.position[p, axis] = good.position[p, axis] = stuck.colliders.position[p, axis]
+            state.velocity[p, axis] = good.velocity[p, axis] = state.slow_velocity[p, axis] = 0.0
+        state.energy_bank[p] = BANK_UNOPENED
+    return FREED

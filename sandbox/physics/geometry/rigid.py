@@ -9,11 +9,8 @@ cos : sin = sum w f . d : sum w f x d              turns places f of the form to
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from sandbox.physics.arrays import Floats
-from sandbox.physics.geometry.sums import sum_in_order
-from sandbox.physics.jit import inlined_kernel, scalar_kernel
+from sandbox.physics.arrays import FloatRows, Slots
+from sandbox.physics.jit import inlined_kernel, inner_kernel, scalar_kernel
 
 
 class WeightedSums(NamedTuple):
@@ -37,6 +34,17 @@ class RigidMotion(NamedTuple):
     v: float
     inertia: float
     momentum: float
+
+
+class FormFit(NamedTuple):
+    """How a form fits places: the middle of those (x, y) [m] and that of the form, and both sums of the best turn."""
+
+    x: float
+    y: float
+    form_x: float
+    form_y: float
+    along: float
+    across: float
 
 
 @inlined_kernel
@@ -106,11 +114,18 @@ def rotated(cosine: float, sine: float, x: float, y: float) -> tuple[float, floa
     return cosine * x - sine * y, sine * x + cosine * y
 
 
-def fitted(form: Floats, places: Floats) -> Floats:
-    """The form (n, 2), moved and turned to fit places (n, 2): with sums in order, so that all machines agree."""
-    middle, centre = (np.array([sum_in_order(at[:, axis]) / len(form) for axis in (0, 1)]) for at in (form, places))
-    p, q = form - middle, places - centre
-    c, s = best_turn(
-        sum_in_order(p[:, 0] * q[:, 0] + p[:, 1] * q[:, 1]), sum_in_order(p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0])
-    )
-    return centre + np.stack([c * p[:, 0] - s * p[:, 1], s * p[:, 0] + c * p[:, 1]], axis=1)
+@inner_kernel
+def fit_of(form: FloatRows, place: FloatRows, rows: Slots) -> FormFit:
+    """How the form [m] (n, 2) of some rows fits their places [m] (n, 2) best; all of them weigh the same."""
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
+    for i in range(rows.shape[0]):
+        p = rows[i]
+        sums = with_point(sums, 1.0, place[p, 0], place[p, 1], form[p, 0], form[p, 1])
+    x, y, form_x, form_y, _, _ = centre_of(sums)
+    along = across = 0.0
+    for i in range(rows.shape[0]):
+        p = rows[i]
+        along, across = with_pair(
+            along, across, 1.0, form[p, 0] - form_x, form[p, 1] - form_y, place[p, 0] - x, place[p, 1] - y
+        )
+    return FormFit(x, y, form_x, form_y, along, across)

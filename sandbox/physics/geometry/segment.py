@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.physics.arrays import FloatRows, Floats
 from sandbox.physics.equation import SHORTEST
@@ -37,6 +36,25 @@ def nearest_share(px: float, py: float, dx: float, dy: float) -> float:
     """The place nearest to p of the segment from 0 to d, as a share of it; 0 where it has no length."""
     squared = dx * dx + dy * dy
     return min(1.0, max(0.0, (px * dx + py * dy) / squared)) if squared > 0.0 else 0.0
+
+
+@inner_kernel
+def squared_distance(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
+    """Square of the distance [m^2] of a place from the segment a to b."""
+    dx, dy = bx - ax, by - ay
+    share = nearest_share(x - ax, y - ay, dx, dy)
+    px, py = x - ax - share * dx, y - ay - share * dy
+    return px * px + py * py
+
+
+@inner_kernel
+def segments_cross(
+    ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> bool:  # fmt: skip
+    """Whether the segments a to b and c to d cross. A place on a line counts as on its right."""
+    one, other = doubled_area(cx, cy, dx, dy, ax, ay), doubled_area(cx, cy, dx, dy, bx, by)
+    third, fourth = doubled_area(ax, ay, bx, by, cx, cy), doubled_area(ax, ay, bx, by, dx, dy)
+    return (one > 0.0) != (other > 0.0) and (third > 0.0) != (fourth > 0.0)
 
 
 @inlined_kernel
@@ -76,13 +94,6 @@ def doubled_areas(a: Floats, b: Floats, c: Floats) -> Floats:
     """`doubled_area` of places (..., 2), each with each."""
     along, away = b - a, c - a
     return np.asarray(along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0])
-
-
-def segments_cross(a: Floats, b: Floats, c: Floats, d: Floats) -> NDArray[np.bool_]:
-    """Which segments a b cross segments c d (..., 2), each with each. A place on a line counts as on its right."""
-    return ((doubled_areas(a, b, c) > 0.0) != (doubled_areas(a, b, d) > 0.0)) & (
-        (doubled_areas(c, d, a) > 0.0) != (doubled_areas(c, d, b) > 0.0)
-    )
 
 
 def nearest_on_segments(places: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:

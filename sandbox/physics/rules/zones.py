@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from sandbox.physics.arrays import FloatRows, Slots
-from sandbox.physics.geometry.segment import doubled_area, nearest_share
+from sandbox.physics.geometry.segment import segments_cross, squared_distance
 from sandbox.physics.jit import inner_kernel
 
 BOX, CIRCLE, POLYGON = range(3)
@@ -17,15 +17,6 @@ class Zones(NamedTuple):
     shape: FloatRows  # [m] (z, 4): left, bottom, right, top; of a circle x, y, radius, 0
     first: Slots  # (z + 1,): the first corner of each
     corner: FloatRows  # [m] of all polygons
-
-
-@inner_kernel
-def _squared_distance(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
-    """Square of the distance [m^2] of a place from the segment a to b."""
-    dx, dy = bx - ax, by - ay
-    share = nearest_share(x - ax, y - ay, dx, dy)
-    px, py = x - ax - share * dx, y - ay - share * dy
-    return px * px + py * py
 
 
 @inner_kernel
@@ -43,7 +34,7 @@ def depth_inside(zones: Zones, z: int, x: float, y: float) -> float:
         ax, ay, bx, by = corner[before, 0], corner[before, 1], corner[c, 0], corner[c, 1]
         if (ay > y) != (by > y) and x - ax < (bx - ax) * (y - ay) / (by - ay):
             is_inside = not is_inside
-        nearest = min(nearest, _squared_distance(x, y, ax, ay, bx, by))
+        nearest = min(nearest, squared_distance(x, y, ax, ay, bx, by))
         before = c
     return math.sqrt(nearest) if is_inside else -math.sqrt(nearest)
 
@@ -56,30 +47,22 @@ def may_be_inside(zones: Zones, z: int, x: float, y: float) -> bool:
 
 
 @inner_kernel
-def _cross(ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float) -> bool:
-    """Whether the segments a to b and c to d cross."""
-    one, other = doubled_area(cx, cy, dx, dy, ax, ay), doubled_area(cx, cy, dx, dy, bx, by)
-    third, fourth = doubled_area(ax, ay, bx, by, cx, cy), doubled_area(ax, ay, bx, by, dx, dy)
-    return (one > 0.0) != (other > 0.0) and (third > 0.0) != (fourth > 0.0)
-
-
-@inner_kernel
 def meets_zone(zones: Zones, z: int, ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether the way from a to b begins in a zone, ends in it, or passes through."""
     if depth_inside(zones, z, ax, ay) >= 0.0 or depth_inside(zones, z, bx, by) >= 0.0:
         return True
     kind, shape, corner = zones.kind[z], zones.shape, zones.corner
     if kind == CIRCLE:
-        return _squared_distance(shape[z, 0], shape[z, 1], ax, ay, bx, by) <= shape[z, 2] * shape[z, 2]
+        return squared_distance(shape[z, 0], shape[z, 1], ax, ay, bx, by) <= shape[z, 2] * shape[z, 2]
     if kind == BOX:
         left, bottom, right, top = shape[z, 0], shape[z, 1], shape[z, 2], shape[z, 3]
         # What crosses a box crosses one of its diagonals.
-        rises = _cross(ax, ay, bx, by, left, bottom, right, top)
-        return rises or _cross(ax, ay, bx, by, left, top, right, bottom)
+        rises = segments_cross(ax, ay, bx, by, left, bottom, right, top)
+        return rises or segments_cross(ax, ay, bx, by, left, top, right, bottom)
     first, last = zones.first[z], zones.first[z + 1]
     before = last - 1
     for c in range(first, last):
-        if _cross(ax, ay, bx, by, corner[before, 0], corner[before, 1], corner[c, 0], corner[c, 1]):
+        if segments_cross(ax, ay, bx, by, corner[before, 0], corner[before, 1], corner[c, 0], corner[c, 1]):
             return True
         before = c
     return False

@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 from sandbox.physics.arrays import Flags, FloatRows, Slots
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders
-from sandbox.physics.geometry.rigid import WeightedSums, best_turn, centre_of, rotated, with_pair, with_point
+from sandbox.physics.geometry.rigid import best_turn, fit_of, rotated
 from sandbox.physics.geometry.segment import doubled_area
 from sandbox.physics.jit import inner_kernel
 
@@ -87,18 +87,7 @@ def _bent(s: int, colliders: Colliders, outline: Outline) -> float:
     first, last = outline.member_start[s], outline.member_start[s + 1]
     if first == last:
         return math.inf
-    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
-    for i in range(first, last):
-        p = outline.member[i]
-        sums = with_point(sums, 1.0, position[p, 0], position[p, 1], origin[p, 0], origin[p, 1])
-    x, y, form_x, form_y, _, _ = centre_of(sums)
-    along = 0.0
-    across = 0.0
-    for i in range(first, last):
-        p = outline.member[i]
-        along, across = with_pair(
-            along, across, 1.0, origin[p, 0] - form_x, origin[p, 1] - form_y, position[p, 0] - x, position[p, 1] - y
-        )
+    x, y, form_x, form_y, along, across = fit_of(origin, position, outline.member[first:last])
     if not along * along + across * across > 0.0:
         return math.inf
     cosine, sine = best_turn(along, across)

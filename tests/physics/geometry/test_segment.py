@@ -1,5 +1,7 @@
 """Segments against brute force, and the parts of kernels against their twins for arrays."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -15,6 +17,7 @@ from sandbox.physics.geometry.segment import (
     nearest_share,
     segment_of,
     segments_cross,
+    squared_distance,
     unit,
 )
 
@@ -54,6 +57,7 @@ def test_arrays_get_the_bits_of_kernels():
         position = np.array([a[k], b[k], p[k]])
         assert closest_on_segment(2, 0, 1, position)[:2] == (share[k], distance[k])
         assert nearest_share(*(p[k] - a[k]), *(b[k] - a[k])) == share[k]
+        assert math.sqrt(squared_distance(*p[k], *a[k], *b[k])) == distance[k]
         assert doubled_area(*a[k], *b[k], *p[k]) == doubled_area_of(0, 1, 2, position) == area[k]
     assert np.array_equal(distance, lengths(way))
     assert np.allclose(a + share[:, None] * (b - a) + way, p, atol=1e-12)
@@ -75,7 +79,8 @@ def test_segments_cross_where_a_common_place_lies_inside_of_both():
     c, d = PLACES[:2, 100:]
     matrix = np.stack([b - a, c - d], axis=2)
     shares = np.linalg.solve(matrix, (c - a)[..., None])[..., 0]
-    assert np.array_equal(segments_cross(a, b, c, d), np.all((shares > 0.0) & (shares < 1.0), axis=1))
+    found = [segments_cross(*ends) for ends in np.concatenate([a, b, c, d], axis=1)]
+    assert np.array_equal(found, np.all((shares > 0.0) & (shares < 1.0), axis=1))
 
 
 def test_a_segment_has_a_start_and_a_way():
