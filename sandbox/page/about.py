@@ -8,16 +8,17 @@ from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
 from sandbox.level.rules.rule import RuleDef
 from sandbox.physics import command
-from sandbox.physics.analysis.firmness import values_of
+from sandbox.physics.analysis.firmness import FirmnessRange, values_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.jit.making.platforms import WEB
+from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline import block, collide, tick
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Column, Family
 from sandbox.physics.world import World
-from sandbox.session.actions import record_of, sags_of
+from sandbox.session.actions import record_of
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.for_pages import table_of
 from sandbox.session.commands.records import from_record
@@ -92,7 +93,10 @@ def _action(action: ActionDef, world: World) -> dict[str, Any]:
 
 def _firming(action: ActionDef, world: World, rate: int) -> list[dict[str, Any]]:
     """The commands of kernels that make a body soft as a whole."""
-    body, stiffness, damping = sags_of(world.source, world)[str(action.body), float(action.sag or 0.0)]
+    settings = world.source.settings
+    body = next(form for form in world.forms if form.name == action.body)
+    reach = FirmnessRange.of(body.shape, settings.gravity, settings.tick_rate)
+    stiffness, damping = reach.coefficients(Firmness(sag=action.sag))
     values = dict(zip(("stiffness", "damping", "lowest_mode"), values_of(body, stiffness, damping), strict=True))
     given = values | {"duration": round(action.during * rate)}
     return [

@@ -14,10 +14,10 @@ from sandbox.physics.constraints import (
     BEND,
     ConstraintArrays,
     constraints_of,
-    rest_of_area,
-    rest_of_bend,
+    measure_rests,
 )
 from sandbox.physics.events import Containment
+from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES, SPRINGS
 from sandbox.physics.keeping.capacity import Capacity
@@ -401,7 +401,12 @@ class World(StateArrays):
             raise ValueError("the corners of a constraint are different particles")
         places = self.position[slots] if form is None else arguments.floats("form", form, (count, size, 2))
         wanted = arguments.floats("inflation", inflation, (count,))
-        rest, weight = rest_of_area(places, wanted) if kind == AREA else rest_of_bend(places)
+        rest, weight = np.zeros((count, 2)), np.zeros(count * size)
+        if kind == BEND and not np.all(lengths(np.diff(places, axis=1)) > 0.0):
+            raise ValueError("a bend joins two links, each with a length")
+        measure_rests(kind, np.ascontiguousarray(places.reshape(-1, 2)), rest, weight)
+        if kind == AREA:
+            rest[:, 0] = wanted * rest[:, 1]
         first = self.constraint_count
         given: dict[str, ArrayLike] = dict(
             constraint_kind=kind, constraint_corners=size, constraint_rest=rest, constraint_stiffness=stiffness,
@@ -412,7 +417,7 @@ class World(StateArrays):
         arguments.check_materials(rows["constraint_material"], len(self.material_names))
         self._grow(Family.CONSTRAINT, count, rows)
         self.append(
-            Family.CORNER, count * size, corner_particle=slots.reshape(-1), corner_weight=weight.reshape(-1),
+            Family.CORNER, count * size, corner_particle=slots.reshape(-1), corner_weight=weight,
             corner_form=places.reshape(-1, 2),
         )  # fmt: skip
         self.spin[slots] = 0.0

@@ -10,9 +10,8 @@ import numpy as np
 
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
-from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import Firmness, FirmnessRange, give_firmness
-from sandbox.physics.keeping.forms import FirmBody
+from sandbox.physics.analysis.firmness import give_firmness
+from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError, act
 from sandbox.session.commands.records import from_record
@@ -25,7 +24,7 @@ class RuleActions:
     def __init__(self, level: Level, world: World) -> None:
         """world: that of the level, at its start."""
         self._level = level
-        self._sags = sags_of(level, world)
+        self._bodies = [body.name for body in world.forms]
         self._counters = [counter.id for counter in level.counters]
 
     def act(self, world: World) -> None:
@@ -42,27 +41,20 @@ class RuleActions:
                     world.counter[self._counters.index(action.count)] += action.by
                     continue
                 if action.sag is not None:
-                    during = round(action.during * self._level.settings.tick_rate)
-                    give_firmness(world, *self._sags[str(action.body), action.sag], during)
+                    self._soften(world, action)
                     continue
                 record = record_of(action, world, self._level.settings.tick_rate)
                 with suppress(CommandError):
                     if record is not None:
                         act(world, from_record(record, world))
 
-
-def sags_of(level: Level, world: World) -> dict[tuple[str, float], tuple[FirmBody, float, float]]:
-    """By bodies and sags of rules: the body as it is at the level's start, and its Cs and Cd as a whole then.
-
-    A sag is that under the gravity of the level, as where a body's definition says it.
-    """
-    bodies, settings = {body.name: body for body in firm_bodies(world)}, level.settings
-    found = {}
-    for action in (action for rule in level.rules for action in rule.then if action.sag is not None):
-        body = bodies[str(action.body)]
-        reach = FirmnessRange.of(body.shape, settings.gravity, settings.tick_rate)
-        found[body.name, float(action.sag or 0.0)] = (body, *reach.coefficients(Firmness(sag=action.sag)))
-    return found
+    def _soften(self, world: World, action: ActionDef) -> None:
+        """Let a body sag as where its definition says it: all of it, under the gravity of the level."""
+        settings, body = self._level.settings, self._bodies.index(str(action.body))
+        during = round(action.during * settings.tick_rate)
+        give_firmness(
+            world, body, Firmness(sag=action.sag), settings.gravity, settings.tick_rate, during, is_whole=True
+        )
 
 
 def record_of(action: ActionDef, world: World, rate: int) -> dict[str, Any] | None:

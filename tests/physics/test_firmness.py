@@ -5,8 +5,9 @@ import random
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach, least_ratio, lowest_mode_of
+from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach, lowest_mode_of
 from sandbox.physics.equation import of_body, of_springs
+from sandbox.physics.firmness.reach import least_ratio
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.keeping.forms import Firmness, StiffForm
 from sandbox.physics.settings import AUTO

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, set_firmness
+from sandbox.physics.analysis.firmness import OutOfReach, give_firmness
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
@@ -34,12 +34,8 @@ class SetFirmness(Command):
     def carry_out(self, world: World) -> None:
         if (self.sag is None) == (self.hz is None) or (self.hz is None and self.ratio is not None):
             raise CommandError("say sag, or hz with or without ratio")
-        body = firm_bodies(world)[self.body]
-        reach = FirmnessRange.of(body.shape, world.settings.gravity, world.settings.tick_rate)
-        if reach.lowest_mode == 0.0:
-            raise CommandError(f"the form of {body.name} is not stiff without pins: it has no firmness")
         try:
-            coefficients = reach.coefficients(Firmness(self.sag, self.hz, self.ratio))
+            asked = Firmness(self.sag, self.hz, self.ratio)
+            give_firmness(world, self.body, asked, world.settings.gravity, world.settings.tick_rate, self.duration)
         except OutOfReach as error:
-            raise CommandError(f"{body.name}: {error}") from None
-        set_firmness(world, self.body, *coefficients, self.duration)
+            raise CommandError(f"{firm_bodies(world)[self.body].name}: {error}") from None
