@@ -13,9 +13,11 @@ The bend's torque is that of 2 sin(phi / 2): most for a link that is folded back
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int8s, Int32s
 from sandbox.physics.geometry.polygon import polygon_area
-from sandbox.physics.geometry.segment import SHORTEST
+from sandbox.physics.geometry.segment import SHORTEST, lengths
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
 from sandbox.physics.state import State, StateArrays
 
@@ -224,3 +226,17 @@ def measure_rests(kind: int, form: FloatRows, rest: FloatRows, weight: Floats) -
     size = form.shape[0] // max(1, count)
     for k in range(count):
         measure_rest(kind, form, k * size, (k + 1) * size, rest, k, weight)
+
+
+def rests_of(kind: int, places: Floats, inflation: Floats) -> tuple[Floats, Floats]:
+    """Rest (t, 2) and weights (t k,) of constraints of one kind that have these forms [m] (t, k, 2).
+
+    inflation (t,): area wanted as a multiple of the form's. Raises ValueError for a bend with a link of no length.
+    """
+    rest, weight = np.zeros((len(places), 2)), np.zeros(places.shape[0] * places.shape[1])
+    if kind == BEND and not np.all(lengths(np.diff(places, axis=1)) > 0.0):
+        raise ValueError("a bend joins two links, each with a length")
+    measure_rests(kind, np.ascontiguousarray(places.reshape(-1, 2)), rest, weight)
+    if kind == AREA:
+        rest[:, 0] = inflation * rest[:, 1]
+    return rest, weight

@@ -14,10 +14,9 @@ from sandbox.physics.constraints import (
     BEND,
     ConstraintArrays,
     constraints_of,
-    measure_rests,
+    rests_of,
 )
 from sandbox.physics.events import Containment
-from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES, SPRINGS
 from sandbox.physics.keeping.capacity import Capacity
@@ -401,12 +400,7 @@ class World(StateArrays):
             raise ValueError("the corners of a constraint are different particles")
         places = self.position[slots] if form is None else arguments.floats("form", form, (count, size, 2))
         wanted = arguments.floats("inflation", inflation, (count,))
-        rest, weight = np.zeros((count, 2)), np.zeros(count * size)
-        if kind == BEND and not np.all(lengths(np.diff(places, axis=1)) > 0.0):
-            raise ValueError("a bend joins two links, each with a length")
-        measure_rests(kind, np.ascontiguousarray(places.reshape(-1, 2)), rest, weight)
-        if kind == AREA:
-            rest[:, 0] = wanted * rest[:, 1]
+        rest, weight = rests_of(kind, places, wanted)
         first = self.constraint_count
         given: dict[str, ArrayLike] = dict(
             constraint_kind=kind, constraint_corners=size, constraint_rest=rest, constraint_stiffness=stiffness,

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.physics.firmness.table import FormTable, form_table
+from sandbox.physics.firmness.form_table import FormTable, form_table
 from sandbox.physics.keeping.forms import FirmBody, StiffForm
 from sandbox.physics.world import World
 

@@ -10,6 +10,7 @@ import numpy as np
 from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.arena import FIRST_ARENA, MORE
 from sandbox.physics.equation import frequency_from_coefficients, of_springs
+from sandbox.physics.firmness.form_table import form_table
 from sandbox.physics.firmness.lowest_mode import NO_MODE, find_lowest_mode
 from sandbox.physics.firmness.reach import (
     BY_FREQUENCY,
@@ -22,7 +23,6 @@ from sandbox.physics.firmness.reach import (
     coefficients_within,
     sag_of,
 )
-from sandbox.physics.firmness.table import form_table
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, design_gravity, height_of
 from sandbox.physics.world import World

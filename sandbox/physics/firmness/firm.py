@@ -90,7 +90,7 @@ class Owners(NamedTuple):
     merge_buffer: Annotated[Slots, "points"]
 
 
-class Piece(NamedTuple):
+class FormPiece(NamedTuple):
     """A body or a piece: its form, and the slots of its springs and constraints."""
 
     form: StiffForm
@@ -105,7 +105,7 @@ class Firmable(NamedTuple):
     good: GoodValues
     forms: Forms
     modes: FormModes
-    piece: Piece
+    piece: FormPiece
 
 
 class Firming(NamedTuple):
@@ -221,9 +221,9 @@ def _part(state: State, forms: Forms, body: int, count: int, owners: Owners, mad
 
 
 @inner_kernel
-def _whole(forms: Forms, body: int) -> Piece:
+def _whole(forms: Forms, body: int) -> FormPiece:
     begins, ends, shapes = forms.first[body : body + 1], forms.first[body + 1 : body + 2], forms.shapes
-    return Piece(
+    return FormPiece(
         StiffForm(
             shapes.points[begins[0, POINTS] : ends[0, POINTS]],
             shapes.mass[begins[0, POINTS] : ends[0, POINTS]],
@@ -237,7 +237,7 @@ def _whole(forms: Forms, body: int) -> Piece:
 
 
 @inner_kernel
-def _new_piece(state: State, forms: Forms, body: int, number: int, pieces: Pieces, arena: Arena) -> Piece:
+def _new_piece(state: State, forms: Forms, body: int, number: int, pieces: Pieces, arena: Arena) -> FormPiece:
     # A piece of a body that was cut.
     whole = _whole(forms, body)
     points, springs, areas, bends = 0, 0, 0, 0
@@ -249,7 +249,7 @@ def _new_piece(state: State, forms: Forms, body: int, number: int, pieces: Piece
         if pieces.constraint[row] == number:
             is_area = state.constraint_kind[whole.constraint[row]] == AREA
             areas, bends = areas + int(is_area), bends + int(not is_area)
-    made = Piece(
+    made = FormPiece(
         StiffForm(
             new_float_rows(arena, points, 2), new_floats(arena, points), new_slot_rows(arena, springs, 2),
             new_slot_rows(arena, areas, CORNERS), new_slot_rows(arena, bends, CORNERS),
@@ -263,7 +263,7 @@ def _new_piece(state: State, forms: Forms, body: int, number: int, pieces: Piece
 
 
 @inner_kernel
-def _fill_piece(state: State, whole: Piece, number: int, pieces: Pieces, index: Slots, made: Piece) -> None:
+def _fill_piece(state: State, whole: FormPiece, number: int, pieces: Pieces, index: Slots, made: FormPiece) -> None:
     # index: scratch, by particle.
     form, count = made.form, 0
     for i in range(pieces.point.shape[0]):
@@ -365,15 +365,16 @@ def firm(
     if b < 0 or (is_whole and body >= forms.first.shape[0] - 1):
         return NO_BODY
     piece, kept, at = _whole(forms, b), modes.body, b
-    pieces = _new_pieces(state, forms, b, arena)
-    if is_full(arena):
-        return NO_ROOM
-    if not is_whole and pieces.total[0] > 1:
-        _follow(pieces, forms, b, modes)
-        piece = _new_piece(state, forms, b, number, pieces, arena)
-        kept, at = modes.piece, forms.first[b, POINTS] + number
-    if is_full(arena):
-        return NO_ROOM
+    if not is_whole:
+        pieces = _new_pieces(state, forms, b, arena)
+        if is_full(arena):
+            return NO_ROOM
+        if pieces.total[0] > 1:
+            _follow(pieces, forms, b, modes)
+            piece = _new_piece(state, forms, b, number, pieces, arena)
+            kept, at = modes.piece, forms.first[b, POINTS] + number
+            if is_full(arena):
+                return NO_ROOM
     mode = _mode_of(piece.form, kept, at, arena)
     if mode == NO_MODE:
         return NO_ROOM
@@ -389,7 +390,7 @@ def firm(
 
 @inner_kernel
 def _set(
-    state: State, good: GoodValues, piece: Piece, stiffness: float, damping: float, mode: float, duration: int
+    state: State, good: GoodValues, piece: FormPiece, stiffness: float, damping: float, mode: float, duration: int
 ) -> None:
     if stiffness == 1.0 and damping == 1.0:
         # All of them rigid, which they are alone as well.

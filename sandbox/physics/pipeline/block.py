@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.driving import Drives
+from sandbox.physics.firmness.firm import FormModes, Forms
 from sandbox.physics.flight import Flight
 from sandbox.physics.joints.joint_set import JointSet
 from sandbox.physics.joints.limited_springs import SpringForces
@@ -59,6 +60,8 @@ class WorldBlock(NamedTuple):
     rules: Rules
     ranges: Ranges
     water: Water  # pools and hulls; the rest is derived
+    forms: Forms
+    modes: FormModes
     start: FloatRows  # [m/s] (n, 2): velocities before anything acted in a substep
     start_length: Floats  # [m] (m,): rest lengths before drives
     shortest: Floats  # (GRAB_COUNT,): scratch

@@ -11,6 +11,7 @@ from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import KeptContacts
 from sandbox.physics.driving import drives_of
+from sandbox.physics.firmness.form_table import form_table
 from sandbox.physics.jit import bundle, items_of
 from sandbox.physics.joints.motors import wheels_of
 from sandbox.physics.pipeline.block import (
@@ -89,10 +90,11 @@ class BlockOwner:
             self.given = self.given._replace(
                 drives=drives_of(world.actuators), wheels=wheels_of(world.actuators), limits=_limits_of(world)
             )
-        water = with_empty(Water, pool=world.water, hull=world.hulls)
+        water, table = with_empty(Water, pool=world.water, hull=world.hulls), form_table(world)
         self.given = self.given._replace(
-            state=state_of(world), good=good_of(world), tuning=tuning(), rules=world.rules, water=water
-        )
+            state=state_of(world), good=good_of(world), tuning=tuning(), rules=world.rules, water=water,
+            forms=table.forms, modes=table.modes,
+        )  # fmt: skip
         self.given.plan[GRAB_PARTICLE], self.given.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
         self._lay_out(world)
 

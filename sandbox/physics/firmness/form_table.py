@@ -12,8 +12,8 @@ from sandbox.physics.firmness.firm import (
     NONE,
     Firmable,
     FormModes,
+    FormPiece,
     Forms,
-    Piece,
     count_pieces,
     firm_body,
     take_piece,
@@ -57,11 +57,11 @@ class FormTable:
         self._call(count_pieces, self._lend(world), count)
         return [int(each) for each in count]
 
-    def piece(self, world: World, body: int, number: int) -> Piece:
+    def piece(self, world: World, body: int, number: int) -> FormPiece:
         """A piece of a body that was cut."""
         pointer = self._lend(world)
         lay_out(take_piece, pointer, np.zeros(FIRST_ARENA, np.int64), body, number)
-        piece: Piece = items_of(pointer, ("piece",))
+        piece: FormPiece = items_of(pointer, ("piece",))
         return piece
 
     def firm(self, world: World, *given: Any) -> int:
@@ -69,7 +69,7 @@ class FormTable:
         return self._call(firm_body, self._lend(world), *given)
 
     def _lend(self, world: World) -> Any:
-        return bundle(Firmable(state_of(world), good_of(world), self.forms, self.modes, empty(Piece)))
+        return bundle(Firmable(state_of(world), good_of(world), self.forms, self.modes, empty(FormPiece)))
 
     def _call(self, entry: Callable[..., int], pointer: Any, *given: Any) -> int:
         while (code := entry(pointer, self._arena, *given)) == NO_ROOM:
