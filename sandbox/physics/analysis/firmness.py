@@ -18,8 +18,10 @@ from sandbox.physics.firmness.reach import (
     BY_SAG,
     BY_WOBBLE,
     FIRMED,
+    NO_BODY,
     NO_HEIGHT,
     NOT_STIFF,
+    OUT_OF_REACH,
     coefficients_within,
     sag_of,
 )
@@ -29,6 +31,14 @@ from sandbox.physics.world import World
 
 # Sags by their words, from soft to hard.
 WORDS = {"jelly": 0.25, "soft": 0.1, "firm": 0.02, "hard": 0.003, "rigid": 0.0}
+# Why a body does not become so, after its name; and what is said after a nearest sag that is above 0.
+REFUSALS = {
+    NO_BODY: "there is no such body",
+    NOT_STIFF: "its form is not stiff without pins, so it has no firmness",
+    NO_HEIGHT: "it has no height along gravity to sag by; say its frequency in Hz",
+    OUT_OF_REACH: "{asked} is out of reach at {rate} ticks a second; the nearest is {nearest}",
+}
+BUT_RIGID = ", but for 0, which is rigid"
 # Particles of the largest body whose firmness panels read where nothing has asked for it; it takes some 0.2 s.
 LARGEST_READ = 2_000
 # Forms whose lowest mode is kept; those of a level, edited one by one, need no more.
@@ -114,14 +124,11 @@ def _asked(firmness: Firmness) -> tuple[int, float, float]:
 
 
 def _refusal(code: int, asked: Firmness, found: list[float], tick_rate: float) -> OutOfReach:
-    if code == NOT_STIFF:
-        return OutOfReach("its form is not stiff without pins, so it has no firmness", None)
-    if code == NO_HEIGHT:
-        return OutOfReach("it has no height along gravity to sag by; say its frequency in Hz", None)
-    nearest = Firmness(hz=found[0], ratio=found[1]) if asked.sag is None else Firmness(sag=found[0])
-    rigid = ", but for 0, which is rigid" if nearest.sag else ""
-    at = f"at {tick_rate:g} ticks a second"
-    return OutOfReach(f"{asked} is out of reach {at}; the nearest is {nearest}{rigid}", nearest)
+    nearest = None
+    if code == OUT_OF_REACH:
+        nearest = Firmness(hz=found[0], ratio=found[1]) if asked.sag is None else Firmness(sag=found[0])
+    text = REFUSALS[code].format(asked=asked, rate=f"{tick_rate:g}", nearest=nearest)
+    return OutOfReach(text + (BUT_RIGID if nearest and nearest.sag else ""), nearest)
 
 
 def give_firmness(
