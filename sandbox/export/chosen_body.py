@@ -12,7 +12,7 @@ from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.stability import constraint_count, effective_count
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, of_body
-from sandbox.physics.keeping.forms import design_gravity
+from sandbox.physics.keeping.forms import design_gravity, height_of
 from sandbox.physics.marks import LAW_HAND, LAW_HOOKE
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import substep_coefficients, substep_time
@@ -112,7 +112,7 @@ def _described(world: World, name: str, slots: NDArray[np.int64]) -> ChosenBody:
     particles = np.unique(np.concatenate([world.particle_a[slots], world.particle_b[slots]]))
     form = next((k for k, each in enumerate(world.forms) if each.name == name), None)
     mode = 0.0 if form is None else lowest_mode_of(world.forms[form].shape)
-    gravity, least = design_gravity(settings.gravity), int(np.argmin(reduced))
+    gravity, least = design_gravity(*settings.gravity), int(np.argmin(reduced))
     tick, h = 1.0 / settings.tick_rate, substep_time(settings)
     # Without a wobble of its own it moves slowly as a whole, but springs that share nothing swing each for itself.
     counts = _counts(world, slots, particles)
@@ -131,7 +131,7 @@ def _described(world: World, name: str, slots: NDArray[np.int64]) -> ChosenBody:
     return ChosenBody(
         world, name, world.material_names[world.material[first]], springs, reduced, stiffness, damping, hooke, tick, h,
         float(counts.max()), len(counts) > len(slots), others, form, mode,
-        0.0 if form is None else world.forms[form].shape.height(settings.gravity),
+        0.0 if form is None else height_of(world.forms[form].shape, *settings.gravity),
         float(np.sum(world.mass[free])) * gravity, float(reduced[least]), float(world.rest_length[springs[least]]),
         gravity, eigenvalue, restoring, decay,
     )  # fmt: skip

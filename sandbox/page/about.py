@@ -8,7 +8,6 @@ from sandbox.level.rules.action import ActionDef
 from sandbox.level.rules.hands import words_of
 from sandbox.level.rules.rule import RuleDef
 from sandbox.physics import command, command_table, permission
-from sandbox.physics.analysis.firmness import values_of
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.jit.making.platforms import WEB
@@ -17,7 +16,7 @@ from sandbox.physics.pipeline import block, collide, tick
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Column, Family
 from sandbox.physics.world import World
-from sandbox.session.actions import record_of, sags_of
+from sandbox.session.actions import record_of, softening_of
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.for_pages import table_of
 from sandbox.session.commands.records import from_record
@@ -91,19 +90,8 @@ def _action(action: ActionDef, world: World) -> dict[str, Any]:
     if record is not None:
         made["commands"] = [{"type": record["type"], **vars(from_record(record, world))}]
     elif action.sag is not None:
-        made["commands"] = _firming(action, world, rate)
+        made["commands"] = [{"type": "soften", **softening_of(action, level, world)}]
     return made | ({"isCheckpoint": True} if action.checkpoint else {})
-
-
-def _firming(action: ActionDef, world: World, rate: int) -> list[dict[str, Any]]:
-    """The commands of kernels that make a body soft as a whole."""
-    body, stiffness, damping = sags_of(world.source, world)[str(action.body), float(action.sag or 0.0)]
-    values = dict(zip(("stiffness", "damping", "lowest_mode"), values_of(body, stiffness, damping), strict=True))
-    given = values | {"duration": round(action.during * rate)}
-    return [
-        {"type": "firm_springs", "springs": body.springs.tolist(), **given},
-        {"type": "firm_constraints", "constraints": body.constraints.tolist(), **given},
-    ]
 
 
 def array_path(column: Column) -> str:

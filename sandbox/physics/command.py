@@ -17,6 +17,17 @@ from sandbox.physics.changing.ramping import firm_up, inflate, set_warm_start, s
 from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.components import list_body
+from sandbox.physics.firmness.firm import SPRINGS, Firming, FormModes, Forms, body_of_number, firm
+from sandbox.physics.firmness.reach import (
+    BY_FREQUENCY,
+    BY_SAG,
+    BY_WOBBLE,
+    NO_BODY,
+    NO_HEIGHT,
+    NOT_STIFF,
+    OUT_OF_REACH,
+    Asked,
+)
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.marks import (
     BANK_EMPTIED,
@@ -37,21 +48,23 @@ from sandbox.physics.settings import (
     SOLVER_NAMES,
     SUBSTEP_COUNT,
     SUBSTEPS,
+    TICK_RATE,
     WIND_X,
 )
 from sandbox.physics.state import GoodValues, State
 from sandbox.physics.topology.sorting import list_ends
 
 GRAB, MOVE_GRAB, RELEASE, PIN, UNPIN, CUT, BREAK, PART, SET_COEFFICIENTS, DRIVE, PUSH, SHAKE = range(12)
-SET_GRAVITY, SET_AIR, HOLD_KEY, FIRM_SPRINGS, FIRM_CONSTRAINTS, SET_INFLATION, SCALE_MASS = range(12, 19)
-MOVE_BODY, SET_SOLVER, SET_FIRMNESS, FREE, REMOVE, ADD_PARTICLE, ADD_SPRING, ADD_BODY = range(19, 27)
+SET_GRAVITY, SET_AIR, HOLD_KEY, SOFTEN, SET_INFLATION, SCALE_MASS, MOVE_BODY = range(12, 19)
+SET_SOLVER, SET_FIRMNESS, FREE, REMOVE, ADD_PARTICLE, ADD_SPRING, ADD_BODY = range(19, 26)
 # Why a command was refused, and nothing was changed. A result is -(reason + REASONS k): k is the place among slots and
 # numbers, counted through, of what it is about.
 REASONS = 64
 (
     BAD, FORBIDDEN, UNTOUCHABLE, EXHAUSTED, HOLDS, HOLDS_NOTHING, TOO_PINNED, PINNED, NOT_PINNED, NOTHING_THERE,
     NOTHING_MOVES, TOO_FAR, TOO_HEAVY, NOTHING_TOUCHES, BODY_PINNED, NO_PLACE,
-) = range(2, 18)  # fmt: skip
+    UNSAID, NO_FIRMNESS, FLAT, BEYOND_REACH,
+) = range(2, 22)  # fmt: skip
 MOST_ITERATIONS = 1000
 _SOLVER_COUNT, _MOST_SUBSTEPS = len(SOLVER_NAMES), SUBSTEPS[-1]
 
@@ -60,7 +73,7 @@ class Commanded(NamedTuple):
     """What commands change; a world block begins with it.
 
     numbers, choices: the settings, see settings.py. areas (k, 2): of each body that keeps areas its first constraint,
-    and the one behind its last.
+    and the one behind its last. forms, modes: of bodies that may be stiff by their form.
     """
 
     state: State
@@ -68,6 +81,8 @@ class Commanded(NamedTuple):
     numbers: Floats
     choices: Slots
     areas: SlotRows
+    forms: Forms
+    modes: FormModes
 
 
 @kernel
@@ -83,7 +98,7 @@ def command(pointer: Bundle[Commanded], arena: Arena, giver: int, kind: int, slo
         needs = _different(slots, state.law.shape[0], arena)
         result = NO_ARENA if needs < 0 else 0
     if result == 0 and giver == HAND:
-        result = _not_for_hands(state, world.areas, kind, slots, needs)
+        result = _not_for_hands(world, arena, kind, slots, needs)
     if result == 0:
         result = _carry_out(world, arena, kind, slots, numbers)
     if result == 0:
@@ -129,8 +144,8 @@ def _carry_out(world: Commanded, arena: Arena, kind: int, slots: Slots, numbers:
         _set_air(state, world.numbers, slots, numbers)
     elif kind == DRIVE:
         state.actuator_value[slots[0]] = numbers[0]
-    elif kind in (FIRM_SPRINGS, FIRM_CONSTRAINTS):
-        _firm(state, good, slots, numbers, kind)
+    elif kind in (SET_FIRMNESS, SOFTEN):
+        return _soften(world, kind, slots, numbers, arena)
     elif kind == HOLD_KEY:
         state.key_down[slots[0]] = slots[1] != 0
     elif kind == PUSH:
@@ -175,11 +190,6 @@ def _first_bad(world: Commanded, kind: int, slots: Slots, numbers: Floats) -> in
         rows = world.areas.shape[0]
     if rows >= 0 and not 0 <= slots[0] < rows:
         return 0
-    if kind in (FIRM_SPRINGS, FIRM_CONSTRAINTS):
-        rows = springs if kind == FIRM_SPRINGS else state.constraint_kind.shape[0]
-        for k in range(slots.shape[0]):
-            if not 0 <= slots[k] < rows:
-                return k
     place = _place_of_duration(kind)
     if place >= 0 and not 0 <= slots[place] <= LONGEST_RAMP:
         return place
@@ -204,7 +214,9 @@ def _place_of_duration(kind: int) -> int:
         return 1
     if kind == SET_AIR:
         return 2
-    if kind == SET_COEFFICIENTS:
+    if kind == SOFTEN:
+        return 3
+    if kind in (SET_COEFFICIENTS, SET_FIRMNESS):
         return 4
     return 7 if kind == SET_SOLVER else -1
 
@@ -231,6 +243,8 @@ def _unfit(state: State, kind: int, slots: Slots, numbers: Floats) -> int:
             return _refused(HOLDS, 2)
         if not holds and kind != GRAB:
             return _refused(HOLDS_NOTHING, 2)
+    if kind == SET_FIRMNESS and ((slots[1] != 0) == (slots[2] != 0) or (slots[1] != 0 and slots[3] != 0)):
+        return _refused(UNSAID, 0)
     if kind == GRAB and state.inverse_mass[slots[3]] == 0.0:
         return _refused(TOO_PINNED, 3)
     if kind == PIN and state.inverse_mass[slots[1]] == 0.0:
@@ -254,8 +268,9 @@ def _different(slots: Slots, bound: int, arena: Arena) -> int:
 
 
 @inner_kernel
-def _not_for_hands(state: State, areas: SlotRows, kind: int, slots: Slots, needs: int) -> int:
+def _not_for_hands(world: Commanded, arena: Arena, kind: int, slots: Slots, needs: int) -> int:
     # Why hands may not give a command whose slots are there; 0: they may.
+    state = world.state
     why = refusal(state, HAND, kind, needs)
     if why == NOT_ALLOWED:
         return _refused(FORBIDDEN, 0)
@@ -267,8 +282,15 @@ def _not_for_hands(state: State, areas: SlotRows, kind: int, slots: Slots, needs
             if state.spring_untouchable[slots[k]]:
                 return _refused(UNTOUCHABLE, k)
     if kind == SET_INFLATION:
-        first = areas[slots[0], 0]
-        if first < areas[slots[0], 1] and state.untouchable[state.corner_particle[state.constraint_first[first]]]:
+        first = world.areas[slots[0], 0]
+        if first < world.areas[slots[0], 1] and state.untouchable[state.corner_particle[state.constraint_first[first]]]:
+            return _refused(UNTOUCHABLE, 0)
+    if kind == SET_FIRMNESS:
+        begin(arena)
+        body, _ = body_of_number(state, world.forms, slots[0], arena)
+        if is_full(arena):
+            return NO_ARENA
+        if body >= 0 and state.spring_untouchable[world.forms.spring[world.forms.first[body, SPRINGS]]]:
             return _refused(UNTOUCHABLE, 0)
     return 0 if why == GRANTED else _refused(EXHAUSTED, 0)
 
@@ -394,16 +416,6 @@ def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Flo
 
 
 @inner_kernel
-def _firm(state: State, good: GoodValues, slots: Slots, numbers: Floats, kind: int) -> None:
-    # Of springs or constraints of a body.
-    for at in range(slots.shape[0]):
-        if kind == FIRM_SPRINGS:
-            set_spring(state, good, slots[at], numbers[0], numbers[1], numbers[2], int(numbers[3]))
-        else:
-            set_constraint(state, good, slots[at], numbers[0], numbers[1], numbers[2], int(numbers[3]))
-
-
-@inner_kernel
 def _can_move(state: State, first_cursor: int, p: int) -> bool:
     return state.particle_active[p] and not _is_cursor(first_cursor, p) and state.inverse_mass[p] > 0.0
 
@@ -478,6 +490,28 @@ def _free(state: State, good: GoodValues, particle: int, arena: Arena) -> int:
     if why == freeing.IS_PINNED:
         return _refused(BODY_PINNED, 1)
     return _refused(NO_PLACE, 1) if why == freeing.NO_PLACE else why
+
+
+@inner_kernel
+def _soften(world: Commanded, kind: int, slots: Slots, numbers: Floats, arena: Arena) -> int:
+    # What hands ask under the gravity of now, of a body or of a piece; or what a level asks of the whole of a body.
+    found = numbers[numbers.shape[0] - 2 : numbers.shape[0]]
+    way = slots[2]
+    value, second, duration = numbers[0], numbers[1], slots[3]
+    x, y, is_whole = numbers[2], numbers[3], kind == SOFTEN and slots[1] != 0
+    if kind == SET_FIRMNESS:
+        way = BY_SAG if slots[1] != 0 else (BY_WOBBLE if slots[3] != 0 else BY_FREQUENCY)
+        value, second, duration = numbers[0] if way == BY_SAG else numbers[1], numbers[2], slots[4]
+        x, y = world.numbers[GRAVITY_X], world.numbers[GRAVITY_X + 1]
+    firming = Firming(Asked(way, value, second), x, y, 1.0 * world.choices[TICK_RATE], duration)
+    code = firm(world.state, world.good, world.forms, world.modes, arena, slots[0], is_whole, firming, found)
+    if code == NO_BODY:
+        return _refused(BAD, 0)
+    if code == NOT_STIFF:
+        return _refused(NO_FIRMNESS, 0)
+    if code == NO_HEIGHT:
+        return _refused(FLAT, 0)
+    return _refused(BEYOND_REACH, 0) if code == OUT_OF_REACH else code
 
 
 @inner_kernel

@@ -1,16 +1,15 @@
 """The table of commands: what kernels take of each by its name in files, how they are called, words for refusals."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from sandbox.physics import command
 from sandbox.physics.arena import NO_ARENA
-from sandbox.physics.arrays import Floats, SlotRows, Slots
+from sandbox.physics.arrays import Floats
 from sandbox.physics.jit import Bundle, bundle
 from sandbox.physics.keeping.arguments import (
-    AREAS,
     CONSTRAINTS,
     FARTHEST,
     HANDS,
@@ -27,7 +26,7 @@ from sandbox.physics.keeping.arguments import (
 )
 from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
 from sandbox.physics.settings import AUTO, SOLVER_NAMES
-from sandbox.physics.state import GoodValues, State, StateArrays
+from sandbox.physics.state import StateArrays
 
 # Words for them; {}: the name of what it is about, or its number.
 WORDS = {
@@ -46,6 +45,10 @@ WORDS = {
     command.NOTHING_TOUCHES: "nothing touches anything here: there is nothing to free",
     command.BODY_PINNED: "the body of {} is pinned: unpin it to free it",
     command.NO_PLACE: "there is no free place for the body of {} near by",
+    command.UNSAID: "say sag, or hz with or without ratio",
+    command.NO_FIRMNESS: "{}: its form is not stiff without pins, so it has no firmness",
+    command.FLAT: "{}: it has no height along gravity to sag by; say its frequency in Hz",
+    command.BEYOND_REACH: "{}: {} is out of reach at {} ticks a second; the nearest is {}{}",
     command.TOO_HEAVY: f"{{}}: a mass is from {LEAST_MASS:g} to {MOST_MASS:g} kg",
 }
 # What has to be derived again after a command: nothing, what follows from hands, what follows from topology, all of it
@@ -58,7 +61,7 @@ class KernelCommand(NamedTuple):
 
     first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; duration [ticks]: see ramps.py; ?name:
     whether that is given. Others are what commands of files call so: places have two numbers, springs as many slots as
-    there are. The last number of `set_solver` is its answer: by what the host is to multiply kept impulses of contacts.
+    there are. What answers is written by the kernel: see ANSWERS.
     """
 
     code: int
@@ -69,20 +72,22 @@ class KernelCommand(NamedTuple):
 
 _HAND = ("first_cursor", "first_spring", "grab")
 _PARTICLE = ("first_cursor", "particle")
-_FIRMNESS = ("stiffness", "damping", "lowest_mode", "duration")
 _SOLVER = ("?solver", "solver", "?iterations", "iterations", "?substeps", "substeps", "?warm_start", "duration")
+# Numbers that a kernel writes, and how many they are: by what the host is to multiply kept impulses of contacts; the
+# nearest firmness that can be had.
+ANSWERS = {"factor": 1, "nearest": 2}
 # Slots that are true or false.
-_FLAGS = frozenset({"down", "at_rest"})
+_FLAGS = frozenset({"down", "at_rest", "whole"})
 # Numbers that are pairs; ranges of others, where they have any. A drive is from -1 to 1, see World.drive.
 _PAIRS = frozenset({"target", "gravity", "wind", "position", "impulse", "acceleration", "by"})
 _RANGES = {
     "strength": (0.0,), "radius": (0.0,), "stiffness": (0.0, 1.0), "damping": (0.0, 1.0), "lowest_mode": (0.0,),
-    "drag": (0.0,), "warm_start": (0.0, 1.0),
+    "drag": (0.0,), "warm_start": (0.0, 1.0), "sag": (0.0,), "hz": (0.0,), "ratio": (0.0,),
 }  # fmt: skip
 # What is a list of slots, of which a command has one alone.
 _LISTS = ("springs", "constraints")
-# Kinds of commands by their names in files; files have no `break_springs`, which a tick ends with, and no
-# `part_bodies`, which building a level with cut bodies does.
+# Kinds of commands by their names in files. Files have no `break_springs`, which a tick ends with; no `part_bodies`,
+# which building a level with cut bodies does; and no `soften`, by which levels and rules make a body soft.
 KINDS = {
     "grab": KernelCommand(command.GRAB, (*_HAND, "particle"), ("target", "strength", "radius"), OF_HANDS),
     "move_grab": KernelCommand(command.MOVE_GRAB, _HAND, ("target", "tick_rate")),
@@ -102,19 +107,22 @@ KINDS = {
     "set_air": KernelCommand(command.SET_AIR, ("?wind", "?drag", "duration"), ("drag", "wind")),
     "set_drive": KernelCommand(command.DRIVE, ("part",), ("value",)),
     "hold_key": KernelCommand(command.HOLD_KEY, ("key", "down")),
-    "firm_springs": KernelCommand(command.FIRM_SPRINGS, ("springs",), _FIRMNESS),
-    "firm_constraints": KernelCommand(command.FIRM_CONSTRAINTS, ("constraints",), _FIRMNESS),
     "push": KernelCommand(command.PUSH, ("first_cursor",), ("position", "impulse", "outward", "radius")),
     "shake": KernelCommand(command.SHAKE, ("first_cursor",), ("acceleration", "tick_rate")),
     "set_inflation": KernelCommand(command.SET_INFLATION, ("body", "duration"), ("value",)),
     "scale_mass": KernelCommand(command.SCALE_MASS, _PARTICLE, ("factor",), OF_TOPOLOGY),
     "move_body": KernelCommand(command.MOVE_BODY, (*_PARTICLE, "at_rest"), ("by",)),
     "free": KernelCommand(command.FREE, _PARTICLE),
+    "set_firmness": KernelCommand(
+        command.SET_FIRMNESS, ("body", "?sag", "?hz", "?ratio", "duration"), ("sag", "hz", "ratio", "nearest")
+    ),
+    "soften": KernelCommand(
+        command.SOFTEN, ("body", "whole", "way", "duration"), ("value", "second", "gravity", "nearest")
+    ),
     "set_solver": KernelCommand(command.SET_SOLVER, _SOLVER, ("warm_start", "factor"), OF_SOLVER),
 }
 # What has no kernel yet, and what has, by its number: rows of the family DEED.
 CODES = {name: kind.code for name, kind in KINDS.items()} | {
-    "set_firmness": command.SET_FIRMNESS,
     "remove": command.REMOVE,
     "add_particle": command.ADD_PARTICLE,
     "add_spring": command.ADD_SPRING,
@@ -128,7 +136,6 @@ _ROWS: dict[str, tuple[str, Callable[[Any], int]]] = {
     "constraints": (CONSTRAINTS, lambda world: len(world.constraint_kind)),
     "part": (PARTS, lambda world: len(world.actuator_value)),
     "key": (KEYS, lambda world: len(world.key_down)),
-    "body": (AREAS, lambda world: len(world.area_constraints)),
 }
 # What goes by words, as kernels have it.
 CHOICES: dict[str, dict[str, int]] = {
@@ -140,17 +147,17 @@ CHOICES: dict[str, dict[str, int]] = {
 class Refused(ValueError):
     """A command that is refused, as it cannot be carried out as things are, or hands may not give it.
 
-    reason: see WORDS. field: what of the command it is about, or "", and value: its slot.
+    reason: see WORDS. field: what of the command it is about, and value: its slot. numbers: with answers.
     """
 
-    def __init__(self, reason: int, field: str, value: Any) -> None:
-        super().__init__(WORDS[reason].format(value))
-        self.reason, self.field, self.value = reason, field, value
+    def __init__(self, reason: int, field: str, value: Any, numbers: Sequence[float]) -> None:
+        super().__init__(WORDS[reason].replace("{}", str(value), 1))
+        self.reason, self.field, self.value, self.numbers = reason, field, value, numbers
 
 
-def lend(state: State, good: GoodValues, numbers: Floats, choices: Slots, areas: SlotRows) -> Bundle[command.Commanded]:
-    """What commands change, as kernels take it."""
-    return bundle(command.Commanded(state, good, numbers, choices, areas))
+def lend(*arrays: Any) -> Bundle[command.Commanded]:
+    """What commands change, as kernels take it: the fields of Commanded."""
+    return bundle(command.Commanded(*arrays))
 
 
 def carry_out(pointer: Any, giver: int, name: str, given: Mapping[str, Any], world: StateArrays) -> Floats:
@@ -169,7 +176,7 @@ def carry_out(pointer: Any, giver: int, name: str, given: Mapping[str, Any], wor
     while (result := command.command(pointer, arena, giver, kind.code, slots, numbers)) == NO_ARENA:
         arena = np.zeros(int(arena[0]), np.int64)
     if result < 0:
-        raise _fault(kind, -result % command.REASONS, -result // command.REASONS, given, world)
+        raise _fault(kind, -result, given, numbers.tolist(), world)
     return numbers
 
 
@@ -181,6 +188,8 @@ def numbers_of(name: str, given: Mapping[str, Any]) -> Floats:
 
 def _checked(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> tuple[float, ...]:
     """The numbers that a command has by a name; none of what is left out. Raises ValueError."""
+    if name in ANSWERS:
+        return (0.0,) * ANSWERS[name]
     value = given[name]
     if value is None and f"?{name}" in kind.slots:
         return (0.0,)
@@ -202,19 +211,21 @@ def _packed(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> int:
     return int(value) if isinstance(value, bool) and name in _FLAGS else max(-1, min(whole(name, value), FARTHEST))
 
 
-def _fault(kind: KernelCommand, reason: int, place: int, given: Mapping[str, Any], world: StateArrays) -> Exception:
-    """Why a command was refused, of its slot or number at a place."""
+def _fault(
+    kind: KernelCommand, result: int, given: Mapping[str, Any], numbers: Sequence[float], world: StateArrays
+) -> Exception:
+    """Why a command was refused, as the kernel said it."""
+    reason, place = result % command.REASONS, result // command.REASONS
     is_list = kind.slots[0] in _LISTS
     beyond = place - (len(given[kind.slots[0]]) if is_list else len(kind.slots))
     if beyond >= 0:
-        values = {each: given[each] for each in kind.numbers if each in given}
-        return ValueError(f"{', '.join(values)} {list(values.values())}: finite numbers are needed")
+        return ValueError(f"{', '.join(kind.numbers)} {list(numbers)}: finite numbers are needed")
     name = kind.slots[0 if is_list else place]
     value = given[name][place] if is_list else given[name]
     if reason != command.BAD:
-        return Refused(reason, name, value)
+        return Refused(reason, name, value, numbers)
     if name not in _ROWS:
-        return ValueError(f"{name} {value}: it is out of range")
+        return IndexError(f"{name} {value}: there is none, or it is out of range")
     rows, count = _ROWS[name][0], _ROWS[name][1](world)
     if 0 <= value < count:
         return IndexError(f"{name} {value}: it is not in use, or a hand's")

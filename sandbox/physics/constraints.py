@@ -14,12 +14,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int8s, Int32s
-from sandbox.physics.equation import SHORTEST
 from sandbox.physics.geometry.polygon import polygon_area
-from sandbox.physics.geometry.segment import doubled_areas
+from sandbox.physics.geometry.segment import SHORTEST, lengths
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
 from sandbox.physics.state import State, StateArrays
 
@@ -190,25 +188,55 @@ def explicit_mass(
     return (1.0 / most, present / most) if most > 0.0 else (0.0, 0.0)
 
 
-def rest_of_area(places: Floats, inflation: ArrayLike) -> tuple[Floats, Floats]:
-    """Rest (t, 2) and weights (t, k) of areas; sums are in a written order, as those of a tick are."""
-    area = np.zeros(len(places))
-    for corner in range(1, places.shape[1] - 1):
-        area = area + 0.5 * doubled_areas(places[:, 0], places[:, corner], places[:, corner + 1])
-    across = np.roll(places, -1, axis=1) - np.roll(places, 1, axis=1)
-    weight = 0.25 * (across[..., 0] * across[..., 0] + across[..., 1] * across[..., 1])
-    return np.stack([np.broadcast_to(inflation, len(places)) * area, area], axis=1), weight
+@inner_kernel
+def measure_rest(kind: int, form: FloatRows, first: int, last: int, rest: FloatRows, at: int, weight: Floats) -> None:
+    """Rest of the constraint of the corners first..last that has this form [m] (q, 2), and their weights (q,).
+
+    Of an area that wants what it has there.
+    """
+    if kind == AREA:
+        rest[at, 0] = rest[at, 1] = polygon_area(form, first, last)
+        for c in range(first, last):
+            previous = c - 1 if c > first else last - 1
+            following = c + 1 if c + 1 < last else first
+            dx, dy = form[following, 0] - form[previous, 0], form[following, 1] - form[previous, 1]
+            weight[c] = 0.25 * (dx * dx + dy * dy)
+        return
+    ax, ay = form[first + 1, 0] - form[first, 0], form[first + 1, 1] - form[first, 1]
+    bx, by = form[first + 2, 0] - form[first + 1, 0], form[first + 2, 1] - form[first + 1, 1]
+    a, b = math.sqrt(ax * ax + ay * ay), math.sqrt(bx * bx + by * by)
+    if not (a > 0.0 and b > 0.0):
+        rest[at, 0], rest[at, 1] = 1.0, 0.0
+        weight[first] = weight[first + 1] = weight[first + 2] = 0.0
+        return
+    ax /= a
+    ay /= a
+    bx /= b
+    by /= b
+    rest[at, 0], rest[at, 1] = ax * bx + ay * by, ax * by - ay * bx
+    middle_x, middle_y = ax / a + bx / b, ay / a + by / b
+    weight[first], weight[first + 2] = 1.0 / (a * a), 1.0 / (b * b)
+    weight[first + 1] = middle_x * middle_x + middle_y * middle_y
 
 
-def rest_of_bend(places: Floats) -> tuple[Floats, Floats]:
-    """Rest (t, 2) and weights (t, 3) of bends."""
-    links = np.diff(places, axis=1)
-    length = np.sqrt(links[..., 0] * links[..., 0] + links[..., 1] * links[..., 1])
-    if np.any(length == 0.0):
+@kernel
+def measure_rests(kind: int, form: FloatRows, rest: FloatRows, weight: Floats) -> None:
+    """`measure_rest` of constraints of one kind (t,), each of the same number of corners."""
+    count = rest.shape[0]
+    size = form.shape[0] // max(1, count)
+    for k in range(count):
+        measure_rest(kind, form, k * size, (k + 1) * size, rest, k, weight)
+
+
+def rests_of(kind: int, places: Floats, inflation: Floats) -> tuple[Floats, Floats]:
+    """Rest (t, 2) and weights (t k,) of constraints of one kind that have these forms [m] (t, k, 2).
+
+    inflation (t,): area wanted as a multiple of the form's. Raises ValueError for a bend with a link of no length.
+    """
+    rest, weight = np.zeros((len(places), 2)), np.zeros(places.shape[0] * places.shape[1])
+    if kind == BEND and not np.all(lengths(np.diff(places, axis=1)) > 0.0):
         raise ValueError("a bend joins two links, each with a length")
-    a, b = links[:, 0] / length[:, :1], links[:, 1] / length[:, 1:]
-    cosine, sine = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1], a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    scaled = a / length[:, :1] + b / length[:, 1:]
-    middle = scaled[:, 0] * scaled[:, 0] + scaled[:, 1] * scaled[:, 1]
-    ends = 1.0 / (length * length)
-    return np.stack([cosine, sine], axis=1), np.stack([ends[:, 0], middle, ends[:, 1]], axis=1)
+    measure_rests(kind, np.ascontiguousarray(places.reshape(-1, 2)), rest, weight)
+    if kind == AREA:
+        rest[:, 0] = inflation * rest[:, 1]
+    return rest, weight

@@ -19,13 +19,14 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.physics.geometry.elementary import cosine, exponential
+from sandbox.physics.geometry.segment import SHORTEST
 from sandbox.physics.jit import scalar_kernel
 
-# Below this separation [m] a spring has no direction of its own; squares of smaller numbers underflow.
-SHORTEST = 1e-150
 # The implicit form caps Cd here, and Cs with it: nearer to 1 springs stretch less, but steps are rejected more often
 # and damp more.
 HIGHEST_COEFFICIENT = 1.0 - 1e-7
+TURN = 2.0 * math.pi
 
 
 @scalar_kernel
@@ -196,8 +197,8 @@ def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float
     """
     if not (frequency >= 0.0 and damping_ratio >= 0.0 and h > 0.0 and math.isfinite(frequency + damping_ratio + h)):
         raise ValueError("frequency and damping ratio are finite numbers of 0 or more, and the time step is above 0")
-    stiffness, damping = _pole_match(frequency, damping_ratio, h)
-    if not _reachable(frequency, damping_ratio, h):
+    stiffness, damping = pole_match(frequency, damping_ratio, h)
+    if not is_reachable(frequency, damping_ratio, h):
         # Rounded down: the frequency that is named can be had.
         highest = float(Context(prec=3, rounding=ROUND_FLOOR).create_decimal(highest_frequency(damping_ratio, h)))
         raise ValueError(
@@ -207,16 +208,19 @@ def coefficients_from_frequency(frequency: float, damping_ratio: float, h: float
     return min(max(stiffness, 0.0), 1.0), damping
 
 
-def _pole_match(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
-    phase = 2.0 * math.pi * frequency * h
-    decay = math.exp(-damping_ratio * phase)  # (3)
+@scalar_kernel
+def pole_match(frequency: float, damping_ratio: float, h: float) -> tuple[float, float]:
+    """Cs and Cd of `coefficients_from_frequency`, whatever they are."""
+    phase = TURN * frequency * h
+    decay = exponential(-damping_ratio * phase)  # (3)
     damping = 1.0 - decay * decay
     if damping_ratio < 1.0:
-        return 2.0 - damping - 2.0 * decay * math.cos(phase * math.sqrt(1.0 - damping_ratio**2)), damping
+        turn = phase * math.sqrt(1.0 - damping_ratio * damping_ratio)
+        return 2.0 - damping - 2.0 * decay * cosine(turn), damping
     # e cosh(y) as two decaying exponentials: cosh alone overflows for strongly damped springs.
-    root = phase * math.sqrt(damping_ratio**2 - 1.0)
+    root = phase * math.sqrt(damping_ratio * damping_ratio - 1.0)
     fall = damping_ratio * phase
-    return 2.0 - damping - math.exp(root - fall) - math.exp(-root - fall), damping
+    return 2.0 - damping - exponential(root - fall) - exponential(-root - fall), damping
 
 
 def at_other_step(stiffness: float, damping: float, times: float) -> tuple[float, float]:
@@ -249,24 +253,26 @@ def _fallen(part: float, times: float) -> float:
     return 1.0 if part >= 1.0 else -math.expm1(times * math.log1p(-part))
 
 
-def _reachable(frequency: float, damping_ratio: float, h: float) -> bool:
+@scalar_kernel
+def is_reachable(frequency: float, damping_ratio: float, h: float) -> bool:
     """Whether Cs is in 0..1 and the frequency is not an alias beyond half the tick rate."""
-    phase = 2.0 * math.pi * frequency * h
-    if damping_ratio < 1.0 and phase * math.sqrt(1.0 - damping_ratio**2) > math.pi:
+    phase = TURN * frequency * h
+    if damping_ratio < 1.0 and phase * math.sqrt(1.0 - damping_ratio * damping_ratio) > 0.5 * TURN:
         return False
-    return _pole_match(frequency, damping_ratio, h)[0] <= 1.0
+    stiffness, _ = pole_match(frequency, damping_ratio, h)
+    return stiffness <= 1.0
 
 
 def highest_frequency(damping_ratio: float, h: float) -> float:
     """Highest frequency [Hz] that Cs <= 1 can give at this damping ratio and time step [s]; inf where there is none."""
     low, high = 0.0, 1.0 / h
-    while _reachable(high, damping_ratio, h):
+    while is_reachable(high, damping_ratio, h):
         high *= 2.0
         if high > 1e9 / h:
             return math.inf
     for _ in range(200):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if _reachable(middle, damping_ratio, h) else (low, middle)
+        low, high = (middle, high) if is_reachable(middle, damping_ratio, h) else (low, middle)
     return low
 
 

@@ -15,10 +15,10 @@ from sandbox.physics.constraints import (
     BEND,
     ConstraintArrays,
     constraints_of,
-    rest_of_area,
-    rest_of_bend,
+    rests_of,
 )
 from sandbox.physics.events import Containment
+from sandbox.physics.firmness.form_table import FormTable
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES, SPRINGS
 from sandbox.physics.keeping.capacity import Capacity
@@ -191,6 +191,13 @@ class World(StateArrays):
     def _multiply_contacts(self, factor: float) -> None:
         # Those of another solver are nothing, whatever they were.
         self.contact_impulse[:] = self.contact_impulse * factor if factor != 0.0 else 0.0
+
+    @property
+    def form_table(self) -> FormTable:
+        """Its forms as kernels take them, and what was found of them."""
+        table = self.lasting(FormTable)
+        table.follow(self.forms)
+        return table
 
     @property
     def has_contacts(self) -> bool:
@@ -392,7 +399,7 @@ class World(StateArrays):
             raise ValueError("the corners of a constraint are different particles")
         places = self.position[slots] if form is None else arguments.floats("form", form, (count, size, 2))
         wanted = arguments.floats("inflation", inflation, (count,))
-        rest, weight = rest_of_area(places, wanted) if kind == AREA else rest_of_bend(places)
+        rest, weight = rests_of(kind, places, wanted)
         first = self.constraint_count
         given: dict[str, ArrayLike] = dict(
             constraint_kind=kind, constraint_corners=size, constraint_rest=rest, constraint_stiffness=stiffness,
@@ -403,7 +410,7 @@ class World(StateArrays):
         arguments.check_materials(rows["constraint_material"], len(self.material_names))
         self._grow(Family.CONSTRAINT, count, rows)
         self.append(
-            Family.CORNER, count * size, corner_particle=slots.reshape(-1), corner_weight=weight.reshape(-1),
+            Family.CORNER, count * size, corner_particle=slots.reshape(-1), corner_weight=weight,
             corner_form=places.reshape(-1, 2),
         )  # fmt: skip
         self.spin[slots] = 0.0
@@ -588,7 +595,10 @@ class World(StateArrays):
 
 
 def _lend(world: World) -> Any:
-    return lend(state_of(world), good_of(world), world._numbers, world._choices, areas_of(world))
+    return lend(
+        state_of(world), good_of(world), world._numbers, world._choices, areas_of(world), world.form_table.forms,
+        world.form_table.modes,
+    )  # fmt: skip
 
 
 def areas_of(world: World) -> SlotRows:

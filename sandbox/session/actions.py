@@ -10,9 +10,8 @@ import numpy as np
 
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
-from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import Firmness, FirmnessRange, give_firmness
-from sandbox.physics.keeping.forms import FirmBody
+from sandbox.physics.firmness.reach import BY_SAG
+from sandbox.physics.permission import RULE
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError, act
 from sandbox.session.commands.records import from_record
@@ -25,7 +24,6 @@ class RuleActions:
     def __init__(self, level: Level, world: World) -> None:
         """world: that of the level, at its start."""
         self._level = level
-        self._sags = sags_of(level, world)
         self._counters = [counter.id for counter in level.counters]
 
     def act(self, world: World) -> None:
@@ -42,8 +40,7 @@ class RuleActions:
                     world.counter[self._counters.index(action.count)] += action.by
                     continue
                 if action.sag is not None:
-                    during = round(action.during * self._level.settings.tick_rate)
-                    give_firmness(world, *self._sags[str(action.body), action.sag], during)
+                    world.command("soften", RULE, **softening_of(action, self._level, world))
                     continue
                 record = record_of(action, world, self._level.settings.tick_rate)
                 with suppress(CommandError):
@@ -51,18 +48,16 @@ class RuleActions:
                         act(world, from_record(record, world))
 
 
-def sags_of(level: Level, world: World) -> dict[tuple[str, float], tuple[FirmBody, float, float]]:
-    """By bodies and sags of rules: the body as it is at the level's start, and its Cs and Cd as a whole then.
-
-    A sag is that under the gravity of the level, as where a body's definition says it.
+def softening_of(action: ActionDef, level: Level, world: World) -> dict[str, Any]:
+    """What `soften` is given for an action: all of a body sags as where its definition says it, under the gravity of
+    the level.
     """
-    bodies, settings = {body.name: body for body in firm_bodies(world)}, level.settings
-    found = {}
-    for action in (action for rule in level.rules for action in rule.then if action.sag is not None):
-        body = bodies[str(action.body)]
-        reach = FirmnessRange.of(body.shape, settings.gravity, settings.tick_rate)
-        found[body.name, float(action.sag or 0.0)] = (body, *reach.coefficients(Firmness(sag=action.sag)))
-    return found
+    body = next(place for place, form in enumerate(world.forms) if form.name == action.body)
+    during = round(action.during * level.settings.tick_rate)
+    return {
+        "body": body, "whole": True, "way": BY_SAG, "value": action.sag, "second": 0.0,
+        "gravity": level.settings.gravity, "duration": during,
+    }  # fmt: skip
 
 
 def record_of(action: ActionDef, world: World, rate: int) -> dict[str, Any] | None:

@@ -162,18 +162,23 @@ def swings(advance, solver: str, substeps: int, ticks: int):
 
 
 def modes():
-    """The lowest modes of some forms, as text that shows every bit."""
+    """The lowest modes of some forms, and Cs and Cd or what is nearest to them, as text that shows every bit."""
     import numpy as np
 
-    from sandbox.physics.analysis.firmness import lowest_mode_of
-    from sandbox.physics.keeping.forms import StiffForm
+    from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
+    from sandbox.physics.keeping.forms import Firmness, StiffForm
 
     generator = np.random.default_rng(1)
     for count in (4, 9, 30):
         points, mass = generator.uniform(0.0, 3.0, (count, 2)), generator.uniform(0.1, 9.0, count)
         pairs = np.array([(a, b) for a in range(count) for b in range(a) if a - b < 4])
         corners = np.array([(k, k + 1, k + 2) for k in range(count - 2)])
-        yield lowest_mode_of(StiffForm(points, mass, pairs, corners, corners[::2])).hex()
+        mode = lowest_mode_of(StiffForm(points, mass, pairs, corners, corners[::2]))
+        reach, found = FirmnessRange(mode, generator.uniform(0.1, 3.0), 9.81, 1.0 / 60.0), ""
+        for asked in (Firmness(sag=0.1), Firmness(sag=1e-6), Firmness(hz=2.0), Firmness(hz=40.0, ratio=0.1)):
+            nearest = reach.nearest(asked)
+            found += f" {nearest} {[value.hex() for value in reach.coefficients(nearest)]}"
+        yield mode.hex() + found
 
 
 def blow_up(advance, solver: str, ticks: int):

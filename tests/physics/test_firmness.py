@@ -1,15 +1,21 @@
 """Firmness: a body is as soft as it says, whatever its grid, size, mass, form and substeps."""
 
+import math
 import random
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal, localcontext
 
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach, least_ratio, lowest_mode_of
+from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach, lowest_mode_of
 from sandbox.physics.equation import of_body, of_springs
+from sandbox.physics.firmness.form_table import form_table
+from sandbox.physics.firmness.reach import BY_SAG, NO_BODY, least_ratio
+from sandbox.physics.geometry.elementary import cosine, exponential, rounded, to_three_digits
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.keeping.forms import Firmness, StiffForm
 from sandbox.physics.settings import AUTO
+from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
 from tests.abuse import sag as table
 from tests.support.wobbles import firm_world, height, measured_wobble, slowest_mode, standing_box
@@ -156,3 +162,29 @@ def test_a_form_that_gives_way_or_falls_apart_has_no_mode():
     assert lowest_mode([(0, 0), (1, 0), (2, 0)], [(0, 1), (1, 2)]) == 0.0
     assert lowest_mode([(0, 0)] * 3, [(0, 1), (1, 2)]) == 0.0
     assert lowest_mode([(0, 0)], []) == 0.0
+
+
+def test_the_exponential_and_the_cosine_are_the_nearest_numbers_and_what_is_rounded_is_as_decimals_are():
+    generator = random.Random(1)
+    for _ in range(300):
+        power, angle = -(10.0 ** generator.uniform(-6, 2.8)), generator.uniform(0.0, math.pi)
+        with localcontext(prec=60):
+            series, term, square = Decimal(0), Decimal(1), Decimal(angle) ** 2
+            for k in range(1, 80, 2):
+                series, term = series + term, -term * square / (k * (k + 1))
+            assert exponential(power) == float(Decimal(power).exp())
+            assert cosine(angle) == float(series)
+        value = generator.choice([generator.random(), generator.randrange(1 << 14) / (1 << 14)])
+        assert rounded(value, 1e13) == round(value, 13)
+        value = generator.choice([10.0 ** generator.uniform(-9, 5), round(generator.random(), 3), 1e-6, 0.15])
+        for is_up, way in ((True, ROUND_CEILING), (False, ROUND_FLOOR)):
+            assert to_three_digits(value, is_up) == float(Context(prec=3, rounding=way).create_decimal(value))
+    assert (exponential(0.0), exponential(-1e9), exponential(-math.inf), cosine(0.0)) == (1.0, 0.0, 0.0, 1.0)
+
+
+def test_numbers_that_are_no_body_are_refused_and_nothing_is_changed():
+    world = firm_world({"sag": 0.1}, **BODIES["disc"])
+    before, found = state_hash(world), np.zeros(2)
+    for body, is_whole in ((1, False), (1, True), (-1, False), (10**12, False)):
+        assert form_table(world).firm(world, body, is_whole, BY_SAG, 0.2, 0.0, 0.0, -9.81, 60.0, 0, found) == NO_BODY
+    assert state_hash(world) == before

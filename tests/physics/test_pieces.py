@@ -1,6 +1,8 @@
 """What a cut parts becomes bodies of their own: they lie on each other and in none, and undo joins them again."""
 
+import copy
 import json
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -10,12 +12,13 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
+from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, give_firmness, lowest_mode_of
 from sandbox.physics.analysis.query import shown_springs
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import of_body
 from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
@@ -286,6 +289,27 @@ def test_each_piece_is_made_firm_by_its_name_alone_and_undo_keeps_to_what_it_was
     session.apply_pending()
     np.testing.assert_array_equal(world.stiffness[other.springs], before[other.springs])
     assert np.all(world.stiffness[smaller.springs] == 1.0)
+
+
+@pytest.mark.parametrize("stroke", STROKES)
+def test_what_is_kept_of_a_form_is_that_of_its_pieces_as_they_are_now(stroke):
+    session = begun(level_with("jelly_pile", "direct"), 1)
+    ask = {"type": "set_firmness", "body": "cube 1", "sag": 0.1}
+    session.submit(from_record(ask, session.world))
+    for other in (*STROKES, stroke):
+        cut(session, "cube 1", other)
+        session.apply_pending()
+        pieces = [number for number, body in enumerate(firm_bodies(session.world)) if body.name.startswith("cube 1,")]
+        # A copy has nothing that was found before.
+        fresh = copy.deepcopy(session.world)
+        for world in (session.world, fresh):
+            for number in pieces:
+                with suppress(OutOfReach):
+                    give_firmness(world, number, Firmness(sag=0.2), (0.0, -9.81), 60.0)
+        assert len(pieces) > 1
+        assert state_hash(session.world) == state_hash(fresh)
+        session.undo()
+        session.apply_pending()
 
 
 def test_every_body_of_a_level_begins_with_the_firmness_that_it_says():

@@ -5,6 +5,7 @@ import pytest
 from sandbox.level.reading.files import load_level
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.keeping.forms import height_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
 from sandbox.session.commands import (
@@ -154,7 +155,7 @@ def test_a_heap_of_jellies_that_is_made_rigid_stays_where_it_is(softness):
         highest = [max(pair) for pair in zip(highest, heights(session.world), strict=True)]
     world, (left, bottom, right, top) = session.world, session.level.view
     for body, high, end in zip(world.forms, highest, heights(world), strict=True):
-        assert high - end < 0.5 * body.shape.height((0.0, -9.81)), body.name
+        assert high - end < 0.5 * height_of(body.shape, 0.0, -9.81), body.name
         places = world.position[world.particle_a[body.springs]]
         assert left < places[:, 0].min() and places[:, 0].max() < right, body.name
         assert bottom < places[:, 1].min() and places[:, 1].max() < top, body.name

@@ -7,9 +7,9 @@ import numpy as np
 
 from sandbox.level.document.model import HookeMaterial, Level, Material
 from sandbox.level.kinds.expansion import Expansion
-from sandbox.physics.analysis.firmness import FirmnessRange, give_firmness
+from sandbox.physics.analysis.firmness import give_firmness, lowest_mode_of
 from sandbox.physics.constraints import TRIANGLE
-from sandbox.physics.keeping.forms import FirmBody
+from sandbox.physics.keeping.forms import FirmBody, Firmness
 from sandbox.physics.world import World
 
 
@@ -23,6 +23,8 @@ def add_forms(
     last ones end.
     """
     first_spring = 0
+    forms: list[FirmBody] = []
+    asked: dict[int, Firmness] = {}
     for number, (body, made) in enumerate(zip(level.bodies, bodies, strict=True)):
         springs = first_spring + np.arange(len(made.pairs))
         first_spring += len(made.pairs)
@@ -32,8 +34,10 @@ def add_forms(
             continue
         if body.firmness is None and not made.may_be_stiff:
             continue
-        form = FirmBody(body.id, made.stiff_form, springs, narrow)
-        world.forms += (form,)
         if body.firmness is not None:
-            reach = FirmnessRange.of(made.stiff_form, level.settings.gravity, level.settings.tick_rate)
-            give_firmness(world, form, *reach.coefficients(body.firmness.asked))
+            asked[len(forms)] = body.firmness.asked
+        forms.append(FirmBody(body.id, made.stiff_form, springs, narrow))
+    world.forms += tuple(forms)
+    for number, firmness in asked.items():
+        world.form_table.know(number, lowest_mode_of(forms[number].shape))
+        give_firmness(world, number, firmness, level.settings.gravity)

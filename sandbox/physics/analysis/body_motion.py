@@ -9,12 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.physics.analysis.firmness import STANDING, WORDS, lowest_mode_of
+from sandbox.physics.analysis.firmness import WORDS, lowest_mode_of
 from sandbox.physics.analysis.sag_curve import SagCurve
 from sandbox.physics.analysis.spring_motion import SpringMotion, motion_of
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
-from sandbox.physics.keeping.forms import FirmBody, StiffForm, design_gravity
+from sandbox.physics.firmness.reach import STANDING
+from sandbox.physics.keeping.forms import FirmBody, StiffForm, design_gravity, height_of
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import ALL_BUT_FIRM, MOTION, substep_coefficients, substep_time, turned
@@ -49,7 +50,7 @@ class BodyMotion:
     def of(cls, shape: StiffForm, settings: WorldSettings, lowest_mode: float | None = None) -> "BodyMotion":
         """That of a form; lowest_mode: where it is known."""
         mode = lowest_mode_of(shape) if lowest_mode is None else lowest_mode
-        height, gravity = shape.height(settings.gravity), design_gravity(settings.gravity)
+        height, gravity = height_of(shape, *settings.gravity), design_gravity(*settings.gravity)
         substeps = settings.fewest_substeps
         return cls(mode, height, gravity, substep_time(settings), substeps, settings.solver, settings.iterations)
 

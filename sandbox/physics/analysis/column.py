@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from sandbox.physics.analysis.lowest_mode import rows_of
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
+from sandbox.physics.firmness.lowest_mode import rows_of
 from sandbox.physics.keeping.forms import StiffForm, design_gravity
 
 GREENHILL = 7.837
@@ -25,7 +25,7 @@ def critical_height(
 
     stiffness, damping: Cs and Cd of its springs in ticks of h [s].
     """
-    strength = design_gravity(gravity)
+    strength = design_gravity(*gravity)
     up = np.array(gravity) / strength if any(gravity) else np.array([0.0, 1.0])
     across = np.array([-up[1], up[0]])
     rows = rows_of(form)

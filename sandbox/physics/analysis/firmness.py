@@ -1,44 +1,45 @@
-"""Firmness: how soft a body is as a whole, by its sag or its wobble, for any grid, size and mass.
+"""Firmness of bodies, for who sets it and for who reads it: what kernels say, in words and as Python has it."""
 
-A body's slowest wobble moves as one spring with a Cs and Cd of its own (`of_body`). Firmness gives these two: by the
-frequency and damping ratio of the wobble, or by the part of its height by which the body sags under its weight,
-
-    sag = STANDING g / (F^2 H),   (2 pi F)^2 = k / m = Cs / ((1 - Cd) h^2),   H = height of the form along gravity g
-
-F is the frequency f of the wobble where h is short; at Cs and Cd near 1 the wobble is slower than its k says.
-"""
-
-import math
-from collections.abc import Callable
+import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+from typing import Any
 
-from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.equation import (
-    HIGHEST_COEFFICIENT,
-    coefficients_from_frequency,
-    frequency_from_coefficients,
-    of_springs,
+import numpy as np
+
+from sandbox.physics import command_table
+from sandbox.physics.arena import FIRST_ARENA, MORE
+from sandbox.physics.command import BEYOND_REACH, FLAT, NO_FIRMNESS
+from sandbox.physics.command_table import Refused
+from sandbox.physics.equation import frequency_from_coefficients
+from sandbox.physics.firmness.lowest_mode import NO_MODE, find_lowest_mode
+from sandbox.physics.firmness.reach import (
+    BY_FREQUENCY,
+    BY_PAIR,
+    BY_SAG,
+    BY_WOBBLE,
+    FIRMED,
+    NO_HEIGHT,
+    NOT_STIFF,
+    OUT_OF_REACH,
+    coefficients_within,
+    sag_of,
 )
 from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, design_gravity
+from sandbox.physics.keeping.forms import Firmness, StiffForm, design_gravity, height_of
 from sandbox.physics.world import World
 
-# F^2 sag H / g of a box that stands on the floor, which holds its foot: 0.75 of that of a free column.
-STANDING = 0.0565
-# Damping ratio of a sag, where no higher one is needed: it wobbles a few times. Then the least that is possible, and
-# a little more.
-USUAL_RATIO = 0.15
-SPARE_RATIO = 1.05
 # Sags by their words, from soft to hard.
 WORDS = {"jelly": 0.25, "soft": 0.1, "firm": 0.02, "hard": 0.003, "rigid": 0.0}
-# Cs and Cd are rounded to this many decimals, so that different libraries of mathematics build the same bits.
-DECIMALS = 13
+# What is said after a nearest sag that is above 0.
+BUT_RIGID = ", but for 0, which is rigid"
 # Particles of the largest body whose firmness panels read where nothing has asked for it; it takes some 0.2 s.
 LARGEST_READ = 2_000
-# Steps of damping ratios, where the least is looked for, and halvings of ranges of frequencies and sags.
-RATIO_STEPS = 1_000
-HALVINGS = 100
+# Forms whose lowest mode is kept; those of a level, edited one by one, need no more.
+KEPT = 256
+
+_REASONS = {NOT_STIFF: NO_FIRMNESS, NO_HEIGHT: FLAT, OUT_OF_REACH: BEYOND_REACH}
+_kept: dict[bytes, float] = {}
 
 
 class OutOfReach(ValueError):
@@ -51,9 +52,19 @@ class OutOfReach(ValueError):
 
 def lowest_mode_of(shape: StiffForm) -> float:
     """The lowest eigenvalue of a form, without unit; 0 where it is not stiff without pins."""
-    from sandbox.physics.analysis.lowest_mode import find_lowest_mode
-
-    return find_lowest_mode(shape)
+    arrays: list[Any] = [np.ascontiguousarray(rows) for rows in shape]
+    form, digest = StiffForm(*arrays), hashlib.blake2b(digest_size=16)
+    for array in form:
+        digest.update(f"{array.shape}".encode() + array.tobytes())
+    key = digest.digest()
+    if key not in _kept:
+        while len(_kept) >= KEPT:
+            del _kept[next(iter(_kept))]
+        arena = np.zeros(FIRST_ARENA, np.int64)
+        while (found := find_lowest_mode(form, arena)) == NO_MODE:
+            arena = np.zeros(MORE * int(arena[0]), np.int64)
+        _kept[key] = found
+    return _kept[key]
 
 
 @dataclass(frozen=True)
@@ -71,22 +82,15 @@ class FirmnessRange:
     @classmethod
     def of(cls, shape: StiffForm, gravity: tuple[float, float], tick_rate: float) -> "FirmnessRange":
         """That of a form."""
-        return cls(lowest_mode_of(shape), shape.height(gravity), design_gravity(gravity), 1.0 / tick_rate)
+        return cls(lowest_mode_of(shape), height_of(shape, *gravity), design_gravity(*gravity), 1.0 / tick_rate)
 
     def coefficients(self, firmness: Firmness) -> tuple[float, float]:
         """Cs and Cd of the body as a whole. Raises OutOfReach."""
-        if firmness.sag is not None:
-            return self._of_sag(firmness.sag)
-        assert firmness.hz is not None
-        hz, least = firmness.hz, least_ratio(firmness.hz, self.h)
-        ratio = usual_ratio(hz, self.h) if firmness.ratio is None else firmness.ratio
-        if ratio >= least and self._can_share(hz, ratio):
-            return self._pair(hz, ratio)
-        ratio = max(ratio, least)
-        if not self._can_share(hz, ratio):
-            hz = _rounded(_last(lambda f: self._can_share(f, ratio), 0.0, hz), ROUND_FLOOR)
-        nearest = Firmness(hz=hz, ratio=ratio)
-        raise self._out_of_reach(firmness, nearest)
+        found = np.zeros(2)
+        code = coefficients_within(self.lowest_mode, self.height, self.gravity, self.h, *_asked(firmness), found)
+        if code != FIRMED:
+            raise _out_of_reach(_REASONS[code], firmness, found.tolist(), 1.0 / self.h)
+        return float(found[0]), float(found[1])
 
     def nearest(self, firmness: Firmness) -> Firmness:
         """The firmness itself, or the nearest one in reach. Raises OutOfReach where none is."""
@@ -104,117 +108,57 @@ class FirmnessRange:
 
     def sag_of(self, stiffness: float, damping: float) -> float:
         """The sag of a body of these Cs and Cd as a whole; inf where Cs is 0."""
-        per_second = stiffness / (1.0 - min(damping, HIGHEST_COEFFICIENT)) / (2.0 * math.pi * self.h) ** 2
-        squares = self.height * per_second
-        return STANDING * self.gravity / squares if squares > 0.0 else math.inf
+        return sag_of(self.height, self.gravity, self.h, stiffness, damping)
 
-    def _of_sag(self, sag: float) -> tuple[float, float]:
-        if sag == 0.0:
-            return 1.0, 1.0
-        if not self.height > 0.0:
-            raise OutOfReach("it has no height along gravity to sag by; say its frequency in Hz", None)
 
-        def can(share: float) -> bool:
-            # Along a ratio that is the least possible anyhow, there is no highest frequency.
-            return self._can_share(*self._standing(share))
+def _asked(firmness: Firmness) -> tuple[int, float, float]:
+    if firmness.sag is not None:
+        return BY_SAG, firmness.sag, 0.0
+    assert firmness.hz is not None
+    return (BY_FREQUENCY, firmness.hz, 0.0) if firmness.ratio is None else (BY_WOBBLE, firmness.hz, firmness.ratio)
 
-        if can(sag):
-            return self._pair(*self._standing(sag))
-        least = _rounded(1.0 - _last(lambda less: can(1.0 - less), 0.0, 1.0 - sag), ROUND_CEILING)
-        raise self._out_of_reach(Firmness(sag=sag), Firmness(sag=least) if can(least) else Firmness(sag=0.0))
 
-    def _standing(self, sag: float) -> tuple[float, float]:
-        """Frequency [Hz] and damping ratio of the wobble of a body that sags so far."""
-        highest = math.sqrt(STANDING * self.gravity / (sag * self.height))
-        ratio = usual_ratio(highest, self.h)
+def words_of_reach(asked: Firmness, nearest: Sequence[float], tick_rate: float) -> tuple[tuple[str, ...], Firmness]:
+    """What is asked for out of reach, at which rate, the nearest and what is said after it; and the nearest.
 
-        def is_softer(hz: float) -> bool:
-            try:
-                return self.sag_of(*coefficients_from_frequency(hz, ratio, self.h)) > sag
-            except ValueError:
-                return False
+    nearest (2,): a sag, or frequency [Hz] and damping ratio.
+    """
+    found = Firmness(hz=nearest[0], ratio=nearest[1]) if asked.sag is None else Firmness(sag=nearest[0])
+    return (str(asked), f"{tick_rate:g}", str(found), BUT_RIGID if found.sag else ""), found
 
-        return _last(is_softer, 0.0, SPARE_RATIO * highest), ratio
 
-    def _out_of_reach(self, asked: Firmness, nearest: Firmness) -> OutOfReach:
-        at = f"at {1.0 / self.h:g} ticks a second"
-        rigid = ", but for 0, which is rigid" if nearest.sag else ""
-        return OutOfReach(f"{asked} is out of reach {at}; the nearest is {nearest}{rigid}", nearest)
+def _out_of_reach(reason: int, asked: Firmness, nearest: Sequence[float], tick_rate: float) -> OutOfReach:
+    words, found = words_of_reach(asked, nearest, tick_rate)
+    text = command_table.WORDS[reason].removeprefix("{}: ")
+    return OutOfReach(text.format(*words), found) if reason == BEYOND_REACH else OutOfReach(text, None)
 
-    def _pair(self, hz: float, ratio: float) -> tuple[float, float]:
-        stiffness, damping = (round(value, DECIMALS) for value in coefficients_from_frequency(hz, ratio, self.h))
-        # At the least ratio the two are equal but for rounding.
-        return min(stiffness, damping), damping
 
-    def _can_share(self, hz: float, ratio: float) -> bool:
-        """Whether springs can give the body that, whose Cd is capped."""
-        try:
-            stiffness, damping = self._pair(hz, ratio)
-        except ValueError:
-            return False
-        return of_springs(stiffness, damping, self.lowest_mode)[1] <= HIGHEST_COEFFICIENT
+def give_firmness(
+    world: World, body: int, firmness: Firmness, gravity: tuple[float, float], duration: int = 0
+) -> None:  # fmt: skip
+    """Give all of a body, by its place among `World.forms`, a firmness under gravity [m/s^2], in so many ticks.
+
+    Raises OutOfReach.
+    """
+    way, value, second = _asked(firmness)
+    try:
+        world.command(
+            "soften", body=body, whole=True, way=way, value=value, second=second, gravity=gravity, duration=duration
+        )
+    except Refused as refused:
+        numbers = refused.numbers[-2:]
+        raise _out_of_reach(refused.reason, firmness, numbers, world.settings.tick_rate) from None
 
 
 def set_firmness(world: World, body: int, stiffness: float, damping: float, duration: int = 0) -> None:
     """Give a body, by its place among `firm_bodies`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
 
     They are shared out over its springs, areas and bends, in force in so many ticks (ramps.py); 0: at once.
-    Raises IndexError and ValueError.
+    Raises IndexError, ValueError, and Refused where its form is not stiff without pins.
     """
-    bodies = firm_bodies(world)
-    body = arguments.slot("body", body, "bodies that may be stiff by their form", len(bodies))
-    give_firmness(world, bodies[body], stiffness, damping, duration)
-
-
-def give_firmness(world: World, body: FirmBody, stiffness: float, damping: float, duration: int = 0) -> None:
-    """Give a body of a world, or a piece of one, Cs and Cd as `set_firmness` does. Raises ValueError."""
-    stiffness, damping, lowest_mode = values_of(body, stiffness, damping)
-    given = {"stiffness": stiffness, "damping": damping, "lowest_mode": lowest_mode, "duration": duration}
-    world.command("firm_springs", springs=body.springs, **given)
-    world.command("firm_constraints", constraints=body.constraints, **given)
-
-
-def values_of(body: FirmBody, stiffness: float, damping: float) -> tuple[float, float, float]:
-    """Cs, Cd and lowest mode of each spring of a body that has these Cs and Cd as a whole."""
-    if stiffness == damping == 1.0:
-        # All of them rigid, which they are alone as well.
-        return stiffness, damping, 0.0
-    lowest_mode = lowest_mode_of(body.shape)
-    return (*of_springs(stiffness, damping, lowest_mode), lowest_mode)
-
-
-def usual_ratio(hz: float, h: float) -> float:
-    """Damping ratio of a sag of that frequency [Hz] in ticks of h [s]."""
-    return max(USUAL_RATIO, min(1.0, _rounded(SPARE_RATIO * least_ratio(hz, h), ROUND_CEILING)))
-
-
-def least_ratio(hz: float, h: float) -> float:
-    """The least damping ratio, in thousandths, at which a frequency [Hz] has Cs <= Cd in ticks of h [s].
-
-    So that it makes no energy of nothing: about pi f h.
-    """
-    phase = 2.0 * math.pi * hz * h
-
-    def passive(ratio: float) -> bool:
-        # Cs <= Cd: e <= cos(w h sqrt(1 - z^2)), e = exp(-z w h)
-        turn = phase * math.sqrt(max(0.0, 1.0 - ratio * ratio))
-        return turn < 0.5 * math.pi and math.exp(-ratio * phase) <= math.cos(turn)
-
-    low, high = 0, RATIO_STEPS
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if passive(middle / RATIO_STEPS) else (middle, high)
-    return high / RATIO_STEPS
-
-
-def _rounded(value: float, rounding: str) -> float:
-    """To three digits, so that a person can read it and what is named can be had."""
-    return float(Context(prec=3, rounding=rounding).create_decimal(value))
-
-
-def _last(inside: Callable[[float], bool], low: float, high: float) -> float:
-    """The last number from low on that is inside, by halving; low is inside, high is not."""
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if inside(middle) else (low, middle)
-    return low
+    stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
+    damping = arguments.number("damping", damping, 0.0, 1.0)
+    world.command(
+        "soften", body=body, whole=False, way=BY_PAIR, value=stiffness, second=damping, gravity=(0.0, 0.0),
+        duration=duration,
+    )  # fmt: skip

@@ -10,12 +10,13 @@ from time import perf_counter, process_time
 import numpy as np
 
 from sandbox.physics.analysis.body_motion import present_coefficients
-from sandbox.physics.analysis.firmness import STANDING, FirmnessRange
+from sandbox.physics.analysis.firmness import FirmnessRange
 from sandbox.physics.analysis.sag_curve import SagCurve, softness_of
 from sandbox.physics.analysis.stance import Stance, Support
 from sandbox.physics.analysis.standing import StandingRun
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import of_springs
+from sandbox.physics.firmness.reach import STANDING
 from sandbox.physics.keeping.forms import Firmness, design_gravity
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.solvers import SOLVERS
@@ -58,7 +59,7 @@ class SagMeter:
 
     def __init__(self, stance: Stance, settings: WorldSettings, lowest_mode: float) -> None:
         self.stance, self.settings, self.mode = stance, settings, lowest_mode
-        gravity, h = design_gravity(settings.gravity), 1.0 / settings.tick_rate
+        gravity, h = design_gravity(*settings.gravity), 1.0 / settings.tick_rate
         self.range = FirmnessRange(lowest_mode or 1.0, stance.length, gravity, h)
         self.curve: SagCurve | None = None
         self._share = 1.0 if SOLVERS[settings.solver].bounded else USUAL_SHARE

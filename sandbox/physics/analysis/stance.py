@@ -94,7 +94,7 @@ def slots_of(world: World, body: FirmBody) -> Slots:
 
 def _upright(gravity: tuple[float, float]) -> Floats:
     # Turns points (n, 2), from the right, so that gravity goes down.
-    strength = design_gravity(gravity)
+    strength = design_gravity(*gravity)
     x, y = (gravity[0] / strength, gravity[1] / strength) if any(gravity) else (0.0, -1.0)
     return np.array([[-y, -x], [x, -y]])
 

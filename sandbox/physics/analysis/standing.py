@@ -37,7 +37,7 @@ class StandingRun:
     def __init__(self, stance: Stance, settings: WorldSettings) -> None:
         self.stance = stance
         self.sag: float | None = None
-        strength = design_gravity(settings.gravity)
+        strength = design_gravity(*settings.gravity)
         gravity = (LEAN * strength if _may_buckle(stance) else 0.0, -strength)
         self.world = world = World(replace(settings, gravity=gravity, wind=(0.0, 0.0)))
         lowest = float((stance.points[:, 1] - stance.radius).min())

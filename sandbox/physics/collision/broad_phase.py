@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import Arena, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
-from sandbox.physics.equation import SHORTEST
+from sandbox.physics.geometry.segment import SHORTEST
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import sort_ascending
 

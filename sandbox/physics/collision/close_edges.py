@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from sandbox.physics.arena import Arena, give_back, is_full, mark, new_floats, new_slot_rows, new_slots
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
-from sandbox.physics.equation import SHORTEST
+from sandbox.physics.geometry.segment import SHORTEST
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.topology.sorting import list_by_key, sort_by_value
 

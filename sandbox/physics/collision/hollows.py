@@ -7,8 +7,7 @@ the line of one edge and come into the next ones, which would then lift it out: 
 
 from sandbox.physics.collision.edge_geometry import CORNER
 from sandbox.physics.collision.types import Colliders, Contacts, Near
-from sandbox.physics.equation import SHORTEST
-from sandbox.physics.geometry.segment import closest_on_segment, difference, segment_of, unit
+from sandbox.physics.geometry.segment import SHORTEST, closest_on_segment, difference, segment_of, unit
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 
 # An edge is looked for so many ways of a step ahead: what a solver does to the way is not foreseen.

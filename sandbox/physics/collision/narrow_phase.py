@@ -21,8 +21,7 @@ from sandbox.physics.collision.edge_geometry import (
 from sandbox.physics.collision.hollows import go_on_ahead, is_loose, rises_ahead
 from sandbox.physics.collision.seams import is_seam, passes_beside
 from sandbox.physics.collision.types import MOST_NEAR, Colliders, Contacts, Near
-from sandbox.physics.equation import SHORTEST
-from sandbox.physics.geometry.segment import closest_on_segment, difference, segment_of, unit
+from sandbox.physics.geometry.segment import SHORTEST, closest_on_segment, difference, segment_of, unit
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 
 # A contact exists from this gap on, as a share of the radii together, so that what rests keeps its contacts; a larger

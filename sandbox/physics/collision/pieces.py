@@ -22,6 +22,7 @@ from sandbox.physics.collision.sides import (
     is_triangle,
 )
 from sandbox.physics.components import join, root_of
+from sandbox.physics.constraints import AREA, measure_rest
 from sandbox.physics.geometry.segment import doubled_area_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import GRAB_MATERIAL
@@ -160,16 +161,16 @@ def _place_corner(state: State, good: GoodValues, corner: int, particle: int, x:
 
 @inner_kernel
 def _keep_area(state: State, good: GoodValues, k: int, inflation: float) -> None:
-    # What a triangle keeps from now on, as its form has it; see rest_of_area.
-    first, form = state.constraint_first[k], state.corner_form
-    area = 0.5 * doubled_area_of(first, first + 1, first + 2, form)
-    state.constraint_rest[k, 0] = good.constraint_rest[k, 0] = inflation * area
-    state.constraint_rest[k, 1] = good.constraint_rest[k, 1] = area
-    for c in range(TRIANGLE_CORNERS):
-        one, two = first + (c + 1) % TRIANGLE_CORNERS, first + (c + 2) % TRIANGLE_CORNERS
-        dx, dy = form[one, 0] - form[two, 0], form[one, 1] - form[two, 1]
-        weight = 0.25 * (dx * dx + dy * dy)
-        state.corner_weight[first + c] = good.corner_weight[first + c] = weight
+    # What a triangle keeps from now on, as its form has it.
+    first = state.constraint_first[k]
+    measure_rest(
+        AREA, state.corner_form, first, first + TRIANGLE_CORNERS, state.constraint_rest, k, state.corner_weight
+    )
+    state.constraint_rest[k, 0] *= inflation
+    for axis in range(2):
+        good.constraint_rest[k, axis] = state.constraint_rest[k, axis]
+    for c in range(first, first + TRIANGLE_CORNERS):
+        good.corner_weight[c] = state.corner_weight[c]
 
 
 @inner_kernel

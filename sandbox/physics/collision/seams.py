@@ -5,8 +5,7 @@ import math
 from sandbox.physics.collision.edge_geometry import is_covered
 from sandbox.physics.collision.hollows import is_hollow
 from sandbox.physics.collision.types import Colliders, Near
-from sandbox.physics.equation import SHORTEST
-from sandbox.physics.geometry.segment import segment_of
+from sandbox.physics.geometry.segment import SHORTEST, segment_of
 from sandbox.physics.jit import inner_kernel
 
 # A corner that stands out of another surface by less than this share of the radius of what touches it, where it lies on

@@ -9,8 +9,7 @@ import math
 from sandbox.physics.arrays import FloatRows
 from sandbox.physics.collision.narrow_phase import KINDS, TIP, TIP_SHIFT, add_contact, may_collide
 from sandbox.physics.collision.types import Colliders, Contacts
-from sandbox.physics.equation import SHORTEST
-from sandbox.physics.geometry.segment import segment_of
+from sandbox.physics.geometry.segment import SHORTEST, segment_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.terrain import Terrain, cells_between
 

@@ -5,8 +5,10 @@ import math
 import numpy as np
 
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.equation import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel
+
+# Below this length [m] a segment has no direction of its own; squares of smaller numbers underflow.
+SHORTEST = 1e-150
 
 # A segment whose length squared is below this [m^2] is a point.
 LEAST_SQUARE = 1e-300

@@ -17,7 +17,6 @@ from sandbox.physics.state import FAMILIES, Column, Family, Range, StateArrays
 # Words for the rows of families, where a slot of one is asked for.
 PARTICLES, SPRINGS, CONSTRAINTS = "particles", "springs", "constraints"
 HANDS, PARTS, KEYS = "hands", "driven parts", "keys that rules ask for"
-AREAS = "bodies that keep areas"
 # Types of what is given; a tuple is asked in a quarter of a union's time.
 _WHOLE, _NUMBERS, _LISTS = (int, np.integer), (float, int, np.integer, np.floating), (tuple, list, np.ndarray, Sequence)
 # Slots beyond this are beyond any array; kernels take no more digits.

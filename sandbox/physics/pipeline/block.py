@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.driving import Drives
+from sandbox.physics.firmness.firm import FormModes, Forms
 from sandbox.physics.flight import Flight
 from sandbox.physics.joints.joint_set import JointSet
 from sandbox.physics.joints.limited_springs import SpringForces
@@ -49,7 +50,9 @@ class WorldBlock(NamedTuple):
     good: GoodValues
     numbers: Floats  # numbers, choices: the settings (settings.py)
     choices: Slots
-    areas: SlotRows  # see Commanded
+    areas: SlotRows  # areas, forms, modes: see Commanded
+    forms: Forms
+    modes: FormModes
     plan: Slots  # plan, progress: see above
     progress: Slots
     wanted: Slots  # the most of each that a step has asked for (derive.py)

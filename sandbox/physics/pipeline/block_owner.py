@@ -89,10 +89,10 @@ class BlockOwner:
             self.given = self.given._replace(
                 drives=drives_of(world.actuators), wheels=wheels_of(world.actuators), limits=_limits_of(world)
             )
-        water = with_empty(Water, pool=world.water, hull=world.hulls)
+        water, table = with_empty(Water, pool=world.water, hull=world.hulls), world.form_table
         self.given = self.given._replace(
-            state=state_of(world), good=good_of(world), areas=areas_of(world), tuning=tuning(), rules=world.rules,
-            water=water,
+            state=state_of(world), good=good_of(world), areas=areas_of(world), forms=table.forms, modes=table.modes,
+            tuning=tuning(), rules=world.rules, water=water,
         )  # fmt: skip
         self.given.plan[GRAB_PARTICLE], self.given.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
         self._lay_out(world)

@@ -9,9 +9,10 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from sandbox.level.format.level_error import shown
 from sandbox.level.rules.hands import thing_of, words_of
-from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.command import EXHAUSTED, FORBIDDEN, UNTOUCHABLE
+from sandbox.physics.analysis.firmness import words_of_reach
+from sandbox.physics.command import BEYOND_REACH, EXHAUSTED, FORBIDDEN, UNTOUCHABLE
 from sandbox.physics.command_table import CODES, KINDS, WORDS, Refused
+from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.permission import HAND, RULE
 from sandbox.physics.world import World
 from sandbox.session.commands.faults import CommandError as CommandError
@@ -128,22 +129,19 @@ def _admit(world: World, command: Command) -> None:
         return
     code = CODES[command.type]
     if world.deed_refused[code]:
-        raise Refused(FORBIDDEN, "", 0)
+        raise Refused(FORBIDDEN, "", 0, ())
     for field, names in namespaces(type(command)).items():
         slot = getattr(command, field)
-        if slot is None or slot >= len(names.names(world)):
-            continue
-        things = firm_bodies(world)[slot].springs if field == "body" else [slot]
-        if (world.spring_untouchable if field == "body" else world.untouchable)[things].any():
-            raise Refused(UNTOUCHABLE, field, slot)
+        if slot is not None and slot < len(names.names(world)) and world.untouchable[slot]:
+            raise Refused(UNTOUCHABLE, field, slot, ())
     body = getattr(command, "body", None)
     if isinstance(body, str):
         of_body = [k for k, name in enumerate(world.particle_names) if thing_of(name) == body]
         if world.untouchable[of_body].any():
-            raise Refused(UNTOUCHABLE, "", body)
+            raise Refused(UNTOUCHABLE, "", body, ())
     row = world.deed_budget[code]
     if row >= 0 and world.counter[row] < 1:
-        raise Refused(EXHAUSTED, "", 0)
+        raise Refused(EXHAUSTED, "", 0, ())
 
 
 def _check_names(world: World, command: Command) -> None:
@@ -160,4 +158,8 @@ def _words(world: World, command: Command, refused: Refused) -> str:
     named = namespaces(type(command)).get(refused.field)
     name = refused.value if named is None else named.names(world)[refused.value]
     what = {FORBIDDEN: doing, EXHAUSTED: counted, UNTOUCHABLE: shown(thing_of(str(name)))}
-    return WORDS[refused.reason].format(what.get(refused.reason, name))
+    further: tuple[str, ...] = ()
+    if refused.reason == BEYOND_REACH:
+        asked = Firmness(*(getattr(command, field) for field in ("sag", "hz", "ratio")))
+        further, _ = words_of_reach(asked, refused.numbers[-2:], world.settings.tick_rate)
+    return WORDS[refused.reason].format(what.get(refused.reason, name), *further)

@@ -6,11 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
-from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, set_firmness
-from sandbox.physics.keeping.forms import Firmness
-from sandbox.physics.world import World
-from sandbox.session.commands.command import Command, CommandError
+from sandbox.session.commands.command import Command
 from sandbox.session.commands.named import FormSlot
 from sandbox.session.commands.ramping import Duration
 
@@ -30,16 +26,3 @@ class SetFirmness(Command):
     hz: Annotated[float, Field(ge=FREQUENCY_RANGE[0], le=FREQUENCY_RANGE[1])] | None = None
     ratio: Annotated[float, Field(ge=0.0, le=RATIO_LIMIT)] | None = None
     duration: Duration = 0
-
-    def carry_out(self, world: World, giver: int) -> None:
-        if (self.sag is None) == (self.hz is None) or (self.hz is None and self.ratio is not None):
-            raise CommandError("say sag, or hz with or without ratio")
-        body = firm_bodies(world)[self.body]
-        reach = FirmnessRange.of(body.shape, world.settings.gravity, world.settings.tick_rate)
-        if reach.lowest_mode == 0.0:
-            raise CommandError(f"the form of {body.name} is not stiff without pins: it has no firmness")
-        try:
-            coefficients = reach.coefficients(Firmness(self.sag, self.hz, self.ratio))
-        except OutOfReach as error:
-            raise CommandError(f"{body.name}: {error}") from None
-        set_firmness(world, self.body, *coefficients, self.duration)

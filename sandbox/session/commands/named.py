@@ -92,7 +92,7 @@ else:
     SpringSlot = Annotated[_Slot, SPRINGS]
     PartSlot = Annotated[_Slot, Named("driven part", _parts, _listed(_parts), "part")]
     BodySlot = Annotated[_Slot, Named("body that keeps an area", _bodies, _listed(_bodies), "area")]
-    FormSlot = Annotated[_Slot, Named("body whose form may be stiff", _forms, _listed(_forms))]
+    FormSlot = Annotated[_Slot, Named("body whose form may be stiff", _forms, _listed(_forms), "form")]
     KeySlot = Annotated[_Slot, Named("key that a rule asks for", _keys, _listed(_keys), "key")]
     MaterialSlot = Annotated[_Slot, Named("material", _materials, _listed(_materials), "material")]
 

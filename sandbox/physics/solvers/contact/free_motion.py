@@ -2,7 +2,7 @@
 
 import math
 
-from sandbox.physics.equation import SHORTEST
+from sandbox.physics.geometry.segment import SHORTEST
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.contact.free_constraints import (
     ALONG,

@@ -1,24 +1,17 @@
 """Where the blocks of a sparse matrix lie, and of its factor."""
 
-from typing import NamedTuple
-
-import numpy as np
-
 from sandbox.physics.arena import (
-    FIRST_ARENA,
     Arena,
-    begin,
     give_back,
     is_full,
-    lay_out,
     mark,
     new_float_rows,
     new_int32s,
     new_slots,
 )
-from sandbox.physics.arrays import Slots, empty
-from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
-from sandbox.physics.solvers.linear.minimum_degree import Columns, order_by_degree, update_targets
+from sandbox.physics.arrays import Slots
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.linear.minimum_degree import Columns, update_targets
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
 from sandbox.physics.topology.sorting import place_among, sort_by_value
 
@@ -65,13 +58,6 @@ def block_below(low: int, high: int, column_start: Slots, row: Slots) -> int:
     return place_among(high, row, column_start[low], column_start[low + 1])
 
 
-@kernel
-def find_blocks(row_a: Slots, row_b: Slots, column_start: Slots, row: Slots, block: Slots) -> None:
-    """Find the blocks (k,) that rows of a sparse matrix share, row_a[k] and row_b[k], which differ."""
-    for k in range(block.shape[0]):
-        block[k] = block_below(min(row_a[k], row_b[k]), max(row_a[k], row_b[k]), column_start, row)
-
-
 @inner_kernel
 def new_matrix(rows: int, order: Slots, columns: Columns, row_of: Slots, arena: Arena) -> Matrix:
     """A matrix of so many rows, ready for numbers; order, columns, row_of: see lay_out_columns."""
@@ -91,33 +77,3 @@ def new_matrix(rows: int, order: Slots, columns: Columns, row_of: Slots, arena: 
         column_start, row, pairs, target, where, new_float_rows(arena, rows, 3), new_float_rows(arena, blocks, 4),
         new_float_rows(arena, longest, 4),
     )  # fmt: skip
-
-
-class GraphMatrix(NamedTuple):
-    """The matrix of a graph of n nodes, and the order in which they are eliminated: order (n,) by row, rank by node."""
-
-    matrix: Matrix
-    order: Slots
-    rank: Slots
-
-
-@kernel
-def _lay_out_graph(pointer: Bundle[GraphMatrix], arena: Arena, nodes: int, link_a: Slots, link_b: Slots) -> None:
-    begin(arena)
-    made = unpack(pointer)
-    ordered, rank = order_by_degree(nodes, link_a, link_b, arena), new_slots(arena, nodes)
-    if is_full(arena):
-        return
-    for row in range(nodes):
-        rank[ordered.order[row]] = row
-    set_field(made, "order", ordered.order)
-    set_field(made, "rank", rank)
-    set_field(made, "matrix", new_matrix(nodes, ordered.order, ordered.columns, rank, arena))
-
-
-def matrix_of_graph(nodes: int, link_a: Slots, link_b: Slots) -> GraphMatrix:
-    """A matrix of a block for each node and each link (l,), ready for numbers."""
-    pointer = bundle(empty(GraphMatrix))
-    lay_out(_lay_out_graph, pointer, np.zeros(FIRST_ARENA, np.int64), nodes, link_a, link_b)
-    made: GraphMatrix = items_of(pointer)
-    return made

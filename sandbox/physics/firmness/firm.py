@@ -1,0 +1,430 @@
+"""Makes a body of a world, or a piece of one that was cut, soft as a whole.
+
+Bodies that may be stiff by their form have numbers, and their pieces have: the largest piece takes the number of its
+body, the others come after all bodies, so that a cut moves no number of what it does not touch. Pieces that keep no
+area, crumbs and threads, are none.
+"""
+
+from typing import Annotated, NamedTuple
+
+from sandbox.physics.arena import (
+    Arena,
+    begin,
+    give_back,
+    is_full,
+    mark,
+    new_float_rows,
+    new_floats,
+    new_slot_rows,
+    new_slots,
+    new_tuple,
+)
+from sandbox.physics.arrays import Floats, SlotRows, Slots
+from sandbox.physics.constraints import AREA
+from sandbox.physics.equation import of_springs
+from sandbox.physics.firmness.lowest_mode import CORNERS, NO_MODE, lowest_mode_in
+from sandbox.physics.firmness.reach import FIRMED, NO_BODY, NO_ROOM, NOT_STIFF, Asked, Reach, share_out
+from sandbox.physics.jit import Bundle, inner_kernel, kernel, set_field, unpack
+from sandbox.physics.keeping.forms import StiffForm, design_gravity, height_along
+from sandbox.physics.ramps import set_constraint, set_spring
+from sandbox.physics.state import GoodValues, State
+from sandbox.physics.topology.sorting import place_among, sort_by_value
+
+# Columns of `first`: where the rows of a body begin.
+POINTS, SPRINGS, CONSTRAINTS, AREAS, BENDS, KINDS_OF_ROWS = range(6)
+# In place of a mode that is kept: it was not looked for yet; the form is not stiff.
+UNKNOWN, NONE = 0.0, -1.0
+
+
+class Forms(NamedTuple):
+    """The forms of b bodies that may be stiff without pins, whose rows lie one after another: bodies with more join.
+
+    first (b + 1, 5): see POINTS. shapes: their points, and pairs, areas and bends by numbers of points of the body.
+    spring, constraint: slots, the latter of what has three corners.
+    """
+
+    first: SlotRows
+    shapes: StiffForm
+    spring: Slots
+    constraint: Slots
+
+
+class FormModes(NamedTuple):
+    """What was found of forms, which is no state: lowest modes, see UNKNOWN, of bodies (b,) and of their pieces.
+
+    piece (n,): the k-th of a body is that of its k-th piece. point (n,), spring (m,), constraint (k,): the piece that
+    each of its rows was of then, -1: of none.
+    """
+
+    body: Floats
+    piece: Floats
+    point: Slots
+    spring: Slots
+    constraint: Slots
+
+
+class Pieces(NamedTuple):
+    """The pieces of a body: which piece each point (n,), spring (m,) and constraint (k,) is of, -1: of none.
+
+    slot (n,): particle of each point. total (1,): pieces.
+    """
+
+    point: Annotated[Slots, "points"]
+    spring: Annotated[Slots, "springs"]
+    constraint: Annotated[Slots, "constraints"]
+    slot: Annotated[Slots, "points"]
+    total: Annotated[Slots, "1"]
+
+
+class Owners(NamedTuple):
+    """Scratch: of_point (n,); then the owners of a body's points, ascending.
+
+    fewer: points of each, counted below 0; piece: its number as a piece, -1: none.
+    """
+
+    of_point: Annotated[Slots, "points"]
+    owner: Annotated[Slots, "points"]
+    fewer: Annotated[Slots, "points"]
+    piece: Annotated[Slots, "points"]
+    order: Annotated[Slots, "points"]
+    merge_buffer: Annotated[Slots, "points"]
+
+
+class FormPiece(NamedTuple):
+    """A body or a piece: its form, and the slots of its springs and constraints."""
+
+    form: StiffForm
+    spring: Slots
+    constraint: Slots
+
+
+class Firmable(NamedTuple):
+    """What `firm` changes and looks at, and the piece that `take_piece` lays out."""
+
+    state: State
+    good: GoodValues
+    forms: Forms
+    modes: FormModes
+    piece: FormPiece
+
+
+class Firming(NamedTuple):
+    """What makes a body soft: what is asked, under gravity [m/s^2] at a tick rate [1/s], in so many ticks."""
+
+    asked: Asked
+    gravity_x: float
+    gravity_y: float
+    tick_rate: float
+    duration: int
+
+
+@inner_kernel
+def _rows_of(forms: Forms, body: int, kind: int) -> int:
+    return forms.first[body + 1, kind] - forms.first[body, kind]
+
+
+@inner_kernel
+def _new_pieces(state: State, forms: Forms, body: int, arena: Arena) -> Pieces:
+    # The pieces of a body as it is now.
+    points, springs = _rows_of(forms, body, POINTS), _rows_of(forms, body, SPRINGS)
+    constraints = _rows_of(forms, body, CONSTRAINTS)
+    made = new_tuple(Pieces, arena, points=points, springs=springs, constraints=constraints)
+    scratch = mark(arena)
+    owners = new_tuple(Owners, arena, points=points)
+    if is_full(arena):
+        return made
+    made.total[0] = 1
+    first = forms.first[body, SPRINGS]
+    is_cut = False
+    for row in range(first, first + springs):
+        s = forms.spring[row]
+        made.slot[forms.shapes.pairs[row, 0]] = state.particle_a[s]
+        made.slot[forms.shapes.pairs[row, 1]] = state.particle_b[s]
+        is_cut = is_cut or not state.spring_active[s]
+    if is_cut:
+        count = _list_owners(state, made.slot, owners)
+        pieces = _number_pieces(state, forms, body, count, owners)
+        if pieces > 1:
+            made.total[0] = pieces
+            _part(state, forms, body, count, owners, made)
+    give_back(arena, scratch)
+    return made
+
+
+@inner_kernel
+def _list_owners(state: State, slot: Slots, owners: Owners) -> int:
+    # The owners of the points of a body; how many.
+    points, count = slot.shape[0], 0
+    for i in range(points):
+        owners.of_point[i], owners.order[i] = state.owner[slot[i]], i
+    sort_by_value(owners.of_point, owners.order, 0, points, owners.merge_buffer)
+    for at in range(points):
+        owner = owners.of_point[owners.order[at]]
+        if count == 0 or owners.owner[count - 1] != owner:
+            owners.owner[count], owners.fewer[count], owners.piece[count] = owner, 0, -1
+            count += 1
+        owners.fewer[count - 1] -= 1
+    return count
+
+
+@inner_kernel
+def _number_pieces(state: State, forms: Forms, body: int, count: int, owners: Owners) -> int:
+    # Owners that keep an area are pieces, those of more points first, then by owner; how many.
+    for row in range(forms.first[body, CONSTRAINTS], forms.first[body + 1, CONSTRAINTS]):
+        k = forms.constraint[row]
+        if state.constraint_active[k] and state.constraint_kind[k] == AREA:
+            at = _place_of(state, state.corner_particle[state.constraint_first[k]], owners, count)
+            if at >= 0:
+                owners.piece[at] = 0
+    pieces = 0
+    for at in range(count):
+        if owners.piece[at] == 0:
+            owners.order[pieces] = at
+            pieces += 1
+    sort_by_value(owners.fewer, owners.order, 0, pieces, owners.merge_buffer)
+    for number in range(pieces):
+        owners.piece[owners.order[number]] = number
+    return pieces
+
+
+@inner_kernel
+def _place_of(state: State, p: int, owners: Owners, count: int) -> int:
+    # Where the owner of a particle is among those of a body; -1: nowhere.
+    at = place_among(state.owner[p], owners.owner, 0, count)
+    return at if at < count and owners.owner[at] == state.owner[p] else -1
+
+
+@inner_kernel
+def _piece_of(state: State, p: int, owners: Owners, count: int) -> int:
+    at = _place_of(state, p, owners, count)
+    return owners.piece[at] if at >= 0 else -1
+
+
+@inner_kernel
+def _part(state: State, forms: Forms, body: int, count: int, owners: Owners, made: Pieces) -> None:
+    # What of a body is of which piece.
+    for i in range(made.point.shape[0]):
+        made.point[i] = _piece_of(state, made.slot[i], owners, count)
+    for row in range(made.spring.shape[0]):
+        s = forms.spring[forms.first[body, SPRINGS] + row]
+        one = _piece_of(state, state.particle_a[s], owners, count)
+        is_whole = state.spring_active[s] and one == _piece_of(state, state.particle_b[s], owners, count)
+        made.spring[row] = one if is_whole else -1
+    for row in range(made.constraint.shape[0]):
+        k = forms.constraint[forms.first[body, CONSTRAINTS] + row]
+        first = state.constraint_first[k]
+        one = _piece_of(state, state.corner_particle[first], owners, count)
+        is_whole = state.constraint_active[k]
+        for c in range(first + 1, first + CORNERS):
+            is_whole = is_whole and one == _piece_of(state, state.corner_particle[c], owners, count)
+        made.constraint[row] = one if is_whole else -1
+
+
+@inner_kernel
+def _whole(forms: Forms, body: int) -> FormPiece:
+    begins, ends, shapes = forms.first[body : body + 1], forms.first[body + 1 : body + 2], forms.shapes
+    return FormPiece(
+        StiffForm(
+            shapes.points[begins[0, POINTS] : ends[0, POINTS]],
+            shapes.mass[begins[0, POINTS] : ends[0, POINTS]],
+            shapes.pairs[begins[0, SPRINGS] : ends[0, SPRINGS]],
+            shapes.areas[begins[0, AREAS] : ends[0, AREAS]],
+            shapes.bends[begins[0, BENDS] : ends[0, BENDS]],
+        ),
+        forms.spring[begins[0, SPRINGS] : ends[0, SPRINGS]],
+        forms.constraint[begins[0, CONSTRAINTS] : ends[0, CONSTRAINTS]],
+    )
+
+
+@inner_kernel
+def _new_piece(state: State, forms: Forms, body: int, number: int, pieces: Pieces, arena: Arena) -> FormPiece:
+    # A piece of a body that was cut.
+    whole = _whole(forms, body)
+    points, springs, areas, bends = 0, 0, 0, 0
+    for i in range(pieces.point.shape[0]):
+        points += int(pieces.point[i] == number)
+    for row in range(pieces.spring.shape[0]):
+        springs += int(pieces.spring[row] == number)
+    for row in range(pieces.constraint.shape[0]):
+        if pieces.constraint[row] == number:
+            is_area = state.constraint_kind[whole.constraint[row]] == AREA
+            areas, bends = areas + int(is_area), bends + int(not is_area)
+    made = FormPiece(
+        StiffForm(
+            new_float_rows(arena, points, 2), new_floats(arena, points), new_slot_rows(arena, springs, 2),
+            new_slot_rows(arena, areas, CORNERS), new_slot_rows(arena, bends, CORNERS),
+        ),
+        new_slots(arena, springs), new_slots(arena, areas + bends),
+    )  # fmt: skip
+    index = new_slots(arena, state.owner.shape[0])
+    if not is_full(arena):
+        _fill_piece(state, whole, number, pieces, index, made)
+    return made
+
+
+@inner_kernel
+def _fill_piece(state: State, whole: FormPiece, number: int, pieces: Pieces, index: Slots, made: FormPiece) -> None:
+    # index: scratch, by particle.
+    form, count = made.form, 0
+    for i in range(pieces.point.shape[0]):
+        if pieces.point[i] == number:
+            index[pieces.slot[i]] = count
+            form.points[count, 0], form.points[count, 1] = whole.form.points[i, 0], whole.form.points[i, 1]
+            form.mass[count] = whole.form.mass[i]
+            count += 1
+    count = 0
+    for row in range(pieces.spring.shape[0]):
+        if pieces.spring[row] == number:
+            s = whole.spring[row]
+            form.pairs[count, 0], form.pairs[count, 1] = index[state.particle_a[s]], index[state.particle_b[s]]
+            made.spring[count] = s
+            count += 1
+    areas, bends = 0, 0
+    for row in range(pieces.constraint.shape[0]):
+        if pieces.constraint[row] != number:
+            continue
+        k = whole.constraint[row]
+        made.constraint[areas + bends] = k
+        is_area = state.constraint_kind[k] == AREA
+        for i in range(CORNERS):
+            corner = index[state.corner_particle[state.constraint_first[k] + i]]
+            if is_area:
+                form.areas[areas, i] = corner
+            else:
+                form.bends[bends, i] = corner
+        areas, bends = areas + int(is_area), bends + int(not is_area)
+
+
+@inner_kernel
+def body_of_number(state: State, forms: Forms, number: int, arena: Arena) -> tuple[int, int]:
+    """The body of a number, and which piece of it; -1: none; where the arena is full, any."""
+    bodies = forms.first.shape[0] - 1
+    if number < bodies:
+        return max(number, -1), 0
+    after = number - bodies
+    for body in range(bodies):
+        scratch = mark(arena)
+        pieces = _new_pieces(state, forms, body, arena)
+        if is_full(arena):
+            return -1, 0
+        count = pieces.total[0]
+        give_back(arena, scratch)
+        if after < count - 1:
+            return body, after + 1
+        after -= count - 1
+    return -1, 0
+
+
+@inner_kernel
+def _follow(pieces: Pieces, forms: Forms, body: int, modes: FormModes) -> None:
+    # Forget the modes of pieces that are others now.
+    point, spring = forms.first[body, POINTS], forms.first[body, SPRINGS]
+    constraint = forms.first[body, CONSTRAINTS]
+    is_same = _take_over(pieces.point, modes.point, point)
+    is_same = _take_over(pieces.spring, modes.spring, spring) and is_same
+    is_same = _take_over(pieces.constraint, modes.constraint, constraint) and is_same
+    if not is_same:
+        for i in range(pieces.point.shape[0]):
+            modes.piece[point + i] = UNKNOWN
+
+
+@inner_kernel
+def _take_over(now: Slots, kept: Slots, first: int) -> bool:
+    # Whether they are the same already.
+    is_same = True
+    for i in range(now.shape[0]):
+        is_same = is_same and kept[first + i] == now[i]
+        kept[first + i] = now[i]
+    return is_same
+
+
+@inner_kernel
+def _mode_of(form: StiffForm, kept: Floats, at: int, arena: Arena) -> float:
+    # The lowest mode, which is kept there; NO_MODE: the arena is too small.
+    if kept[at] == UNKNOWN:
+        found = lowest_mode_in(form, arena)
+        if found == NO_MODE:
+            return NO_MODE
+        kept[at] = found if found > 0.0 else NONE
+    return max(kept[at], 0.0)
+
+
+@inner_kernel
+def firm(
+    state: State, good: GoodValues, forms: Forms, modes: FormModes, arena: Arena, body: int, is_whole: bool,
+    firming: Firming, found: Floats,
+) -> int:  # fmt: skip
+    """Make a body soft by its number, or a piece; whether it is done, see `FIRMED`; of others nothing is changed.
+
+    is_whole: all of a body, whatever was cut of it. found (2,): what `share_out` says.
+    """
+    begin(arena)
+    b, number = body_of_number(state, forms, body, arena)
+    if is_full(arena):
+        return NO_ROOM
+    if b < 0 or (is_whole and body >= forms.first.shape[0] - 1):
+        return NO_BODY
+    piece, kept, at = _whole(forms, b), modes.body, b
+    if not is_whole:
+        pieces = _new_pieces(state, forms, b, arena)
+        if is_full(arena):
+            return NO_ROOM
+        if pieces.total[0] > 1:
+            _follow(pieces, forms, b, modes)
+            piece = _new_piece(state, forms, b, number, pieces, arena)
+            kept, at = modes.piece, forms.first[b, POINTS] + number
+            if is_full(arena):
+                return NO_ROOM
+    mode = _mode_of(piece.form, kept, at, arena)
+    if mode == NO_MODE:
+        return NO_ROOM
+    if mode == 0.0:
+        return NOT_STIFF
+    height = height_along(piece.form.points, firming.gravity_x, firming.gravity_y)
+    gravity = design_gravity(firming.gravity_x, firming.gravity_y)
+    code = share_out(Reach(mode, height, gravity, 1.0 / firming.tick_rate), firming.asked, found)
+    if code == FIRMED:
+        _set(state, good, piece, found[0], found[1], mode, firming.duration)
+    return code
+
+
+@inner_kernel
+def _set(
+    state: State, good: GoodValues, piece: FormPiece, stiffness: float, damping: float, mode: float, duration: int
+) -> None:
+    if stiffness == 1.0 and damping == 1.0:
+        # All of them rigid, which they are alone as well.
+        mode = 0.0
+    else:
+        stiffness, damping = of_springs(stiffness, damping, mode)
+    for row in range(piece.spring.shape[0]):
+        set_spring(state, good, piece.spring[row], stiffness, damping, mode, duration)
+    for row in range(piece.constraint.shape[0]):
+        set_constraint(state, good, piece.constraint[row], stiffness, damping, mode, duration)
+
+
+@kernel
+def count_pieces(pointer: Bundle[Firmable], arena: Arena, count: Slots) -> int:
+    """How many pieces each body (b,) is; NO_ROOM: the arena is too small."""
+    begin(arena)
+    made = unpack(pointer)
+    for body in range(count.shape[0]):
+        scratch = mark(arena)
+        pieces = _new_pieces(made.state, made.forms, body, arena)
+        if is_full(arena):
+            return NO_ROOM
+        count[body] = pieces.total[0]
+        give_back(arena, scratch)
+    return 0
+
+
+@kernel
+def take_piece(pointer: Bundle[Firmable], arena: Arena, body: int, number: int) -> None:
+    """Lay out a piece of a body that was cut."""
+    begin(arena)
+    made = unpack(pointer)
+    pieces = _new_pieces(made.state, made.forms, body, arena)
+    if is_full(arena):
+        return
+    piece = _new_piece(made.state, made.forms, body, number, pieces, arena)
+    set_field(made, "piece", piece)
