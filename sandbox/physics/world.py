@@ -27,7 +27,7 @@ from sandbox.physics.keeping.names import Names
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS, LAW_NISSEN
 from sandbox.physics.rules.table import Rules
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, StateArrays, good_of, state_of
+from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.pools import NO_HULLS, NO_POOLS
 
@@ -80,7 +80,8 @@ class World(StateArrays):
         self.area_constraints: tuple[range, ...] = ()
         self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
         self.rules: Rules = empty(Rules)
-        self.rule_keys: tuple[str, ...] = ()  # those that rules ask for
+        # What each row of the rules' families belongs to, see `append_named`.
+        self.row_names: dict[Family, tuple[str, ...]] = dict.fromkeys(OF_RULES, ())
         # What it was built from, for who adds more of the kind, and what joined it since.
         self.source: Any = None
         self.joined: tuple[Joined, ...] = ()
@@ -148,6 +149,16 @@ class World(StateArrays):
     def append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
         """Append `count` rows to the arrays of a family: (count, ...) or one value for all; as usual where none is."""
         self._grow(family, count, arguments.rows_of(family, count, arrays))
+
+    def append_named(self, family: Family, names: Sequence[str], **arrays: ArrayLike) -> None:
+        """Append a row of rules for each name: of a rule, a counter or a key; of a probe or a still the rule's."""
+        self.append(family, len(names), **arrays)
+        self.row_names = {**self.row_names, family: (*self.row_names[family], *names)}
+
+    @property
+    def rule_keys(self) -> tuple[str, ...]:
+        """The keys that rules ask for."""
+        return self.row_names[Family.KEY]
 
     def _grow(self, family: Family, count: int, arrays: dict[str, NDArray[Any]]) -> None:
         room, mine = self._room.appended, self.__dict__

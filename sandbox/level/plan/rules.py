@@ -12,7 +12,9 @@ from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.quantities import Point
 from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.welds import Slots
+from sandbox.level.rules.hands import MEANINGS
 from sandbox.level.rules.question import WALLS, QuestionDef
+from sandbox.level.rules.rule import RuleDef
 from sandbox.physics.rules import table
 from sandbox.physics.rules.table import NOBODY, Rules, Terms, Things
 from sandbox.physics.rules.zones import BOX, CIRCLE, POLYGON, Zones
@@ -47,23 +49,25 @@ def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     if level.rules or level.counters:
         _add_rules(world, level, plan, slots)
     if level.hands is not None:
-        lefts = [most + 0.0 for most in level.hands.budgets.values()]
-        world.append(Family.COUNTER, len(lefts), counter=lefts)
+        budgets = level.hands.budgets
+        names = [f"{MEANINGS[deed].left} left" for deed in budgets]
+        world.append_named(Family.COUNTER, names, counter=[most + 0.0 for most in budgets.values()])
 
 
 def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     maker = _Maker(world, level, plan, slots)
-    roots = [maker.term(rule.when) for rule in level.rules]
+    roots = [maker.root(rule) for rule in level.rules]
     rate = level.settings.tick_rate
     world.rules = maker.rules(
         roots, [round(rule.for_seconds * rate) for rule in level.rules], [rule.once for rule in level.rules]
     )
-    world.append(Family.RULE, len(level.rules))
-    world.append(Family.COUNTER, len(level.counters), counter=[counter.start + 0.0 for counter in level.counters])
-    world.append(Family.PROBE, len(maker.probes), probe_position=world.position[maker.probes].reshape(-1, 2))
-    world.append(Family.STILL, maker.settled)
-    world.rule_keys = maker.keys
-    world.append(Family.KEY, len(maker.keys))
+    counters = level.counters
+    world.append_named(Family.RULE, [rule.id for rule in level.rules])
+    world.append_named(Family.COUNTER, [each.id for each in counters], counter=[each.start + 0.0 for each in counters])
+    places = world.position[maker.probes].reshape(-1, 2)
+    world.append_named(Family.PROBE, maker.probing, probe_position=places)
+    world.append_named(Family.STILL, maker.settling)
+    world.append_named(Family.KEY, maker.keys)
 
 
 def rule_keys(level: Level) -> tuple[str, ...]:
@@ -87,7 +91,15 @@ class _Maker:
         self._things = _things(level, plan)
         self._terms: list[_Term] = []
         self.probes: list[int] = []
-        self.settled = 0
+        # The rule whose question is made, and that of each probe and each question whether something has settled.
+        self._asking = ""
+        self.probing: list[str] = []
+        self.settling: list[str] = []
+
+    def root(self, rule: RuleDef) -> int:
+        """The number of the term that a rule asks."""
+        self._asking = rule.id
+        return self.term(rule.when)
 
     def term(self, asked: QuestionDef) -> int:
         """The number of a new term that asks this."""
@@ -108,6 +120,7 @@ class _Maker:
             about = self._particles(asked)
             first = len(self.probes)
             self.probes += about
+            self.probing += [self._asking] * len(about)
             return _Term(table.CROSSES, about, self._zones.index(asked.crosses), first, 1.0, 1.0)
         if asked.breaks is not None:
             return _Term(table.BROKEN, self._springs(asked.breaks), low=1.0)
@@ -128,7 +141,8 @@ class _Maker:
             return _Term(kind, self._springs(asked.body), low=low, high=high)
         other = 0
         if kind == table.SETTLED:
-            other, self.settled = self.settled, self.settled + 1
+            other = len(self.settling)
+            self.settling.append(self._asking)
         elif kind == table.DISTANCE:
             other = self._slot(str(asked.other))
         zone = self._zones.index(str(asked.zone)) if kind == table.INSIDE else 0
