@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, assert_never
 
 import numpy as np
 
@@ -103,34 +103,39 @@ class _Maker:
 
     def term(self, asked: QuestionDef) -> int:
         """The number of a new term that asks this."""
-        if asked.members:
-            made = _Term(_KINDS[asked.asked[0]], [self.term(member) for member in asked.members])
-        else:
-            made = self._made(asked)
+        made = self._made(asked)
         self._terms.append(made)
         return len(self._terms) - 1
 
     def _made(self, asked: QuestionDef) -> _Term:
         low = -math.inf if asked.at_least is None else asked.at_least + 0.0
         high = math.inf if asked.at_most is None else asked.at_most + 0.0
-        if asked.touches is not None:
-            one, *others = (self._things[name] for name in asked.touches)
-            return _Term(table.TOUCHES, (), one, others[0] if others else NOBODY)
-        if asked.crosses is not None:
-            about = self._particles(asked)
-            first = len(self.probes)
-            self.probes += about
-            self.probing += [self._asking] * len(about)
-            return _Term(table.CROSSES, about, self._zones.index(asked.crosses), first, 1.0, 1.0)
-        if asked.breaks is not None:
-            return _Term(table.BROKEN, self._springs(asked.breaks), low=1.0)
-        if asked.counter is not None:
-            return _Term(table.COUNTER, (), 0, self._counters.index(asked.counter), low, high)
-        if asked.key is not None:
-            return _Term(table.KEY, (), 0, self.keys.index(asked.key), 1.0, 1.0)
-        if asked.time is not None:
-            return _Term(table.TIME, low=asked.time)
-        return self._of_metric(asked, low, high)
+        asks = asked.asked[0]
+        value = getattr(asked, asks)
+        match asks:
+            case "touches":
+                one, *others = (self._things[name] for name in value)
+                return _Term(table.TOUCHES, (), one, others[0] if others else NOBODY)
+            case "crosses":
+                about = self._particles(asked)
+                first = len(self.probes)
+                self.probes += about
+                self.probing += [self._asking] * len(about)
+                return _Term(table.CROSSES, about, self._zones.index(value), first, 1.0, 1.0)
+            case "breaks":
+                return _Term(table.BROKEN, self._springs(value), low=1.0)
+            case "counter":
+                return _Term(table.COUNTER, (), 0, self._counters.index(value), low, high)
+            case "key":
+                return _Term(table.KEY, (), 0, self.keys.index(value), 1.0, 1.0)
+            case "time":
+                return _Term(table.TIME, low=value)
+            case "metric":
+                return self._of_metric(asked, low, high)
+            case "all" | "any" | "none":
+                return _Term(_KINDS[asks], [self.term(member) for member in value])
+            case _:
+                assert_never(asks)
 
     def _of_metric(self, asked: QuestionDef, low: float, high: float) -> _Term:
         metric = str(asked.metric)
