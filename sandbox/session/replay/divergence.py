@@ -1,6 +1,7 @@
 """Divergence: the first bit in which two runs differ, and how it is told."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, assert_never
 
@@ -16,7 +17,7 @@ from sandbox.session.probe import ADDED
 
 # What holds a hand is named by this and the hand's number.
 HAND = "+hand"
-# Bodies whose counts are told, at most.
+# Bodies whose counts are told, and rules that one of two worlds has alone, at most.
 MOST_COUNTED = 4
 
 
@@ -135,9 +136,12 @@ def _other_rows(family: Family, wanted: World, found: World) -> str:
     """What one of two worlds has alone that rows of a family belong to: rules and the like, or else bodies."""
     if family not in OF_RULES:
         return counts_by_body(wanted, found)
-    before, after = (Counter(row_names(side, family)) for side in (wanted, found))
-    gone, new = ([*(one - other)] for one, other in ((before, after), (after, before)))
-    return ", ".join([*(f"{name} is gone" for name in gone), *(f"{name} is new" for name in new)])
+    told: list[str] = []
+    # What a rule follows comes and goes with it.
+    for each in (Family.RULE, family) if family in (Family.PROBE, Family.STILL) else (family,):
+        before, after = (Counter(row_names(side, each)) for side in (wanted, found))
+        told = told or [*(f"{name} is gone" for name in before - after), *(f"{name} is new" for name in after - before)]
+    return _first_of(told)
 
 
 def counts_by_body(wanted: World, found: World) -> str:
@@ -153,9 +157,12 @@ def counts_by_body(wanted: World, found: World) -> str:
             for body in {**before, **after}
             if before[body] != after[body] and body != HAND
         ]
-    return ", ".join(told[:MOST_COUNTED]) + (
-        f" and {len(told) - MOST_COUNTED} more" if len(told) > MOST_COUNTED else ""
-    )
+    return _first_of(told)
+
+
+def _first_of(told: Sequence[str]) -> str:
+    more = len(told) - MOST_COUNTED
+    return ", ".join(told[:MOST_COUNTED]) + (f" and {more} more" if more > 0 else "")
 
 
 def first_difference(
