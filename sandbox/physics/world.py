@@ -19,7 +19,7 @@ from sandbox.physics.constraints import (
 )
 from sandbox.physics.events import Containment
 from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES, SPRINGS
+from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES
 from sandbox.physics.keeping.capacity import Capacity
 from sandbox.physics.keeping.equipment import Equipment, Joined
 from sandbox.physics.keeping.forms import FirmBody
@@ -80,7 +80,7 @@ class World(StateArrays):
         self.area_constraints: tuple[range, ...] = ()
         self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
         self.rules: Rules = empty(Rules)
-        # What each row of the rules' families belongs to, see `append_named`.
+        # Of each row of rules: the name of the rule, the counter or the key; of probes and stills that of the rule.
         self.row_names: dict[Family, tuple[str, ...]] = dict.fromkeys(OF_RULES, ())
         # What it was built from, for who adds more of the kind, and what joined it since.
         self.source: Any = None
@@ -149,11 +149,6 @@ class World(StateArrays):
     def append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
         """Append `count` rows to the arrays of a family: (count, ...) or one value for all; as usual where none is."""
         self._grow(family, count, arguments.rows_of(family, count, arrays))
-
-    def append_named(self, family: Family, names: Sequence[str], **arrays: ArrayLike) -> None:
-        """Append a row of rules for each name: of a rule, a counter or a key; of a probe or a still the rule's."""
-        self.append(family, len(names), **arrays)
-        self.row_names = {**self.row_names, family: (*self.row_names[family], *names)}
 
     @property
     def rule_keys(self) -> tuple[str, ...]:
@@ -540,13 +535,6 @@ class World(StateArrays):
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
         self._command("set_drive", part=part, value=arguments.number("value", value, -1.0, 1.0))
-
-    def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
-        """Give springs other rest lengths [m]; the length by which they have yielded does not change."""
-        springs = arguments.slots("springs", springs, SPRINGS, self.spring_count)
-        lengths = arguments.floats("lengths", lengths, springs.shape, 0.0)
-        self.rest_length[springs] = lengths
-        self.good["rest_length"][springs] = lengths
 
     def hold(
         self, grab: int, particle: int, target: Point, strength: float = HAND_STRENGTH, radius: float = 0.0

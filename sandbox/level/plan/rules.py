@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple, assert_never
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level, ZoneDef
@@ -51,7 +52,7 @@ def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     if level.hands is not None:
         budgets = level.hands.budgets
         names = [f"{MEANINGS[deed].left} left" for deed in budgets]
-        world.append_named(Family.COUNTER, names, counter=[most + 0.0 for most in budgets.values()])
+        _append(world, Family.COUNTER, names, counter=[most + 0.0 for most in budgets.values()])
 
 
 def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
@@ -62,12 +63,17 @@ def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
         roots, [round(rule.for_seconds * rate) for rule in level.rules], [rule.once for rule in level.rules]
     )
     counters = level.counters
-    world.append_named(Family.RULE, [rule.id for rule in level.rules])
-    world.append_named(Family.COUNTER, [each.id for each in counters], counter=[each.start + 0.0 for each in counters])
+    _append(world, Family.RULE, [rule.id for rule in level.rules])
+    _append(world, Family.COUNTER, [each.id for each in counters], counter=[each.start + 0.0 for each in counters])
     places = world.position[maker.probes].reshape(-1, 2)
-    world.append_named(Family.PROBE, maker.probing, probe_position=places)
-    world.append_named(Family.STILL, maker.settling)
-    world.append_named(Family.KEY, maker.keys)
+    _append(world, Family.PROBE, maker.probing, probe_position=places)
+    _append(world, Family.STILL, maker.settling)
+    _append(world, Family.KEY, maker.keys)
+
+
+def _append(world: World, family: Family, names: Sequence[str], **arrays: ArrayLike) -> None:
+    world.append(family, len(names), **arrays)
+    world.row_names[family] += tuple(names)
 
 
 def rule_keys(level: Level) -> tuple[str, ...]:
