@@ -1,7 +1,7 @@
 """What is under the pointer, in a box, in a lasso, of a material; and how that joins what is selected already."""
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -204,8 +204,14 @@ def items_of_material(level: Level, name: str) -> Selection:
 
 def combined(old: Selection, new: Selection, mode: Mode) -> Selection:
     """What is selected after new items are picked: they alone, too, no longer, or each the other way round."""
-    if mode == "replace":
-        return new
-    if mode == "add":
-        return old | new
-    return old - new if mode == "subtract" else old ^ new
+    match mode:
+        case "replace":
+            return new
+        case "add":
+            return old | new
+        case "subtract":
+            return old - new
+        case "toggle":
+            return old ^ new
+        case _:
+            assert_never(mode)

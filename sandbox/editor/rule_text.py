@@ -1,11 +1,11 @@
 """Rules as sentences, and what they name."""
 
-from sandbox.level.checks import METRICS
+from typing import assert_never
+
+from sandbox.level.checks import METRICS, Metric
 from sandbox.level.rules.action import ActionDef
 from sandbox.level.rules.question import QuestionDef
 from sandbox.level.rules.rule import RuleDef
-
-_JOINED = {"all": " and ", "any": " or ", "none": " or "}
 
 
 def rule_text(rule: RuleDef) -> str:
@@ -17,28 +17,40 @@ def rule_text(rule: RuleDef) -> str:
 
 def question_text(question: QuestionDef) -> str:
     """What a question asks, without a full stop."""
-    subject = question.particle or question.body or "everything"
-    if question.members:
-        each = _JOINED[question.asked[0]].join(map(_member_text, question.members))
-        return f"none of this: {each}" if question.none else each
-    if question.touches is not None:
-        return f"{question.touches[0]} touches {question.touches[1] if len(question.touches) > 1 else 'anything'}"
-    if question.crosses is not None:
-        return f"{subject} crosses {question.crosses}"
-    if question.breaks is not None:
-        return f"{question.breaks} breaks"
-    if question.key is not None:
-        return f"key {question.key.upper()} is held"
-    if question.time is not None:
-        return f"{question.time:g} s are over"
-    bounds = _bounds_text(question)
-    if question.counter is not None:
-        return f"{question.counter} is {bounds}"
-    assert question.metric is not None
-    if question.metric == "inside":
+    asks = question.asked[0]
+    value = getattr(question, asks)
+    match asks:
+        case "all" | "any" | "none":
+            each = {"all": " and ", "any": " or ", "none": " or "}[asks].join(map(_member_text, value))
+            return f"none of this: {each}" if asks == "none" else each
+        case "touches":
+            return f"{value[0]} touches {value[1] if len(value) > 1 else 'anything'}"
+        case "crosses":
+            return f"{_subject(question)} crosses {value}"
+        case "breaks":
+            return f"{value} breaks"
+        case "key":
+            return f"key {value.upper()} is held"
+        case "time":
+            return f"{value:g} s are over"
+        case "counter":
+            return f"{value} is {_bounds_text(question)}"
+        case "metric":
+            return _metric_text(question, value)
+        case _:
+            assert_never(asks)
+
+
+def _subject(question: QuestionDef) -> str:
+    return question.particle or question.body or "everything"
+
+
+def _metric_text(question: QuestionDef, metric: Metric) -> str:
+    bounds, subject = _bounds_text(question), _subject(question)
+    if metric == "inside":
         deep = f" by {bounds}" if question.at_least or question.at_most is not None else ""
         return f"{subject} is inside {question.zone}{deep}"
-    measured = METRICS[question.metric]
+    measured = METRICS[metric]
     of = f" of {subject}" if question.particle or question.body else ""
     to = f" to {question.other}" if question.other else ""
     return f"{measured.label}{of}{to}" + (f" is {bounds} {measured.unit}".rstrip() if bounds else "")
@@ -61,18 +73,24 @@ def action_text(action: ActionDef) -> str:
     """What an action does, without a full stop."""
     does = action.done[0]
     value = getattr(action, does)
-    if does in ("win", "fail", "say"):
-        verb = {"win": "win", "fail": "lose", "say": "say"}[does]
-        return f"{verb} \N{LEFT DOUBLE QUOTATION MARK}{value}\N{RIGHT DOUBLE QUOTATION MARK}" if value else verb
-    if does == "count":
-        return f"{value} {action.by:+g}"
-    if does == "drive":
-        return f"drive {value} at {action.value:g}"
-    if does == "sag":
-        return f"let {action.body} sag by {100.0 * action.sag:g} %" if action.sag is not None else ""
-    if does in ("gravity", "wind"):
-        return f"{does} becomes {value[0]:g}, {value[1]:g}"
-    return {"sound": f"sound {value}", "checkpoint": "checkpoint"}.get(does, f"{does} {value}")
+    match does:
+        case "win" | "fail" | "say":
+            verb = "lose" if does == "fail" else does
+            return f"{verb} \N{LEFT DOUBLE QUOTATION MARK}{value}\N{RIGHT DOUBLE QUOTATION MARK}" if value else verb
+        case "count":
+            return f"{value} {action.by:+g}"
+        case "drive":
+            return f"drive {value} at {action.value:g}"
+        case "sag":
+            return f"let {action.body} sag by {100.0 * value:g} %"
+        case "gravity" | "wind":
+            return f"{does} becomes {value[0]:g}, {value[1]:g}"
+        case "checkpoint":
+            return "checkpoint"
+        case "sound" | "cut" | "pin" | "unpin":
+            return f"{does} {value}"
+        case _:
+            assert_never(does)
 
 
 def named_things(question: QuestionDef) -> list[str]:

@@ -23,6 +23,8 @@ from sandbox.physics.state import State, StateArrays
 
 AREA = 0
 BEND = 1
+# For a person: what each kind is called, and the corner that it is at.
+CONSTRAINT_NAMES = {AREA: ("area", 0), BEND: ("bend", 1)}
 # Corners of an area that is all shape: it and its sides agree in one.
 TRIANGLE = 3
 # Cs and Cd at most of an area of more corners, whose size its sides may not allow: at 0.999 a rigid skin that is blown

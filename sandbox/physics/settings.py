@@ -20,6 +20,7 @@ DEFAULT_SOLVER = "direct"
 # Settings as kernels read them: places among the numbers and among the choices; SOLVER by its place in SOLVER_NAMES.
 GRAVITY_X, GRAVITY_Y, WIND_X, WIND_Y, DRAG, WARM_START = range(6)
 NUMBER_COUNT = 6
+NUMBER_NAMES = ("gravity x", "gravity y", "wind x", "wind y", "drag", "warm start")
 SOLVER, TICK_RATE, SUBSTEP_COUNT, IS_AUTO, ITERATIONS = range(5)
 SINGLE_PASS, ITERATIVE, DIRECT = range(3)
 

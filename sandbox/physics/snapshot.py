@@ -113,7 +113,7 @@ _NOTHING: tuple[bytes | None, str | None] = (None, None)
 _COLUMNS = tuple((column.name, column.stored, column) for column in COLUMNS)
 
 
-def _digest(column: Column, array: NDArray[Any]) -> str | None:
+def array_hash(column: Column, array: NDArray[Any]) -> str | None:
     """Hash of an array; None: it has its usual values and is left out."""
     content = canonical_bytes(array)
     if column.sparse and content == _usual_bytes(column, len(array)):
@@ -143,7 +143,7 @@ def hash_by_array(world: World | Snapshot) -> dict[str, str]:
         present = array.tobytes()
         last, digest = kept.get(stored, _NOTHING)
         if present != last:
-            digest = _digest(column, array)
+            digest = array_hash(column, array)
             if len(present) <= _LARGEST_KEPT:
                 kept[stored] = present, digest
         if digest is not None:
@@ -173,8 +173,9 @@ class Left:
         """The arrays, by their names in files, and `settings`, that are other in a world now."""
         arrays, kept, found = vars(world), self.kept, []
         for name, stored, column in _COLUMNS:
-            array = arrays[name]
-            if array.tobytes() != kept.get(stored, _NOTHING)[0] and _digest(column, array) != self.hashes.get(stored):
+            if arrays[name].tobytes() == kept.get(stored, _NOTHING)[0]:
+                continue
+            if array_hash(column, arrays[name]) != self.hashes.get(stored):
                 found.append(stored)
         return found if world.settings == self.settings else [*found, "settings"]
 

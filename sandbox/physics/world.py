@@ -20,7 +20,7 @@ from sandbox.physics.constraints import (
 from sandbox.physics.events import Containment
 from sandbox.physics.firmness.form_table import FormTable
 from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES, SPRINGS
+from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES
 from sandbox.physics.keeping.capacity import Capacity
 from sandbox.physics.keeping.equipment import Equipment, Joined
 from sandbox.physics.keeping.forms import FirmBody
@@ -29,7 +29,7 @@ from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_
 from sandbox.physics.permission import PROGRAM
 from sandbox.physics.rules.table import Rules
 from sandbox.physics.settings import AUTO, WorldSettings
-from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, Family, StateArrays, good_of, state_of
+from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.pools import NO_HULLS, NO_POOLS
 
@@ -82,7 +82,8 @@ class World(StateArrays):
         self.area_constraints: tuple[range, ...] = ()
         self.forms: tuple[FirmBody, ...] = ()  # bodies that may be stiff by their form
         self.rules: Rules = empty(Rules)
-        self.rule_keys: tuple[str, ...] = ()  # those that rules ask for
+        # Of each row of rules: the name of the rule, the counter or the key; of probes and stills that of the rule.
+        self.row_names: dict[Family, tuple[str, ...]] = dict.fromkeys(OF_RULES, ())
         # What it was built from, for who adds more of the kind, and what joined it since.
         self.source: Any = None
         self.joined: tuple[Joined, ...] = ()
@@ -150,6 +151,11 @@ class World(StateArrays):
     def append(self, family: Family, count: int, **arrays: ArrayLike) -> None:
         """Append `count` rows to the arrays of a family: (count, ...) or one value for all; as usual where none is."""
         self._grow(family, count, arguments.rows_of(family, count, arrays))
+
+    @property
+    def rule_keys(self) -> tuple[str, ...]:
+        """The keys that rules ask for."""
+        return self.row_names[Family.KEY]
 
     def _grow(self, family: Family, count: int, arrays: dict[str, NDArray[Any]]) -> None:
         room, mine = self._room.appended, self.__dict__
@@ -538,13 +544,6 @@ class World(StateArrays):
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
         self.command("set_drive", part=part, value=arguments.number("value", value, -1.0, 1.0))
-
-    def set_rest_lengths(self, springs: Slots, lengths: Floats) -> None:
-        """Give springs other rest lengths [m]; the length by which they have yielded does not change."""
-        springs = arguments.slots("springs", springs, SPRINGS, self.spring_count)
-        lengths = arguments.floats("lengths", lengths, springs.shape, 0.0)
-        self.rest_length[springs] = lengths
-        self.good["rest_length"][springs] = lengths
 
     def hold(
         self, grab: int, particle: int, target: Point, strength: float = HAND_STRENGTH, radius: float = 0.0

@@ -4,7 +4,7 @@ They are no commands of a person: no history or recording holds them, as they fo
 """
 
 from contextlib import suppress
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 
@@ -65,19 +65,22 @@ def record_of(action: ActionDef, world: World, rate: int) -> dict[str, Any] | No
 
     rate: ticks in a second.
     """
-    during = round(action.during * rate)
-    if action.cut is not None:
-        names = [name for name in world.spring_names if name == action.cut or name.startswith(f"{action.cut}:")]
-        springs = [name for name in names if world.spring_active[world.spring_slot(name)]]
-        return {"type": "cut_springs", "springs": springs} if springs else None
-    if action.pin is not None:
-        return {"type": "pin", "particle": action.pin}
-    if action.unpin is not None:
-        return {"type": "unpin", "particle": action.unpin}
-    if action.drive is not None:
-        return {"type": "set_drive", "part": action.drive, "value": action.value}
-    if action.gravity is not None:
-        return {"type": "set_gravity", "gravity": list(action.gravity), "duration": during}
-    if action.wind is not None:
-        return {"type": "set_air", "wind": list(action.wind), "duration": during}
-    return None
+    (does,) = action.done
+    value, during = getattr(action, does), round(action.during * rate)
+    match does:
+        case "cut":
+            names = [name for name in world.spring_names if name == value or name.startswith(f"{value}:")]
+            springs = [name for name in names if world.spring_active[world.spring_slot(name)]]
+            return {"type": "cut_springs", "springs": springs} if springs else None
+        case "pin" | "unpin":
+            return {"type": does, "particle": value}
+        case "drive":
+            return {"type": "set_drive", "part": value, "value": action.value}
+        case "gravity":
+            return {"type": "set_gravity", "gravity": list(value), "duration": during}
+        case "wind":
+            return {"type": "set_air", "wind": list(value), "duration": during}
+        case "win" | "fail" | "say" | "sound" | "count" | "checkpoint" | "sag":
+            return None
+        case _:
+            assert_never(does)

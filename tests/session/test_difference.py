@@ -151,28 +151,32 @@ def test_what_cannot_be_bisected_is_said_in_a_line(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("name", "owner"),
+    ("array", "name", "owner"),
     [
-        ("jelly.12", "body jelly, particle 12"),
-        ("jelly:3", "body jelly, spring 3"),
-        (":4", "loose spring 4"),
-        ("ball", "particle ball"),
-        ("corner at jelly.12", "corner of body jelly, particle 12"),
-        ("area at jelly.3", "area of body jelly, particle 3"),
-        ("bend at rope.1", "bend of body rope, particle 1"),
-        ("contact of ball", "contact of particle ball"),
-        ("contact of jelly.2", "contact of body jelly, particle 2"),
-        ("+.0", "added particle 0"),
-        ("+:1", "added spring 1"),
-        ("+2.7", "added body 2, particle 7"),
-        ("corner at +2.7", "corner of added body 2, particle 7"),
-        ("+hand.1", "hand 1"),
-        ("hand 1", "hand 1"),
-        ("", ""),
+        ("position", "jelly.12", "body jelly, particle 12"),
+        ("stiffness", "jelly:3", "body jelly, spring 3"),
+        ("stiffness", ":4", "loose spring 4"),
+        ("position", "ball", "particle ball"),
+        ("position", "jar of jam at home.3", "body jar of jam at home, particle 3"),
+        ("corner_weight", "corner at jelly.12", "corner of body jelly, particle 12"),
+        ("element_rest", "area at jelly.3", "area of body jelly, particle 3"),
+        ("element_rest", "bend at rope.1", "bend of body rope, particle 1"),
+        ("contact_impulse", "contact of ball", "contact of particle ball"),
+        ("contact_impulse", "contact of jelly.2", "contact of body jelly, particle 2"),
+        ("position", "+.0", "added particle 0"),
+        ("stiffness", "+:1", "added spring 1"),
+        ("position", "+2.7", "added body 2, particle 7"),
+        ("corner_weight", "corner at +2.7", "corner of added body 2, particle 7"),
+        ("position", "+hand.1", "hand 1"),
+        ("hand_force", "hand 1", "hand 1"),
+        ("position", "", ""),
+        ("corner_weight", "corner at jar of jam.3", "corner of body jar of jam, particle 3"),
+        ("counter", 'counter "jar of jam"', 'counter "jar of jam"'),
+        ("settings", "", ""),
     ],
 )
-def test_the_owner_of_a_difference_is_told_by_kind_and_number(name, owner):
-    assert Divergence(1, "position", 0, 1.0, 2.0, name).owner() == owner
+def test_the_owner_of_a_difference_is_told_by_kind_and_number(array, name, owner):
+    assert Divergence(1, array, 0, 1.0, 2.0, name).owner() == owner
 
 
 def test_what_a_side_leaves_out_is_told_by_its_default():

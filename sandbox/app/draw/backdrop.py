@@ -33,7 +33,7 @@ EDGE_HALF = 2.4
 # The stage is made in bands of this many rows, a multiple of 4: what is computed on the way has to fit in a processor's
 # cache.
 BAND = 32
-_GRAINS = {"soil": EARTH, "rock": EARTH, "wood": TIMBER}
+_GRAINS = {"soil": EARTH, "rock": EARTH, "wood": TIMBER, "metal": NO_GRAIN, "glass": NO_GRAIN}
 
 
 class Backdrop:
@@ -124,7 +124,7 @@ class Backdrop:
         count = len(solids)
         look = np.zeros((count, 3), dtype=np.int64)
         look[:, 0] = np.arange(count)
-        look[:, 1] = [_GRAINS.get(kind, NO_GRAIN) if self._is_fine else NO_GRAIN for kind in kinds]
+        look[:, 1] = [_GRAINS[kind] if self._is_fine else NO_GRAIN for kind in kinds]
         look[:, 2] = [_line_of(kind, theme) for kind in kinds]
         size = np.zeros((count, 3))
         size[:, 0] = [(SOIL_DEPTH if kind in ("soil", "rock") else BEVEL) * scale for kind in kinds]

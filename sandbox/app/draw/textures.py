@@ -63,19 +63,20 @@ class SkinLook(NamedTuple):
     clear: float
 
 
+_RUBBER = SkinLook(0.32, (20, 0, 40), 0.38, 0.15, 0.0)
 _LAID = SkinLook(0.25, (30, 10, 0), 0.45, 0.0, 0.0)
 _SKINS = {
     "jelly": SkinLook(0.62, (90, 10, 110), 0.40, 0.75, 0.13), "balloon": SkinLook(0.5, (60, 0, 70), 0.42, 0.0, 0.14),
     "tyre": SkinLook(0.30, BLACK, 0.6, 0.15, 0.0), "window": SkinLook(0.7, (60, 110, 150), 0.4, 0.5, 0.1),
     "lattice": SkinLook(0.25, BLACK, 0.2, 0.0, 0.66), "wood": _LAID, "stone": _LAID, "brick": _LAID,
-    "flat": SkinLook(0.0, BLACK, 0.0, 0.0, 0.0),
+    "flat": SkinLook(0.0, BLACK, 0.0, 0.0, 0.0), "rubber": _RUBBER, "plain": _RUBBER, "cloth": _RUBBER,
+    "steel wheel": _RUBBER,
 }  # fmt: skip
-_RUBBER = SkinLook(0.32, (20, 0, 40), 0.38, 0.15, 0.0)
 
 
 def skin_look(skin: str) -> SkinLook:
-    """How a skin is lit; rubber, what is plain, and panels are alike."""
-    return _SKINS.get(skin, _RUBBER)
+    """How a skin is lit."""
+    return _SKINS[skin]
 
 
 class GroundTones(NamedTuple):
@@ -90,7 +91,7 @@ class GroundTones(NamedTuple):
 
 
 def ground_tones(kind: str, theme: Theme) -> GroundTones:
-    """How a kind of ground looks in a theme; all that is not soil, rock, wood or glass is metal."""
+    """How a kind of ground looks in a theme."""
     match kind:
         case "soil":
             return GroundTones(*theme.soil, 0.10, 0.25, 1.0, theme.soil[1])
@@ -100,8 +101,10 @@ def ground_tones(kind: str, theme: Theme) -> GroundTones:
             return GroundTones(rgb_of(0xC28E57), rgb_of(0x9A6C40), 0.30, 0.40, 1.0, rgb_of(0x6E4A28))
         case "glass":
             return GroundTones(rgb_of(0xD4EEFA), rgb_of(0x8CC4E6), 0.6, 0.30, 0.42, rgb_of(0x6FA8C8))
-    near, deep = mixed(*theme.metal, 0.25), mixed(*theme.metal, 0.55)
-    return GroundTones(near, deep, 0.45, 0.45, 1.0, theme.metal[1])
+        case "metal":
+            near, deep = mixed(*theme.metal, 0.25), mixed(*theme.metal, 0.55)
+            return GroundTones(near, deep, 0.45, 0.45, 1.0, theme.metal[1])
+    raise ValueError(f"there is no ground {kind!r}")
 
 
 @lru_cache(MOST_TABLES)

@@ -20,8 +20,8 @@ _SKINS = {
     "wood": "wood", "stone": "stone", "brick": "stone", "steel wheel": "metal",
 }  # fmt: skip
 _LINES = {
-    "steel": "metal", "paint": "metal", "brass": "metal", "cable": "cloth", "chain": "metal", "piston": "metal",
-    "deck": "wood", "wood": "wood", "bone": "wood", "muscle": "jelly", "rubber": "rubber", "coil": "metal",
+    "steel": "metal", "paint": "metal", "brass": "metal", "chain": "metal", "piston": "metal", "deck": "wood",
+    "wood": "wood", "bone": "wood", "muscle": "jelly", "rubber": "rubber", "coil": "metal", "hidden": "rubber",
 }  # fmt: skip
 _BALLS = {
     "marble": "glass", "stripe": "rubber", "steel": "metal", "sand": "stone", "bumper": "metal", "plain": "wood",
@@ -116,7 +116,7 @@ def _of_level(level: Level) -> Iterator[tuple[str, bool]]:
         yield _of_look(look)
     many = sum(not particle.pinned for particle in level.particles) > GRAINS
     for index, particle in enumerate(level.particles):
-        yield _BALLS.get(ball_look(level, particle, index, many)[0], "rubber"), False
+        yield _BALLS[ball_look(level, particle, index, many)[0]], False
 
 
 def _of_look(look: Look) -> tuple[str, bool]:
@@ -124,4 +124,4 @@ def _of_look(look: Look) -> tuple[str, bool]:
         return _SKINS[look.skin], False
     if look.line in STRANDS and look.line not in ("deck", "chain"):
         return "cloth", True
-    return _LINES.get(look.line, "rubber"), look.line == "chain"
+    return _LINES[look.line], look.line == "chain"

@@ -306,7 +306,7 @@ def _shape_properties(selection: Selection, shapes: Sequence[Shape]) -> list[Pro
     def write(document: Document, value: Any) -> Document:
         return set_field(document, selection, "shape", {kind: value})
 
-    about = replace(about, title="Radius" if kind == "circle" else "Corners")
+    about = replace(about, title={"circle": "Radius", "polygon": "Corners"}[kind])
     return [*found, Property(f"shape.{kind}", about, same(shape.__dict__[kind] for shape in shapes), write)]
 
 
@@ -326,4 +326,6 @@ def _as_shape(kind: str, shape: Shape) -> dict[str, Any]:
         return {"circle": max(x, y) / 2.0 if isinstance(shape, CircleShape) else min(x, y) / 2.0}
     if kind == "box":
         return {"box": (x, y)}
+    if kind != "polygon":
+        raise ValueError(f"a jelly has no shape {kind!r}")
     return {"polygon": tuple((a * x / 2.0, b * y / 2.0) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)))}

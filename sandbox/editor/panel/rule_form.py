@@ -133,8 +133,10 @@ def _sentence(level: Level, question: QuestionDef, index: int) -> list[Property]
     elif asks == "time":
         made.append(asked)
         word("time", replace(fields_of(QuestionDef)["time"], title="After", optional=False), question.time)
-    else:
+    elif asks == "metric":
         made += [asked, *_metric(level, question, index)]
+    else:
+        raise ValueError(f"a form has no question {asks!r}")
     return made
 
 
@@ -265,7 +267,9 @@ def _question(level: Level, asks: str, old: _Data, metric: str) -> _Data:
         return {"counter": level.counters[0].id, "at_least": 10.0}
     if asks in ("key", "time"):
         return {"key": FIRST_KEY} if asks == "key" else {"time": 10.0}
-    return _measuring(level, metric, thing)
+    if asks == "metric":
+        return _measuring(level, metric, thing)
+    raise ValueError(f"a form has no question {asks!r}")
 
 
 def _measuring(level: Level, metric: str, thing: str | None) -> _Data:
@@ -412,9 +416,11 @@ def _first_action(level: Level, does: str) -> _Data:
         if not things:
             raise EditError("draw a particle first")
         return {does: things[0]}
-    if not level.bodies:
-        raise EditError("draw a body first, for the rule to cut")
-    return {"cut": level.bodies[0].id}
+    if does == "cut":
+        if not level.bodies:
+            raise EditError("draw a body first, for the rule to cut")
+        return {"cut": level.bodies[0].id}
+    raise ValueError(f"there is no first action {does!r}")
 
 
 # Counters.

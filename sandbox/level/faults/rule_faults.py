@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import assert_never
 
 from sandbox.level.checks import SUBJECTS
 from sandbox.level.document.model import Level
@@ -12,12 +13,15 @@ from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.layout import Layout
 from sandbox.level.plan.plan import Plan
 from sandbox.level.rules.action import BELONGS, DOES, ActionDef
-from sandbox.level.rules.question import ASKS, GROUPS, UNASKED, WALLS, QuestionDef
+from sandbox.level.rules.question import ASKS, UNASKED, WALLS, Asks, QuestionDef
 
 # The fields of a question beside those that say what it asks, by these.
 _BOUNDS = ("at_most", "at_least")
 _SUBJECTS = tuple("zone" if name == "box" else name for name in SUBJECTS)
-_TAKES = {"metric": (*_SUBJECTS, *_BOUNDS), "crosses": ("particle", "body"), "counter": _BOUNDS}
+_TAKES: dict[Asks, tuple[str, ...]] = {
+    "metric": (*_SUBJECTS, *_BOUNDS), "crosses": ("particle", "body"), "counter": _BOUNDS,
+    "touches": (), "breaks": (), "key": (), "time": (), "all": (), "any": (), "none": (),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -92,13 +96,19 @@ def _question_faults(path: str, question: QuestionDef, names: _RuleNames) -> Ite
         return
     asks = question.asked[0]
     for field in (*_SUBJECTS, *_BOUNDS):
-        if getattr(question, field) is not None and field not in _TAKES.get(asks, ()):
+        if getattr(question, field) is not None and field not in _TAKES[asks]:
             yield f"{path}.{field}", f"belongs to another question than {asks}; take it out"
-    if asks in GROUPS:
-        for index, member in enumerate(question.members):
-            yield from _question_faults(f"{path}.{asks}.{index}", member, names)
-    elif asks in _ASKED:
-        yield from _ASKED[asks](path, question, names)
+    yield from _ASKED[asks](path, question, names)
+
+
+def _member_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
+    for index, member in enumerate(question.members):
+        yield from _question_faults(f"{path}.{question.asked[0]}.{index}", member, names)
+
+
+def _no_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
+    """Of what names nothing."""
+    yield from ()
 
 
 def _metric_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iterator[Fault]:
@@ -141,12 +151,17 @@ def _counter_faults(path: str, question: QuestionDef, names: _RuleNames) -> Iter
         yield f"{path}.at_least", f"{shown(question.at_least)} is above at_most, {shown(question.at_most)}"
 
 
-_ASKED: dict[str, Callable[[str, QuestionDef, _RuleNames], Iterator[Fault]]] = {
+_ASKED: dict[Asks, Callable[[str, QuestionDef, _RuleNames], Iterator[Fault]]] = {
     "metric": _metric_faults,
     "touches": _touches_faults,
     "crosses": _crosses_faults,
     "breaks": _breaks_faults,
     "counter": _counter_faults,
+    "key": _no_faults,
+    "time": _no_faults,
+    "all": _member_faults,
+    "any": _member_faults,
+    "none": _member_faults,
 }
 
 
@@ -159,22 +174,28 @@ def _action_faults(path: str, action: ActionDef, names: _RuleNames) -> Iterator[
     for field, owners in BELONGS.items():
         if getattr(action, field) != ActionDef.model_fields[field].default and does not in owners:
             yield f"{path}.{field}", f"belongs to {' or '.join(owners)}, not to {does}; take it out"
-    where = f"{path}.{does}"
-    if action.count is not None:
-        yield from names.find("counter", where, action.count)
-    elif action.drive is not None:
-        yield from names.find("driven part", where, action.drive)
-    elif action.sag is not None:
-        if action.body is None:
-            yield f"{path}.body", "is missing; sag is of a body"
-        else:
-            yield from subject_faults("body", f"{path}.body", action.body, names.layout)
-    elif action.stars is not None and action.stars.counter is not None:
-        yield from names.find("counter", f"{path}.stars.counter", action.stars.counter)
-    elif action.cut is not None:
-        yield from _cut_faults(where, action.cut, names)
-    elif action.pin is not None or action.unpin is not None:
-        yield from subject_faults("particle", where, action.pin or action.unpin, names.layout)
+    where, value = f"{path}.{does}", getattr(action, does)
+    match does:
+        case "count":
+            yield from names.find("counter", where, value)
+        case "drive":
+            yield from names.find("driven part", where, value)
+        case "sag":
+            if action.body is None:
+                yield f"{path}.body", "is missing; sag is of a body"
+            else:
+                yield from subject_faults("body", f"{path}.body", action.body, names.layout)
+        case "win":
+            if action.stars is not None and action.stars.counter is not None:
+                yield from names.find("counter", f"{path}.stars.counter", action.stars.counter)
+        case "cut":
+            yield from _cut_faults(where, value, names)
+        case "pin" | "unpin":
+            yield from subject_faults("particle", where, value, names.layout)
+        case "fail" | "say" | "sound" | "checkpoint" | "gravity" | "wind":
+            pass
+        case _:
+            assert_never(does)
 
 
 def _cut_faults(where: str, name: str, names: _RuleNames) -> Iterator[Fault]:

@@ -3,17 +3,19 @@
 import itertools
 import math
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, assert_never
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sandbox.level.checks import METRICS
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.quantities import Point
 from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.welds import Slots
-from sandbox.level.rules.hands import HandsDef
+from sandbox.level.rules.hands import MEANINGS, HandsDef
 from sandbox.level.rules.question import WALLS, QuestionDef
+from sandbox.level.rules.rule import RuleDef
 from sandbox.physics.command_table import CODES
 from sandbox.physics.rules import table
 from sandbox.physics.rules.table import NOBODY, Rules, Terms, Things
@@ -53,33 +55,37 @@ def add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
 
 
 def _add_hands(world: World, hands: HandsDef) -> None:
-    lefts = [most + 0.0 for most in hands.budgets.values()]
-    world.append(Family.COUNTER, len(lefts), counter=lefts)
+    names = [f"{MEANINGS[deed].left} left" for deed in hands.budgets]
+    _append(world, Family.COUNTER, names, counter=[most + 0.0 for most in hands.budgets.values()])
     count = len(world.counter)
     kinds = sorted(CODES, key=CODES.__getitem__)
     budgets = [hands.budget_of(kind) for kind in kinds]
     rows = [hands.row(budget, count) if budget else -1 for budget in budgets]
-    world.append(
-        Family.DEED, len(kinds), deed_refused=[hands.refuses(kind) for kind in kinds],
-        deed_budget=np.array(rows, np.int64),
-    )  # fmt: skip
+    refused = [hands.refuses(kind) for kind in kinds]
+    _append(world, Family.DEED, kinds, deed_refused=refused, deed_budget=np.array(rows, np.int64))
     world.untouchable[:] = [not hands.lets_touch(name) for name in world.particle_names]
     world.spring_untouchable[:] = [not hands.lets_touch(name) for name in world.spring_names]
 
 
 def _add_rules(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     maker = _Maker(world, level, plan, slots)
-    roots = [maker.term(rule.when) for rule in level.rules]
+    roots = [maker.root(rule) for rule in level.rules]
     rate = level.settings.tick_rate
     world.rules = maker.rules(
         roots, [round(rule.for_seconds * rate) for rule in level.rules], [rule.once for rule in level.rules]
     )
-    world.append(Family.RULE, len(level.rules))
-    world.append(Family.COUNTER, len(level.counters), counter=[counter.start + 0.0 for counter in level.counters])
-    world.append(Family.PROBE, len(maker.probes), probe_position=world.position[maker.probes].reshape(-1, 2))
-    world.append(Family.STILL, maker.settled)
-    world.rule_keys = maker.keys
-    world.append(Family.KEY, len(maker.keys))
+    counters = level.counters
+    _append(world, Family.RULE, [rule.id for rule in level.rules])
+    _append(world, Family.COUNTER, [each.id for each in counters], counter=[each.start + 0.0 for each in counters])
+    places = world.position[maker.probes].reshape(-1, 2)
+    _append(world, Family.PROBE, maker.probing, probe_position=places)
+    _append(world, Family.STILL, maker.settling)
+    _append(world, Family.KEY, maker.keys)
+
+
+def _append(world: World, family: Family, names: Sequence[str], **arrays: ArrayLike) -> None:
+    world.append(family, len(names), **arrays)
+    world.row_names[family] += tuple(names)
 
 
 def rule_keys(level: Level) -> tuple[str, ...]:
@@ -103,37 +109,51 @@ class _Maker:
         self._things = _things(level, plan)
         self._terms: list[_Term] = []
         self.probes: list[int] = []
-        self.settled = 0
+        # The rule whose question is made, and that of each probe and each question whether something has settled.
+        self._asking = ""
+        self.probing: list[str] = []
+        self.settling: list[str] = []
+
+    def root(self, rule: RuleDef) -> int:
+        """The number of the term that a rule asks."""
+        self._asking = rule.id
+        return self.term(rule.when)
 
     def term(self, asked: QuestionDef) -> int:
         """The number of a new term that asks this."""
-        if asked.members:
-            made = _Term(_KINDS[asked.asked[0]], [self.term(member) for member in asked.members])
-        else:
-            made = self._made(asked)
+        made = self._made(asked)
         self._terms.append(made)
         return len(self._terms) - 1
 
     def _made(self, asked: QuestionDef) -> _Term:
         low = -math.inf if asked.at_least is None else asked.at_least + 0.0
         high = math.inf if asked.at_most is None else asked.at_most + 0.0
-        if asked.touches is not None:
-            one, *others = (self._things[name] for name in asked.touches)
-            return _Term(table.TOUCHES, (), one, others[0] if others else NOBODY)
-        if asked.crosses is not None:
-            about = self._particles(asked)
-            first = len(self.probes)
-            self.probes += about
-            return _Term(table.CROSSES, about, self._zones.index(asked.crosses), first, 1.0, 1.0)
-        if asked.breaks is not None:
-            return _Term(table.BROKEN, self._springs(asked.breaks), low=1.0)
-        if asked.counter is not None:
-            return _Term(table.COUNTER, (), 0, self._counters.index(asked.counter), low, high)
-        if asked.key is not None:
-            return _Term(table.KEY, (), 0, self.keys.index(asked.key), 1.0, 1.0)
-        if asked.time is not None:
-            return _Term(table.TIME, low=asked.time)
-        return self._of_metric(asked, low, high)
+        asks = asked.asked[0]
+        value = getattr(asked, asks)
+        match asks:
+            case "touches":
+                one, *others = (self._things[name] for name in value)
+                return _Term(table.TOUCHES, (), one, others[0] if others else NOBODY)
+            case "crosses":
+                about = self._particles(asked)
+                first = len(self.probes)
+                self.probes += about
+                self.probing += [self._asking] * len(about)
+                return _Term(table.CROSSES, about, self._zones.index(value), first, 1.0, 1.0)
+            case "breaks":
+                return _Term(table.BROKEN, self._springs(value), low=1.0)
+            case "counter":
+                return _Term(table.COUNTER, (), 0, self._counters.index(value), low, high)
+            case "key":
+                return _Term(table.KEY, (), 0, self.keys.index(value), 1.0, 1.0)
+            case "time":
+                return _Term(table.TIME, low=value)
+            case "metric":
+                return self._of_metric(asked, low, high)
+            case "all" | "any" | "none":
+                return _Term(_KINDS[asks], [self.term(member) for member in value])
+            case _:
+                assert_never(asks)
 
     def _of_metric(self, asked: QuestionDef, low: float, high: float) -> _Term:
         metric = str(asked.metric)
@@ -144,7 +164,8 @@ class _Maker:
             return _Term(kind, self._springs(asked.body), low=low, high=high)
         other = 0
         if kind == table.SETTLED:
-            other, self.settled = self.settled, self.settled + 1
+            other = len(self.settling)
+            self.settling.append(self._asking)
         elif kind == table.DISTANCE:
             other = self._slot(str(asked.other))
         zone = self._zones.index(str(asked.zone)) if kind == table.INSIDE else 0

@@ -1,6 +1,6 @@
 """Actions: what a rule does when what it asks holds."""
 
-from typing import Literal
+from typing import Literal, get_args
 
 from pydantic import Field
 
@@ -8,10 +8,11 @@ from sandbox.level.format.limits import SAG_LIMIT
 from sandbox.level.format.quantities import Description, Gravity, Name, Seconds, Text, Velocity, empty, unit
 
 Sound = Literal["bell", "coin", "drum", "buzzer"]
-# Of these fields an action has one.
-DOES = (
+Does = Literal[
     "win", "fail", "say", "sound", "count", "checkpoint", "cut", "pin", "unpin", "drive", "sag", "gravity", "wind",
-)  # fmt: skip
+]  # fmt: skip
+# Of these fields an action has one.
+DOES: tuple[Does, ...] = get_args(Does)
 
 
 class StarsDef(Description):
@@ -74,7 +75,7 @@ class ActionDef(Description):
     during: Seconds = Field(default=0.0, description="Time that `sag`, `gravity` and `wind` take to come.")
 
     @property
-    def done(self) -> tuple[str, ...]:
+    def done(self) -> tuple[Does, ...]:
         """The fields of DOES that it has: one, where it is sound."""
         return tuple(name for name in DOES if getattr(self, name) not in (None, False))
 

@@ -1,6 +1,6 @@
 """Questions: what a rule asks at the end of each tick."""
 
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -8,8 +8,9 @@ from sandbox.level.checks import Metric
 from sandbox.level.format.limits import QUESTION_LIMIT
 from sandbox.level.format.quantities import Description, Key, Name, Seconds, empty, unit
 
+Asks = Literal["metric", "touches", "crosses", "breaks", "counter", "key", "time", "all", "any", "none"]
 # Of these fields a question has one.
-ASKS = ("metric", "touches", "crosses", "breaks", "counter", "key", "time", "all", "any", "none")
+ASKS: tuple[Asks, ...] = get_args(Asks)
 # Those that ask other questions.
 GROUPS = ("all", "any", "none")
 # Metrics of checks that no rule asks for: they look back over seconds, or are found by the solver's spring constants.
@@ -82,7 +83,7 @@ class QuestionDef(Description):
     )
 
     @property
-    def asked(self) -> tuple[str, ...]:
+    def asked(self) -> tuple[Asks, ...]:
         """The fields of ASKS that it has: one, where it is sound."""
         return tuple(name for name in ASKS if getattr(self, name) is not None)
 

@@ -68,6 +68,8 @@ class BodyMotion:
             # What so many rounds of Gauss-Seidel have made of it.
             share = 1.0 - max(0.0, 1.0 - a) ** (2 * self.iterations)
             return share * stiffness, share * damping
+        if self.solver != "direct":
+            raise ValueError(f"what {self.solver} makes of a body's wobble is not known")
         capped = np.minimum(damping, HIGHEST_COEFFICIENT)
         shares = a / (a * capped + (1.0 - capped))
         limited = np.where(damping > HIGHEST_COEFFICIENT, np.minimum(stiffness, HIGHEST_COEFFICIENT), stiffness)

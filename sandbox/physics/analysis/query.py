@@ -1,14 +1,17 @@
 """Queries of a state: particles and springs near a point, springs that a stroke crosses, strain of springs."""
 
+from typing import assert_never
+
 import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.constraints import AREA, CONSTRAINT_NAMES
 from sandbox.physics.geometry.segment import distances_from_segments, doubled_areas, lengths
 from sandbox.physics.marks import GRAB_COUNT
+from sandbox.physics.settings import NUMBER_NAMES
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.state import BY_STORED, Family
+from sandbox.physics.state import BY_STORED, FAMILIES, Family
 from sandbox.physics.world import World
 
 Point = tuple[float, float]
@@ -146,11 +149,15 @@ def load_bearing(state: World | Snapshot) -> NDArray[np.bool_]:
 
 def slot_name(world: World, array: str, slot: int) -> str:
     """The name, for a person, of the owner of a slot of a state array; the array goes by its name in files."""
-    match BY_STORED[array].family:
+    family = BY_STORED[array].family
+    match family:
         case Family.PARTICLE:
             return world.particle_names[slot]
         case Family.SPRING:
             return world.spring_names[slot]
+        case Family.CONSTRAINT:
+            name, corner = CONSTRAINT_NAMES[int(world.constraint_kind[slot])]
+            return f"{name} at {world.particle_names[world.corner_particle[world.constraint_first[slot] + corner]]}"
         case Family.ACTUATOR:
             return world.actuators.names[slot]
         case Family.CONTACT:
@@ -160,7 +167,19 @@ def slot_name(world: World, array: str, slot: int) -> str:
         case Family.HAND:
             return f"hand {slot}"
         case Family.SETTING:
-            return ("gravity x", "gravity y", "wind x", "wind y", "drag", "warm start")[slot]
-    bend = world.constraint_kind[slot] == BEND
-    middle = world.corner_particle[world.constraint_first[slot] + bend]
-    return f"{'bend' if bend else 'area'} at {world.particle_names[middle]}"
+            return NUMBER_NAMES[slot]
+        case Family.PROBE:
+            probed = world.particle_names[world.rules.probe[slot]]
+            return f'way of {probed} for rule "{world.row_names[family][slot]}"'
+        case Family.STILL:
+            return f'settling for rule "{world.row_names[family][slot]}"'
+        case Family.RULE | Family.COUNTER | Family.KEY | Family.DEED:
+            return f'{family.value.partition(" ")[0]} "{world.row_names[family][slot]}"'
+        case _:
+            assert_never(family)
+
+
+def row_names(world: World, family: Family) -> list[str]:
+    """The names of all rows of a family, by slot."""
+    column = FAMILIES[family][0]
+    return [slot_name(world, column.stored, slot) for slot in range(len(getattr(world, column.name)))]

@@ -94,6 +94,7 @@ _WORDS = {
     "set_coefficients": "Cs and Cd were set",
     "set_firmness": "became softer or firmer",
     "set_inflation": "was pumped up",
+    "scale_mass": "became lighter or heavier",
 }
 
 
@@ -104,7 +105,7 @@ def _named(record: Record) -> tuple[str, ...]:
 
 def _told(record: Record) -> str:
     kind = str(record["type"])
-    words, names = _WORDS.get(kind, kind.replace("_", " ")), _named(record)
+    words, names = _WORDS[kind], _named(record)
     if not names:
         return words
     return f"{words} of {names[0]}" if kind == "set_coefficients" else f"{names[0]} {words}"

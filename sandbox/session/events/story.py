@@ -1,6 +1,7 @@
 """Story: the list of what happened in a run, from its commands, its moments and, where one watched, its touches."""
 
 from collections.abc import Callable, Iterator
+from typing import assert_never
 
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
@@ -86,13 +87,23 @@ def _of_rules(level: Level, tick: int, moment: KeptMoment) -> Iterator[Happening
 
 
 def _told(action: ActionDef) -> str:
-    (name,) = action.done or ("",)
-    value = getattr(action, name, "")
-    if name in ("say", "sound", "gravity", "wind"):
-        return f"{name} {value}" if isinstance(value, str) else f"{name} {', '.join(f'{each:g}' for each in value)}"
-    if name == "sag":
-        return f"{action.body} sags by {value:.0%}"
-    return f"{name} {value}" + (f" {action.value:g}" if name == "drive" else "")
+    (does,) = action.done
+    value = getattr(action, does)
+    match does:
+        case "say" | "sound" | "cut" | "pin" | "unpin":
+            return f"{does} {value}"
+        case "gravity" | "wind":
+            return f"{does} {', '.join(f'{each:g}' for each in value)}"
+        case "sag":
+            return f"{action.body} sags by {value:.0%}"
+        case "drive":
+            return f"drive {value} {action.value:g}"
+        case "count":
+            return f"count {value}"
+        case "win" | "fail" | "checkpoint":
+            return does
+        case _:
+            assert_never(does)
 
 
 def _of_watch(watch: TouchWatch, end: int) -> Iterator[Happening]:

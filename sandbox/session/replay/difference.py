@@ -155,7 +155,8 @@ def _located(
         lost = " and ".join(name for name, run in (("A", left), ("B", right)) if run is None)
         note = f"this build does not come to the recorded state of {lost}, so that the values are not known"
         return Divergence(tick, array, None, "unknown", "unknown", note=note), left, right
-    return first_difference(tick, array, getattr(left.world, BY_STORED[array].name), right.world), left, right
+    wanted = getattr(left.world, BY_STORED[array].name)
+    return first_difference(tick, array, wanted, right.world, left.world), left, right
 
 
 def _command_lines(first: ComparedRun, second: ComparedRun, ticks: int) -> tuple[str, ...]:

@@ -1,22 +1,23 @@
 """Divergence: the first bit in which two runs differ, and how it is told."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.analysis.query import slot_name
+from sandbox.physics.analysis.query import row_names, slot_name
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot, canonical_bytes
-from sandbox.physics.state import BY_STORED, Family
+from sandbox.physics.state import BY_STORED, OF_RULES, Family
 from sandbox.physics.world import World
 from sandbox.session.probe import ADDED
 
 # What holds a hand is named by this and the hand's number.
 HAND = "+hand"
-# Bodies whose counts are told, at most.
+# Bodies whose counts are told, and rules that one of two worlds has alone, at most.
 MOST_COUNTED = 4
 
 
@@ -58,11 +59,21 @@ class Divergence:
 
     def owner(self) -> str:
         """Whose value it is: body and particle or spring by number, where the name says them; else the name."""
-        for between in (" at ", " of "):
-            kind, found, name = self.name.partition(between)
-            if found:
-                return f"{kind} of {_owner_of(name)}"
-        return _owner_of(self.name)
+        family = BY_STORED[self.array].family if self.array in BY_STORED else None
+        match family:
+            case Family.PARTICLE | Family.SPRING:
+                return _owner_of(self.name)
+            case Family.CONSTRAINT | Family.CORNER:
+                kind, _, name = self.name.partition(" at ")
+            case Family.CONTACT:
+                kind, _, name = self.name.partition(" of ")
+            case Family.ACTUATOR | Family.HAND | Family.SETTING | None:
+                return self.name
+            case Family.RULE | Family.COUNTER | Family.PROBE | Family.STILL | Family.KEY:
+                return self.name
+            case _:
+                assert_never(family)
+        return f"{kind} of {_owner_of(name)}"
 
     def lines(self, expected: str = "expected", actual: str = "actual") -> list[str]:
         """All that is known, a line each: place, owner, both values in decimal and hexadecimal, and the note."""
@@ -84,7 +95,7 @@ def _plain(value: Any) -> str:
 
 def _owner_of(name: str) -> str:
     """A particle or spring in words, by its name; what joined a running world is called "added"."""
-    if not name or " " in name:
+    if not name:
         return name
     for sign, kind in ((".", "particle"), (":", "spring")):
         body, found, number = name.partition(sign)
@@ -121,6 +132,18 @@ def _setting_text(value: Any) -> str:
     return str(list(value)) if isinstance(value, tuple) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
+def _other_rows(family: Family, wanted: World, found: World) -> str:
+    """What one of two worlds has alone that rows of a family belong to: rules and the like, or else bodies."""
+    if family not in OF_RULES:
+        return counts_by_body(wanted, found)
+    told: list[str] = []
+    # What a rule follows comes and goes with it.
+    for each in (Family.RULE, family) if family in (Family.PROBE, Family.STILL) else (family,):
+        before, after = (Counter(row_names(side, each)) for side in (wanted, found))
+        told = told or [*(f"{name} is gone" for name in before - after), *(f"{name} is new" for name in after - before)]
+    return _first_of(told)
+
+
 def counts_by_body(wanted: World, found: World) -> str:
     """The bodies that have other counts of particles or springs in two worlds: "cable: 17 -> 16 particles"."""
     told = []
@@ -134,9 +157,12 @@ def counts_by_body(wanted: World, found: World) -> str:
             for body in {**before, **after}
             if before[body] != after[body] and body != HAND
         ]
-    return ", ".join(told[:MOST_COUNTED]) + (
-        f" and {len(told) - MOST_COUNTED} more" if len(told) > MOST_COUNTED else ""
-    )
+    return _first_of(told)
+
+
+def _first_of(told: Sequence[str]) -> str:
+    more = len(told) - MOST_COUNTED
+    return ", ".join(told[:MOST_COUNTED]) + (f" and {more} more" if more > 0 else "")
 
 
 def first_difference(
@@ -146,9 +172,10 @@ def first_difference(
 
     expected: the world that has them, where there is one.
     """
-    found: NDArray[Any] = getattr(world, BY_STORED[array].name)
+    column = BY_STORED[array]
+    found: NDArray[Any] = getattr(world, column.name)
     if len(wanted) != len(found):
-        note = "" if expected is None else counts_by_body(expected, world)
+        note = "" if expected is None else _other_rows(column.family, expected, world)
         return Divergence(tick, array, None, f"{len(wanted)} values", f"{len(found)} values", note=note)
     size = found.dtype.itemsize
     left, right = (np.frombuffer(canonical_bytes(side), dtype=f"V{size}") for side in (wanted, found))
@@ -158,7 +185,9 @@ def first_difference(
     place = tuple(int(part) for part in np.unravel_index(different[0], found.shape))
     index = place[0] if len(place) == 1 else (place[0], place[1])
     name = slot_name(world, array, place[0])
-    return Divergence(tick, array, index, wanted[place].item(), found[place].item(), name)
+    there = name if expected is None else slot_name(expected, array, place[0])
+    note = "" if there == name else f"what is expected is of {there}"
+    return Divergence(tick, array, index, wanted[place].item(), found[place].item(), name, note)
 
 
 def differing_particle(divergence: Divergence, state: Snapshot) -> int | None:
@@ -167,8 +196,21 @@ def differing_particle(divergence: Divergence, state: Snapshot) -> int | None:
     if column is None or divergence.index is None:
         return None
     slot = int(np.atleast_1d(divergence.index)[0])
-    if column.family is Family.PARTICLE:
-        return slot
-    owners = {Family.SPRING: state.particle_a, Family.CONTACT: state.contact_particle,
-              Family.CORNER: state.corner_particle}.get(column.family)  # fmt: skip
-    return int(owners[slot]) if owners is not None and slot < len(owners) else None
+    match column.family:
+        case Family.PARTICLE:
+            return slot
+        case Family.SPRING:
+            owners = state.particle_a
+        case Family.CONTACT:
+            owners = state.contact_particle
+        case Family.CORNER:
+            owners = state.corner_particle
+        case Family.CONSTRAINT:
+            owners = state.corner_particle[state.constraint_first]
+        case Family.ACTUATOR | Family.HAND | Family.SETTING:
+            return None
+        case Family.RULE | Family.COUNTER | Family.PROBE | Family.STILL | Family.KEY:
+            return None
+        case _:
+            assert_never(column.family)
+    return int(owners[slot]) if slot < len(owners) else None

@@ -34,7 +34,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.assembly.joining import Joiners
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import file_of, level_data
-from sandbox.physics.constraints import AREA
+from sandbox.physics.constraints import AREA, CONSTRAINT_NAMES
 from sandbox.physics.keeping.equipment import Equipment
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.settings import NUMBER_COUNT
@@ -159,6 +159,8 @@ def decode_state(
         raise ValueError("state.element_corners: do not add up to the corners that there are")
     if np.any(arrays["element_first"] != ends - arrays["element_corners"]):
         raise ValueError("state.element_first: corners do not lie one element after another")
+    if not np.isin(arrays["element_kind"], list(CONSTRAINT_NAMES)).all():
+        raise ValueError("state.element_kind: an element is an area or a bend")
     if not np.all((arrays["element_kind"] == AREA) | (arrays["element_corners"] == 3)):
         raise ValueError("state.element_kind: a bend has three corners")
     hands = np.flatnonzero(arrays["material"] == GRAB_MATERIAL)

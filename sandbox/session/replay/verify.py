@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import file_of
-from sandbox.physics.snapshot import canonical_bytes, hash_by_array, state_hash
+from sandbox.physics.snapshot import array_hash, canonical_bytes, hash_by_array, state_hash
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
@@ -117,7 +117,7 @@ def compare(
         difference = _differing_array(replay, session.world)
         if difference:
             return run.locate(session, difference)
-        if changed := _differing_state(replay, session.world):
+        if changed := _differing_state(replay, session.world, is_own=level is None):
             return run.comparison(session, changed, None)
         if session.tick >= last:
             break
@@ -312,8 +312,11 @@ def _differing_array(replay: Replay, world: World) -> str | None:
     return next((name for name in BY_STORED if recorded.differs(name, present)), "settings")
 
 
-def _differing_state(replay: Replay, world: World) -> Divergence | None:
-    """How a stored state belies the hash that stands at its tick, which is that of the world."""
+def _differing_state(replay: Replay, world: World, *, is_own: bool) -> Divergence | None:
+    """How a stored state belies the hash that stands at its tick, which is that of the world.
+
+    is_own: whether the world's level is the recorded one; else it may have more or fewer rows that are as usual.
+    """
     stored = replay.states.get(world.tick)
     for name, text in stored.arrays.items() if stored else ():
         column = BY_STORED.get(name)
@@ -321,7 +324,12 @@ def _differing_state(replay: Replay, world: World) -> Divergence | None:
             array = None if column is None else decode_array(column, text)
         except ValueError as error:
             raise ReplayError(f"{replay.source}: line {stored.line if stored else 0}: {error}") from None
-        if column is None or array is None or canonical_bytes(array) == canonical_bytes(getattr(world, column.name)):
+        if column is None or array is None:
+            continue
+        present = getattr(world, column.name)
+        if canonical_bytes(array) == canonical_bytes(present):
+            continue
+        if not is_own and array_hash(column, array) == array_hash(column, present):
             continue
         note = "the stored state is not the one whose hash stands at its tick: changed, and sealed again"
         found = first_difference(world.tick, name, array, world)
