@@ -1,4 +1,5 @@
-// Hash: blake2b (RFC 7693), with each number of 64 bits as two of 32, and floats in the digits that Python gives them.
+// Hash: blake2b (RFC 7693), with each number of 64 bits as two of 32; arrays as they are hashed; floats in Python's digits.
+/** @import { AnyArray, Column } from './types.js' */
 
 const START = new Uint32Array([
   0xf3bcc908, 0x6a09e667, 0x84caa73b, 0xbb67ae85, 0xfe94f82b, 0x3c6ef372, 0x5f1d36f1, 0xa54ff53a,
@@ -99,4 +100,18 @@ export function hexOf(value) {
   const digits = (view.getBigUint64(0) & 0xfffffffffffffn).toString(16).padStart(13, '0');
   const exponent = power === 0 ? -1022 : power - 1023;
   return `${sign}0x${power === 0 ? 0 : 1}.${digits}p${exponent < 0 ? '' : '+'}${exponent}`;
+}
+
+/** The bytes that are hashed and stored: -0 as 0, and every NaN as the same.
+ * @type {(array: AnyArray) => Uint8Array} */
+export function canonical(array) {
+  const copy = array instanceof Float64Array ? array.map((value) => value + 0) : array;
+  return new Uint8Array(copy.buffer, copy.byteOffset, copy.byteLength);
+}
+
+/** Nothing of an array of which all is as usual, and which is left out then.
+ * @type {(column: Column, array: AnyArray) => string | null} */
+export function digestOf(column, array) {
+  if (column.isSparse && array.every((value) => Number(value) === column.usual)) return null;
+  return blake2b(canonical(array), 8);
 }

@@ -1,7 +1,6 @@
 // Recording: a run written line by line as the desktop's recordings are, and the run of a recording compared.
-import { blake2b } from './hash.js';
+import { blake2b, canonical } from './hash.js';
 import { RECORDING } from './shared.js';
-import { canonical } from './world.js';
 /** @import { About, Done, Recording, StateHash } from './types.js' */
 /** @import { World } from './world.js' */
 
