@@ -42,7 +42,7 @@ PROSE = " ".join(PHYSICS.split())
 BENCHMARKS = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 # What kernels may take from math and numpy: results that IEEE 754 defines to the last bit, and types.
-EXACT = {"sqrt", "floor", "inf", "int32", "int64", "uint64", "float64"}
+EXACT = {"sqrt", "floor", "ceil", "inf", "int32", "int64", "uint64", "float64"}
 FOLDERS = "sandbox|levels|assets|docs|tests|examples"
 
 

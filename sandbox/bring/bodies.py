@@ -12,9 +12,10 @@ from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import FirmnessDef
-from sandbox.level.kinds.fitting import ROW, fitting_spacing
+from sandbox.level.kinds.fitting import fitting_spacing
 from sandbox.level.kinds.jelly import JellyDef, PolygonShape
 from sandbox.level.kinds.polygon import is_simple, loops_touch
+from sandbox.physics.meshing.sampling import ROW
 
 if TYPE_CHECKING:
     from shapely import Polygon

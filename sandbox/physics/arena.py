@@ -126,3 +126,13 @@ def lay_out(entry: Callable[..., Any], pointer: Any, arena: Arena, *arguments: A
         hold(pointer, arena)
         entry(pointer, arena, *arguments)
     return arena
+
+
+def answer_of(entry: Callable[..., Any], words: int, *arguments: Any) -> tuple[Any, Arena]:
+    """What a kernel entry(arena, ...) gives once it finds room, and its arena, which has so many words at first."""
+    arena = np.zeros(words, np.int64)
+    answer = entry(arena, *arguments)
+    while arena[0] > len(arena):
+        arena = np.zeros(MORE * int(arena[0]), np.int64)
+        answer = entry(arena, *arguments)
+    return answer, arena

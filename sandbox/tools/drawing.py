@@ -6,13 +6,10 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-import numpy as np
-
-from sandbox.level.kinds.fitting import fitting_spacing
-from sandbox.level.kinds.geometry import Points
-from sandbox.level.kinds.jelly import Jelly, JellyDef, PolygonShape
-from sandbox.level.kinds.polygon import drawn_outline, is_simple
-from sandbox.physics.geometry.polygon import signed_area
+from sandbox.level.format.quantities import significant
+from sandbox.level.kinds.polygon import drawn_outline, rows_of
+from sandbox.physics.arena import answer_of
+from sandbox.physics.meshing import fitting
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import AddBody
 from sandbox.tools.clearance import lift
@@ -20,20 +17,20 @@ from sandbox.tools.parts import COLOURS, DENSITY, in_pace
 from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.tool import NOTHING, Loop, PlacedTool, PointerEvent, Response, Submission
 
-# Particles that the mesh is made for, and that it has at most where an outline needs a finer one.
-PARTICLES, MOST_PARTICLES = 30, 240
 # An outline drawn by hand is simplified by up to this part of the pick radius.
 HAND_TOLERANCE = 0.12
-# Decimals of a place [m]: to millimetres, or to this part of the spacing where that is finer.
-DECIMALS, FINEST = 3, 0.01
 # Radius of particles, as a share of the spacing, and at most [m].
 SKIN, THICKEST = 0.15, 0.05
 # Significant digits of a mass.
 DIGITS = 6
 
-TOO_SMALL = "Draw a larger outline: press, draw around, and let go."
-CROSSES = "The outline crosses or touches itself. Draw it without."
-TOO_FINE = "This outline is too fine for triangles to fit in. Draw it simpler, or wider where it is thin."
+# What people are told of an outline that the mesher refuses, by its code.
+REFUSALS = (
+    "",
+    "Draw a larger outline: press, draw around, and let go.",
+    "The outline crosses or touches itself. Draw it without.",
+    "This outline is too fine for triangles to fit in. Draw it simpler, or wider where it is thin.",
+)
 NO_ROOM = "There is no room for it here. Draw it where it is free."
 
 
@@ -64,38 +61,25 @@ class Unfit(ValueError):
 
 def meshed(corners: Loop, stuff: DrawnStuff, colour: str) -> AddBody:
     """The command that adds a body inside an outline [m]. Raises Unfit."""
-    area, polygon = _area_of(corners), tuple(corners)
-    if len(corners) < 3 or area == 0.0:
-        raise Unfit(TOO_SMALL)
-    if not is_simple(corners):
-        raise Unfit(CROSSES)
-    spacing = fitting_spacing(polygon, (), math.sqrt(area / PARTICLES), MOST_PARTICLES)
-    if spacing is None:
-        raise Unfit(TOO_FINE)
-    shape = PolygonShape(polygon=polygon)
-    made = Jelly(JellyDef(type="jelly", id=stuff.name, shape=shape, mesh="fitted", spacing=spacing))
-    decimals = max(DECIMALS, -math.floor(math.log10(FINEST * spacing)))
-    mass = float(f"{stuff.density * area / made.form_count[0]:.{DIGITS}g}")
-    look = stuff.more["look"] | ({"colour": colour} if stuff.name == "jelly" else {})
+    code, arena = answer_of(fitting.fill_outline, fitting.USUAL_ARENA, rows_of([corners])[0])
+    if code != fitting.FITS:
+        raise Unfit(REFUSALS[code])
+    mesh = fitting.found_in(arena)
+    count = len(mesh.places)
     name = f"drawn {stuff.name}"
     body = {
         "type": "mesh",
         "id": stuff.name,
-        "particles": np.round(made.form, decimals).tolist(),
-        "masses": [mass] * made.form_count[0],
-        "springs": made.pairs.tolist(),
-        "triangles": made.polygons().tolist(),
-        "particle_radius": float(f"{min(SKIN * spacing, THICKEST):.{DIGITS}g}"),
+        "particles": mesh.places.tolist(),
+        "masses": [significant(stuff.density * mesh.area / count, DIGITS)] * count,
+        "springs": mesh.pairs.tolist(),
+        "triangles": mesh.triangles.tolist(),
+        "particle_radius": significant(min(SKIN * mesh.spacing, THICKEST), DIGITS),
         "material": name,
         **stuff.more,
-        "look": look,
+        "look": stuff.more["look"] | ({"colour": colour} if stuff.name == "jelly" else {}),
     }
     return AddBody(body, materials={name: {"stiffness": stuff.stiffness, "damping": stuff.damping}})
-
-
-def _area_of(corners: Loop) -> float:
-    places: Points = np.array(corners, dtype=np.float64).reshape(-1, 2)
-    return abs(signed_area(places, np.roll(places, -1, axis=0)))
 
 
 class StrokeTool(PlacedTool):
@@ -133,10 +117,9 @@ class StrokeTool(PlacedTool):
     def _made(self, reach: float, snapshot: Snapshot) -> AddBody:
         """The command for the stroke. Raises Unfit."""
         corners = drawn_outline(self._stroke, HAND_TOLERANCE * reach)
-        if len(corners) < 3 or _area_of(corners) < reach * reach:
-            raise Unfit(CROSSES if len(corners) >= 3 and not is_simple(corners) else TOO_SMALL)
-        if not is_simple(corners):
-            raise Unfit(CROSSES)
+        code = fitting.outline_fault(rows_of([corners])[0], reach * reach)
+        if code != fitting.FITS:
+            raise Unfit(REFUSALS[code])
         by = lift([[*corners, corners[0]]], snapshot) if self.touches else 0.0
         if by is None:
             raise Unfit(NO_ROOM)

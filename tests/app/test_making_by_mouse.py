@@ -8,9 +8,10 @@ import pytest
 from sandbox.app.play.palette import NAMES, refused_tools
 from sandbox.level.format.quantities import replaced
 from sandbox.level.rules.hands import HandsDef
+from sandbox.physics.meshing.fitting import CROSSES
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, CutSprings, Pin, Remove, ScaleMass, SetFirmness
-from sandbox.tools.drawing import CROSSES
+from sandbox.tools.drawing import REFUSALS
 from tests.support.parts import furnished, room
 
 MAKING = ("draw_jelly", "draw_wood", "draw_steel", "pull_rope", "pull_spring", "pull_rod", "axle")
@@ -107,7 +108,7 @@ def test_a_drawing_that_crosses_itself_stays_and_says_why_beside_the_pointer(pla
     player.key(pygame.K_2, pygame.KMOD_SHIFT)
     before = pygame.image.tobytes(player.app.display.surface, "RGB")
     stroke(player, (0, 1), (2, 3), (2, 1), (0, 3), (-0.5, 2))
-    assert player.stage.tool.hint == CROSSES and not player.world.joined
+    assert player.stage.tool.hint == REFUSALS[CROSSES] and not player.world.joined
     assert pygame.image.tobytes(player.app.display.surface, "RGB") != before
     player.key(pygame.K_ESCAPE)
     assert player.stage.tools["draw_wood"].hint == ""

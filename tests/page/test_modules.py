@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import shutil
 import subprocess
 from pathlib import Path
@@ -14,6 +15,8 @@ from sandbox import load_level
 from sandbox.app.share.playing import playable
 from sandbox.page.about import array_path
 from sandbox.page.page import KERNELS
+from sandbox.physics.arena import answer_of
+from sandbox.physics.meshing import fitting
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import BY_NAME, COLUMNS
 from sandbox.physics.step import step
@@ -22,8 +25,10 @@ from sandbox.replay import read_replay, verify
 from sandbox.session.check_run import run_checks
 from sandbox.session.outcome import outcome
 from sandbox.session.session import Session
+from sandbox.tools.drawing import REFUSALS
 from tests.determinism.golden import golden_path
 from tests.support import rules_level
+from tests.support.strokes import rough_stroke
 from tests.support.wants import needs
 
 NODE = shutil.which("node")
@@ -32,6 +37,8 @@ LEVELS = ("rope", "jelly_wheel", "newtons_cradle", "girder")
 CHECKED = ("newtons_cradle", "rope")
 # A level in which every array with a range has rows, and ticks before a value is spoilt and after that.
 SPOILT, SPOILT_TICKS = "girder", 60
+# Strokes that are meshed here and there.
+STROKES = 300
 # Goldens with what was done in them, and so many ticks of each.
 GOLDENS, TICKS = ("rope", "walker", "breaking_bridge", "jelly_wheel"), 240
 
@@ -51,6 +58,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for name in CHECKED
     }
     given = {"goldens": [f"{name}-golden" for name in GOLDENS], "checks": checks, "rules": _rules(made)}
+    given["strokes"] = strokes()
+    given["refusals"] = {"small": REFUSALS[fitting.TOO_SMALL], "crosses": REFUSALS[fitting.CROSSES]}
     given["spoilt"] = {"level": SPOILT, "ticks": SPOILT_TICKS, "tries": spoilt()}
     (made / "given.json").write_text(json.dumps(given), encoding="utf-8")
     return made
@@ -69,6 +78,22 @@ def _rules(folder: Path) -> dict[str, Any]:
         won.append(None if found is None else [found.is_won, found.text, found.stars, found.tick])
     keys = {tick: [command.down for command in rules_level.hands(tick)] for tick in range(rules_level.TICKS)}
     return {"hashes": hashes, "outcomes": won, "keys": {tick: downs for tick, downs in keys.items() if downs}}
+
+
+def strokes() -> list[dict[str, Any]]:
+    """Rough strokes as numbers of the mesher, and what they come to here: a mesh, or words."""
+    generator, made = random.Random(2), []
+    for _ in range(STROKES):
+        numbers = rough_stroke(generator)
+        code, arena = answer_of(fitting.fill_stroke, fitting.USUAL_ARENA, np.array(numbers))
+        if code != fitting.FITS:
+            made.append({"numbers": numbers, "refusal": REFUSALS[code]})
+            continue
+        mesh = fitting.found_in(arena)
+        parts = {"particles": mesh.places, "springs": mesh.pairs, "triangles": mesh.triangles}
+        lists = {name: part.tolist() for name, part in parts.items()}
+        made.append({"numbers": numbers, "mesh": lists | {"spacing": mesh.spacing, "area": mesh.area}})
+    return made
 
 
 def spoilt() -> list[dict[str, Any]]:

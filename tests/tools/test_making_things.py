@@ -10,6 +10,7 @@ from sandbox.editor.document import Document
 from sandbox.editor.edits.adopt_dropped import keep_added
 from sandbox.editor.edits.joining import copying_commands
 from sandbox.level.format.quantities import replaced
+from sandbox.physics.meshing.fitting import CROSSES, TOO_SMALL
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, AddParticle, AddSpring, CommandError
 from sandbox.session.commands.records import from_record, to_record
@@ -18,7 +19,7 @@ from sandbox.session.replay.verify import verify
 from sandbox.session.scene import SceneTaker
 from sandbox.session.session import Session
 from sandbox.tools.axle import NOTHING_THERE, TOO_FEW, AxleTool
-from sandbox.tools.drawing import CROSSES, NO_ROOM, STUFFS, TOO_SMALL, StrokeTool
+from sandbox.tools.drawing import NO_ROOM, REFUSALS, STUFFS, StrokeTool
 from sandbox.tools.pulling import MAKERS, SAME, TOO_SHORT, PullTool
 from tests.support.parts import room
 from tests.tools.test_playing_with_parts import gesture
@@ -95,8 +96,10 @@ def test_an_outline_that_cannot_be_a_body_stays_with_the_reason_and_adds_nothing
     before = state_hash(session.world)
     crossing = [(0.0, 1.0), (2.0, 3.0), (2.0, 1.0), (0.0, 3.0), (-0.5, 2.0)]
     for points, reason in (
-        ([(0.0, 2.0), (0.01, 2.0), (0.0, 2.01)], TOO_SMALL), (crossing, CROSSES), (around(0.0, -20.0, 1, 1), NO_ROOM)
-    ):  # fmt: skip
+        ([(0.0, 2.0), (0.01, 2.0), (0.0, 2.01)], REFUSALS[TOO_SMALL]),
+        (crossing, REFUSALS[CROSSES]),
+        (around(0.0, -20.0, 1, 1), NO_ROOM),
+    ):
         tool, commands = drawn(session, points=points)
         assert commands == [] and tool.hint == reason and not tool.fits
     assert len(tool.ghost[0]) > 30

@@ -18,6 +18,7 @@ from sandbox.level import checks
 from sandbox.page.page import WEB
 from sandbox.physics import world
 from sandbox.physics.analysis import body_motion, pulls, query
+from sandbox.physics.meshing import fitting
 from sandbox.session import summary
 from sandbox.session.link import packing, scene_link
 from sandbox.session.replay import format
@@ -44,7 +45,8 @@ def shared_values() -> dict[str, dict[str, Any]]:
         "GAMEPAD": _of(gamepads, "ACROSS", "UPWARDS", "BUTTONS", "PRESSES", "LETS_GO"),
         "MAKING": _of(pulling, "SEGMENTS", "ROPE_MASS", "SHARE", "PIN_RADIUS", "PIN_SHARE", "TOO_SHORT")
         | {"ROPE_RADIUS": pulling.THICKEST}
-        | _of(drawing, "PARTICLES", "HAND_TOLERANCE", "SKIN", "THICKEST", "TOO_SMALL", "CROSSES", "TOO_FINE"),
+        | _of(drawing, "HAND_TOLERANCE", "SKIN", "THICKEST", "REFUSALS"),
+        "MESH": _of(fitting, "NUMBERS", "PLACES", "TRIANGLES", "PAIRS"),
         "PAD": _of(coefficient_scale, "NUMBERED", "DIGITS", "END")
         | {"LOWEST": coefficient_scale.PLAIN.lowest, "REST": coefficient_scale.PLAIN.rest}
         | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},

@@ -3,6 +3,7 @@
 from typing import Final
 
 from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
+from sandbox.physics.meshing.fitting import LEAST_SPACING
 from sandbox.physics.settings import DEFAULT_SOLVER as DEFAULT_SOLVER
 from sandbox.physics.settings import SUBSTEPS as SUBSTEPS
 
@@ -34,7 +35,7 @@ COORDINATE_LIMIT = FARTHEST_PLACE  # [m]
 SPEED_LIMIT = 1e9  # [m/s]
 GRAVITY_LIMIT = 1e6  # [m/s^2]
 MASS_RANGE = (LEAST_MASS, MOST_MASS)  # [kg]
-SPACING_RANGE = (1e-6, 1e6)  # [m]
+SPACING_RANGE = (LEAST_SPACING, 1e6)  # [m]
 ANGLE_LIMIT = 1e6  # [rad]
 GRAVITY_SCALE_LIMIT = 1e3  # times gravity, either way
 DRAG_LIMIT = 1e6  # [1/s]

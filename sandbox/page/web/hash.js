@@ -1,4 +1,4 @@
-// Hash: blake2b (RFC 7693), with each number of 64 bits as two of 32, and floats in the digits that Python gives them.
+// Hash: blake2b (RFC 7693), with each number of 64 bits as two of 32; arrays as they are hashed; floats in Python's digits.
 /** @import { AnyArray, Column } from './types.js' */
 
 const START = new Uint32Array([
@@ -109,7 +109,7 @@ export function canonical(array) {
   return new Uint8Array(copy.buffer, copy.byteOffset, copy.byteLength);
 }
 
-/** The hash of an array of state; null where all of it is as usual, which is left out.
+/** Nothing of an array of which all is as usual, and which is left out then.
  * @type {(column: Column, array: AnyArray) => string | null} */
 export function digestOf(column, array) {
   if (column.isSparse && array.every((value) => Number(value) === column.usual)) return null;

@@ -1,13 +1,13 @@
 // Maker: what is drawn or pulled on the picture joins the world: a body inside an outline, a rope, a spring, a rod.
 import { unused } from './adding.js';
 import { Refusal } from './commands.js';
-import { areaOf, meshed, outlineOf } from './mesh.js';
-import { MAKING } from './shared.js';
+import { MAKING, MESH } from './shared.js';
 /** @import { Run } from './run.js' */
-/** @import { Adding, NamedRecord, Point, Theme } from './types.js' */
+/** @import { Adding, AnyArray, Mesh, NamedRecord, Point, Theme } from './types.js' */
+/** @import { World } from './world.js' */
 
 const { SEGMENTS, ROPE_MASS, ROPE_RADIUS, SHARE, PIN_RADIUS, PIN_SHARE, SKIN, THICKEST, HAND_TOLERANCE, TOO_SHORT,
-  TOO_SMALL } = MAKING, MOST_POINTS = 400;
+  REFUSALS } = MAKING, MOST_POINTS = 400;
 
 /** @typedef {{ place: Point, name: string | null }} End */
 
@@ -15,6 +15,20 @@ const { SEGMENTS, ROPE_MASS, ROPE_RADIUS, SHARE, PIN_RADIUS, PIN_SHARE, SKIN, TH
 const rounded = (value) => Number(value.toPrecision(6));
 /** @type {(place: Point) => Point} */
 const placed = ([x, y]) => [Math.round(x * 1000) / 1000, Math.round(y * 1000) / 1000];
+
+/** The mesh of a stroke, with its spacing [m] and area [m^2]. numbers: its tolerance [m], the least area [m^2], and its
+ * places [m]. Throws a Refusal.
+ * @type {(world: World, numbers: number[]) => Mesh} */
+export function filled(world, numbers) {
+  const [code, words, floats] = world.answer('fill_stroke', numbers);
+  if (code) throw new Refusal(REFUSALS[code]);
+  /** @type {(at: number, width: number, array: AnyArray) => any[]} */
+  const rows = (at, width, array) => Array.from({ length: Number(words[at + 1]) }, (_, k) =>
+    Array.from({ length: width }, (_, n) => Number(array[Number(words[at]) + width * k + n])));
+  const [spacing, area] = floats.subarray(MESH.NUMBERS);
+  return { spacing, area, particles: rows(MESH.PLACES, 2, floats), springs: rows(MESH.PAIRS, 2, words),
+    triangles: rows(MESH.TRIANGLES, 3, words) };
+}
 
 export class Maker {
   /** @type {Point[]} */
@@ -84,13 +98,12 @@ export class Maker {
 
   /** @type {(stuff: string, stroke: Point[], within: number) => NamedRecord} */
   #body(stuff, stroke, within) {
-    if (stroke.length < 3 || Math.abs(areaOf(stroke)) < within * within) throw new Refusal(TOO_SMALL);
-    const outline = outlineOf(stroke, HAND_TOLERANCE * within);
-    if (outline.length < 3) throw new Refusal(TOO_SMALL);
-    const mesh = meshed(outline), { stiffness, damping, density, colours, more } = this.adding.made.stuffs[stuff];
-    const area = areaOf(outline), mass = rounded((density * area) / mesh.particles.length), name = `drawn ${stuff}`;
+    const numbers = [HAND_TOLERANCE * within, within * within, ...stroke.flat()];
+    const { area, spacing, ...mesh } = filled(this.run.world, numbers);
+    const { stiffness, damping, density, colours, more } = this.adding.made.stuffs[stuff], name = `drawn ${stuff}`;
+    const mass = rounded((density * area) / mesh.particles.length);
     const look = { ...more.look, ...(colours.length ? { colour: colours[this.#count++ % colours.length] } : {}) };
-    const radius = rounded(Math.min(SKIN * Math.sqrt(area / mesh.particles.length), THICKEST));
+    const radius = rounded(Math.min(SKIN * spacing, THICKEST));
     return { type: 'add_body', body: { type: 'mesh', ...mesh, masses: mesh.particles.map(() => mass),
       particle_radius: radius, material: name, ...more, look }, materials: { [name]: { stiffness, damping } } };
   }

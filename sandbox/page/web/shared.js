@@ -47,13 +47,16 @@ export const MAKING = {
   PIN_SHARE: 0.05,
   TOO_SHORT: 'Drag from one thing to another, or to the air: what you let go of in the air is pinned there.',
   ROPE_RADIUS: 0.05,
-  PARTICLES: 30,
   HAND_TOLERANCE: 0.12,
   SKIN: 0.15,
   THICKEST: 0.05,
-  TOO_SMALL: 'Draw a larger outline: press, draw around, and let go.',
-  CROSSES: 'The outline crosses or touches itself. Draw it without.',
-  TOO_FINE: 'This outline is too fine for triangles to fit in. Draw it simpler, or wider where it is thin.',
+  REFUSALS: ['', 'Draw a larger outline: press, draw around, and let go.', 'The outline crosses or touches itself. Draw it without.', 'This outline is too fine for triangles to fit in. Draw it simpler, or wider where it is thin.'],
+};
+export const MESH = {
+  NUMBERS: 1,
+  PLACES: 3,
+  TRIANGLES: 5,
+  PAIRS: 7,
 };
 export const PAD = {
   NUMBERED: [1e-05, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1],

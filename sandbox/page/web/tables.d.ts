@@ -153,22 +153,6 @@ export interface Commands {
     key: number;
     down: boolean;
   };
-  firm_springs: {
-    type: 'firm_springs';
-    springs: number[];
-    stiffness: number;
-    damping: number;
-    lowest_mode: number;
-    duration: number;
-  };
-  firm_constraints: {
-    type: 'firm_constraints';
-    constraints: number[];
-    stiffness: number;
-    damping: number;
-    lowest_mode: number;
-    duration: number;
-  };
   push: {
     type: 'push';
     position: [number, number];
@@ -196,6 +180,29 @@ export interface Commands {
     particle: number;
     by: [number, number];
     at_rest?: boolean;
+  };
+  free: {
+    type: 'free';
+    particle: number;
+  };
+  set_firmness: {
+    type: 'set_firmness';
+    body: number;
+    sag?: number | null;
+    hz?: number | null;
+    ratio?: number | null;
+    duration?: number;
+  };
+  soften: {
+    type: 'soften';
+    body: number[];
+    whole: number[];
+    way: number[];
+    duration: number[];
+    value: number;
+    second: number;
+    gravity: number;
+    nearest: number;
   };
   set_solver: {
     type: 'set_solver';

@@ -150,6 +150,15 @@ export interface Laid {
   rows: number;
 }
 
+// What a stroke is filled with: spacing [m], area [m^2]; places [m], triangles and their sides.
+export interface Mesh {
+  spacing: number;
+  area: number;
+  particles: Point[];
+  springs: [number, number][];
+  triangles: [number, number, number][];
+}
+
 export interface Settings {
   gravity: Point;
   tick_rate: number;

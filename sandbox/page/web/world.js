@@ -34,9 +34,9 @@ export class World {
   #about;
   /** @type {number} */
   #arguments;
-  /** Where slots of a command are given, and how many there may be.
+  /** Where slots of a command are given, or numbers of a stroke, and how many there may be.
    * @type {[address: number, most: number]} */
-  #slots = [0, 0];
+  #many = [0, 0];
   /** @type {number} */
   #base;
   /** @type {number} */
@@ -324,7 +324,7 @@ export class World {
   /** Take back what a tick has said of that no physics gives it, see sanitise.py.
    * @type {(code: number) => void} */
   #takeBack(code) {
-    this.#inArena('take_back', code);
+    this.#inArena('take_back', [this.#block], code);
     this.#derive(DERIVATIONS);
   }
 
@@ -371,13 +371,13 @@ export class World {
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
     const { code, slots, numbers, changes } = packed;
-    if (slots.length > this.#slots[1]) this.#slots = [this.#reserve(MORE * slots.length * WORD), MORE * slots.length];
+    const many = this.#placeFor(slots.length);
     const at = this.#arguments + ARGUMENTS * WORD, { buffer } = this.#kernels.memory;
-    new BigInt64Array(buffer, this.#slots[0], slots.length).set(slots.map(BigInt));
+    new BigInt64Array(buffer, many, slots.length).set(slots.map(BigInt));
     new Float64Array(buffer, at, numbers.length).set(numbers);
     /** @type {(number | Span)[]} */
-    const given = [giver, code, [this.#slots[0], slots.length, WORD], [at, numbers.length, WORD]];
-    this.commands.answer(record, packed, this.#inArena('command', ...given));
+    const given = [giver, code, [many, slots.length, WORD], [at, numbers.length, WORD]];
+    this.commands.answer(record, packed, this.#inArena('command', [this.#block], ...given));
     if (changes === 'solver') {
       const factor = new Float64Array(this.#kernels.memory.buffer, at, numbers.length)[numbers.length - 1];
       const impulse = this.view('collisions.kept.impulse');
@@ -411,18 +411,34 @@ export class World {
     if (names === DERIVATIONS) new Uint8Array(this.#kernels.memory.buffer).set(this.#given, this.#base);
     this.#views.clear();
     this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
-    for (const name of names) this.#inArena(name);
+    for (const name of names) this.#inArena(name, [this.#block]);
     if (names !== HANDS) CONTACTS.forEach((path, k) => put(this.view(path), contacts[k]));
   }
 
-  /** Call a kernel with the block and its own arena, which grows until there is room.
-   * @type {(name: string, ...given: (number | Span)[]) => number} */
-  #inArena(name, ...given) {
+  /** Where so many words of a call can be written.
+   * @type {(words: number) => number} */
+  #placeFor(words) {
+    if (words > this.#many[1]) this.#many = [this.#reserve(MORE * words * WORD), MORE * words];
+    return this.#many[0];
+  }
+
+  /** What a kernel answers that takes numbers and no world, and its arena, as words and as floats.
+   * @type {(name: string, numbers: number[]) => [answer: number, words: BigInt64Array, floats: Float64Array]} */
+  answer(name, numbers) {
+    const place = this.#placeFor(numbers.length), { memory } = this.#kernels;
+    new Float64Array(memory.buffer, place, numbers.length).set(numbers);
+    const answer = this.#inArena(name, [], [place, numbers.length, WORD]), [address, size] = this.#arenas[name];
+    return [answer, new BigInt64Array(memory.buffer, address, size), new Float64Array(memory.buffer, address, size)];
+  }
+
+  /** Call a kernel with what comes first, with its own arena, which grows until there is room, and what comes after that.
+   * @type {(name: string, before: Span[], ...given: (number | Span)[]) => number} */
+  #inArena(name, before, ...given) {
     let arena = (this.#arenas[name] ??= this.#newArena(FIRST_ARENA));
-    let result = this.#call(name, this.#block, arena, ...given);
+    let result = this.#call(name, ...before, arena, ...given);
     for (let used = this.#used(arena); used > arena[1]; used = this.#used(arena)) {
       arena = this.#arenas[name] = this.#newArena(MORE * used);
-      result = this.#call(name, this.#block, arena, ...given);
+      result = this.#call(name, ...before, arena, ...given);
     }
     this.#views.clear();
     return result;

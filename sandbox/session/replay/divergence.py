@@ -69,7 +69,7 @@ class Divergence:
                 kind, _, name = self.name.partition(" of ")
             case Family.ACTUATOR | Family.HAND | Family.SETTING | None:
                 return self.name
-            case Family.RULE | Family.COUNTER | Family.PROBE | Family.STILL | Family.KEY:
+            case Family.RULE | Family.COUNTER | Family.PROBE | Family.STILL | Family.KEY | Family.DEED:
                 return self.name
             case _:
                 assert_never(family)
@@ -209,7 +209,7 @@ def differing_particle(divergence: Divergence, state: Snapshot) -> int | None:
             owners = state.corner_particle[state.constraint_first]
         case Family.ACTUATOR | Family.HAND | Family.SETTING:
             return None
-        case Family.RULE | Family.COUNTER | Family.PROBE | Family.STILL | Family.KEY:
+        case Family.RULE | Family.COUNTER | Family.PROBE | Family.STILL | Family.KEY | Family.DEED:
             return None
         case _:
             assert_never(column.family)

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Refusal } from '../../../sandbox/page/web/commands.js';
-import { canonical } from '../../../sandbox/page/web/world.js';
+import { canonical } from '../../../sandbox/page/web/hash.js';
 import { GIVEN, toy } from './toys.mjs';
 
 const ticked = (world, count) => {
