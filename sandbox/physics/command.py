@@ -17,7 +17,7 @@ from sandbox.physics.changing.ramping import firm_up, inflate, set_warm_start, s
 from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.components import list_body
-from sandbox.physics.firmness.firm import SPRINGS, Firming, FormModes, Forms, body_of_number, firm
+from sandbox.physics.firmness.firm import SPRINGS, Firming, FormModes, Forms, body_of_number, count_pieces_of, firm
 from sandbox.physics.firmness.reach import (
     BY_FREQUENCY,
     BY_SAG,
@@ -104,6 +104,13 @@ def command(pointer: Bundle[Commanded], arena: Arena, giver: int, kind: int, slo
     if result == 0:
         spend(state, giver, kind, needs)
     return result
+
+
+@kernel
+def count_pieces(arena: Arena, pointer: Bundle[Commanded], count: Slots) -> int:
+    """How many pieces each body (b,) is that may be stiff by its form; NO_ARENA: the arena is too small."""
+    world = unpack(pointer)
+    return count_pieces_of(world.state, world.forms, arena, count)
 
 
 @kernel

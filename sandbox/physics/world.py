@@ -188,7 +188,7 @@ class World(StateArrays):
         before = self._settings
         if settings.solver != before.solver or (settings.substeps == AUTO) != (before.substeps == AUTO):
             self._choices[:] = before.choices
-            self._multiply_contacts(solve(self.derived(_lend, of_hands=False), np.array(settings.choices)))
+            self._multiply_contacts(solve(self.lent, np.array(settings.choices)))
         # What is set so is in force at once.
         is_set = np.array(settings.numbers) != np.array(before.numbers)
         self.setting_now[is_set] = self.setting_ticks[is_set] = 0
@@ -197,6 +197,11 @@ class World(StateArrays):
     def _multiply_contacts(self, factor: float) -> None:
         # Those of another solver are nothing, whatever they were.
         self.contact_impulse[:] = self.contact_impulse * factor if factor != 0.0 else 0.0
+
+    @property
+    def lent(self) -> Any:
+        """What commands change, as kernels take it."""
+        return self.derived(_lend, of_hands=False)
 
     @property
     def form_table(self) -> FormTable:
@@ -482,7 +487,7 @@ class World(StateArrays):
         given.update(first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate)
         given.setdefault("duration", 0)
         self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
-        numbers = carry_out(self.derived(_lend, of_hands=False), giver, name, {"factor": 0.0, **given}, self)
+        numbers = carry_out(self.lent, giver, name, {"factor": 0.0, **given}, self)
         changes = KINDS[name].changes
         if changes == OF_SOLVER:
             self._multiply_contacts(numbers[-1])

@@ -25,6 +25,14 @@ export const countedBy = (kind) => (kind === 'part' ? 'actuator' : /** @type {ke
 
 /** @type {(message: string, ...values: unknown[]) => string} */
 const fill = (message, ...values) => message.replace(/\{\}/g, () => String(values.shift()));
+/** A number to so many digits, as Python's g has it.
+ * @type {(value: number, count: number) => string} */
+function digits(value, count) {
+  const [, power] = value.toExponential(count - 1).split('e'), [short, after] = Number(value.toPrecision(count))
+    .toExponential().split('e');
+  if (Number(power) >= -4 && Number(power) < count) return String(Number(value.toPrecision(count)));
+  return `${short}e${after[0]}${after.slice(1).padStart(2, '0')}`;
+}
 /** As JSON would keep it: a copy, without -0.
  * @type {(value: unknown) => unknown} */
 const plain = (value) => (Array.isArray(value) ? value.map(plain) : typeof value === 'number' ? value + 0 : value);
@@ -76,7 +84,7 @@ export class Commands {
     if (typeof name !== 'string') throw new Refusal(fill(messages.noName, noun));
     const first = names[kind].indexOf(name), others = second[kind] ?? {};
     const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
-    const count = kind === 'area' ? names.area.length : counts[countedBy(kind)];
+    const count = kind === 'area' || kind === 'form' ? names[kind].length : counts[countedBy(kind)];
     if (slot < 0 || slot >= count) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
     return slot;
   }
@@ -165,22 +173,23 @@ export class Commands {
   }
 
   /** Words for why a type of command is refused, of a name or number.
-   * @type {(reason: number, type: string, name?: string | number) => string} */
-  #words(reason, type, name = '') {
+   * @type {(reason: number, type: string, name?: string | number, ...further: string[]) => string} */
+  #words(reason, type, name = '', ...further) {
     const { refusals, filled, deeds } = this.#about, [doing, counted] = deeds[type] ?? ['', ''];
     const thing = String(name).split(':')[0].split('.')[0] || String(name);
     const what = { [filled.doing]: doing, [filled.counted]: counted, [filled.thing]: shown(thing) };
-    return fill(refusals.words[reason], what[reason] ?? name);
+    return fill(refusals.words[reason], what[reason] ?? name, ...further);
   }
 
   /** What a kernel takes for a record with slots: its number, slots and numbers; and what has to be derived again.
    * @type {(record: Command, given: Record<string, number>) => Packed} */
   packed(record, given) {
-    const { kinds, commands, choices } = this.#about, kind = kinds[record.type], fields = commands[record.type]?.fields;
+    const { kinds, commands, choices, answers } = this.#about, kind = kinds[record.type], fields = commands[record.type]?.fields;
     const own = /** @type {Record<string, unknown>} */ (record);
     /** @type {(name: string) => number | number[]} */
     const value = (name) => {
       if (name.startsWith('?')) return Number(own[name.slice(1)] != null);
+      if (answers[name]) return Array(answers[name]).fill(0);
       const found = given[name] ?? own[name] ?? fields?.[name]?.default ?? 0;
       return /** @type {number | number[]} */ (choices[name]?.[String(found)] ?? found);
     };
@@ -188,16 +197,31 @@ export class Commands {
     return { ...kind, slots, numbers: kind.numbers.flatMap((name) => value(name)) };
   }
 
-  /** Whether a kernel has done it: throws in words where it has not.
-   * @type {(record: Command, packed: Packed, result: number) => void} */
-  answer(record, { slots, numbers }, result) {
+  /** A firmness that cannot be had, the rate, the nearest that can, and what is said after it, in words.
+   * @type {(record: Command, nearest: Float64Array) => string[]} */
+  #reach(record, [first, second]) {
+    const { sag, hz, ratio } = /** @type {{ sag?: number, hz?: number, ratio?: number }} */ (record);
+    /** @type {(sag?: number | null, hz?: number, ratio?: number | null) => string} */
+    const said = (one, frequency, damping) => (one != null ? `sag ${digits(one, 3)}`
+      : `${digits(Number(frequency), 4)} Hz${damping == null ? '' : ` at ratio ${digits(damping, 4)}`}`);
+    const nearest = sag != null ? said(first) : said(null, first, second);
+    return [said(sag, hz, ratio), digits(this.#about.rate, 6), nearest,
+      sag != null && first ? this.#about.messages.butRigid : ''];
+  }
+
+  /** Whether a kernel has done it: throws in words where it has not. answers: its numbers afterwards.
+   * @type {(record: Command, packed: Packed, result: number, answers: Float64Array) => void} */
+  answer(record, { slots, numbers }, result, answers) {
     if (result >= 0) return;
     const { refusals: { reasons, bad }, messages, kinds } = this.#about, { type } = record;
     const reason = -result % reasons, place = Math.floor(-result / reasons), names = this.#names;
     if (place >= slots.length) throw new Refusal(`${type}: ${numbers.join(', ')}: finite numbers are needed`);
     const fields = kinds[type].slots, field = fields[Math.min(place, fields.length - 1)], slot = slots[place];
     const { names: kind, noun } = new Map(this.#named(type)).get(field) ?? {}, name = kind && names[kind][slot];
-    if (reason !== bad) throw new Refusal(this.#words(reason, type, name ?? slot));
+    if (reason !== bad) {
+      const further = reason === this.#about.filled.reach ? this.#reach(record, answers.slice(-2)) : [];
+      throw new Refusal(this.#words(reason, type, name ?? slot, ...further));
+    }
     if (name !== undefined) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
     throw new Refusal(`${type}: ${slot}: it is not there, not in use, or out of range`);
   }

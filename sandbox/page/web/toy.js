@@ -10,6 +10,7 @@ import { Maker } from './maker.js';
 import { Pace } from './pace.js';
 import { contextOf } from './paint.js';
 import { written } from './recording.js';
+import { fired, outcome } from './rules.js';
 import { Run } from './run.js';
 import { Sound } from './sound.js';
 /** @import { Command, Fresh, Level, NamedRecord, Theme, ToyEvents } from './types.js' */
@@ -246,16 +247,16 @@ export class Toy extends EventTarget {
 
   // What rules that fired in this tick say, and whether one of them won or lost the level.
   #tellRules() {
-    const { world } = this, fired = world.fired();
-    for (const { say } of fired) if (say !== undefined) this.say(say);
-    if (fired.length) this.#tell('rules', { actions: fired });
-    const outcome = fired.length ? world.outcome() : null;
-    if (outcome?.tick === world.time) this.#tell('outcome', outcome);
+    const { world } = this, actions = fired(world);
+    for (const { say } of actions) if (say !== undefined) this.say(say);
+    if (actions.length) this.#tell('rules', { actions });
+    const ended = actions.length ? outcome(world) : null;
+    if (ended?.tick === world.time) this.#tell('outcome', ended);
   }
 
   // Whether the level is won or lost, here in time; null: neither yet.
   get outcome() {
-    return this.world.outcome();
+    return outcome(this.world);
   }
 
   // Ticks in a second, and how much time has passed [s].

@@ -15,7 +15,7 @@ export type Family = 'particle' | 'spring' | 'constraint' | 'corner' | 'actuator
   | 'probe' | 'still' | 'key' | 'deed';
 // Rows in use.
 export type Counts = Record<Family | 'material', number>;
-export type NameKind = 'particle' | 'spring' | 'material' | 'part' | 'key' | 'area';
+export type NameKind = 'particle' | 'spring' | 'material' | 'part' | 'key' | 'area' | 'form';
 
 // A line of the table of state arrays.
 export interface Column {
@@ -67,10 +67,14 @@ export interface About {
   kinds: Record<string, Kind>;
   // What goes by words in commands, as kernels have it.
   choices: Partial<Record<string, Partial<Record<string, number>>>>;
+  // Numbers that a kernel writes, and how many they are.
+  answers: Partial<Record<string, number>>;
   givers: Record<'HAND' | 'RULE' | 'PROGRAM', number>;
   // How a result says why and where a command was refused, and words for it; and which of these words tell what.
   refusals: { reasons: number; words: Record<number, string>; bad: number };
-  filled: Record<'doing' | 'counted' | 'thing', number>;
+  filled: Record<'doing' | 'counted' | 'thing' | 'reach', number>;
+  // Ticks in a second.
+  rate: number;
   // By types of commands what they do to things, and what a budget of them counts; and their numbers.
   deeds: Partial<Record<string, [doing: string, counted: string]>>;
   codeOf: Record<string, number>;

@@ -3,8 +3,9 @@ import { addedTo } from './adding.js';
 import { Commands, countedBy, isWithoutKernel, Refusal } from './commands.js';
 import { blake2b, digestOf, hexOf } from './hash.js';
 import { removedFrom } from './removing.js';
+import { act } from './rules.js';
 /**
- * @import { About, Action, AnyArray, Column, Command, Counts, Done, Equipment, Kernels, NameKind, Outcome, Runs, SavedState,
+ * @import { About, AnyArray, Column, Command, Counts, Done, Equipment, Kernels, NameKind, Runs, SavedState,
  *   Laid, NamedRecord, Settings, StateHash, View } from './types.js'
  */
 
@@ -20,7 +21,6 @@ const CONTACTS = /** @type {const} */ (['collisions.kept.particle', 'collisions.
   'collisions.kept.impulse', 'collisions.kept.impact']);
 // Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
 const ARGUMENTS = 64, RECORD = 16, NONE = new Float64Array();
-const MOST_STARS = 3;
 /** @type {(size: number) => number} */
 const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 
@@ -106,6 +106,18 @@ export class World {
       this.#rows.set(path, { room: rows, least: rows });
     }
     this.#derive(DERIVATIONS);
+    Object.defineProperty(this.names, 'form', { get: () => this.#formNames(about.names.form) });
+  }
+
+  /** Names of bodies whose form may be stiff, by their numbers: of one that was cut its pieces, as firm_bodies.py has it.
+   * @type {(bodies: string[]) => string[]} */
+  #formNames(bodies) {
+    const place = this.#placeFor(bodies.length);
+    this.#inArena('count_pieces', [], this.#block, [place, bodies.length, WORD]);
+    const counts = Array.from(new BigInt64Array(this.#kernels.memory.buffer, place, bodies.length), Number);
+    const pieces = bodies.map((name, k) => (counts[k] < 2 ? [name]
+      : Array.from({ length: counts[k] }, (_, at) => `${name}, ${at + 1} of ${counts[k]}`)));
+    return [...pieces.map(([first]) => first), ...pieces.flatMap(([, ...others]) => others)];
   }
 
   /** Where there are so many more bytes of memory.
@@ -234,7 +246,7 @@ export class World {
   }
 
   tick() {
-    this.#act();
+    act(this, this.#about);
     const progress = this.view('progress'), { TICK, MAY_FLY, COUNT, CHECKED } = this.#about.progress;
     const { NO_ROOM, UNSOUND, LOST, BROKE } = this.#about.codes;
     progress[TICK] = BigInt(this.time);
@@ -258,67 +270,6 @@ export class World {
       : [];
     if (this.broken.length) this.command({ type: 'break_springs', springs: this.broken }, this.#about.givers.PROGRAM);
     if (this.#about.rules.length) this.#call('judge', this.#block);
-  }
-
-  // What rules that fired in the last tick do, as session/actions.py has it; what cannot be done is left out.
-  #act() {
-    this.#about.rules.forEach((actions, rule) => {
-      if (!this.view('state.rule_due')[rule]) return;
-      this.view('state.rule_due')[rule] = 0;
-      for (const action of actions) {
-        const stars = this.view('state.rule_stars'), { count, by = 1, commands = [] } = action;
-        if (action.win !== undefined && !stars[rule]) {
-          stars[rule] = this.#stars(action, Number(this.view('state.rule_first')[rule]));
-        }
-        if (count !== undefined) this.view('state.counter')[count] += by;
-        commands.forEach((command) => this.#actBy(command));
-      }
-    });
-  }
-
-  /** @type {(command: Command) => void} */
-  #actBy(command) {
-    const record = command.type === 'cut_springs' ? { ...command,
-      springs: command.springs.filter((spring) => this.isInUse('spring', spring)) } : command;
-    if (record.type === 'cut_springs' && !record.springs.length) return;
-    try {
-      this.command(record, this.#about.givers.RULE);
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
-    }
-  }
-
-  /** How many stars a win at the end of a tick earns, as session/outcome.py has it.
-   * @type {(action: Action, tick: number) => number} */
-  #stars({ stars }, tick) {
-    if (!stars) return MOST_STARS;
-    const { counter, second, third } = stars;
-    const value = counter === null ? tick / this.settings().tick_rate : this.view('state.counter')[counter];
-    return 1 + [second, third].filter((bound) => (third > second ? value >= bound : value <= bound)).length;
-  }
-
-  /** The actions of the rules that fired in the last tick.
-   * @type {() => Action[]} */
-  fired() {
-    return this.#about.rules.flatMap((actions, rule) =>
-      Number(this.view('state.rule_last')[rule]) === this.time ? actions : []);
-  }
-
-  /** Whether the level is won or lost; null: neither yet. The rule that fired first counts, of two in one tick the one
-   * that stands first in the file.
-   * @type {() => Outcome | null} */
-  outcome() {
-    const first = this.view('state.rule_first'), stars = this.view('state.rule_stars');
-    /** @type {Outcome | null} */
-    let found = null;
-    this.#about.rules.forEach((actions, rule) => {
-      const tick = Number(first[rule]), action = actions.find((each) => each.win !== undefined || each.fail !== undefined);
-      if (tick < 0 || !action || (found && found.tick <= tick)) return;
-      const isWon = action.win !== undefined;
-      found = { isWon, text: action.win ?? action.fail ?? '', stars: isWon ? stars[rule] || this.#stars(action, tick) : 0,
-        tick };
-    });
-    return found;
   }
 
   /** Take back what a tick has said of that no physics gives it, see sanitise.py.
@@ -377,9 +328,11 @@ export class World {
     new Float64Array(buffer, at, numbers.length).set(numbers);
     /** @type {(number | Span)[]} */
     const given = [giver, code, [many, slots.length, WORD], [at, numbers.length, WORD]];
-    this.commands.answer(record, packed, this.#inArena('command', [this.#block], ...given));
+    const result = this.#inArena('command', [this.#block], ...given);
+    const answers = new Float64Array(this.#kernels.memory.buffer, at, numbers.length);
+    this.commands.answer(record, packed, result, answers);
     if (changes === 'solver') {
-      const factor = new Float64Array(this.#kernels.memory.buffer, at, numbers.length)[numbers.length - 1];
+      const factor = answers[numbers.length - 1];
       const impulse = this.view('collisions.kept.impulse');
       impulse.forEach((value, k) => { impulse[k] = factor ? value * factor : 0; });
     }
@@ -470,9 +423,13 @@ export class World {
     return this.#about.hands;
   }
 
-  // Who gives a command.
+  // Who gives a command; what each rule of the level does, in order.
   get givers() {
     return this.#about.givers;
+  }
+
+  get rules() {
+    return this.#about.rules;
   }
 
   get areaKind() {

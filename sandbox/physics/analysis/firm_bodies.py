@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.physics.arena import FIRST_ARENA, answer_of
+from sandbox.physics.command import count_pieces
 from sandbox.physics.firmness.form_table import FormTable
 from sandbox.physics.keeping.forms import FirmBody, StiffForm
 from sandbox.physics.world import World
@@ -19,10 +21,11 @@ def firm_bodies(world: World) -> tuple[FirmBody, ...]:
 
 def _find_bodies(world: World) -> tuple[FirmBody, ...]:
     table = world.form_table
-    counts = table.pieces(world) if world.forms else []
+    counts = np.zeros(len(world.forms), np.int64)
+    answer_of(count_pieces, FIRST_ARENA, world.lent, counts)
     pieces = [
         (body,) if count == 1 else tuple(_piece(world, table, number, place, count) for place in range(count))
-        for number, (body, count) in enumerate(zip(world.forms, counts, strict=True))
+        for number, (body, count) in enumerate(zip(world.forms, counts.tolist(), strict=True))
     ]
     return (*(each[0] for each in pieces), *(piece for each in pieces for piece in each[1:]))
 

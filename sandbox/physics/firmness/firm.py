@@ -403,14 +403,13 @@ def _set(
         set_constraint(state, good, piece.constraint[row], stiffness, damping, mode, duration)
 
 
-@kernel
-def count_pieces(pointer: Bundle[Firmable], arena: Arena, count: Slots) -> int:
+@inner_kernel
+def count_pieces_of(state: State, forms: Forms, arena: Arena, count: Slots) -> int:
     """How many pieces each body (b,) is; NO_ROOM: the arena is too small."""
     begin(arena)
-    made = unpack(pointer)
     for body in range(count.shape[0]):
         scratch = mark(arena)
-        pieces = _new_pieces(made.state, made.forms, body, arena)
+        pieces = _new_pieces(state, forms, body, arena)
         if is_full(arena):
             return NO_ROOM
         count[body] = pieces.total[0]

@@ -1,11 +1,10 @@
 """The forms of a world's bodies as kernels take them, which follow what joins the world; and kernels called on them."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from sandbox.physics.arena import FIRST_ARENA, MORE, lay_out
+from sandbox.physics.arena import FIRST_ARENA, lay_out
 from sandbox.physics.arrays import empty, with_empty
 from sandbox.physics.firmness.firm import (
     KINDS_OF_ROWS,
@@ -14,10 +13,8 @@ from sandbox.physics.firmness.firm import (
     FormModes,
     FormPiece,
     Forms,
-    count_pieces,
     take_piece,
 )
-from sandbox.physics.firmness.reach import NO_ROOM
 from sandbox.physics.jit import bundle, items_of
 from sandbox.physics.keeping.forms import FirmBody, StiffForm
 from sandbox.physics.state import StateArrays, good_of, state_of
@@ -31,7 +28,7 @@ class FormTable:
     _bodies: tuple[FirmBody, ...] | None = None
 
     def __init__(self, _world: StateArrays) -> None:
-        self._arena = np.zeros(FIRST_ARENA, np.int64)
+        self.follow(())
 
     def follow(self, bodies: tuple[FirmBody, ...]) -> None:
         """Follow what joined the world, or left it."""
@@ -49,12 +46,6 @@ class FormTable:
         """Keep the lowest mode of a body, which was found already."""
         self.modes.body[body] = lowest_mode or NONE
 
-    def pieces(self, world: StateArrays) -> list[int]:
-        """How many pieces each body is."""
-        count = np.zeros(len(self.forms.first) - 1, np.int64)
-        self._call(count_pieces, self._lend(world), count)
-        return [int(each) for each in count]
-
     def piece(self, world: StateArrays, body: int, number: int) -> FormPiece:
         """A piece of a body that was cut."""
         pointer = self._lend(world)
@@ -64,11 +55,6 @@ class FormTable:
 
     def _lend(self, world: StateArrays) -> Any:
         return bundle(Firmable(state_of(world), good_of(world), self.forms, self.modes, empty(FormPiece)))
-
-    def _call(self, entry: Callable[..., int], pointer: Any, *given: Any) -> int:
-        while (code := entry(pointer, self._arena, *given)) == NO_ROOM:
-            self._arena = np.zeros(MORE * int(self._arena[0]), np.int64)
-        return code
 
 
 def forms_of(bodies: tuple[FirmBody, ...]) -> Forms:

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Drives } from '../../../sandbox/page/web/drives.js';
+import { fired, outcome } from '../../../sandbox/page/web/rules.js';
 import { Run } from '../../../sandbox/page/web/run.js';
 import { GIVEN, toy } from './toys.mjs';
 
@@ -12,7 +13,7 @@ async function started() {
 }
 
 const ended = (world) => {
-  const found = world.outcome();
+  const found = outcome(world);
   return found && [found.isWon, found.text, found.stars, found.tick];
 };
 
@@ -49,7 +50,7 @@ test('what a rule says is told at the tick at which it fires', async () => {
   const { run } = await started(), said = [];
   for (let tick = 1; tick <= hashes.length; tick++) {
     play(run, tick);
-    for (const { say, win } of run.world.fired()) if (say || win) said.push([say ?? win, tick]);
+    for (const { say, win } of fired(run.world)) if (say || win) said.push([say ?? win, tick]);
   }
   assert.deepEqual(said.map(([text]) => text), ['Through the ring', 'In!', 'Still']);
   assert.equal(said[1][1], outcomes.at(-1)[3]);

@@ -71,6 +71,7 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.derive.make_room",
     "sandbox.physics.pipeline.judge.judge",
     "sandbox.physics.command.command",
+    "sandbox.physics.command.count_pieces",
     "sandbox.physics.meshing.fitting.fill_stroke",
 )
 WEB = Platform("kernels", "wasm", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES)
