@@ -32,8 +32,8 @@ CONTACT = "contact_"
 
 
 def is_done_by_pages(name: str) -> bool:
-    """Whether pages carry out commands of that type themselves; of others they are told what they change."""
-    return name in command_table.KINDS
+    """Whether pages carry out commands of that type."""
+    return name in command_table.KINDS or name in ("add_particle", "add_spring", "add_body", "remove")
 
 
 def about(world: World, words: int) -> dict[str, Any]:
@@ -44,6 +44,7 @@ def about(world: World, words: int) -> dict[str, Any]:
         "kernels": {name: entries[path]["symbol"] for name, path in KERNELS.items()},
         "words": words,
         "codes": {name: getattr(tick, name) for name in CODES},
+        "plan": {name: getattr(block, name) for name in ("GRAB_PARTICLE", "GRAB_SPRING")},
         "progress": {name: getattr(block, name) for name in PROGRESS} | {"KEPT": collide.KEPT},
         "kinds": {name: kind._asdict() for name, kind in command_table.KINDS.items()},
         "choices": command_table.CHOICES,
@@ -52,7 +53,7 @@ def about(world: World, words: int) -> dict[str, Any]:
         "filled": {"doing": command.FORBIDDEN, "counted": command.EXHAUSTED, "thing": command.UNTOUCHABLE},
         "deeds": {name: words_of(name) for name in command_table.CODES},
         "codeOf": command_table.CODES,
-        **table_of(set(filter(is_done_by_pages, COMMAND_TYPES))),
+        **table_of(set(filter(is_done_by_pages, COMMAND_TYPES)) - {"add_body"}),
         "solvers": SOLVER_NAMES,
         "hands": {"particle": world.grab_particle, "spring": world.grab_spring, "count": GRAB_COUNT},
         "area": AREA,

@@ -44,20 +44,23 @@ function shown(text) {
 const placed = (parts) => [...parts.map((part) => (PLAIN.test(String(part)) ? part : shown(String(part)))).join('.')]
   .slice(0, PLACE).join('');
 
+// Whose kernels take a kit, or what goes.
 const WITHOUT_KERNEL = ['add_particle', 'add_spring', 'add_body', 'remove'];
-/** Whether a world of a page carries out a type of command by itself, without a kernel.
+/** Whether a type of command has a kernel of its own.
  * @type {(type: string) => boolean} */
 export const isWithoutKernel = (type) => WITHOUT_KERNEL.includes(type);
 
 export class Commands {
   #about;
   #names;
+  #second;
 
-  /** about: what Python says, see about.py; names: of the rows there are, which may grow.
-   * @param {About} about @param {Record<NameKind, string[]>} names */
-  constructor(about, names) {
+  /** about: what Python says, see about.py; names and second: of the rows there are, which may grow.
+   * @param {About} about @param {Record<NameKind, string[]>} names @param {About['second']} second */
+  constructor(about, names, second) {
     this.#about = about;
     this.#names = names;
+    this.#second = second;
   }
 
   /** @type {(type: string) => [field: string, schema: Named][]} */
@@ -72,13 +75,19 @@ export class Commands {
   /** The slot of a name. kind: particle, spring, part or material; counts: rows in use, by family.
    * @type {(schema: Named, name: unknown, counts: Counts) => number} */
   slot({ names: kind, noun = kind }, name, counts) {
-    const { messages, second } = this.#about, names = this.#names;
+    const { messages } = this.#about;
     if (typeof name !== 'string') throw new Refusal(fill(messages.noName, noun));
-    const first = names[kind].indexOf(name), others = second[kind] ?? {};
-    const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
-    const count = kind === 'area' ? names.area.length : counts[countedBy(kind)];
-    if (slot < 0 || slot >= count) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
+    const slot = this.find(kind, name, counts);
+    if (slot < 0) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
     return slot;
+  }
+
+  /** The same; -1: there is none.
+   * @type {(kind: NameKind, name: string, counts: Counts) => number} */
+  find(kind, name, counts) {
+    const first = this.#names[kind].indexOf(name), others = this.#second[kind] ?? {};
+    const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
+    return slot < counts[countedBy(kind)] ? slot : -1;
   }
 
   /** A record as files have it, with slots in place of names, and defaults.
@@ -89,8 +98,8 @@ export class Commands {
     if (typeof record !== 'object' || !record || typeof type !== 'string') throw new Refusal(messages.noCommand);
     if (!types.includes(type)) throw new Refusal(fill(messages.unknown, shown(type), types.join(', ')));
     const entry = commands[type];
-    // A world reads it when it carries it out.
-    if (isWithoutKernel(type)) return /** @type {Command} */ (record);
+    // A world reads a kit when it lets it join.
+    if (type === 'add_body') return /** @type {Command} */ (record);
     if (!entry) {
       throw new Refusal(`a page cannot do ${type}; it can do ${types.filter((each) => commands[each]).join(', ')}`);
     }
@@ -129,6 +138,7 @@ export class Commands {
     const { messages } = this.#about;
     if (schema.enum) return schema.enum.includes(value) ? null : [parts, fill(messages.choice, schema.expected)];
     if (schema.type === 'array') return this.#faultOfList(value, schema, parts);
+    if (schema.type === 'string') return typeof value === 'string' ? null : [parts, messages.text];
     if (schema.type === 'boolean') return typeof value === 'boolean' ? null : [parts, messages.boolean];
     const isWhole = typeof value === 'number' && Number.isInteger(value) && Math.abs(value) < WHOLE;
     if (schema.type === 'integer' && !isWhole) {
@@ -158,9 +168,16 @@ export class Commands {
 
   /** Why hands may not give what a page carries out without a kernel; null: they may.
    * @type {(world: World, record: Command) => string | null} */
-  refusalOf(world, { type }) {
-    const { codeOf, filled } = this.#about, code = codeOf[type], row = world.view('state.deed_budget')[code] ?? -1;
+  refusalOf(world, record) {
+    const { type } = record, { codeOf, filled } = this.#about, code = codeOf[type], names = this.#names;
+    const row = world.view('state.deed_budget')[code] ?? -1, untouchable = world.view('state.untouchable');
     if (world.view('state.deed_refused')[code]) return this.#words(filled.doing, type);
+    const fields = /** @type {Record<string, unknown>} */ ({ ...record });
+    const named = this.#named(type).map(([field]) => fields[field]).filter((slot) => typeof slot === 'number');
+    const things = type === 'remove' && record.body != null ? names.particle.flatMap((name, slot) =>
+      (name.split(':')[0].split('.')[0] === record.body ? [slot] : [])) : named;
+    const kept = things.find((slot) => untouchable[slot]);
+    if (kept !== undefined) return this.#words(filled.thing, type, names.particle[kept]);
     return row >= 0 && world.view('state.counter')[row] < 1 ? this.#words(filled.counted, type) : null;
   }
 

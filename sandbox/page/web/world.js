@@ -1,11 +1,11 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
-import { addedTo } from './adding.js';
 import { Commands, countedBy, isWithoutKernel, Refusal } from './commands.js';
-import { blake2b, digestOf, hexOf } from './hash.js';
-import { removedFrom } from './removing.js';
+import { Hashes, isEqual } from './hash.js';
+import { answered, areasOf, checkForms, keysIn, keysOf, kitOf, namesOf, packed, seen } from './kit.js';
+import { firedIn, outcomeOf, starsOf } from './outcome.js';
 /**
- * @import { About, Action, AnyArray, Column, Command, Counts, Done, Equipment, Kernels, NameKind, Outcome, Runs, SavedState,
- *   Laid, NamedRecord, Settings, StateHash, View } from './types.js'
+ * @import { About, Action, AnyArray, Column, Command, Counts, Done, Joined, Kernels, Kit, Level, NameKind, Outcome, SavedState,
+ *   Settings, StateHash, View } from './types.js'
  */
 
 const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
@@ -20,12 +20,10 @@ const CONTACTS = /** @type {const} */ (['collisions.kept.particle', 'collisions.
   'collisions.kept.impulse', 'collisions.kept.impact']);
 // Room for the words of arguments of a call, and for the numbers of a command beside its springs [words].
 const ARGUMENTS = 64, RECORD = 16, NONE = new Float64Array();
-const MOST_STARS = 3;
 /** @type {(size: number) => number} */
 const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 
 /** @typedef {[address: number, count: number, size: number]} Span */
-/** @typedef {Extract<Command, { type: 'release' | 'set_drive' | 'hold_key' }>} Ending */
 
 export class World {
   /** @type {Kernels} */
@@ -50,25 +48,30 @@ export class World {
   #table = new Map();
   /** @type {Map<string, AnyArray>} */
   #views = new Map();
-  /** @type {Map<string, { array: AnyArray, digest: string | null }>} */
-  #hashed = new Map();
+  #hashes;
   /** @type {Map<string, AnyArray>} */
   #saved = new Map();
-  /** By path: how many rows there are room for, and how many there are at least.
-   * @type {Map<string, { room: number, least: number }>} */
-  #rows = new Map();
-  /** Rows in use, by family: a page has room for what a recording adds later.
+  /** By path: how many rows there are room for.
+   * @type {Map<string, number>} */
+  #room = new Map();
+  /** Rows in use, by family.
    * @type {Counts} */
   counts;
-  /** Names of rows in use, and of others that there were once.
+  /** Names of rows in use.
    * @type {Record<NameKind, string[]>} */
   names;
-  /** What people see of what joined, and where arrays lie that came with it.
-   * @type {SavedState['joined']} */
+  /** Second names of particles, with their slots.
+   * @type {Record<string, number>} */
+  #second;
+  /** First particle and spring of hands, below 0 until there are any, and how many hands there are.
+   * @type {About['hands']} */
+  hands;
+  /** What joined.
+   * @type {{ scene: Joined, keys: Level['keys'], bodies: number }[]} */
   #joined = [];
-  /** Where arrays lay before others came in their place.
-   * @type {Map<string, Laid>} */
-  #bare = new Map();
+  /** What kernels of kits go by.
+   * @type {Span[]} */
+  #tables;
   /** What of records is right, and what kernels take of it.
    * @type {Commands} */
   commands;
@@ -82,9 +85,12 @@ export class World {
   constructor(kernels, image, about) {
     this.#kernels = kernels;
     this.#about = about;
+    this.#hashes = new Hashes(about.columns);
     this.counts = about.counts;
+    this.hands = about.hands;
     this.names = structuredClone(about.names);
-    this.commands = new Commands(about, this.names);
+    this.#second = { ...about.second.particle };
+    this.commands = new Commands(about, this.names, { ...about.second, particle: this.#second });
     this.#arguments = aligned(kernels.__heap_base.value);
     this.#base = aligned(this.#arguments + (ARGUMENTS + RECORD) * WORD);
     this.#end = this.#base;
@@ -101,10 +107,10 @@ export class World {
       word += SHAPE + 2 * dimensions;
     }
     this.#given = new Uint8Array(kernels.memory.buffer, this.#base, about.words * WORD).slice();
-    for (const path of Object.keys(about.grows)) {
-      const rows = this.#dimension(path);
-      this.#rows.set(path, { room: rows, least: rows });
-    }
+    for (const path of Object.keys(about.grows)) this.#room.set(path, this.#dimension(path));
+    const { table, ranges } = about.kit;
+    this.#tables = this.#lent(BigInt64Array.from(table, BigInt), Float64Array.from(ranges, Number));
+    this.#slots = [0, 0];
     this.#derive(DERIVATIONS);
   }
 
@@ -155,8 +161,8 @@ export class World {
   }
 
   /** Let an array lie elsewhere, with so many rows.
-   * @type {(path: string, laid: Laid) => void} */
-  #lay(path, { address, rows }) {
+   * @type {(path: string, address: number, rows: number) => void} */
+  #lay(path, address, rows) {
     const { word } = this.#table.get(path) ?? { word: 0 };
     const words = [[2, rows * this.#width(path)], [ADDRESS, address], [SHAPE, rows]];
     for (const buffer of [this.#kernels.memory.buffer, this.#given.buffer]) {
@@ -166,47 +172,34 @@ export class World {
     this.#views.delete(path);
   }
 
-  /** Put arrays that are constant otherwise in place of those there are; where they lie.
-   * @type {(equipment: Equipment) => Map<string, Laid>} */
-  #equip(equipment) {
-    /** @type {Map<string, Laid>} */
-    const laid = new Map();
-    for (const [path, values] of Object.entries(equipment)) {
-      const before = this.view(path), rows = values.length / this.#width(path), size = before.BYTES_PER_ELEMENT;
-      if (!this.#bare.has(path)) this.#bare.set(path, { address: before.byteOffset, rows: this.#dimension(path) });
-      laid.set(path, { address: this.#reserve(Math.max(values.length, 1) * size), rows });
-      this.#layAgain(path, /** @type {Laid} */ (laid.get(path)));
-      const view = this.view(path);
-      put(view, view instanceof BigInt64Array ? BigInt64Array.from(values, BigInt) : Float64Array.from(values, Number));
-    }
-    return laid;
-  }
-
-  /** The same, of one that may be of those that grow.
-   * @type {(path: string, laid: Laid) => void} */
-  #layAgain(path, laid) {
-    const known = this.#rows.get(path);
-    if (known) known.room = laid.rows;
-    this.#lay(path, laid);
-  }
-
   /** Give all arrays as many rows as are in use. It is derived again afterwards.
    * @type {(counts: Counts) => void} */
   #grow(counts) {
-    for (const [path, [family, fill]] of Object.entries(this.#about.grows)) {
-      const known = this.#rows.get(path) ?? { room: 0, least: 0 };
-      const rows = Math.max(counts[family], known.least), before = this.view(path), had = this.#dimension(path);
+    for (const [path, [family, fill, more]] of Object.entries(this.#about.grows)) {
+      const rows = counts[family] + more, before = this.view(path), had = this.#dimension(path);
       if (rows === had) continue;
-      const width = this.#width(path), kept = before.slice(), isMoved = rows > known.room;
-      if (isMoved) known.room = MORE * rows;
-      const address = isMoved ? this.#reserve(known.room * width * kept.BYTES_PER_ELEMENT) : before.byteOffset;
-      this.#rows.set(path, known);
-      this.#lay(path, { address, rows });
+      const width = this.#width(path), kept = before.slice(), isMoved = rows > (this.#room.get(path) ?? 0);
+      if (isMoved) this.#room.set(path, MORE * rows);
+      const address = isMoved ? this.#reserve(MORE * rows * width * kept.BYTES_PER_ELEMENT) : before.byteOffset;
+      this.#lay(path, address, rows);
       const view = this.view(path);
       put(view, kept.subarray(0, Math.min(kept.length, view.length)));
       if (view instanceof BigInt64Array) view.fill(BigInt(fill), had * width);
       else view.fill(Number(fill), had * width);
     }
+  }
+
+  /** Two arrays of words where a kernel takes them, until others are.
+   * @type {(...arrays: (BigInt64Array | Float64Array)[]) => Span[]} */
+  #lent(...arrays) {
+    const words = arrays.reduce((sum, { length }) => sum + length, 0), { memory } = this.#kernels;
+    if (words > this.#slots[1]) this.#slots = [this.#reserve(MORE * words * WORD), MORE * words];
+    let [address] = this.#slots;
+    return arrays.map((array) => {
+      new Uint8Array(memory.buffer).set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), address);
+      address += array.byteLength;
+      return /** @type {Span} */ ([address - array.byteLength, array.length, WORD]);
+    });
   }
 
   /** Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
@@ -268,7 +261,7 @@ export class World {
       for (const action of actions) {
         const stars = this.view('state.rule_stars'), { count, by = 1, commands = [] } = action;
         if (action.win !== undefined && !stars[rule]) {
-          stars[rule] = this.#stars(action, Number(this.view('state.rule_first')[rule]));
+          stars[rule] = starsOf(this, action, Number(this.view('state.rule_first')[rule]));
         }
         if (count !== undefined) this.view('state.counter')[count] += by;
         commands.forEach((command) => this.#actBy(command));
@@ -288,37 +281,16 @@ export class World {
     }
   }
 
-  /** How many stars a win at the end of a tick earns, as session/outcome.py has it.
-   * @type {(action: Action, tick: number) => number} */
-  #stars({ stars }, tick) {
-    if (!stars) return MOST_STARS;
-    const { counter, second, third } = stars;
-    const value = counter === null ? tick / this.settings().tick_rate : this.view('state.counter')[counter];
-    return 1 + [second, third].filter((bound) => (third > second ? value >= bound : value <= bound)).length;
-  }
-
   /** The actions of the rules that fired in the last tick.
    * @type {() => Action[]} */
   fired() {
-    return this.#about.rules.flatMap((actions, rule) =>
-      Number(this.view('state.rule_last')[rule]) === this.time ? actions : []);
+    return firedIn(this, this.#about.rules);
   }
 
-  /** Whether the level is won or lost; null: neither yet. The rule that fired first counts, of two in one tick the one
-   * that stands first in the file.
+  /** Whether the level is won or lost; null: neither yet.
    * @type {() => Outcome | null} */
   outcome() {
-    const first = this.view('state.rule_first'), stars = this.view('state.rule_stars');
-    /** @type {Outcome | null} */
-    let found = null;
-    this.#about.rules.forEach((actions, rule) => {
-      const tick = Number(first[rule]), action = actions.find((each) => each.win !== undefined || each.fail !== undefined);
-      if (tick < 0 || !action || (found && found.tick <= tick)) return;
-      const isWon = action.win !== undefined;
-      found = { isWon, text: action.win ?? action.fail ?? '', stars: isWon ? stars[rule] || this.#stars(action, tick) : 0,
-        tick };
-    });
-    return found;
+    return outcomeOf(this, this.#about.rules);
   }
 
   /** Take back what a tick has said of that no physics gives it, see sanitise.py.
@@ -328,36 +300,11 @@ export class World {
     this.#derive(DERIVATIONS);
   }
 
-  /** Carry out what was done: a command, or what it changes where no kernel carries it out.
+  /** Carry out what was done; its record has names until then, if it came with names. Throws a Refusal.
    * @type {(done: Done) => void} */
   carryOut(done) {
-    if (!done.changes) {
-      this.command(done.record, this.#about.givers.HAND);
-      return;
-    }
-    const { changes, counts, names, scene, equipment = {} } = done;
-    if (counts) this.#grow(counts);
-    for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(names ?? {}))) {
-      this.names[kind].splice(this.counts[countedBy(kind)], Infinity, ...added);
-    }
-    this.counts = counts ?? this.counts;
-    if (scene) this.#joined.push({ scene, laid: this.#equip(equipment) });
-    for (const [path, runs] of Object.entries(changes)) {
-      this.#change(path, runs);
-      const good = path.replace('state', 'good');
-      if (good !== path && this.#table.has(good)) this.#change(good, runs);
-    }
-    if (this.#about.topology.some((path) => path in changes)) this.#derive(DERIVATIONS);
-  }
-
-  /** Write rows of an array: the first, how many, and what each is to hold.
-   * @type {(path: string, runs: Runs) => void} */
-  #change(path, runs) {
-    const view = this.view(path);
-    for (const [first, count, ...row] of runs) {
-      const values = view instanceof BigInt64Array ? BigInt64Array.from(row, BigInt) : Float64Array.from(row, Number);
-      for (let k = first; k < first + count; k++) put(view, values, row.length * k);
-    }
+    done.record ??= this.commands.read(done.named, this.counts);
+    this.command(done.record, this.#about.givers.HAND);
   }
 
   /** Carry out a command that somebody gives: the record of a recording with slots in place of names. Throws a Refusal
@@ -368,15 +315,14 @@ export class World {
       this.#withoutKernel(record, giver);
       return;
     }
+    if (record.type === 'grab' && this.hands.particle < 0 && this.isInUse('particle', record.particle)) this.#reserveHands();
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
     const { code, slots, numbers, changes } = packed;
-    if (slots.length > this.#slots[1]) this.#slots = [this.#reserve(MORE * slots.length * WORD), MORE * slots.length];
-    const at = this.#arguments + ARGUMENTS * WORD, { buffer } = this.#kernels.memory;
-    new BigInt64Array(buffer, this.#slots[0], slots.length).set(slots.map(BigInt));
-    new Float64Array(buffer, at, numbers.length).set(numbers);
+    const at = this.#arguments + ARGUMENTS * WORD, [listed] = this.#lent(BigInt64Array.from(slots, BigInt));
+    new Float64Array(this.#kernels.memory.buffer, at, numbers.length).set(numbers);
     /** @type {(number | Span)[]} */
-    const given = [giver, code, [this.#slots[0], slots.length, WORD], [at, numbers.length, WORD]];
+    const given = [giver, code, listed, [at, numbers.length, WORD]];
     this.commands.answer(record, packed, this.#inArena('command', ...given));
     if (changes === 'solver') {
       const factor = new Float64Array(this.#kernels.memory.buffer, at, numbers.length)[numbers.length - 1];
@@ -388,21 +334,84 @@ export class World {
 
   /** @type {(record: Command, giver: number) => void} */
   #withoutKernel(record, giver) {
-    const { givers, codeOf } = this.#about, named = /** @type {NamedRecord} */ (record);
-    const refusal = giver === givers.HAND ? this.commands.refusalOf(this, record) : null;
+    const { givers, codeOf } = this.#about, isByHand = giver === givers.HAND;
+    const refusal = isByHand ? this.commands.refusalOf(this, record) : null;
     if (refusal) throw new Refusal(refusal);
-    const tell = named.type === 'remove' ? removedFrom : addedTo;
-    this.carryOut({ tick: this.time, gesture: 0, record: named, ...tell(this, this.#about, named) });
-    const row = giver === givers.HAND ? this.view('state.deed_budget')[codeOf[named.type]] ?? -1 : -1;
+    if (record.type === 'remove') this.#remove(record);
+    else this.#join(kitOf(/** @type {Extract<Command, { type: 'add_body' }>} */ (record), this, this.#about));
+    const row = isByHand ? this.view('state.deed_budget')[codeOf[record.type]] ?? -1 : -1;
     if (row >= 0) this.view('state.counter')[row] -= 1;
   }
 
-  /** Whether what a command would end goes on: a hand holds something, a part is driven, or a key is held.
-   * @type {(ending: Ending) => boolean} */
-  isGoing(ending) {
-    if (ending.type === 'hold_key') return this.view('state.key_down')[ending.key] !== 0;
-    if (ending.type === 'release') return this.isHeld(ending.grab);
-    return this.view('state.actuator_value')[ending.part] !== 0;
+  /** @type {(hands: About['hands']) => void} */
+  #hold(hands) {
+    const plan = this.view('plan'), { GRAB_PARTICLE, GRAB_SPRING } = this.#about.plan;
+    [plan[GRAB_PARTICLE], plan[GRAB_SPRING]] = [BigInt(hands.particle), BigInt(hands.spring)];
+    this.hands = hands;
+  }
+
+  // Give hands their slots, in a level that began with nothing, once there is something to hold.
+  #reserveHands() {
+    const { count } = this.hands, { particle, spring, breakable } = this.counts, names = Array.from({ length: count },
+      (_, hand) => `+hand.${hand}`);
+    const then = { ...this.counts, particle: particle + count, spring: spring + count, hand: count };
+    this.#grow(Object.assign(then, { breakable: breakable ? then.spring : 0 }));
+    this.counts = then;
+    this.names.particle.push(...names);
+    this.names.spring.push(...names);
+    this.#call('reserve', this.#block, particle, spring);
+    this.#hold({ particle, spring, count });
+    this.#derive(DERIVATIONS);
+  }
+
+  /** Let a kit join. Throws a Refusal.
+   * @type {(kit: Kit) => void} */
+  #join(kit) {
+    const table = this.#about.kit, { codes, families } = table, made = packed(kit, this, this.#about), { counts } = made;
+    checkForms(kit, counts, table.words);
+    const names = namesOf(kit, made, this, table), before = this.counts, scene = seen(kit, before, counts);
+    const keys = keysOf(kit, before.actuator, counts.parts);
+    const rows = this.#lent(made.slots, made.numbers), call = () => this.#inArena('join', ...this.#tables, ...rows);
+    /** @type {Counts} */
+    const then = { ...before, material: made.materials.length, area: before.area + names.area.length };
+    for (const [part, family] of Object.entries(families)) if (part !== 'materials') then[family] += counts[part];
+    let answer = call();
+    if (answer === codes.NO_ROWS || answer === codes.NO_LIMIT_ROWS) {
+      const isLimited = answer === codes.NO_LIMIT_ROWS;
+      this.#grow(Object.assign(then, { limit: isLimited ? then.material : 0, breakable: isLimited ? then.spring : 0 }));
+      answer = call();
+    }
+    if (answer !== 0) throw answered(answer, made, table, (part) => (part === 'materials' ? made.materials.length - 1
+      : then[families[part]]));
+    this.counts = then;
+    put(this.view('areas'), areasOf(kit, before.constraint), 2 * before.area);
+    const { particle, spring, material, part, second, area } = names;
+    for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries({ particle, spring, part, area }))) {
+      this.names[kind].push(...added);
+    }
+    this.names.material.splice(0, Infinity, ...material);
+    for (const [name, slot] of second) this.#second[name] = slot;
+    const a = this.view('state.particle_a'), b = this.view('state.particle_b');
+    const joins = (scene.joins ?? []).map((join) => ({ ...join, ends: /** @type {[number, number]} */ ([a[join.spring],
+      b[join.spring]]) }));
+    this.#joined.push({ scene: { ...scene, joins }, keys, bodies: counts.bodies });
+    this.#derive(DERIVATIONS);
+  }
+
+  /** Take out what hangs on a particle, or a body by its name. Throws a Refusal.
+   * @type {(record: Extract<Command, { type: 'remove' }>) => void} */
+  #remove({ particle, body }) {
+    const { codes, ways } = this.#about.kit;
+    const isBody = particle === undefined || particle === null;
+    /** @type {(kind: 'particle' | 'spring', mark: string) => number[]} */
+    const named = (kind, mark) => this.names[kind].flatMap((name, slot) =>
+      (name.startsWith(`${body}${mark}`) && this.isInUse(kind, slot) ? [slot] : []));
+    const particles = isBody ? named('particle', '.') : [particle], springs = isBody ? named('spring', ':') : [];
+    if (!particles.length && !springs.length) throw new Refusal(this.#about.kit.words.notThere);
+    const rows = this.#lent(BigInt64Array.from(particles, BigInt), BigInt64Array.from(springs, BigInt));
+    const answer = this.#inArena('remove', isBody ? ways.BODY : ways.HANGING, ...rows);
+    if (answer <= codes.BAD_SLOT) throw new Refusal(this.#about.kit.words.notThere);
+    this.#derive(DERIVATIONS);
   }
 
   /** Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
@@ -449,9 +458,14 @@ export class World {
     return this.#joined.map(({ scene }) => scene);
   }
 
-  // First particle and spring of hands, and how many hands there are.
-  get hands() {
-    return this.#about.hands;
+  // How many bodies have joined.
+  get bodyCount() {
+    return this.#joined.reduce((sum, { bodies }) => sum + bodies, 0);
+  }
+
+  // Keys that drive parts of what joined, by their names.
+  get joinedKeys() {
+    return keysIn(this.#joined);
   }
 
   // Who gives a command.
@@ -466,16 +480,20 @@ export class World {
   /** Whether a particle is the cursor of a hand.
    * @type {(particle: number) => boolean} */
   isCursor(particle) {
-    const first = this.hands.particle;
-    return particle >= first && particle < first + this.hands.count;
+    return this.#isOfHands('particle', particle);
+  }
+
+  /** @type {(kind: 'particle' | 'spring', slot: number) => boolean} */
+  #isOfHands(kind, slot) {
+    const { [kind]: first, count } = this.hands;
+    return first >= 0 && slot >= first && slot < first + count;
   }
 
   /** Whether what a name stands for is in use, and no hand's; parts and materials always are.
    * @type {(kind: NameKind, slot: number) => boolean} */
   isInUse(kind, slot) {
     if (kind !== 'particle' && kind !== 'spring') return true;
-    const { [kind]: first, count } = this.hands;
-    return Boolean(this.view(`state.${kind}_active`)[slot]) && (slot < first || slot >= first + count);
+    return Boolean(this.view(`state.${kind}_active`)[slot]) && !this.#isOfHands(kind, slot);
   }
 
   /** Whether people see a particle, and whether it can move.
@@ -495,13 +513,12 @@ export class World {
   }
 
   get springs() {
-    const { spring: first, count } = this.hands, { spring } = this.counts;
-    return Array.from({ length: spring }, (_, s) => s).filter((s) => s < first || s >= first + count);
+    return Array.from({ length: this.counts.spring }, (_, s) => s).filter((s) => !this.#isOfHands('spring', s));
   }
 
   /** @type {(hand: number) => boolean} */
   isHeld(hand) {
-    return Boolean(this.view('state.spring_active')[this.hands.spring + hand]);
+    return this.hands.spring >= 0 && Boolean(this.view('state.spring_active')[this.hands.spring + hand]);
   }
 
   // Particles that touched something in the last step.
@@ -520,16 +537,16 @@ export class World {
       arrays.set(path, last && isEqual(last, present) ? last : present.slice());
     }
     this.#saved = arrays;
-    return { time: this.time, counts: this.counts, arrays, contacts: this.#contactRows(), joined: [...this.#joined] };
+    return { time: this.time, counts: this.counts, arrays, contacts: this.#contactRows(), joined: this.#joined.length,
+      hands: this.hands };
   }
 
   /** @type {(state: SavedState) => void} */
-  restore({ time, counts, arrays, contacts, joined }) {
+  restore({ time, counts, arrays, contacts, joined, hands }) {
     const isOther = this.#about.topology.some((path) => !isEqual(this.view(path), arrays.get(path) ?? NONE));
-    this.#joined = [...joined];
-    for (const [path, bare] of this.#bare) {
-      this.#layAgain(path, this.#joined.findLast(({ laid }) => laid.has(path))?.laid.get(path) ?? bare);
-    }
+    this.#joined.length = joined;
+    this.#hold(hands);
+    this.#forgetNames(counts);
     this.#grow(counts);
     for (const [path, kept] of arrays) put(this.view(path), kept);
     [this.time, this.counts, this.broken] = [time, counts, []];
@@ -539,6 +556,15 @@ export class World {
       this.view('collisions.counts')[this.#about.progress.KEPT] = BigInt(contacts[0].length);
       CONTACTS.forEach((path, k) => put(this.view(path), contacts[k]));
     }
+  }
+
+  /** Drop the names of rows that are not in use any more.
+   * @type {(counts: Counts) => void} */
+  #forgetNames(counts) {
+    for (const kind of /** @type {const} */ (['particle', 'spring', 'material', 'part', 'area'])) {
+      this.names[kind].length = counts[countedBy(kind)];
+    }
+    for (const [name, slot] of Object.entries(this.#second)) if (slot >= counts.particle) delete this.#second[name];
   }
 
   /** The rows of a state array that are in use, flat.
@@ -551,22 +577,7 @@ export class World {
   /** The hash of the whole state, and those of its arrays that are in use, by their names in files.
    * @type {() => StateHash} */
   hash() {
-    /** @type {Map<string, string>} */
-    const arrays = new Map();
-    for (const column of this.#about.columns) {
-      const present = this.rows(column);
-      let kept = this.#hashed.get(column.stored);
-      if (!kept || !isEqual(kept.array, present)) {
-        kept = { array: present.slice(), digest: digestOf(column, present) };
-        this.#hashed.set(column.stored, kept);
-      }
-      if (kept.digest) arrays.set(column.stored, kept.digest);
-    }
-    const { gravity, tick_rate, substeps, solver, iterations, warm_start, wind, drag } = this.settings();
-    const settings = [...gravity.map(hexOf), tick_rate, substeps, solver, iterations,
-      ...[warm_start, ...wind, drag].map(hexOf)];
-    const text = [...arrays.values(), this.time, ...settings].join('\n');
-    return { whole: blake2b(new TextEncoder().encode(text), 16), arrays };
+    return this.#hashes.of(this);
   }
 
   /** The settings of a tick, in the order in which they are hashed and stored.
@@ -586,13 +597,4 @@ export class World {
 function put(array, values, at = 0) {
   // Both are of 64 bits and whole, or neither is.
   /** @type {Float64Array} */ (array).set(/** @type {Float64Array} */ (values), at);
-}
-
-/** @type {(one: AnyArray, other: AnyArray) => boolean} */
-function isEqual(one, other) {
-  if (one.length !== other.length) return false;
-  const a = new Uint8Array(one.buffer, one.byteOffset, one.byteLength);
-  const b = new Uint8Array(other.buffer, other.byteOffset, other.byteLength);
-  for (let k = 0; k < a.length; k++) if (a[k] !== b[k]) return false;
-  return true;
 }

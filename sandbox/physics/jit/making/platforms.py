@@ -71,5 +71,8 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.derive.make_room",
     "sandbox.physics.pipeline.judge.judge",
     "sandbox.physics.command.command",
+    "sandbox.physics.changing.kit_kernels.join",
+    "sandbox.physics.changing.kit_kernels.reserve",
+    "sandbox.physics.changing.removing.remove",
 )
 WEB = Platform("kernels", "wasm", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES)
