@@ -20,7 +20,7 @@ class LinkOptions:
 def link(options: LinkOptions) -> int:
     """Print a link that holds a recorded run. Raises Refused."""
     from sandbox.app.share.links import link_to
-    from sandbox.app.share.recorded import all_at_once
+    from sandbox.app.share.runs_for_pages import all_at_once
     from sandbox.session.replay.recording import ReplayError
 
     replay = recording_of(options.replay)

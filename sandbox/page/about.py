@@ -7,6 +7,7 @@ from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
 from sandbox.level.rules.hands import words_of
 from sandbox.level.rules.rule import RuleDef
+from sandbox.page.growth import growth_of
 from sandbox.physics import command, command_table, permission
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
@@ -31,8 +32,8 @@ CONTACT = "contact_"
 
 
 def is_done_by_pages(name: str) -> bool:
-    """Whether pages carry out commands of that type themselves; of others they are told what they change."""
-    return name in command_table.KINDS
+    """Whether pages carry out commands of that type."""
+    return name in command_table.KINDS or name in ("add_particle", "add_spring", "add_body", "remove")
 
 
 def about(world: World, words: int) -> dict[str, Any]:
@@ -43,6 +44,7 @@ def about(world: World, words: int) -> dict[str, Any]:
         "kernels": {name: entries[path]["symbol"] for name, path in KERNELS.items()},
         "words": words,
         "codes": {name: getattr(tick, name) for name in CODES},
+        "plan": {name: getattr(block, name) for name in ("GRAB_PARTICLE", "GRAB_SPRING")},
         "progress": {name: getattr(block, name) for name in PROGRESS} | {"KEPT": collide.KEPT},
         "kinds": {name: kind._asdict() for name, kind in command_table.KINDS.items()},
         "choices": command_table.CHOICES,
@@ -55,16 +57,24 @@ def about(world: World, words: int) -> dict[str, Any]:
             "thing": command.UNTOUCHABLE,
             "reach": command.BEYOND_REACH,
         },
+        "denied": {
+            "size": permission.DENIED,
+            "reasons": {
+                permission.NOT_ALLOWED: command.FORBIDDEN,
+                permission.SPENT: command.EXHAUSTED,
+                permission.UNTOUCHED: command.UNTOUCHABLE,
+            },
+        },
         "deeds": {name: words_of(name) for name in command_table.CODES},
         "codeOf": command_table.CODES,
-        **table_of(set(filter(is_done_by_pages, COMMAND_TYPES))),
+        **table_of(set(filter(is_done_by_pages, COMMAND_TYPES)) - {"add_body"}),
         "rate": world.settings.tick_rate,
         "solvers": SOLVER_NAMES,
         "hands": {"particle": world.grab_particle, "spring": world.grab_spring, "count": GRAB_COUNT},
         "area": AREA,
         "columns": [_column(column) for column in COLUMNS],
         "topology": [*(f"state.{column.name}" for column in TOPOLOGY), "choices"],
-        "kept": kept + list(SETTING_ARRAYS),
+        "kept": list(dict.fromkeys([*kept, *SETTING_ARRAYS, *growth_of()])),
         "names": {
             "particle": world.particle_names,
             "spring": world.spring_names,

@@ -3,9 +3,9 @@
 from typing import Any, NamedTuple
 
 from sandbox.page.about import about
-from sandbox.page.growth import growth_of
+from sandbox.page.adding import kit_table
+from sandbox.page.growth import growth_of, row_counts
 from sandbox.page.image import Image, image_of
-from sandbox.page.room import Counts, leave_unused
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.world import World
 
@@ -17,14 +17,13 @@ class Start(NamedTuple):
     about: dict[str, Any]
 
 
-def start_of(world: World, counts: Counts) -> Start:
-    """The start of a world, of whose rows so many are in use then; the others are taken out of use."""
-    leave_unused(world, counts)
+def start_of(world: World) -> Start:
+    """The start of a world."""
     block = block_of(world)
     block.begin(world)
     image = image_of(block.given)
     # Words follow each other as the arrays do.
     table = {path: [place.dtype, place.dimensions] for path, place in image.table.items()}
     known = about(world, block.pointer.nbytes // 8)
-    grows = growth_of(world)
-    return Start(image, known | {"table": table, "copies": image.copies, "counts": counts, "grows": grows})
+    rows = {"counts": row_counts(world), "grows": growth_of(), "kit": kit_table(world)}
+    return Start(image, known | {"table": table, "copies": image.copies} | rows)

@@ -16,7 +16,10 @@ from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.for_pages import table_of
 
 FILE = WEB / "tables.d.ts"
-_HEAD = "// Types of the tables of Python. Made by `python -m sandbox.page.table_types`.\n"
+_HEAD = (
+    "// Types of the tables of Python. Made by `python -m sandbox.page.table_types`.\n"
+    "import type { Kit } from './types.js';\n"
+)
 _ARRAYS = {
     "float64": "Float64Array", "int64": "BigInt64Array", "int32": "Int32Array", "int8": "Int8Array",
     "bool": "Uint8Array",
@@ -41,12 +44,13 @@ def table_types() -> str:
 
 
 def _commands() -> Iterator[str]:
-    entries = table_of(set(filter(is_done_by_pages, COMMAND_TYPES)))["commands"]
-    for name, kind in KINDS.items():
+    entries = table_of(set(filter(is_done_by_pages, COMMAND_TYPES)) - {"add_body"})["commands"]
+    for name in (*KINDS, *(name for name in COMMAND_TYPES if entries[name] and name not in KINDS)):
+        kind = KINDS.get(name)
         if entries.get(name):
             fields = {field: _type_of(schema) for field, schema in entries[name]["fields"].items()}
             optional = {field for field, schema in entries[name]["fields"].items() if "isRequired" not in schema}
-        else:
+        elif kind is not None:
             # Of springs and constraints: a world carries it out by itself.
             fields = dict.fromkeys(kind.slots, "number[]") | dict.fromkeys(kind.numbers, "number")
             optional = set()
@@ -54,11 +58,12 @@ def _commands() -> Iterator[str]:
         yield f"    type: '{name}';"
         yield from (f"    {field}{'?' * (field in optional)}: {kind};" for field, kind in fields.items())
         yield "  };"
+    yield "  add_body: {\n    type: 'add_body';\n    kit: Kit;\n  };"
 
 
 def _type_of(schema: dict[str, Any]) -> str:
-    if schema.get("type") == "boolean":
-        return "boolean"
+    if schema.get("type") in ("boolean", "string") and "enum" not in schema:
+        return str(schema["type"]) + (" | null" if schema.get("isNullable") else "")
     if "enum" in schema:
         found = " | ".join(map(repr, schema["enum"]))
     elif "prefixItems" in schema:

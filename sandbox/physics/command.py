@@ -6,10 +6,10 @@ and takes it from the budget. A command that is refused changes nothing.
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_flags, new_slots, new_tuple
-from sandbox.physics.arrays import Floats, SlotRows, Slots
+from sandbox.physics.arrays import Flags, Floats, SlotRows, Slots
 from sandbox.physics.changing import freeing
 from sandbox.physics.changing.freeing import free_body
 from sandbox.physics.changing.moving import move_listed, scale_mass
@@ -135,13 +135,17 @@ def _carry_out(world: Commanded, arena: Arena, kind: int, slots: Slots, numbers:
         for axis in range(2):
             state.velocity[cursor, axis] = (numbers[axis] - state.position[cursor, axis]) * numbers[2]
     elif kind == RELEASE:
-        _release(state, slots)
+        release(state, slots)
     elif kind == PIN:
         pin(state, slots[1])
     elif kind == UNPIN:
         _unpin(state, slots[1])
     elif kind in (CUT, BREAK, PART):
-        return _cut(state, good, slots, kind, arena)
+        begin(arena)
+        work = new_tuple(CutScratch, arena, particles=state.owner.shape[0], springs=state.law.shape[0])
+        if is_full(arena):
+            return NO_ARENA
+        cut(state, good, slots, kind, work)
     elif kind == SET_COEFFICIENTS:
         _set_coefficients(state, good, slots, numbers)
     elif kind == SET_GRAVITY:
@@ -182,7 +186,7 @@ def _first_bad(world: Commanded, kind: int, slots: Slots, numbers: Floats) -> in
         if not has_hand or not 0 <= slots[0] + slots[2] < particles or not 0 <= slots[1] + slots[2] < springs:
             return 2
     place = _place_of_particle(kind)
-    if place >= 0 and not _is_body(state, slots[0], slots[place]):
+    if place >= 0 and not is_body(state, slots[0], slots[place]):
         return place
     if kind in (CUT, BREAK, PART):
         for k in range(slots.shape[0]):
@@ -303,8 +307,8 @@ def _not_for_hands(world: Commanded, arena: Arena, kind: int, slots: Slots, need
 
 
 @inner_kernel
-def _is_body(state: State, first_cursor: int, p: int) -> bool:
-    # Whether a particle is there and in use, and no cursor of a hand.
+def is_body(state: State, first_cursor: int, p: int) -> bool:
+    """Whether a particle is there and in use, and no cursor of a hand."""
     return 0 <= p < state.owner.shape[0] and state.particle_active[p] and not _is_cursor(first_cursor, p)
 
 
@@ -336,7 +340,8 @@ def _grab(state: State, slots: Slots, numbers: Floats) -> None:
 
 
 @inner_kernel
-def _release(state: State, slots: Slots) -> None:
+def release(state: State, slots: Slots) -> None:
+    """Let a hand go: slots = first cursor, first spring, hand."""
     # No bank keeps energy that the hand's work put into it. Not begun again: what overlaps where a hand lets go is no
     # start, at which parting costs nothing.
     hand, bank = slots[2], state.energy_bank
@@ -367,30 +372,34 @@ def _unpin(state: State, particle: int) -> None:
     state.energy_bank[particle] = BANK_UNOPENED
 
 
+class CutScratch(NamedTuple):
+    """Scratch of a cut, of zeros: what is taken out; the pieces; the springs of each particle."""
+
+    gone: Annotated[Flags, "springs"]
+    pieces: PieceScratch
+    start: Annotated[Slots, "particles + 1"]
+    listed: Annotated[Slots, "2 * springs"]
+
+
 @inner_kernel
-def _cut(state: State, good: GoodValues, springs: Slots, kind: int, arena: Arena) -> int:
-    # Take springs out, and the constraints that they were a side of, unless another spring holds that side. What falls
-    # into pieces becomes several bodies; those of what breaks by itself keep the energy of the body. PART: the bodies
-    # of springs have lost others already.
-    begin(arena)
+def cut(state: State, good: GoodValues, springs: Slots, kind: int, work: CutScratch) -> None:
+    """Take springs out, and the constraints that they were a side of, unless another spring holds that side.
+
+    What falls into pieces becomes several bodies; those of what breaks by itself keep the energy of the body. PART: the
+    bodies of springs have lost others already.
+    """
     count = state.law.shape[0]
-    gone = new_flags(arena, count)
-    pieces = new_tuple(PieceScratch, arena, particles=state.owner.shape[0], springs=count)
-    start, listed = new_slots(arena, state.owner.shape[0] + 1), new_slots(arena, 2 * count)
-    if is_full(arena):
-        return NO_ARENA
     for k in range(springs.shape[0] if kind != PART else 0):
-        gone[springs[k]] = True
+        work.gone[springs[k]] = True
         state.spring_active[springs[k]] = False
-    list_ends(state.particle_a, state.particle_b, count, state.owner.shape[0], start, listed)
-    end_constraints(state, start, listed, gone)
-    part(state, good, springs, start, listed, gone, pieces)
+    list_ends(state.particle_a, state.particle_b, count, state.owner.shape[0], work.start, work.listed)
+    end_constraints(state, work.start, work.listed, work.gone)
+    part(state, good, springs, work.start, work.listed, work.gone, work.pieces)
     for s in range(count):
-        if gone[s]:
+        if work.gone[s]:
             state.impulse[s, 0] = state.impulse[s, 1] = state.tension[s] = 0.0
             if kind == CUT:
                 state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
-    return 0
 
 
 @inner_kernel

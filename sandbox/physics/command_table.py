@@ -25,6 +25,7 @@ from sandbox.physics.keeping.arguments import (
     whole_numbers,
 )
 from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
+from sandbox.physics.permission import DENIED, NOT_ALLOWED, SPENT, UNTOUCHED
 from sandbox.physics.settings import AUTO, SOLVER_NAMES
 from sandbox.physics.state import StateArrays
 
@@ -121,7 +122,7 @@ KINDS = {
     ),
     "set_solver": KernelCommand(command.SET_SOLVER, _SOLVER, ("warm_start", "factor"), OF_SOLVER),
 }
-# What has no kernel yet, and what has, by its number: rows of the family DEED.
+# Kinds by their numbers, those that have kernels of their own too: rows of the family DEED.
 CODES = {name: kind.code for name, kind in KINDS.items()} | {
     "remove": command.REMOVE,
     "add_particle": command.ADD_PARTICLE,
@@ -142,6 +143,9 @@ CHOICES: dict[str, dict[str, int]] = {
     "solver": {name: place for place, name in enumerate(SOLVER_NAMES)},
     "substeps": {AUTO: 0},
 }
+_OF_DENIED = {
+    NOT_ALLOWED: command.FORBIDDEN, SPENT: command.EXHAUSTED, UNTOUCHED: command.UNTOUCHABLE
+}  # fmt: skip
 
 
 class Refused(ValueError):
@@ -153,6 +157,11 @@ class Refused(ValueError):
     def __init__(self, reason: int, field: str, value: Any, numbers: Sequence[float]) -> None:
         super().__init__(WORDS[reason].replace("{}", str(value), 1))
         self.reason, self.field, self.value, self.numbers = reason, field, value, numbers
+
+    @classmethod
+    def of_denied(cls, answer: int, field: str, value: Any) -> "Refused":
+        """That of an answer of another kernel that asks, see permission.py."""
+        return cls(_OF_DENIED[-answer // DENIED], field, value, ())
 
 
 def lend(*arrays: Any) -> Bundle[command.Commanded]:

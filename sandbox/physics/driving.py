@@ -97,9 +97,12 @@ def _held_back(state: State, s: int, wanted: float, force: float, stride: float,
 
 
 @inner_kernel
-def _contract(state: State, good: GoodValues, drives: Drives, tick: int, solver: int, tick_rate: int) -> None:
+def contract(
+    state: State, good: GoodValues, drives: Drives, first: int, tick: int, solver: int, tick_rate: int
+) -> None:  # fmt: skip
+    """Give muscles, from the first on, the rest lengths that they have at a tick."""
     # L = L0 (1 + amplitude wave)
-    for k in range(drives.muscle.shape[0]):
+    for k in range(first, drives.muscle.shape[0]):
         s = drives.muscle[k]
         natural = state.natural_length[s]
         wanted = natural * (1.0 + drives.amplitude[k] * wave(tick, drives.period[k], drives.phase[k]))
@@ -129,14 +132,14 @@ def _extend(state: State, good: GoodValues, drives: Drives, solver: int, tick_ra
 @inner_kernel
 def drive_springs(state: State, good: GoodValues, drives: Drives, tick: int, solver: int, tick_rate: int) -> None:
     """Give driven springs the rest lengths that they have at a tick; solver: see settings.py."""
-    _contract(state, good, drives, tick, solver, tick_rate)
+    contract(state, good, drives, 0, tick, solver, tick_rate)
     _extend(state, good, drives, solver, tick_rate)
 
 
 @kernel
 def _drive_muscles(pointer: Bundle[tuple[State, GoodValues, Drives]], tick: int, solver: int, tick_rate: int) -> None:
     state, good, drives = unpack(pointer)
-    _contract(state, good, drives, tick, solver, tick_rate)
+    contract(state, good, drives, 0, tick, solver, tick_rate)
 
 
 def drive_muscles(world: World, tick: int) -> None:

@@ -8,8 +8,11 @@ from sandbox.physics.state import State
 
 # Who gives a command.
 HAND, RULE, PROGRAM = range(3)
-# Why a kind of command is refused.
-GRANTED, NOT_ALLOWED, SPENT = range(3)
+# Why a kind of command is refused: hands may not give it, its budget is spent, or it is about something that they may
+# not touch.
+GRANTED, NOT_ALLOWED, SPENT, UNTOUCHED = range(4)
+# Kernels beside `command` that ask answer -(reason DENIED + k); k: the place of what it is about.
+DENIED = 2**40
 
 
 @inner_kernel
@@ -21,6 +24,12 @@ def refusal(state: State, giver: int, kind: int, needs: int) -> int:
         return NOT_ALLOWED
     row = state.deed_budget[kind]
     return SPENT if row >= 0 and state.counter[row] < needs else GRANTED
+
+
+@inner_kernel
+def denied(why: int, place: int) -> int:
+    """The answer of a kernel that refuses."""
+    return -(why * DENIED + place)
 
 
 @inner_kernel

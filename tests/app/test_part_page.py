@@ -182,7 +182,7 @@ def test_a_ghost_is_the_part_itself_and_its_outline_where_that_is_huge(player):
 
 def test_a_part_that_has_become_too_much_is_refused_in_a_line_and_the_run_goes_on(player, monkeypatch):
     take(player, "Pair")
-    monkeypatch.setattr("sandbox.level.assembly.joining.PARTICLE_LIMIT", 1)
+    monkeypatch.setattr("sandbox.level.assembly.kits.PARTICLE_LIMIT", 1)
     drop(player, (0.0, 3.0))
     assert not player.world.joined and any("a world holds at most 1 particles" in line for line in player.notices)
     assert not player.playback.outcome

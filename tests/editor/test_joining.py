@@ -117,6 +117,6 @@ def test_materials_of_the_same_name_are_shared_where_they_are_the_same_and_follo
 
 def test_a_world_that_is_full_refuses_in_one_line(monkeypatch):
     session = Session(room())
-    monkeypatch.setattr("sandbox.level.assembly.joining.PARTICLE_LIMIT", 1)
+    monkeypatch.setattr("sandbox.level.assembly.kits.PARTICLE_LIMIT", 1)
     with pytest.raises(EditError, match="a world holds at most 1 particles; this would make 2"):
         joining_commands(part(materials=SKIN, bodies=[BAR]), session.world, (0.0, 1.0))

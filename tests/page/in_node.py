@@ -10,7 +10,6 @@ from sandbox.app.draw.scene import made_looks
 from sandbox.app.share.stuffs import stuffs_for
 from sandbox.page.adding import adding
 from sandbox.page.page import KERNELS, WEB
-from sandbox.page.room import row_counts
 from sandbox.page.start import start_of
 from sandbox.physics.world import World
 
@@ -35,11 +34,7 @@ for (const text of tried) {
   let words = 'taken', isChanged = false;
   try {
     const record = areSlots ? eval(`(${text})`) : read(text);
-    const { commands } = world;
-    const fault = areSlots ? null : commands.refusalOf(world, record) ?? commands.faultIn(world, record);
-    if (fault) throw new Refusal(fault);
-    if (areSlots) world.command(record);
-    else world.commandByHand(record);
+    world.command(record, areSlots ? world.givers.PROGRAM : world.givers.HAND);
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
     words = error.message;
@@ -57,7 +52,7 @@ def tried_in_node(
 ) -> list[dict[str, Any]]:
     """What comes of each record, after others and a tick, in a page of a world at its start: words, hash, whether a
     refused one has changed anything. are_slots: what is tried has slots, and goes to the kernel as it is."""
-    start = start_of(world, row_counts(world))
+    start = start_of(world)
     added = adding(world) | {"made": made_looks() | stuffs_for(world.settings.tick_rate)}
     given = {
         "about": start.about | {"adding": added},

@@ -6,10 +6,10 @@ from pathlib import Path
 from tests.page.browser import Browser, Tab, page_address
 
 START_OVER = "page.toy.restart(); page.toy.pause();"
-# What a page says of a recording at last.
+# What a page says of a recording at last, or why there is none.
 VERDICT = """new Promise((done) => {
-  const state = document.getElementById('state');
-  const look = () => (state.className ? done(state.textContent) : requestAnimationFrame(look));
+  const said = () => ['verdict', 'state'].map((id) => document.getElementById(id)).find(({ className }) => className);
+  const look = () => (said() ? done(said().textContent) : requestAnimationFrame(look));
   look();
 })"""
 # Until a toy of one's own page is there.

@@ -8,8 +8,7 @@ import pytest
 
 from sandbox import Session, load_level
 from sandbox.app.share.links import link_to
-from sandbox.app.share.playing import playable
-from sandbox.app.share.recorded import all_at_once
+from sandbox.app.share.runs_for_pages import all_at_once
 from sandbox.cli import main
 from sandbox.commands import (
     AddBody,
@@ -118,7 +117,7 @@ def test_a_run_goes_to_a_page_is_taken_over_and_comes_back(
     assert link.startswith(f"{address}levels/{level}.html#scene=")
     assert verify(replay_of(link)) is None
     tab = browser.tab().open(link)
-    assert str(tab.evaluate(VERDICT)).startswith(f"Verified: the state after {TICKS} ticks")
+    assert str(tab.evaluate(VERDICT)).startswith(f"Verified: {TICKS} ticks, the very state that the sender had.")
     # Somebody takes it over at a tick in its midst.
     tab.evaluate("page.toy.pause(); page.toy.seek(150); page.toy.command({ type: 'set_gravity', gravity: [1, -5] })")
     tab.evaluate("page.toy.play()")
@@ -184,9 +183,10 @@ def test_a_cart_drives_on_a_page_and_goes_and_comes_with_time(
     browser: Browser, address: str, with_a_cart: Replay
 ) -> None:
     tab = browser.tab().open(all_at_once(link_to(with_a_cart, address, 0)))
-    assert str(tab.evaluate(VERDICT)).startswith("Verified: the state after 80 ticks")
+    assert str(tab.evaluate(VERDICT)).startswith("Verified: 80 ticks, the very state")
+    tab.evaluate("page.toy.pause(); page.toy.seek(80)")
     assert tab.evaluate("Object.keys(page.toy.drives.keys)") == ["q", "w"]
-    tab.evaluate("page.toy.pause(); page.toy.seek(80); globalThis.end = page.toy.world.hash().whole")
+    tab.evaluate(" globalThis.end = page.toy.world.hash().whole")
     assert tab.evaluate(
         "[10, 50, 19, 80].every((tick) => { page.toy.seek(tick); return page.toy.world.time === tick; })"
     )
@@ -195,12 +195,12 @@ def test_a_cart_drives_on_a_page_and_goes_and_comes_with_time(
     assert verify(replay_of(_link(tab))) is None
 
 
-def test_what_a_page_is_not_told_of_and_cannot_do_is_said(browser: Browser, address: str, with_a_cart: Replay) -> None:
+def test_a_definition_is_no_kit_and_the_page_says_when(browser: Browser, address: str, with_a_cart: Replay) -> None:
     said = browser.tab().open(f"{address}levels/rope.html#{fragment_of(with_a_cart)}").evaluate(VERDICT)
-    assert said == "This run holds what no page can do, add_body: open the link in Spring Sandbox."
+    assert said == "Not verified: at 0.3 s body: kits have no such thing."
 
 
-def test_what_pages_are_told_of_is_told_in_the_link(browser: Browser, tmp_path: Path) -> None:
+def test_a_link_with_a_kit_in_place_of_a_definition_comes_to_the_same_state(tmp_path: Path) -> None:
     level = furnished()
     session = Session(level)
     session.record_to(tmp_path / "soft.replay.gz")
@@ -211,4 +211,5 @@ def test_what_pages_are_told_of_is_told_in_the_link(browser: Browser, tmp_path: 
     session.stop_recording()
     replay = read_replay(tmp_path / "soft.replay.gz")
     link = all_at_once(link_to(replay, "", 0))
-    assert verify(replay_of(link)) is None and playable(level).content
+    (kit,) = (line.record for line in replay_of(link).script if line.record["type"] == "add_body")
+    assert set(kit) == {"type", "kit"} and verify(replay_of(link)) is None

@@ -9,7 +9,7 @@ from sandbox import __version__
 from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
 from sandbox.app.share.firmness_table import material_rows
-from sandbox.app.share.recorded import all_at_once, recorded
+from sandbox.app.share.runs_for_pages import RunForPages, all_at_once, run_for_pages
 from sandbox.app.share.stuffs import stuffs_for
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
@@ -22,7 +22,6 @@ from sandbox.level.rules.hands import left_of
 from sandbox.level.rules.rule import has_clock
 from sandbox.page.adding import adding
 from sandbox.page.page import page_text, toy_content
-from sandbox.page.room import make_room, row_counts
 from sandbox.page.start import start_of
 from sandbox.physics.snapshot import take
 from sandbox.physics.step import PHYSICS_VERSION
@@ -63,11 +62,8 @@ def playable_in_slices(
     begin: the tick that is shown first. Raises CommandError, also for a recording that begins with nothing.
     """
     until = [line for line in script if ticks is not None and line.tick <= ticks]
-    played = None if ticks is None else (yield from recorded(level, until, ticks))
+    played = None if ticks is None else (yield from run_for_pages(level, until, ticks))
     world = build_world(level)
-    counts = row_counts(world)
-    if played is not None:
-        make_room(world, played.world)
     data = {
         "name": level.name,
         "scene": scene_of(level, take(world)),
@@ -80,15 +76,20 @@ def playable_in_slices(
         "keys": dict(sorted(driving_keys(level).items())),
         "header": _header(level),
         "link": level_record(level) | {"physics": PHYSICS_VERSION},
-        "recording": None if played is None else {"commands": played.commands, "hashes": played.hashes},
+        "recording": None if played is None else _recording(played),
         "begin": begin,
     }
     start, added = (
-        start_of(world, counts),
+        start_of(world),
         adding(world) | {"made": made_looks() | stuffs_for(world.settings.tick_rate)},
     )
     content = toy_content(data | {"about": start.about | {"adding": added}}, start.image)
     return Playable(level.name, level.description, content)
+
+
+def _recording(played: RunForPages) -> dict[str, Any]:
+    commands = [{"tick": line.tick, "gesture": line.gesture, "named": line.record} for line in played.script]
+    return {"commands": commands, "hashes": played.hashes}
 
 
 def _checks(level: Level, world: World) -> list[dict[str, Any]]:

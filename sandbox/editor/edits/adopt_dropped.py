@@ -51,7 +51,7 @@ def _with_things(level: Level, world: World) -> tuple[Level, dict[str, str]]:
 
 def _with_joined(level: Level, world: World, joined: Joined, names: dict[str, str]) -> Level:
     source: Level = joined.source
-    found = [(body, name, _particles(world, name)) for body, name in zip(source.bodies, joined.names, strict=True)]
+    found = [(body, name, _particles(world, name)) for body, name in zip(source.bodies, joined.names, strict=False)]
     staying = [(body, name, slots) for body, name, slots in found if _is_there(world, name, slots)]
     if not staying:
         return level

@@ -5,39 +5,27 @@ import itertools
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.kit_files import read
+from sandbox.level.assembly.kits import Kit, KitNames, columns_of, join, packed_for
 from sandbox.level.document.model import Level, Material, NissenMaterial
 from sandbox.level.format.level_error import Fault, LevelError, shown, suggestion
-from sandbox.level.format.limits import (
-    DEFAULT_MATERIAL,
-    DEFINITION_LIMIT,
-    FORMAT,
-    MATERIAL_LIMIT,
-    MOTOR_LIMIT,
-    PARTICLE_LIMIT,
-    SPRING_LIMIT,
-    VERSION,
-    most_limited,
-)
+from sandbox.level.format.limits import DEFAULT_MATERIAL, DEFINITION_LIMIT, FORMAT, VERSION
 from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.axles import free_wheels
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.arrays import Slots
-from sandbox.physics.changing.joining import Place, append_state, equipped
+from sandbox.physics.changing.joining import KitError, check_kit
 from sandbox.physics.collision.filter import ALL_GROUPS
-from sandbox.physics.driving import drive_muscles
-from sandbox.physics.keeping.equipment import Joined
+from sandbox.physics.command import ADD_BODY
+from sandbox.physics.permission import PROGRAM
 from sandbox.physics.world import World
 
 SOURCE = "add_body"
-Mask = NDArray[np.bool_]
 # Definitions that are kept once checked: undoing and redoing add the same ones again.
 KEPT = 64
 
@@ -95,24 +83,47 @@ class Joiners:
                 place = f"{path}.collides.{number}"
                 yield place, f"the level has no group {shown(name)}" + suggestion(name, self._bits)
 
-    def groups(self, world: World) -> tuple[Slots, Slots, Slots]:
-        """Group and collides of the new particles, and the new collides of the world's own. Raises LevelError."""
-        owner, present = self.built.owner[: self.particles], world.collides.copy()
+    def kit(self, world: World) -> Kit:
+        """The bodies as rows, for a world of the groups that this one has. Raises LevelError."""
+        built, level = self.built, self.level
+        number = {body.id: index for index, body in enumerate(level.bodies)}
+        names, bits = self._names(number), self._bits | self._own_bits(world)
+        # Pieces of a body that lacks springs have owners of their own.
+        body_of = np.array([body for body, _ in names.particles])
         group, collides = np.zeros((2, self.particles), np.int64)
-        bits = self._bits | self._own_bits(world)
         for index, said in enumerate(self._said):
-            mine = owner == index
+            mine = body_of == index
             group[mine] = bits[said.get("collision_group") or DEFAULT_GROUP]
             named = sum(bits[name] for name in dict.fromkeys(said["collides"])) if "collides" in said else None
-            collides[mine] = self.built.collides[: self.particles][mine] if named is None else named
-        if not self.level.has_contacts:
-            return group, np.zeros_like(collides), present
-        used = max(int(world.group.max(initial=1)), *bits.values())
-        for number, (wheel, mount) in enumerate(free_wheels(self.level), used.bit_length()):
-            if 1 << number > ALL_GROUPS:
-                raise LevelError(SOURCE, [("", "there are too many wheels that do not touch their mounts")])
-            _give_group(group, (collides, present), owner == wheel, np.isin(owner, list(mount)), 1 << number)
-        return group, collides, present
+            collides[mine] = built.collides[: self.particles][mine] if named is None else named
+        touches = level.has_contacts
+        columns = columns_of(
+            built, {"group": group, "collides": collides if touches else 0}, free_wheels(level) if touches else []
+        )  # fmt: skip
+        return Kit(
+            len(level.bodies),
+            columns,
+            names,
+            tuple((number[name], rows) for name, rows in zip(built.area_names, built.area_constraints, strict=True)),
+            tuple((number[form.name], form) for form in built.forms),
+            level,
+            self.definition,
+        )
+
+    def _names(self, number: Mapping[str, int]) -> KitNames:
+        """Names of its rows; number: of each body by its id."""
+
+        def split(name: str, mark: str) -> tuple[int, str]:
+            body, _, text = name.partition(mark)
+            return number.get(body, -1), text
+
+        built = self.built
+        return KitNames(
+            tuple(split(name, ".") for name in built.particle_names[: self.particles]),
+            tuple(split(name, ":") for name in built.spring_names[: self.springs]),
+            tuple((*split(name, "."), slot) for name, slot in built.particle_naming.second if slot < self.particles),
+            tuple(number.get(each.name, -1 - each.owner) for each in actuators(self.level)),
+        )
 
     @property
     def _own_groups(self) -> list[str]:
@@ -129,96 +140,29 @@ class Joiners:
         return found
 
     def check_room(self, world: World) -> None:
-        """Raise LevelError if the world would become larger than a level may be."""
-        limited = sum(
-            int(np.isfinite(driven.force).sum())
-            for each in (world, self.built)
-            for driven in (each.actuators.muscles, each.actuators.hydraulics)
-        )
-        motors = len(world.actuators.motors.hub) + len(self.built.actuators.motors.hub)
-        materials = {*world.material_names, *self.built.material_names}
-        particles = world.particle_count + self.particles
-        for count, limit, noun in (
-            (particles, PARTICLE_LIMIT, "particles"),
-            (world.spring_count + self.springs, SPRING_LIMIT, "springs"),
-            (motors, MOTOR_LIMIT, "motors"),
-            (limited, most_limited(particles), "springs of limited force"),
-            (len(materials) - 1, MATERIAL_LIMIT, "materials"),
-        ):
-            if count > limit:
-                raise LevelError(SOURCE, [("", f"a world holds at most {limit:,} {noun}; this would make {count:,}")])
+        """Raise LevelError if the bodies could not join a world."""
+        try:
+            check_kit(world, packed_for(world, self.kit(world)), PROGRAM, ADD_BODY)
+        except KitError as error:
+            raise LevelError(SOURCE, [("", str(error))]) from None
 
-    def join(self, world: World) -> None:
+    def join(self, world: World, giver: int = PROGRAM) -> None:
         """Add the bodies to a world at its present tick. If there is no room, raises LevelError and changes nothing."""
-        self.check_room(world)
-        group, collides, present = self.groups(world)
-        # A muscle is where its wave is by now.
-        drive_muscles(self.built, world.tick)
-        place, naming = self._place(world), self._naming(world)
-        joined = self._joined(place, naming)
-        equipment = equipped(world, self.built, place, tuple(naming[each.name] for each in actuators(self.level)))
-        areas, forms = len(world.area_names), len(world.forms)
-        world.equipment = equipment._replace(
-            area_names=(*world.area_names, *(naming[name] for name in equipment.area_names[areas:])),
-            forms=(*world.forms, *(replace(form, name=naming[form.name]) for form in equipment.forms[forms:])),
-            joined=(*world.joined, joined),
-        )
-        world.name_slots(joined.particle_names, joined.spring_names)
-        for name, slot in joined.second_names:
-            world.name_particle(slot, name)
-        append_state(world, self.built, place, group, collides)
-        if not np.array_equal(present, world.collides[: len(present)]):
-            world.change("collides", present, slice(0, len(present)))
-
-    def _place(self, world: World) -> Place:
-        names = tuple(dict.fromkeys((*world.material_names, *self.built.material_names)))
-        return Place(
-            world.particle_count,
-            world.spring_count,
-            world.constraint_count,
-            len(world.corner_particle),
-            len(world.actuator_value),
-            max(int(world.owner.max(initial=-1)) + 1, 0),
-            names,
-            np.array([names.index(name) for name in self.built.material_names], dtype=np.int64),
-        )
-
-    def _naming(self, world: World) -> dict[str, str]:
-        """The world's name of each body and loose spring, by its name in the definition."""
-        count = sum(len(joined.names) for joined in world.joined)
-        springs = world.spring_naming.unused("+:", len(self.level.springs))
-        named = {body.id: f"+{number}" for number, body in enumerate(self.level.bodies, count + 1)}
-        return named | {f":{index}": name for index, name in enumerate(springs)}
-
-    def _joined(self, place: Place, naming: dict[str, str]) -> Joined:
-        built = self.built
-
-        def renamed(name: str, mark: str) -> str:
-            body, _, rest = name.partition(mark)
-            return naming.get(name) or naming[body] + mark + rest
-
-        seconds = [each for each in built.particle_naming.second if each[1] < self.particles]
-        return Joined(
-            self.level,
-            self.definition,
-            tuple(naming[body.id] for body in self.level.bodies),
-            place.particle,
-            place.spring,
-            place.part,
-            tuple(renamed(name, ".") for name in built.particle_names[: self.particles]),
-            tuple(renamed(name, ":") for name in built.spring_names[: self.springs]),
-            tuple((renamed(name, "."), slot + place.particle) for name, slot in seconds),
-        )
+        try:
+            join(world, self.kit(world), giver)
+        except KitError as error:
+            raise LevelError(SOURCE, [("", str(error))]) from None
 
 
-def _give_group(group: Slots, others: tuple[Slots, Slots], wheel: Mask, mount: Mask, own: int) -> None:
-    """Put a wheel into a group of its own. Its mount does not touch that group; all that touched its old group do."""
-    named = group[wheel][0]
-    for collides, is_mount in zip(others, (mount, False), strict=True):
-        touches = (collides & named) != 0
-        collides[touches] |= own
-        collides[~touches | is_mount] &= ~own
-    group[wheel] = own
+def join_definition(world: World, definition: Mapping[str, Any], giver: int = PROGRAM) -> None:
+    """Add bodies as level files define them, or a kit. Raises LevelError and Refused, and changes nothing then."""
+    if "kit" not in definition:
+        Joiners(world, definition).join(world, giver)
+        return
+    try:
+        join(world, read(definition["kit"]), giver)
+    except KitError as error:
+        raise LevelError(SOURCE, [("kit", str(error))]) from None
 
 
 def _identified(body: Any, number: int) -> Any:

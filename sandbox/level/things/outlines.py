@@ -98,7 +98,7 @@ def _edges(world: World) -> Slots:
         return edges
     named = [(body.id, body) for body in world.source.bodies]
     for joined in world.joined:
-        named += zip(joined.names, joined.source.bodies, strict=True)
+        named += zip(joined.names, joined.source.bodies, strict=False)
     slots = {name: slot for slot, name in enumerate(world.spring_names)}
     for name, body in named:
         made = expansion(body)

@@ -52,20 +52,17 @@ function shown(text) {
 const placed = (parts) => [...parts.map((part) => (PLAIN.test(String(part)) ? part : shown(String(part)))).join('.')]
   .slice(0, PLACE).join('');
 
-const WITHOUT_KERNEL = ['add_particle', 'add_spring', 'add_body', 'remove'];
-/** Whether a world of a page carries out a type of command by itself, without a kernel.
- * @type {(type: string) => boolean} */
-export const isWithoutKernel = (type) => WITHOUT_KERNEL.includes(type);
-
 export class Commands {
   #about;
   #names;
+  #second;
 
-  /** about: what Python says, see about.py; names: of the rows there are, which may grow.
-   * @param {About} about @param {Record<NameKind, string[]>} names */
-  constructor(about, names) {
+  /** about: what Python says, see about.py; names and second: of the rows there are, which may grow.
+   * @param {About} about @param {Record<NameKind, string[]>} names @param {About['second']} second */
+  constructor(about, names, second) {
     this.#about = about;
     this.#names = names;
+    this.#second = second;
   }
 
   /** @type {(type: string) => [field: string, schema: Named][]} */
@@ -80,13 +77,19 @@ export class Commands {
   /** The slot of a name. kind: particle, spring, part or material; counts: rows in use, by family.
    * @type {(schema: Named, name: unknown, counts: Counts) => number} */
   slot({ names: kind, noun = kind }, name, counts) {
-    const { messages, second } = this.#about, names = this.#names;
+    const { messages } = this.#about;
     if (typeof name !== 'string') throw new Refusal(fill(messages.noName, noun));
-    const first = names[kind].indexOf(name), others = second[kind] ?? {};
-    const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
-    const count = kind === 'area' || kind === 'form' ? names[kind].length : counts[countedBy(kind)];
-    if (slot < 0 || slot >= count) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
+    const slot = this.find(kind, name, counts);
+    if (slot < 0) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
     return slot;
+  }
+
+  /** The same; -1: there is none.
+   * @type {(kind: NameKind, name: string, counts: Counts) => number} */
+  find(kind, name, counts) {
+    const first = this.#names[kind].indexOf(name), others = this.#second[kind] ?? {};
+    const slot = first < 0 && Object.hasOwn(others, name) ? others[name] : first;
+    return slot < (kind === 'form' ? this.#names.form.length : counts[countedBy(kind)]) ? slot : -1;
   }
 
   /** A record as files have it, with slots in place of names, and defaults.
@@ -97,8 +100,8 @@ export class Commands {
     if (typeof record !== 'object' || !record || typeof type !== 'string') throw new Refusal(messages.noCommand);
     if (!types.includes(type)) throw new Refusal(fill(messages.unknown, shown(type), types.join(', ')));
     const entry = commands[type];
-    // A world reads it when it carries it out.
-    if (isWithoutKernel(type)) return /** @type {Command} */ (record);
+    // A world reads a kit when it lets it join.
+    if (type === 'add_body') return /** @type {Command} */ (record);
     if (!entry) {
       throw new Refusal(`a page cannot do ${type}; it can do ${types.filter((each) => commands[each]).join(', ')}`);
     }
@@ -137,6 +140,7 @@ export class Commands {
     const { messages } = this.#about;
     if (schema.enum) return schema.enum.includes(value) ? null : [parts, fill(messages.choice, schema.expected)];
     if (schema.type === 'array') return this.#faultOfList(value, schema, parts);
+    if (schema.type === 'string') return typeof value === 'string' ? null : [parts, messages.text];
     if (schema.type === 'boolean') return typeof value === 'boolean' ? null : [parts, messages.boolean];
     const isWhole = typeof value === 'number' && Number.isInteger(value) && Math.abs(value) < WHOLE;
     if (schema.type === 'integer' && !isWhole) {
@@ -164,12 +168,11 @@ export class Commands {
     return null;
   }
 
-  /** Why hands may not give what a page carries out without a kernel; null: they may.
-   * @type {(world: World, record: Command) => string | null} */
-  refusalOf(world, { type }) {
-    const { codeOf, filled } = this.#about, code = codeOf[type], row = world.view('state.deed_budget')[code] ?? -1;
-    if (world.view('state.deed_refused')[code]) return this.#words(filled.doing, type);
-    return row >= 0 && world.view('state.counter')[row] < 1 ? this.#words(filled.counted, type) : null;
+  /** Whether a kernel beside `command` lets hands do it: throws in words where it does not. named: what its place is.
+   * @type {(type: string, answer: number, named: (place: number) => string) => void} */
+  check(type, answer, named) {
+    const { size, reasons } = this.#about.denied;
+    if (answer <= -size) throw new Refusal(this.#words(reasons[Math.floor(-answer / size)], type, named(-answer % size)));
   }
 
   /** Words for why a type of command is refused, of a name or number.

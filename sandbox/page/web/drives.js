@@ -23,15 +23,25 @@ export class Drives {
    * @param {(name: string, isHeld: boolean) => void} [told] */
   constructor(run, keys, ruleKeys = [], told = () => {}) {
     this.run = run;
-    this.keys = { ...Object.fromEntries(ruleKeys.map((name) => [name, []])), ...keys };
+    this.own = { ...Object.fromEntries(ruleKeys.map((name) => [name, []])), ...keys };
     this.ruleKeys = ruleKeys;
     this.told = told;
+  }
+
+  /** Parts and values by the name of a key, those of what joined included.
+   * @returns {Level['keys']} */
+  get keys() {
+    const found = { ...this.own };
+    for (const [name, parts] of Object.entries(this.run.world.joinedKeys)) {
+      found[name] = [...(Object.hasOwn(found, name) ? found[name] : []), ...parts];
+    }
+    return found;
   }
 
   /** Whether a key of a keyboard drives something.
    * @type {(event: KeyboardEvent) => boolean} */
   has({ key, ctrlKey, metaKey, altKey, shiftKey }) {
-    return nameOf(key) in this.keys && !(ctrlKey || metaKey || altKey || shiftKey);
+    return Object.hasOwn(this.keys, nameOf(key)) && !(ctrlKey || metaKey || altKey || shiftKey);
   }
 
   /** Whether a key that went down drives something; it does so until the key goes up.
@@ -72,8 +82,8 @@ export class Drives {
     const gesture = this.#held.get(name);
     if (gesture === undefined) return;
     this.#held.delete(name);
-    for (const [part] of this.keys[name]) {
-      const others = [...this.#held.keys()].flatMap((other) => this.keys[other]);
+    for (const [part] of this.keys[name] ?? []) {
+      const others = [...this.#held.keys()].flatMap((other) => this.keys[other] ?? []);
       const value = others.findLast(([other]) => other === part)?.[1] ?? 0;
       this.run.submit({ type: 'set_drive', part, value }, gesture);
     }

@@ -31,15 +31,22 @@ export class Gamepads {
   #held = new Map();
   #isHeard = false;
 
-  /** used: called when one was pressed.
-   * @param {Drives} drives @param {() => void} [used] */
-  constructor(drives, used = () => {}) {
+  /** @type {Map<string, string>} */
+  keys = new Map();
+  used = () => {};
+
+  /** @param {Drives} drives */
+  constructor(drives) {
     this.drives = drives;
-    this.used = used;
-    this.keys = new Map([...controlsOf(Object.keys(drives.keys))].map(([key, control]) => [control, key]));
-    if (!this.keys.size) return;
     addEventListener('gamepadconnected', () => this.#hear());
     this.#hear();
+  }
+
+  /** Press the keys that there are now. used: called when one was pressed.
+   * @type {(used?: () => void) => void} */
+  follow(used = () => {}) {
+    this.used = used;
+    this.keys = new Map([...controlsOf(Object.keys(this.drives.keys))].map(([key, control]) => [control, key]));
   }
 
   // Look at gamepads in every frame, as long as there are any.

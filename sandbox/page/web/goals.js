@@ -17,6 +17,7 @@ const number = new Intl.NumberFormat('en', { maximumFractionDigits: 2 });
 
 export class Goals {
   #shown = '';
+  #isAsSent = false;
 
   /** told: what there is to show, see playing.py; nothing of it is shown where a level asks nothing.
    * @param {Toy} toy @param {Told} told @param {Places} places */
@@ -41,6 +42,22 @@ export class Goals {
     toy.addEventListener('draw', () => this.#follow());
   }
 
+  // Whether what is won here is what a sender says, which nothing has verified.
+  get isAsSent() {
+    return this.#isAsSent;
+  }
+
+  /** @param {boolean} isAsSent */
+  set isAsSent(isAsSent) {
+    this.#isAsSent = isAsSent;
+    if (!this.places.end.hidden) this.#title();
+  }
+
+  #title() {
+    const { outcome } = this.toy, isSent = this.#isAsSent && this.toy.run.time <= this.toy.sent;
+    if (outcome) this.places.end.querySelector('h2')?.replaceChildren((outcome.isWon ? 'Won' : 'Lost') + (isSent ? ', as sent' : ''));
+  }
+
   // Counters and clock, as they are here in time.
   #follow() {
     const { toy, told: { counters, hasClock } } = this, values = toy.world.view('state.counter');
@@ -57,7 +74,7 @@ export class Goals {
     const { toy, places: { end } } = this, { outcome } = toy;
     if (!outcome) return;
     toy.pause();
-    end.querySelector('h2')?.replaceChildren(outcome.isWon ? 'Won' : 'Lost');
+    this.#title();
     const seconds = `${(outcome.tick / toy.rate).toFixed(2)} s`;
     end.querySelector('p')?.replaceChildren(outcome.text, outcome.text ? element('br') : '', seconds);
     end.querySelector('div')?.replaceChildren(...(outcome.isWon ? stars(outcome.stars) : []));

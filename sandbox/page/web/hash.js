@@ -1,5 +1,6 @@
 // Hash: blake2b (RFC 7693), with each number of 64 bits as two of 32; arrays as they are hashed; floats in Python's digits.
-/** @import { AnyArray, Column } from './types.js' */
+/** @import { AnyArray, Column, StateHash } from './types.js' */
+/** @import { World } from './world.js' */
 
 const START = new Uint32Array([
   0xf3bcc908, 0x6a09e667, 0x84caa73b, 0xbb67ae85, 0xfe94f82b, 0x3c6ef372, 0x5f1d36f1, 0xa54ff53a,
@@ -114,4 +115,45 @@ export function canonical(array) {
 export function digestOf(column, array) {
   if (column.isSparse && array.every((value) => Number(value) === column.usual)) return null;
   return blake2b(canonical(array), 8);
+}
+
+/** @type {(one: AnyArray, other: AnyArray) => boolean} */
+export function isEqual(one, other) {
+  if (one.length !== other.length) return false;
+  const a = new Uint8Array(one.buffer, one.byteOffset, one.byteLength);
+  const b = new Uint8Array(other.buffer, other.byteOffset, other.byteLength);
+  for (let k = 0; k < a.length; k++) if (a[k] !== b[k]) return false;
+  return true;
+}
+
+// Hashes of a world's state; those of arrays that have not changed are kept.
+export class Hashes {
+  /** @type {Map<string, { array: AnyArray, digest: string | null }>} */
+  #kept = new Map();
+
+  /** @param {Column[]} columns */
+  constructor(columns) {
+    this.columns = columns;
+  }
+
+  /** The hash of the whole, and those of its arrays by their names in files.
+   * @type {(world: World) => StateHash} */
+  of(world) {
+    /** @type {Map<string, string>} */
+    const arrays = new Map();
+    for (const column of this.columns) {
+      const present = world.rows(column);
+      let kept = this.#kept.get(column.stored);
+      if (!kept || !isEqual(kept.array, present)) {
+        kept = { array: present.slice(), digest: digestOf(column, present) };
+        this.#kept.set(column.stored, kept);
+      }
+      if (kept.digest) arrays.set(column.stored, kept.digest);
+    }
+    const { gravity, tick_rate, substeps, solver, iterations, warm_start, wind, drag } = world.settings();
+    const settings = [...gravity.map(hexOf), tick_rate, substeps, solver, iterations,
+      ...[warm_start, ...wind, drag].map(hexOf)];
+    const text = [...arrays.values(), world.time, ...settings].join('\n');
+    return { whole: blake2b(new TextEncoder().encode(text), 16), arrays };
+  }
 }

@@ -1,23 +1,18 @@
 // Link: a run in the fragment of an address, which no browser sends to a server; written and read as
 // session/link/scene_link.py does it.
-import { checkBody, namesOf } from './adding.js';
-import { Commands, countedBy, isWithoutKernel, Refusal } from './commands.js';
+import { Refusal } from './commands.js';
+import { isWhole } from './kit.js';
 import { packed } from './recording.js';
 import { LINK } from './shared.js';
-/** @import { About, Counts, Done, LevelLink, NamedRecord, NameKind, PackedLink, Recording, Told } from './types.js' */
-/** @import { World } from './world.js' */
+/** @import { Done, LevelLink, NamedRecord, PackedLink, Recording } from './types.js' */
 
 const { MARK, VERSION, LONGEST, UNPACKED_LIMIT, RUN_LIMIT, COMMAND_LIMIT, FARTHEST, PER_METRE, HANDS, MOVE } = LINK;
-const COLUMNS = 4, EQUIPMENT = /^(drives|wheels|limits|water)\./;
+const COLUMNS = 4, ENTRY = 3, FIELDS = ['v', 'physics', 'level', 'digest', 'ticks', 'at', 'hash', 'commands'];
 const BROKEN = 'This link is broken: copy it again, whole.';
 
 /** @typedef {{ places: Map<number, [number, number]>, gestures: Map<number, number> }} Held */
-/** @typedef {{ passed: number, gesture: number, record: NamedRecord, told?: Told }} Entry */
+/** @typedef {{ passed: number, gesture: number, record: NamedRecord }} Entry */
 
-/** @type {(value: unknown, least: number, most: number) => value is number} */
-function isWhole(value, least, most) {
-  return Number.isInteger(value) && Number(value) >= least && Number(value) <= most;
-}
 /** @type {() => Held} */
 const nobody = () => ({ places: new Map(), gestures: new Map() });
 /** @type {(held: Held, gesture: number, record: NamedRecord) => void} */
@@ -48,12 +43,12 @@ function shortened(commands) {
   const held = nobody(), numbers = new Map();
   /** @type {number[][] | null} */
   let moves = null;
-  for (const { passed, gesture, record, told } of commands) {
+  for (const { passed, gesture, record } of commands) {
     if (!numbers.has(gesture)) numbers.set(gesture, numbers.size + 1);
-    const number = numbers.get(gesture), place = told ? null : moved(record, number, held);
+    const number = numbers.get(gesture), place = moved(record, number, held);
     if (!place) {
       moves = null;
-      found.push(told ? [passed, number, record, told] : [passed, number, record]);
+      found.push([passed, number, record]);
       note(held, number, record);
       continue;
     }
@@ -117,12 +112,13 @@ function* entriesOf(given) {
 }
 
 /** @type {(entry: unknown[], held: Held) => Entry} */
-function commandOf([passed, gesture, record, told], held) {
-  const isRecord = typeof record === 'object' && record !== null && !Array.isArray(record);
+function commandOf(entry, held) {
+  const [passed, gesture, record] = entry;
+  const isRecord = entry.length === ENTRY && typeof record === 'object' && record !== null && !Array.isArray(record);
   if (!isRecord || !isWhole(passed, 0, RUN_LIMIT) || !isWhole(gesture, 0, COMMAND_LIMIT)) throw new Refusal(BROKEN);
   const named = /** @type {NamedRecord} */ (record);
   note(held, gesture, named);
-  return { passed, gesture, record: named, ...(told ? { told: /** @type {Told} */ (told) } : {}) };
+  return { passed, gesture, record: named };
 }
 
 /** @type {(columns: unknown[][], held: Held) => Generator<Entry>} */
@@ -141,80 +137,39 @@ function* movesOf([passes, hands, across, up], { places, gestures }) {
 }
 
 /** The run of a link to a level, and the tick at which it is shown. Throws a Refusal.
- * @type {(fragment: string, level: LevelLink, about: About) => Promise<[recording: Recording, at: number]>} */
-export async function linked(fragment, { level, digest, physics }, about) {
+ * @type {(fragment: string, level: LevelLink) => Promise<[recording: Recording, at: number]>} */
+export async function linked(fragment, { level, digest, physics }) {
   const link = await unpacked(fragment);
   if (typeof link !== 'object' || link === null || Array.isArray(link)) throw new Refusal(BROKEN);
   const { v, ticks, at = 0, hash } = link;
-  if (v !== VERSION) throw new Refusal(`This link is of version ${JSON.stringify(v)}; this page reads ${VERSION}.`);
+  if (Object.keys(link).some((field) => !FIELDS.includes(field))) throw new Refusal(BROKEN);
+  if (v !== VERSION) throw new Refusal(`This link is of version ${shown(v)}; this page reads ${VERSION}.`);
   if (link.physics !== physics) throw new Refusal('This link was made with other physics, whose bits differ.');
   if (!isWhole(ticks, 0, RUN_LIMIT) || !isWhole(at, 0, ticks) || !/^[0-9a-f]{32}$/.test(String(hash))) {
     throw new Refusal(BROKEN);
   }
-  if (link.digest !== digest) {
-    throw new Refusal(`This link is to another ${link.level === level ? 'edition of this ' : ''}level.`);
+  if (link.digest !== digest || exactly(link.level) !== exactly(level)) {
+    const isSame = typeof level === 'string' && link.level === level;
+    throw new Refusal(`This link is to another ${isSame ? 'edition of this ' : ''}level.`);
   }
+  /** @type {Done[]} */
+  const commands = [];
+  let tick = 0;
+  for (const { passed, gesture, record } of entriesOf(link.commands)) {
+    tick += passed;
+    commands.push({ tick, gesture, named: record });
+  }
+  if (tick > ticks) throw new Refusal(BROKEN);
   /** @type {string[]} */
   const hashes = [];
   hashes.length = ticks + 1;
-  const commands = told([...entriesOf(link.commands)], about);
-  if (commands.length && commands[commands.length - 1].tick > ticks) throw new Refusal(BROKEN);
   return [{ commands, hashes, end: hash }, at];
 }
 
-/** Commands as a world takes them, with slots in place of names.
- * @type {(entries: Entry[], about: About) => Done[]} */
-function told(entries, about) {
-  const names = structuredClone(about.names), commands = new Commands(about, names);
-  let tick = 0, counts = about.counts;
-  return entries.map(({ passed, gesture, record, told: more }) => {
-    tick += passed;
-    if (!more && about.commands[record.type] === null && !isDoneHere(record, about)) {
-      throw new Refusal(`This run holds what no page can do, ${record.type}: open the link in Spring Sandbox.`);
-    }
-    const own = more || !isWithoutKernel(record.type) ? more : namesOf(record, names, counts);
-    if (more) checkTold(more, about, counts);
-    const done = more ? { tick, gesture, record, ...more } : { tick, gesture, record: commands.read(record, counts) };
-    for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(own?.names ?? {}))) {
-      names[kind].splice(counts[countedBy(kind)], Infinity, ...added);
-    }
-    counts = own?.counts ?? counts;
-    return done;
-  });
-}
+/** A level as text, in which 0 and -0 differ.
+ * @type {(level: unknown) => string} */
+const exactly = (level) => JSON.stringify(level, (_, value) => (Object.is(value, -0) ? '-0' : value));
 
-/** Whether a page carries out by itself what a record says.
- * @type {(record: NamedRecord, about: About) => boolean} */
-function isDoneHere(record, { adding }) {
-  if (record.type === 'remove') return record.particle !== undefined;
-  if (record.type !== 'add_body') return isWithoutKernel(record.type);
-  try {
-    checkBody(record, adding);
-  } catch (error) {
-    if (error instanceof Refusal) return false;
-    throw error;
-  }
-  return true;
-}
-
-/** Refuse what would write beyond rows, or make more of them than a level may have.
- * @type {(told: Told, about: About, before: Counts) => void} */
-function checkTold({ changes, counts, names, scene, equipment, keys }, { columns, counts: first, table }, before) {
-  const paths = new Set([...columns.map(({ path }) => path), 'numbers', 'choices']);
-  const isTable = [changes, counts ?? {}, names ?? {}, scene ?? {}, equipment ?? {}, keys ?? {}].every((each) => typeof each === 'object' && each !== null);
-  const isCounts = !counts || Object.keys(first).every((family) => {
-    const family_ = /** @type {keyof Counts} */ (family);
-    return isWhole(counts[family_], before[family_], before[family_] + LONGEST);
-  });
-  const isNames = Object.entries(names ?? {}).every(([kind, added]) => countedBy(/** @type {NameKind} */ (kind)) in first && Array.isArray(added)
-    && added.length <= LONGEST && added.every((name) => typeof name === 'string'));
-  const isChanges = isTable && Object.entries(changes).every(([path, runs]) => paths.has(path)
-    && Array.isArray(runs) && runs.every((run) => Array.isArray(run) && isWhole(run[0], 0, UNPACKED_LIMIT)
-      && isWhole(run[1], 0, UNPACKED_LIMIT) && run.slice(2).every((value) => Number.isFinite(Number(value)))));
-  const isEquipment = Object.entries(equipment ?? {}).every(([path, values]) => EQUIPMENT.test(path) && path in table
-    && Array.isArray(values) && values.length <= UNPACKED_LIMIT && values.every((value) => table[path][0] === 'f8'
-      ? !Number.isNaN(Number(value)) : Number.isSafeInteger(value)));
-  const isKeys = Object.values(keys ?? {}).every((parts) => Array.isArray(parts) && parts.every((pair) => Array.isArray(pair)
-    && pair.length === 2 && isWhole(pair[0], 0, LONGEST) && Number.isFinite(pair[1])));
-  if (![isTable, isCounts, isNames, isChanges, isEquipment, isKeys].every(Boolean)) throw new Refusal(BROKEN);
-}
+/** A version of a link that a person may read.
+ * @type {(version: unknown) => string} */
+const shown = (version) => (isWhole(version, 0, 1000) ? String(version) : 'none');

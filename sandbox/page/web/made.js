@@ -1,7 +1,7 @@
-// Made: what people see of a body that says each particle, spring and triangle, by its look.
+// Made: kits of what is drawn on the page, and what people see of them, by their looks.
 import { bordersOf, spotIn } from './pieces.js';
 import { THINGS } from './shared.js';
-/** @import { AddedBody, Joined, Made, Point, SceneBody, SkinLook } from './types.js' */
+/** @import { Adding, Joined, Kit, Made, MadeBody, Point, SceneBody, SkinLook } from './types.js' */
 
 const { LAID } = THINGS, HEX = /^#[0-9a-fA-F]{6}$/, DARK = [40, 0, 60], SHARE = 0.46, GREY = '#8e99a8';
 
@@ -18,17 +18,44 @@ function outlineOf(colour) {
 /** @type {(values: number[]) => number} */
 const median = (values) => [...values].sort((one, other) => one - other)[values.length >> 1] ?? 1;
 
-/** first, spring: its first slots; made: what shapes of each skin are like.
- * @type {(body: AddedBody['body'], place: { first: number, spring: number, made: Made }) => Joined} */
-export function madeScene({ particles, springs = [], triangles = [], look = {}, particle_radius: radius = 0.05 },
-  { first, spring, made }) {
+/** The kit of one body that says each particle, spring and triangle.
+ * @type {(adding: Adding, body: MadeBody) => Kit} */
+export function bodyKit(adding, body) {
+  const { particles, springs, triangles, mass, radius, material, stiffness, damping, pinned = [], friction, collides } = body;
+  const { friction: usual, restitution, group, collides: touched } = adding.body;
+  const own = new Set(pinned), given = { stiffness, damping };
+  return {
+    bodies: 1, materials: { name: [material] }, names: {},
+    particles: { x: particles.map(([x]) => x), y: particles.map(([, y]) => y), mass, radius, body: 0, restitution, group,
+      friction: friction ?? usual, collides: collides ?? touched, pinned: particles.map((_, k) => Number(own.has(k))) },
+    springs: { a: springs.map(([a]) => a), b: springs.map(([, b]) => b), ...given, edge: edgesOf(springs, triangles, adding) },
+    ...(triangles.length ? { constraints: { corners: triangles.map(() => 3), ...given },
+      corners: { particle: triangles.flat() } } : {}),
+    look: madeScene(body, adding.made),
+  };
+}
+
+/** Kinds of edge of springs: solid along one triangle, none along two, else a line.
+ * @type {(springs: number[][], triangles: number[][], adding: Adding) => number[]} */
+function edgesOf(springs, triangles, { edges, touches }) {
+  if (!touches) return springs.map(() => edges.none);
+  const sides = new Set(triangles.flatMap(([a, b, c]) => [`${a} ${b}`, `${b} ${c}`, `${c} ${a}`]));
+  return springs.map(([a, b]) => {
+    const left = sides.has(`${a} ${b}`), right = sides.has(`${b} ${a}`);
+    return left && right ? edges.none : left ? edges.left : right ? edges.right : edges.line;
+  });
+}
+
+/** What people see of it, in its own slots. made: what shapes of each skin are like.
+ * @type {(body: MadeBody, made: Made) => Joined} */
+function madeScene({ particles, springs, triangles, look, radius }, made) {
   const lengths = springs.map(([a, b]) => Math.hypot(particles[b][0] - particles[a][0],
     particles[b][1] - particles[a][1]));
   const cell = median(lengths), given = String(look.colour ?? ''), skin = String(look.skin ?? 'jelly');
   const colour = made.palette[given] ?? (HEX.test(given) ? given.toLowerCase() : GREY);
   const line = typeof look.line === 'string' ? look.line : triangles.length ? 'paint' : 'steel';
   /** @type {SceneBody} */
-  const body = { type: 'mesh', skin, line, colour, width: 1, cell, angle: 0, slots: [[first, particles.length]], spring,
+  const body = { type: 'mesh', skin, line, colour, width: 1, cell, angle: 0, slots: [[0, particles.length]], spring: 0,
     springs: springs.length, segments: null, shapes: [], needs: [] };
   if (!triangles.length) return { bodies: [body] };
   // Without its picture something laid is as if it were painted.
@@ -40,9 +67,9 @@ export function madeScene({ particles, springs = [], triangles = [], look = {}, 
   const form = (slot) => [particles[slot][0] - middle[0], particles[slot][1] - middle[1]];
   const slots = particles.map((_, k) => k);
   const [[x, y], room] = spotIn({ left: triangles, slots, loops: borders, inside: [], face: false }, form, [0, 0]);
-  const shape = { ...template, loops: borders.map((loop) => loop.map((k) => first + k)), grown: radius,
+  const shape = { ...template, loops: borders, grown: radius,
     look: /** @type {SkinLook} */ ([tone, tone, ...template.look.slice(2)]),
     line: template.line === null ? null : outlineOf(tone) };
-  return { bodies: [{ ...body, skin: shown, colour: tone, triangles: triangles.flat().map((k) => first + k),
+  return { bodies: [{ ...body, skin: shown, colour: tone, triangles: triangles.flat(),
     keeps_area: true, spacing: cell, spot: [x, y, room], face: Boolean(look.face), shapes: [shape] }] };
 }

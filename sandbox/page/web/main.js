@@ -35,6 +35,12 @@ const press = (button, isOn) => button?.setAttribute('aria-pressed', String(isOn
 const isTypedInto = (target) => target instanceof Element && target.matches('input, select, .pad');
 
 class Page {
+  // Names of the keys that have buttons, and what ends with these.
+  #keys = '';
+  #closing = new AbortController();
+  /** @type {Gamepads | undefined} */
+  gamepads;
+
   /** words: what there is to say at first.
    * @param {Level} level @param {Fresh} fresh @param {string} words */
   constructor(level, fresh, words) {
@@ -81,7 +87,7 @@ class Page {
     for (const [id, act] of Object.entries(acts)) byId(id).addEventListener('click', act);
     byId('time').addEventListener('input', () => {
       toy.pause();
-      toy.seek(Number(byId('time').value));
+      toy.goTo(Number(byId('time').value));
     });
     // The toy hears keys first.
     addEventListener('keydown', (event) => {
@@ -107,6 +113,7 @@ class Page {
     on('jump', () => this.panel.show());
     on('draw', () => {
       this.#drawTime();
+      if (Object.keys(toy.drives.keys).join() !== this.#keys) this.#addDriveKeys();
       if (!byId('panel').hidden) this.panel.follow();
     });
     on('pause', ({ isPaused }) => {
@@ -165,9 +172,14 @@ class Page {
     byId('clock').textContent = text;
   }
 
-  // A button for each key that drives something, or that a rule asks for.
+  // A button for each key that drives something, or that a rule asks for; made again where something joined.
   #addDriveKeys() {
     const { drives } = this.toy;
+    this.#keys = Object.keys(drives.keys).join();
+    byId('keys').replaceChildren();
+    this.#closing.abort();
+    this.#closing = new AbortController();
+    const { signal } = this.#closing;
     /** @type {Map<string, HTMLButtonElement>} */
     const buttons = new Map();
     drives.told = (name, isHeld) => press(buttons.get(name), isHeld);
@@ -184,8 +196,8 @@ class Page {
     // Who touches has them below both thumbs from then on.
     const spread = () => byId('keys').classList.add('spread');
     if (matchMedia('(hover: none)').matches) spread();
-    addEventListener('keydown', (event) => { if (drives.has(event)) show(false); });
-    addEventListener('pointerdown', ({ pointerType }) => { if (pointerType === 'touch') spread(); }, true);
+    addEventListener('keydown', (event) => { if (drives.has(event)) show(false); }, { signal });
+    addEventListener('pointerdown', ({ pointerType }) => { if (pointerType === 'touch') spread(); }, { signal, capture: true });
     for (const name of Object.keys(drives.keys)) {
       const button = element('button', { type: 'button', className: 'key' });
       button.setAttribute('aria-label', `Key ${name}`);
@@ -204,20 +216,34 @@ class Page {
     }
     byId('keys').append(...buttons.values());
     show(false);
-    this.gamepads = new Gamepads(drives, () => show(true));
+    this.gamepads ??= new Gamepads(drives);
+    this.gamepads.follow(() => show(true));
   }
 
   async #verify() {
     const { fresh, level: { recording } } = this.toy;
     if (!recording) return;
-    const count = recording.hashes.length - 1;
+    const count = recording.hashes.length - 1, isLinked = recording.end !== undefined;
+    /** @type {(text: string, kind?: string) => void} */
+    const say = (text, kind = '') => {
+      byId('verdict').textContent = text;
+      byId('verdict').className = kind;
+    };
+    const bar = element('progress', { max: count });
+    bar.setAttribute('aria-label', 'Verifying');
+    byId('verdict').replaceChildren('Verifying ', bar);
+    this.goals.isAsSent = isLinked;
     try {
-      const wrong = await verified(fresh(), recording);
-      const whose = recording.end === undefined ? 'every bit of' : 'the state after';
-      if (wrong === null) this.#say(`Verified: ${whose} ${count} ticks is that of the recording.`, 'good');
-      else this.#say(`This browser comes to other bits at tick ${wrong}.`, 'bad');
+      const wrong = await verified(fresh(), recording, (done) => { bar.value = done; });
+      this.goals.isAsSent = isLinked && wrong !== null;
+      const seconds = `${((wrong?.tick ?? 0) / this.toy.rate).toFixed(1)} s`;
+      if (wrong?.words) say(`Not verified: at ${seconds} ${wrong.words}.`, 'bad');
+      else if (wrong) say(`Not verified: this browser comes to other bits at ${seconds}, tick ${wrong.tick}.`, 'bad');
+      else if (isLinked) say(`Verified: ${count} ticks, the very state that the sender had.`, 'good');
+      else say(`Verified: every bit of ${count} ticks is that of the recording.`, 'good');
     } catch (error) {
-      this.#say(error instanceof Refusal ? error.message : 'This recording could not be compared.', 'bad');
+      say('Not verified: this recording could not be compared.', 'bad');
+      console.error(error);
     }
   }
 
@@ -259,9 +285,7 @@ class Page {
 async function follow(level) {
   if (!isLink(location.hash)) return '';
   try {
-    [level.recording, level.begin] = await linked(location.hash, level.link, level.about);
-    const keys = Object.assign({}, level.keys, ...level.recording.commands.map((done) => done.keys));
-    level.keys = Object.fromEntries(Object.entries(keys).sort());
+    [level.recording, level.begin] = await linked(location.hash, level.link);
     return '';
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;

@@ -1,6 +1,7 @@
 // Maker: what is drawn or pulled on the picture joins the world: a body inside an outline, a rope, a spring, a rod.
-import { unused } from './adding.js';
 import { Refusal } from './commands.js';
+import { unused } from './kit.js';
+import { bodyKit } from './made.js';
 import { MAKING, MESH } from './shared.js';
 /** @import { Run } from './run.js' */
 /** @import { Adding, AnyArray, Mesh, NamedRecord, Point, Theme } from './types.js' */
@@ -89,7 +90,8 @@ export class Maker {
       const records = tool in this.adding.made.stuffs ? [this.#body(tool, [...stroke, point], within)]
         : this.#joined(tool, /** @type {End} */ (start), this.#end(point, particle), within);
       const gesture = this.run.newGesture();
-      for (const record of records) this.run.command(/** @type {any} */ (record), gesture);
+      const { world } = this.run;
+      for (const record of records) this.run.command(world.commands.read(record, world.counts), gesture);
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
       this.say(error.message);
@@ -104,8 +106,8 @@ export class Maker {
     const mass = rounded((density * area) / mesh.particles.length);
     const look = { ...more.look, ...(colours.length ? { colour: colours[this.#count++ % colours.length] } : {}) };
     const radius = rounded(Math.min(SKIN * spacing, THICKEST));
-    return { type: 'add_body', body: { type: 'mesh', ...mesh, masses: mesh.particles.map(() => mass),
-      particle_radius: radius, material: name, ...more, look }, materials: { [name]: { stiffness, damping } } };
+    return { type: 'add_body', kit: bodyKit(this.adding, { ...mesh, ...more, mass, radius, material: name, stiffness, damping,
+      look }) };
   }
 
   /** @type {(tool: string, start: End, end: End, within: number) => NamedRecord[]} */
@@ -122,14 +124,15 @@ export class Maker {
       (k > 0 || start.name === null) && (k < SEGMENTS || end.name === null));
     const particles = steps.map((k) => placed(/** @type {Point} */ ([0, 1].map((u) =>
       start.place[u] + ((end.place[u] - start.place[u]) * k) / SEGMENTS))));
-    const { stiffness, damping } = this.adding.made.firmest, rest = rounded(length / SEGMENTS), name = 'drawn rope';
+    const { stiffness, damping } = this.adding.made.firmest, rest = rounded(length / SEGMENTS);
     const pinned = steps.flatMap((k, n) => (k === 0 || k === SEGMENTS ? [n] : []));
-    const body = { type: 'mesh', particles, masses: steps.map(() => rounded((ROPE_MASS * length) / SEGMENTS)),
-      springs: steps.slice(1).map((_, k) => [k, k + 1]), pinned, particle_radius: rounded(Math.min(ROPE_RADIUS, SHARE * rest)),
-      collides: ['terrain'], material: name, look: { line: 'rope' } };
+    const springs = steps.slice(1).map((_, k) => /** @type {[number, number]} */ ([k, k + 1]));
+    const kit = bodyKit(this.adding, { particles, springs, triangles: [], pinned, stiffness, damping,
+      mass: rounded((ROPE_MASS * length) / SEGMENTS), radius: rounded(Math.min(ROPE_RADIUS, SHARE * rest)),
+      collides: this.adding.terrain, material: 'drawn rope', look: { line: 'rope' } });
     const own = this.#nextBody;
     const ties = [[start.name, `${own}.0`], [end.name, `${own}.${steps.length - 1}`]].filter(([name_]) => name_ !== null);
-    return [{ type: 'add_body', body, materials: { [name]: { stiffness, damping } } }, ...ties.map(([a, b]) =>
+    return [{ type: 'add_body', kit }, ...ties.map(([a, b]) =>
       ({ type: 'add_spring', particle_a: a, particle_b: b, rest_length: rest, stiffness, damping }))];
   }
 
@@ -149,8 +152,7 @@ export class Maker {
 
   /** @type {(form: RegExp) => number} */
   #next(form) {
-    const { names, counts } = this.run.world;
-    return unused(names.particle, counts.particle, form);
+    return unused(this.run.world.names.particle, form);
   }
 
   get #nextPin() {
@@ -158,7 +160,7 @@ export class Maker {
   }
 
   get #nextBody() {
-    return `+${Math.max(1, this.#next(/^\+(\d+)\./))}`;
+    return `+${this.run.world.bodyCount + 1}`;
   }
 
   /** What is drawn so far. toPixels: of places [m].

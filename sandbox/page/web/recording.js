@@ -1,4 +1,5 @@
 // Recording: a run written line by line as the desktop's recordings are, and the run of a recording compared.
+import { Refusal } from './commands.js';
 import { blake2b, canonical } from './hash.js';
 import { RECORDING } from './shared.js';
 /** @import { About, Done, Recording, StateHash } from './types.js' */
@@ -10,34 +11,49 @@ const encoder = new TextEncoder();
  * @type {() => Promise<void>} */
 const pause = () => new Promise((resolve) => setTimeout(resolve));
 
-/** Run commands on a world from its start; gives of every tick the commands that follow it, before they do.
- * @type {(world: World, commands: Done[], ticks: number) => AsyncGenerator<Done[]>} */
-async function* repeated(world, commands, ticks) {
+/** Run commands on a world from its start; gives of every tick the commands that follow it, before they do. Throws a
+ * Refusal at one that may not be. pausing: called with the ticks that are done, between slices.
+ * @type {(world: World, commands: Done[], ticks: number, pausing?: (done: number) => void) => AsyncGenerator<Done[]>} */
+async function* repeated(world, commands, ticks, pausing = () => {}) {
   let next = 0, since = performance.now();
   for (;;) {
     const first = next;
     while (next < commands.length && commands[next].tick === world.time) next += 1;
     const due = commands.slice(first, next);
     yield due;
-    for (const done of due) world.carryOut(done);
+    for (const done of due) {
+      world.carryOut(done);
+      if (performance.now() - since > SLICE) {
+        await pause();
+        since = performance.now();
+      }
+    }
     if (world.time >= ticks) return;
     world.tick();
     if (performance.now() - since > SLICE) {
+      pausing(world.time);
       await pause();
       since = performance.now();
     }
   }
 }
 
-/** The first tick of a recording that has not the hash that it says; null: each has.
- * @type {(world: World, recording: Recording) => Promise<number | null>} */
-export async function verified(world, { commands, hashes, end }) {
-  const ticks = repeated(world, commands, hashes.length - 1);
-  while (!(await ticks.next()).done) {
-    const hash = hashes[world.time];
-    if (hash !== undefined && !world.hash().whole.startsWith(hash)) return world.time;
+/** Where a recording, carried out as by hand, is not what it says: the tick, and why its command may not be; '': its bits
+ * are others. null: it is. progress: told of the ticks that are done, between slices.
+ * @type {(world: World, recording: Recording, progress: (done: number) => void) => Promise<{ tick: number, words: string }
+ *   | null>} */
+export async function verified(world, { commands, hashes, end }, progress) {
+  const ticks = repeated(world, commands.map((done) => ({ ...done })), hashes.length - 1, progress);
+  try {
+    while (!(await ticks.next()).done) {
+      const hash = hashes[world.time];
+      if (hash !== undefined && !world.hash().whole.startsWith(hash)) return { tick: world.time, words: '' };
+    }
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    return { tick: world.time, words: error.message };
   }
-  return end === undefined || world.hash().whole === end ? null : world.time;
+  return end === undefined || world.hash().whole === end ? null : { tick: world.time, words: '' };
 }
 
 /** The file of a run, compressed. world: a fresh one; about: the table; header: the first line without its end.
@@ -83,7 +99,7 @@ export async function written(world, about, header, commands, ticks, progress) {
     line({ tick: world.time, hash: isStored ? hash.whole : hash.whole.slice(0, TICK_DIGITS), arrays });
     if (isStored) await writeState(hash);
     for (const done of due) {
-      const command = done.changes ? done.record : world.commands.named(done.record);
+      const command = done.named ?? world.commands.named(done.record);
       line({ tick: world.time, gesture: done.gesture, command });
     }
     last = { hash, isStored, isChanged: due.length > 0 };

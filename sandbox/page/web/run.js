@@ -1,17 +1,26 @@
 // Run: what was done to a world and when, so that time can go back; the commands of a run make it again, bit for bit.
 import { Refusal } from './commands.js';
 /** @import { Command, Done } from './types.js' */
-/** @import { Ending, World } from './world.js' */
+/** @import { World } from './world.js' */
+
+/** @typedef {Extract<Command, { type: 'release' | 'set_drive' | 'hold_key' }>} Ending */
 
 // Ticks from one kept state to the next at first, and how many are kept before every second one is dropped.
 const KEEP_EVERY = 60, KEPT = 120;
+
+/** Whether what a command would end goes on: a hand holds something, a part is driven, or a key is held.
+ * @type {(world: World, ending: Ending) => boolean} */
+function isGoing(world, ending) {
+  if (ending.type === 'hold_key') return world.view('state.key_down')[ending.key] !== 0;
+  if (ending.type === 'release') return world.isHeld(ending.grab);
+  return world.view('state.actuator_value')[ending.part] !== 0;
+}
 
 export class Run {
   // Whether what goes on now was begun by what is told again, so that nobody is there to end it.
   #isTold = true;
 
-  /** commands: [{ tick, gesture, record, changes }] of a recording in order, with slots in place of names but where
-   * there are changes; ticks: of it.
+  /** commands: of a recording in order, with names, or with slots where they were carried out; ticks: of it.
    * @param {World} world @param {Done[]} [commands] @param {number} [ticks] */
   constructor(world, commands = [], ticks = 0) {
     this.world = world;
@@ -78,13 +87,13 @@ export class Run {
     this.#isTold = false;
     /** @type {Map<string, [Ending, number]>} */
     const going = new Map();
-    for (const { record, changes, gesture: begun } of this.commands) {
-      if (changes) continue;
+    for (const { record, gesture: begun } of this.commands) {
+      if (!record) continue;
       if (record.type === 'grab') going.set(`hand ${record.grab}`, [{ type: 'release', grab: record.grab }, begun]);
       else if (record.type === 'hold_key') going.set(`key ${record.key}`, [{ ...record, down: false }, begun]);
       else if (record.type === 'set_drive') going.set(`part ${record.part}`, [{ ...record, value: 0 }, begun]);
     }
-    for (const [ending, begun] of going.values()) if (this.world.isGoing(ending)) this.submit(ending, gesture ?? begun);
+    for (const [ending, begun] of going.values()) if (isGoing(this.world, ending)) this.submit(ending, gesture ?? begun);
   }
 
   // Forget what would come later.
@@ -110,11 +119,16 @@ export class Run {
     this.#follow();
   }
 
-  // The commands of this tick that a recording has.
+  // The commands of this tick that a recording has; one that may not be ends it.
   #follow() {
-    while (this.next < this.commands.length && this.commands[this.next].tick === this.time) {
-      this.world.carryOut(this.commands[this.next]);
-      this.next += 1;
+    try {
+      while (this.next < this.commands.length && this.commands[this.next].tick === this.time) {
+        this.world.carryOut(this.commands[this.next]);
+        this.next += 1;
+      }
+    } catch (error) {
+      this.takeOver();
+      throw error;
     }
   }
 
@@ -130,6 +144,12 @@ export class Run {
     this.#follow();
     while (this.time < tick) this.step();
     return dropped;
+  }
+
+  /** The tick of the last state that is kept until a tick.
+   * @type {(tick: number) => number} */
+  keptBefore(tick) {
+    return (this.kept.findLast((each) => each.time <= tick) ?? this.kept[0]).time;
   }
 
   // Go back to before the last gesture. Whether there was one.

@@ -7,7 +7,7 @@ export const RECORDING = {
 };
 export const LINK = {
   MARK: 'scene=',
-  VERSION: 1,
+  VERSION: 2,
   LONGEST: 32000,
   UNPACKED_LIMIT: 4194304,
   RUN_LIMIT: 216000,

@@ -1,4 +1,5 @@
 // Types of the tables of Python. Made by `python -m sandbox.page.table_types`.
+import type { Kit } from './types.js';
 export interface StateArrays {
   position: Float64Array;
   velocity: Float64Array;
@@ -211,5 +212,32 @@ export interface Commands {
     substeps?: 1 | 2 | 4 | 8 | 16 | 32 | 64 | 'auto' | null;
     warm_start?: number | null;
     duration?: number;
+  };
+  add_particle: {
+    type: 'add_particle';
+    position: [number, number];
+    mass?: number;
+    radius?: number;
+    pinned?: boolean;
+    velocity?: [number, number] | null;
+    friction?: number | null;
+    restitution?: number | null;
+  };
+  add_spring: {
+    type: 'add_spring';
+    particle_a: number;
+    particle_b: number;
+    rest_length?: number | null;
+    stiffness?: number;
+    damping?: number;
+  };
+  remove: {
+    type: 'remove';
+    body?: string | null;
+    particle?: number | null;
+  };
+  add_body: {
+    type: 'add_body';
+    kit: Kit;
   };
 }

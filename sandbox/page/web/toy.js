@@ -15,14 +15,14 @@ import { Run } from './run.js';
 import { Sound } from './sound.js';
 /** @import { Command, Fresh, Level, NamedRecord, Theme, ToyEvents } from './types.js' */
 
-const KEY_ZOOM = 1.15;
+const KEY_ZOOM = 1.15, SLICE = 12;
 const TYPED_INTO = 'input, select, textarea, [contenteditable], .pad';
 const light = matchMedia('(prefers-color-scheme: light)');
 
 /** @typedef {'dark' | 'light'} ThemeName */
 
 // It tells what happens as events: tick, break { springs }, check { name, holds, value }, rules { actions },
-// outcome { isWon, text, stars, tick }, say { text, kind }, menu { particle, x, y }, pause, pace { isBehind }, jump, theme and draw.
+// outcome { isWon, text, stars, tick }, way { done, all }, say { text, kind }, menu { particle, x, y }, pause, pace { isBehind }, jump, theme and draw.
 export class Toy extends EventTarget {
   #pace = new Pace();
   #isDirty = true;
@@ -35,6 +35,8 @@ export class Toy extends EventTarget {
   /** @type {ThemeName | null} */
   #chosenTheme = null;
   #covered = 0;
+  // The tick to which the run goes on in slices, where it has not come to it.
+  #ahead = 0;
   #closing = new AbortController();
   isPaused = false;
   // Whether the machine is too slow for it of late.
@@ -58,7 +60,7 @@ export class Toy extends EventTarget {
     this.camera = new Camera();
     const { commands = [], hashes = [''] } = level.recording ?? {};
     this.run = new Run(this.world, commands, hashes.length - 1);
-    if (level.begin) this.run.seek(level.begin);
+    this.#ahead = level.begin;
     this.picture = new Picture(canvas, level.scene, this.world);
     const maker = new Maker(this.run, level.about.adding, (text) => this.say(text));
     this.hands = new Hands(canvas, this.run, this.camera, maker, {
@@ -191,8 +193,9 @@ export class Toy extends EventTarget {
   /** @type {(now: number) => void} */
   #play(now) {
     const pace = this.#pace;
-    if (this.isPaused || !this.#isSeen) pace.rest(now);
-    if (this.#isSeen) this.#guarded(() => {
+    if (this.isPaused || !this.#isSeen || this.isOnItsWay) pace.rest(now);
+    if (this.isOnItsWay) this.#goOn();
+    else if (this.#isSeen) this.#guarded(() => {
       if (!this.isPaused) pace.pass(now, this.rate * this.speed, () => {
         this.tick();
         return !this.isPaused;
@@ -220,10 +223,35 @@ export class Toy extends EventTarget {
     try {
       act();
     } catch (error) {
+      this.#ahead = 0;
       this.pause();
       this.say(error instanceof Refusal ? error.message : 'Something went wrong here; start again.', 'bad');
       if (!(error instanceof Refusal)) console.error(error);
     }
+  }
+
+  // Whether it goes to a tick of its recording that it has not come to.
+  get isOnItsWay() {
+    return this.#ahead > this.run.time && this.run.isFollowing;
+  }
+
+  // A slice of the way to a tick.
+  #goOn() {
+    const until = performance.now() + SLICE, { run } = this;
+    this.#guarded(() => {
+      while (this.isOnItsWay && performance.now() < until) run.step();
+    });
+    this.#previous = this.world.view('state.position').slice();
+    this.#tell('way', { done: run.time, all: this.#ahead });
+    if (!this.isOnItsWay) this.#jump(() => { this.#ahead = 0; });
+  }
+
+  /** Go to a tick, in slices where that takes long.
+   * @type {(tick: number) => void} */
+  goTo(tick) {
+    this.#jump(() => this.run.seek(this.run.keptBefore(tick)));
+    this.#ahead = Math.min(tick, this.run.last);
+    this.#goOn();
   }
 
   // One tick; at the end of a recording time stands still.
@@ -252,6 +280,11 @@ export class Toy extends EventTarget {
     if (actions.length) this.#tell('rules', { actions });
     const ended = actions.length ? outcome(world) : null;
     if (ended?.tick === world.time) this.#tell('outcome', ended);
+  }
+
+  // Until which tick the run is that of a recording, of what was not taken over.
+  get sent() {
+    return this.run.revision ? -1 : (this.level.recording?.hashes.length ?? 0) - 1;
   }
 
   // Whether the level is won or lost, here in time; null: neither yet.
@@ -365,11 +398,10 @@ export class Toy extends EventTarget {
   async link() {
     const { run, world, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
     let tick = 0;
-    const entries = commands.map(({ tick: at, gesture, record, ...told }) => {
+    const entries = commands.map(({ tick: at, gesture, record, named }) => {
       const passed = at - tick;
       tick = at;
-      if (!told.changes) return { passed, gesture, record: world.commands.named(/** @type {Command} */ (record)) };
-      return { passed, gesture, record: /** @type {NamedRecord} */ (record), told };
+      return { passed, gesture, record: named ?? world.commands.named(record) };
     });
     return linkOf(level.link, { commands: entries, ticks: run.time, at: 0, hash: world.hash().whole });
   }

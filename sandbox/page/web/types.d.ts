@@ -14,7 +14,8 @@ export type AnyArray = Float64Array | Float32Array | BigInt64Array | Uint32Array
 export type Family = 'particle' | 'spring' | 'constraint' | 'corner' | 'actuator' | 'hand' | 'setting' | 'rule' | 'counter'
   | 'probe' | 'still' | 'key' | 'deed';
 // Rows in use.
-export type Counts = Record<Family | 'material', number>;
+export type Counts = Record<Family | 'material' | 'muscle' | 'hydraulic' | 'motor' | 'rim' | 'hull' | 'limit' | 'breakable' | 'area'
+  | 'form' | 'formPoint' | 'formSpring' | 'formConstraint' | 'formArea' | 'formBend', number>;
 export type NameKind = 'particle' | 'spring' | 'material' | 'part' | 'key' | 'area' | 'form';
 
 // A line of the table of state arrays.
@@ -73,6 +74,8 @@ export interface About {
   // How a result says why and where a command was refused, and words for it; and which of these words tell what.
   refusals: { reasons: number; words: Record<number, string>; bad: number };
   filled: Record<'doing' | 'counted' | 'thing' | 'reach', number>;
+  // Of other kernels that refuse: by how much reasons are multiplied in their answers, and which of these words are theirs.
+  denied: { size: number; reasons: Record<number, number> };
   // Ticks in a second.
   rate: number;
   // By types of commands what they do to things, and what a budget of them counts; and their numbers.
@@ -96,7 +99,9 @@ export interface About {
   copies: [to: number, from: number, size: number][];
   counts: Counts;
   // By path of an array that has a row for each of a family: the family, and what new rows hold.
-  grows: Record<string, [family: keyof Counts, fill: number | string]>;
+  plan: Record<'GRAB_PARTICLE' | 'GRAB_SPRING', number>;
+  grows: Record<string, [family: keyof Counts, fill: number | string, more: number]>;
+  kit: KitTable;
   adding: Adding;
 }
 
@@ -131,6 +136,7 @@ export type Views = { [N in keyof StateArrays as `state.${N}`]: StateArrays[N] }
     numbers: Float64Array;
     choices: BigInt64Array;
     progress: BigInt64Array;
+    plan: BigInt64Array;
     'limits.broken': BigInt64Array;
     'collisions.counts': BigInt64Array;
     'collisions.kept.particle': Int32Array;
@@ -145,13 +151,10 @@ export interface SavedState {
   counts: Counts;
   arrays: Map<string, AnyArray>;
   contacts: AnyArray[];
-  joined: { scene: Joined; laid: Map<string, Laid> }[];
-}
-
-// Where an array lies, and its rows.
-export interface Laid {
-  address: number;
-  rows: number;
+  joined: { scene: Joined; keys: Level['keys']; bodies: number }[];
+  names: Record<NameKind, string[]>;
+  second: Record<string, number>;
+  hands: About['hands'];
 }
 
 // What a stroke is filled with: spacing [m], area [m^2]; places [m], triangles and their sides.
@@ -188,27 +191,9 @@ export type NamedRecord = { type: string } & Record<string, unknown>;
 // A command as a table of its fields.
 export type Fields = { type: string } & Record<string, unknown>;
 
-// Rows of an array: the first, how many, and what each is to hold.
-export type Runs = [first: number, count: number, ...row: (number | string | boolean)[]][];
-
-// Something done. What no kernel carries out comes as what it changes, by array, and is written down as it is.
-export type Done = { tick: number; gesture: number; record: Command; changes?: undefined; counts?: undefined;
-    names?: undefined; scene?: undefined; equipment?: undefined; keys?: undefined }
-  | { tick: number; gesture: number; record: NamedRecord; } & Told;
-
-// What a page is told of a command that no kernel carries out: what it changes, and of what it adds the rows in use since
-// then, their names and what people see.
-export interface Told {
-  changes: Record<string, Runs>;
-  counts?: Counts;
-  names?: Partial<Record<NameKind, string[]>>;
-  scene?: Joined;
-  equipment?: Equipment;
-  keys?: Level['keys'];
-}
-
-// What a world has of driven parts, limits and hulls since something joined it: whole arrays by their paths.
-export type Equipment = Record<string, (number | string)[]>;
+// Something done: a command with names, until it is carried out; one that was done here has slots alone.
+export type Done = { tick: number; gesture: number; record?: Command; named: NamedRecord }
+  | { tick: number; gesture: number; record: Command; named?: undefined };
 
 export interface Recording {
   commands: Done[];
@@ -434,18 +419,71 @@ export interface Pool {
   tones: Record<'dark' | 'light', Tones>;
 }
 
-// Commands that add to a world, as files have them.
-export type AddedParticle = NamedRecord & { position: Point; mass?: number; radius?: number; pinned?: boolean;
-  velocity?: Point | null; friction?: number | null; restitution?: number | null };
-export type AddedSpring = NamedRecord & { particle_a: unknown; particle_b: unknown; rest_length?: number | null;
-  stiffness?: number; damping?: number };
-export type AddedBody = NamedRecord & {
-  body: { type: string; id?: string; particles: Point[]; masses?: number[]; springs?: [number, number][];
-    triangles?: [number, number, number][]; pinned?: boolean | number[]; particle_radius?: number; friction?: number;
-    restitution?: number; velocity?: Point; collides?: boolean | string[]; material?: string;
-    look?: Record<string, unknown> };
-  materials?: Record<string, Record<string, unknown>>;
-};
+// A body that says each particle, spring and triangle; what is left out is usual.
+export interface MadeBody extends Pair {
+  particles: Point[];
+  springs: [number, number][];
+  triangles: [number, number, number][];
+  mass: number;
+  radius: number;
+  material: string;
+  pinned?: number[];
+  friction?: number;
+  collides?: string;
+  look: Record<string, unknown>;
+}
+
+// Bodies as rows: docs/kits.md. What is in the columns of its parts is looked at when it joins a world.
+export interface Kit {
+  bodies?: number;
+  names?: unknown;
+  areas?: any;
+  forms?: KitForm[];
+  keys?: Level['keys'];
+  look?: any;
+  [part: string]: unknown;
+}
+
+// The form at rest of a body of a kit: places [m] and masses [kg] of its points, and what joins them, by their numbers.
+export interface KitForm {
+  body: number;
+  x: number[];
+  y: number[];
+  mass: number[];
+  pairs: number[];
+  areas: number[];
+  bends: number[];
+  springs: number[];
+  constraints: number[];
+}
+
+// What a kit calls its rows in a world.
+export interface KitNames {
+  particle: string[];
+  spring: string[];
+  part: string[];
+  material: string[];
+  area: string[];
+  second: [name: string, slot: number][];
+}
+
+// The tables of kits: adding.py.
+export interface KitTable {
+  parts: string[];
+  families: Record<string, keyof Counts>;
+  slots: [part: string, name: string, usual: number | null, range: [string, string, string] | null][];
+  numbers: [part: string, name: string, usual: number | string | null, range: [number | string, number | string, string]][];
+  table: string[];
+  ranges: (number | string)[];
+  codes: Record<'NO_ROWS' | 'NO_LIMIT_ROWS' | 'TOO_MANY' | 'BAD_PLACE' | 'HEADER' | 'NO_ARENA' | 'BAD_SLOT', number>;
+  ways: Record<'BODY' | 'HANGING', number>;
+  most: Record<string, number>;
+  limitedWork: number;
+  far: string;
+  groupBits: string;
+  nouns: Record<string, string>;
+  words: Record<string, string>;
+}
 
 // What shapes of each skin are like, colours by their names, that of wood, and the Cs from which on a spring is a bar.
 export interface Made {
@@ -467,20 +505,13 @@ export interface Pair {
   damping: number;
 }
 
-// What a page must know to add something: see adding.py.
+// What a page must know to make kits: see adding.py.
 export interface Adding {
-  // What is said of a body that a page adds.
-  fields: string[];
-  surface: Record<string, number | string>;
-  usual: { friction: number; restitution: number };
-  groups: Record<string, string>;
-  group: string;
-  allGroups: string;
+  surface: { friction: number; restitution: number; group: string; collides: string };
+  body: { friction: number; restitution: number; group: string; collides: string };
+  terrain: string;
   touches: boolean;
-  hasWater: boolean;
   edges: Record<'none' | 'line' | 'left' | 'right', number>;
-  unopened: number;
-  materials: Record<string, Record<string, unknown>>;
   made: Made;
 }
 
@@ -637,6 +668,7 @@ export interface Things {
 
 // What a toy tells, by the names of its events.
 export interface ToyEvents {
+  way: { done: number; all: number };
   tick: undefined;
   break: { springs: string[] };
   check: CheckResult;

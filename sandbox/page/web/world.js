@@ -1,12 +1,12 @@
 // World: a block of arrays in the memory of WebAssembly, and the kernels that do all physics there.
-import { addedTo } from './adding.js';
-import { Commands, countedBy, isWithoutKernel, Refusal } from './commands.js';
-import { blake2b, digestOf, hexOf } from './hash.js';
-import { removedFrom } from './removing.js';
+import { Commands, Refusal } from './commands.js';
+import { formCounts, formNames, formRows } from './forms.js';
+import { Hashes, isEqual } from './hash.js';
+import { answered, areasOf, checkForms, keysIn, keysOf, kitOf, namesOf, packed, seen } from './kit.js';
 import { act } from './rules.js';
 /**
- * @import { About, AnyArray, Column, Command, Counts, Done, Equipment, Kernels, NameKind, Runs, SavedState,
- *   Laid, NamedRecord, Settings, StateHash, View } from './types.js'
+ * @import { About, AnyArray, Column, Command, Counts, Done, Joined, Kernels, Kit, Level, NameKind, SavedState,
+ *   Settings, StateHash, View } from './types.js'
  */
 
 const PAGE = 65536, WORD = 8, ALIGNED = 16, ADDRESS = 4, SHAPE = 5;
@@ -25,7 +25,6 @@ const ARGUMENTS = 64, RECORD = 16, NONE = new Float64Array();
 const aligned = (size) => Math.ceil(size / ALIGNED) * ALIGNED;
 
 /** @typedef {[address: number, count: number, size: number]} Span */
-/** @typedef {Extract<Command, { type: 'release' | 'set_drive' | 'hold_key' }>} Ending */
 
 export class World {
   /** @type {Kernels} */
@@ -34,9 +33,6 @@ export class World {
   #about;
   /** @type {number} */
   #arguments;
-  /** Where slots of a command are given, or numbers of a stroke, and how many there may be.
-   * @type {[address: number, most: number]} */
-  #many = [0, 0];
   /** @type {number} */
   #base;
   /** @type {number} */
@@ -50,25 +46,36 @@ export class World {
   #table = new Map();
   /** @type {Map<string, AnyArray>} */
   #views = new Map();
-  /** @type {Map<string, { array: AnyArray, digest: string | null }>} */
-  #hashed = new Map();
+  #hashes;
   /** @type {Map<string, AnyArray>} */
   #saved = new Map();
-  /** By path: how many rows there are room for, and how many there are at least.
-   * @type {Map<string, { room: number, least: number }>} */
-  #rows = new Map();
-  /** Rows in use, by family: a page has room for what a recording adds later.
+  /** Names of bodies whose form may be stiff.
+   * @type {string[]} */
+  #forms = [];
+  /** By path: how many rows there are room for.
+   * @type {Map<string, number>} */
+  #room = new Map();
+  /** Rows in use, by family.
    * @type {Counts} */
   counts;
-  /** Names of rows in use, and of others that there were once.
+  /** Names of rows in use.
    * @type {Record<NameKind, string[]>} */
   names;
-  /** What people see of what joined, and where arrays lie that came with it.
-   * @type {SavedState['joined']} */
+  /** Second names of particles, with their slots.
+   * @type {Record<string, number>} */
+  #second;
+  /** Where arrays that a kernel is lent lie, and how many words there are.
+   * @type {[address: number, most: number]} */
+  #slots = [0, 0];
+  /** First particle and spring of hands, below 0 until there are any, and how many hands there are.
+   * @type {About['hands']} */
+  hands;
+  /** What joined.
+   * @type {{ scene: Joined, keys: Level['keys'], bodies: number }[]} */
   #joined = [];
-  /** Where arrays lay before others came in their place.
-   * @type {Map<string, Laid>} */
-  #bare = new Map();
+  /** What kernels of kits go by.
+   * @type {Span[]} */
+  #tables;
   /** What of records is right, and what kernels take of it.
    * @type {Commands} */
   commands;
@@ -82,9 +89,12 @@ export class World {
   constructor(kernels, image, about) {
     this.#kernels = kernels;
     this.#about = about;
+    this.#hashes = new Hashes(about.columns);
     this.counts = about.counts;
+    this.hands = about.hands;
     this.names = structuredClone(about.names);
-    this.commands = new Commands(about, this.names);
+    this.#second = { ...about.second.particle };
+    this.commands = new Commands(about, this.names, { ...about.second, particle: this.#second });
     this.#arguments = aligned(kernels.__heap_base.value);
     this.#base = aligned(this.#arguments + (ARGUMENTS + RECORD) * WORD);
     this.#end = this.#base;
@@ -101,20 +111,22 @@ export class World {
       word += SHAPE + 2 * dimensions;
     }
     this.#given = new Uint8Array(kernels.memory.buffer, this.#base, about.words * WORD).slice();
-    for (const path of Object.keys(about.grows)) {
-      const rows = this.#dimension(path);
-      this.#rows.set(path, { room: rows, least: rows });
-    }
+    for (const path of Object.keys(about.grows)) this.#room.set(path, this.#dimension(path));
+    const { table, ranges } = about.kit;
+    this.#tables = this.#lent(BigInt64Array.from(table, BigInt), Float64Array.from(ranges, Number));
+    this.#slots = [0, 0];
     this.#derive(DERIVATIONS);
-    Object.defineProperty(this.names, 'form', { get: () => this.#formNames(about.names.form) });
+    this.#forms = [...about.names.form];
+    Object.defineProperty(this.names, 'form', { enumerable: false, get: () => this.#formNames(this.#forms) });
   }
 
   /** Names of bodies whose form may be stiff, by their numbers: of one that was cut its pieces, as firm_bodies.py has it.
    * @type {(bodies: string[]) => string[]} */
   #formNames(bodies) {
-    const place = this.#placeFor(bodies.length);
-    this.#inArena('count_pieces', [], this.#block, [place, bodies.length, WORD]);
-    const counts = Array.from(new BigInt64Array(this.#kernels.memory.buffer, place, bodies.length), Number);
+    if (!bodies.length) return [];
+    const [listed] = this.#lent(new BigInt64Array(bodies.length));
+    this.#inArena('count_pieces', [], this.#block, listed);
+    const counts = Array.from(new BigInt64Array(this.#kernels.memory.buffer, listed[0], bodies.length), Number);
     const pieces = bodies.map((name, k) => (counts[k] < 2 ? [name]
       : Array.from({ length: counts[k] }, (_, at) => `${name}, ${at + 1} of ${counts[k]}`)));
     return [...pieces.map(([first]) => first), ...pieces.flatMap(([, ...others]) => others)];
@@ -167,8 +179,8 @@ export class World {
   }
 
   /** Let an array lie elsewhere, with so many rows.
-   * @type {(path: string, laid: Laid) => void} */
-  #lay(path, { address, rows }) {
+   * @type {(path: string, address: number, rows: number) => void} */
+  #lay(path, address, rows) {
     const { word } = this.#table.get(path) ?? { word: 0 };
     const words = [[2, rows * this.#width(path)], [ADDRESS, address], [SHAPE, rows]];
     for (const buffer of [this.#kernels.memory.buffer, this.#given.buffer]) {
@@ -178,47 +190,34 @@ export class World {
     this.#views.delete(path);
   }
 
-  /** Put arrays that are constant otherwise in place of those there are; where they lie.
-   * @type {(equipment: Equipment) => Map<string, Laid>} */
-  #equip(equipment) {
-    /** @type {Map<string, Laid>} */
-    const laid = new Map();
-    for (const [path, values] of Object.entries(equipment)) {
-      const before = this.view(path), rows = values.length / this.#width(path), size = before.BYTES_PER_ELEMENT;
-      if (!this.#bare.has(path)) this.#bare.set(path, { address: before.byteOffset, rows: this.#dimension(path) });
-      laid.set(path, { address: this.#reserve(Math.max(values.length, 1) * size), rows });
-      this.#layAgain(path, /** @type {Laid} */ (laid.get(path)));
-      const view = this.view(path);
-      put(view, view instanceof BigInt64Array ? BigInt64Array.from(values, BigInt) : Float64Array.from(values, Number));
-    }
-    return laid;
-  }
-
-  /** The same, of one that may be of those that grow.
-   * @type {(path: string, laid: Laid) => void} */
-  #layAgain(path, laid) {
-    const known = this.#rows.get(path);
-    if (known) known.room = laid.rows;
-    this.#lay(path, laid);
-  }
-
   /** Give all arrays as many rows as are in use. It is derived again afterwards.
    * @type {(counts: Counts) => void} */
   #grow(counts) {
-    for (const [path, [family, fill]] of Object.entries(this.#about.grows)) {
-      const known = this.#rows.get(path) ?? { room: 0, least: 0 };
-      const rows = Math.max(counts[family], known.least), before = this.view(path), had = this.#dimension(path);
+    for (const [path, [family, fill, more]] of Object.entries(this.#about.grows)) {
+      const rows = counts[family] + more, before = this.view(path), had = this.#dimension(path);
       if (rows === had) continue;
-      const width = this.#width(path), kept = before.slice(), isMoved = rows > known.room;
-      if (isMoved) known.room = MORE * rows;
-      const address = isMoved ? this.#reserve(known.room * width * kept.BYTES_PER_ELEMENT) : before.byteOffset;
-      this.#rows.set(path, known);
-      this.#lay(path, { address, rows });
+      const width = this.#width(path), kept = before.slice(), isMoved = rows > (this.#room.get(path) ?? 0);
+      if (isMoved) this.#room.set(path, MORE * rows);
+      const address = isMoved ? this.#reserve(MORE * rows * width * kept.BYTES_PER_ELEMENT) : before.byteOffset;
+      this.#lay(path, address, rows);
       const view = this.view(path);
       put(view, kept.subarray(0, Math.min(kept.length, view.length)));
       if (view instanceof BigInt64Array) view.fill(BigInt(fill), had * width);
       else view.fill(Number(fill), had * width);
     }
+  }
+
+  /** Two arrays of words where a kernel takes them, until others are.
+   * @type {(...arrays: (BigInt64Array | Float64Array)[]) => Span[]} */
+  #lent(...arrays) {
+    const words = arrays.reduce((sum, { length }) => sum + length, 0), { memory } = this.#kernels;
+    if (words > this.#slots[1]) this.#slots = [this.#reserve(MORE * words * WORD), MORE * words];
+    let [address] = this.#slots;
+    return arrays.map((array) => {
+      new Uint8Array(memory.buffer).set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), address);
+      address += array.byteLength;
+      return /** @type {Span} */ ([address - array.byteLength, array.length, WORD]);
+    });
   }
 
   /** Call a kernel with numbers, and with arrays by their address, number of items and bytes of each.
@@ -279,55 +278,33 @@ export class World {
     this.#derive(DERIVATIONS);
   }
 
-  /** Carry out what was done: a command, or what it changes where no kernel carries it out.
+  /** Carry out what was done; its record has names until then, if it came with names. Throws a Refusal.
    * @type {(done: Done) => void} */
   carryOut(done) {
-    if (!done.changes) {
-      this.command(done.record, this.#about.givers.HAND);
-      return;
-    }
-    const { changes, counts, names, scene, equipment = {} } = done;
-    if (counts) this.#grow(counts);
-    for (const [kind, added] of /** @type {[NameKind, string[]][]} */ (Object.entries(names ?? {}))) {
-      this.names[kind].splice(this.counts[countedBy(kind)], Infinity, ...added);
-    }
-    this.counts = counts ?? this.counts;
-    if (scene) this.#joined.push({ scene, laid: this.#equip(equipment) });
-    for (const [path, runs] of Object.entries(changes)) {
-      this.#change(path, runs);
-      const good = path.replace('state', 'good');
-      if (good !== path && this.#table.has(good)) this.#change(good, runs);
-    }
-    if (this.#about.topology.some((path) => path in changes)) this.#derive(DERIVATIONS);
-  }
-
-  /** Write rows of an array: the first, how many, and what each is to hold.
-   * @type {(path: string, runs: Runs) => void} */
-  #change(path, runs) {
-    const view = this.view(path);
-    for (const [first, count, ...row] of runs) {
-      const values = view instanceof BigInt64Array ? BigInt64Array.from(row, BigInt) : Float64Array.from(row, Number);
-      for (let k = first; k < first + count; k++) put(view, values, row.length * k);
-    }
+    done.record ??= this.commands.read(done.named, this.counts);
+    this.command(done.record, this.#about.givers.HAND);
   }
 
   /** Carry out a command that somebody gives: the record of a recording with slots in place of names. Throws a Refusal
    * where it cannot be carried out, or where hands may not.
    * @type {(record: Command, giver: number) => void} */
   command(record, giver) {
-    if (isWithoutKernel(record.type)) {
-      this.#withoutKernel(record, giver);
+    if (record.type === 'remove') {
+      this.#remove(record, giver);
       return;
     }
+    if (record.type === 'add_particle' || record.type === 'add_spring' || record.type === 'add_body') {
+      this.#join(kitOf(record, this, this.#about), giver, record.type);
+      return;
+    }
+    if (record.type === 'grab' && this.hands.particle < 0 && this.isInUse('particle', record.particle)) this.#reserveHands();
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
     const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
     const { code, slots, numbers, changes } = packed;
-    const many = this.#placeFor(slots.length);
-    const at = this.#arguments + ARGUMENTS * WORD, { buffer } = this.#kernels.memory;
-    new BigInt64Array(buffer, many, slots.length).set(slots.map(BigInt));
-    new Float64Array(buffer, at, numbers.length).set(numbers);
+    const at = this.#arguments + ARGUMENTS * WORD, [listed] = this.#lent(BigInt64Array.from(slots, BigInt));
+    new Float64Array(this.#kernels.memory.buffer, at, numbers.length).set(numbers);
     /** @type {(number | Span)[]} */
-    const given = [giver, code, [many, slots.length, WORD], [at, numbers.length, WORD]];
+    const given = [giver, code, listed, [at, numbers.length, WORD]];
     const result = this.#inArena('command', [this.#block], ...given);
     const answers = new Float64Array(this.#kernels.memory.buffer, at, numbers.length);
     this.commands.answer(record, packed, result, answers);
@@ -339,23 +316,86 @@ export class World {
     if (changes) this.#derive(changes === 'hands' ? HANDS : DERIVATIONS);
   }
 
-  /** @type {(record: Command, giver: number) => void} */
-  #withoutKernel(record, giver) {
-    const { givers, codeOf } = this.#about, named = /** @type {NamedRecord} */ (record);
-    const refusal = giver === givers.HAND ? this.commands.refusalOf(this, record) : null;
-    if (refusal) throw new Refusal(refusal);
-    const tell = named.type === 'remove' ? removedFrom : addedTo;
-    this.carryOut({ tick: this.time, gesture: 0, record: named, ...tell(this, this.#about, named) });
-    const row = giver === givers.HAND ? this.view('state.deed_budget')[codeOf[named.type]] ?? -1 : -1;
-    if (row >= 0) this.view('state.counter')[row] -= 1;
+  /** @type {(hands: About['hands']) => void} */
+  #hold(hands) {
+    const plan = this.view('plan'), { GRAB_PARTICLE, GRAB_SPRING } = this.#about.plan;
+    [plan[GRAB_PARTICLE], plan[GRAB_SPRING]] = [BigInt(hands.particle), BigInt(hands.spring)];
+    this.hands = hands;
   }
 
-  /** Whether what a command would end goes on: a hand holds something, a part is driven, or a key is held.
-   * @type {(ending: Ending) => boolean} */
-  isGoing(ending) {
-    if (ending.type === 'hold_key') return this.view('state.key_down')[ending.key] !== 0;
-    if (ending.type === 'release') return this.isHeld(ending.grab);
-    return this.view('state.actuator_value')[ending.part] !== 0;
+  /** Name rows that come behind those there are; states that are kept have the lists of before.
+   * @type {(added: Partial<Record<NameKind, string[]>>) => void} */
+  #name(added) {
+    for (const [kind, names] of /** @type {[NameKind, string[]][]} */ (Object.entries(added))) {
+      this.names[kind] = [...this.names[kind], ...names];
+    }
+  }
+
+  // Give hands their slots, in a level that began with nothing, once there is something to hold.
+  #reserveHands() {
+    const { count } = this.hands, { particle, spring, breakable } = this.counts, names = Array.from({ length: count },
+      (_, hand) => `+hand.${hand}`);
+    const then = { ...this.counts, particle: particle + count, spring: spring + count, hand: count };
+    this.#grow(Object.assign(then, { breakable: breakable ? then.spring : 0 }));
+    this.counts = then;
+    this.#name({ particle: names, spring: names });
+    this.#call('reserve', this.#block, particle, spring);
+    this.#hold({ particle, spring, count });
+    this.#derive(DERIVATIONS);
+  }
+
+  /** Let a kit join, by a type of command. Throws a Refusal.
+   * @type {(kit: Kit, giver: number, type: string) => void} */
+  #join(kit, giver, type) {
+    const table = this.#about.kit, { codes, families } = table, made = packed(kit, this, this.#about), { counts } = made;
+    checkForms(kit, counts, table.words);
+    const names = namesOf(kit, made, this, table), before = this.counts, scene = seen(kit, before, counts);
+    const keys = keysOf(kit, before.actuator, counts.parts);
+    const rows = this.#lent(made.slots, made.numbers), code = this.#about.codeOf[type];
+    const call = () => this.#inArena('join', [this.#block], giver, code, ...this.#tables, ...rows);
+    /** @type {Counts} */
+    const then = { ...before, ...formCounts(kit, before), material: made.materials.length, area: before.area + names.area.length };
+    for (const [part, family] of Object.entries(families)) if (part !== 'materials') then[family] += counts[part];
+    let answer = call();
+    if (answer === codes.NO_ROWS || answer === codes.NO_LIMIT_ROWS) {
+      const isLimited = answer === codes.NO_LIMIT_ROWS;
+      this.#grow(Object.assign(then, { limit: isLimited ? then.material : 0, breakable: isLimited ? then.spring : 0 }));
+      answer = call();
+    }
+    this.commands.check(type, answer, (slot) => this.names.particle[slot]);
+    if (answer !== 0) throw answered(answer, made, table, (part) => (part === 'materials' ? made.materials.length - 1
+      : then[families[part]]));
+    this.counts = then;
+    put(this.view('areas'), areasOf(kit, before.constraint), 2 * before.area);
+    for (const [path, values, at] of formRows(kit, before)) put(this.view(path), values, at);
+    this.#forms = [...this.#forms, ...formNames(kit, this.bodyCount + 1)];
+    const { particle, spring, material, part, second, area } = names;
+    this.#name({ particle, spring, part, area });
+    this.names.material = material;
+    for (const [name, slot] of second) this.#second[name] = slot;
+    const a = this.view('state.particle_a'), b = this.view('state.particle_b');
+    const joins = (scene.joins ?? []).map((join) => ({ ...join, ends: /** @type {[number, number]} */ ([a[join.spring],
+      b[join.spring]]) }));
+    this.#joined = [...this.#joined, { scene: { ...scene, joins }, keys, bodies: counts.bodies }];
+    this.#derive(DERIVATIONS);
+  }
+
+  /** Take out what hangs on a particle, or a body by its name. Throws a Refusal.
+   * @type {(record: Extract<Command, { type: 'remove' }>, giver: number) => void} */
+  #remove({ type, particle, body }, giver) {
+    const { codes, ways } = this.#about.kit;
+    const isBody = particle === undefined || particle === null;
+    /** @type {(kind: 'particle' | 'spring', mark: string) => number[]} */
+    const named = (kind, mark) => this.names[kind].flatMap((name, slot) =>
+      (name.startsWith(`${body}${mark}`) && this.isInUse(kind, slot) ? [slot] : []));
+    const particles = isBody ? named('particle', '.') : [particle], springs = isBody ? named('spring', ':') : [];
+    if (!particles.length && !springs.length) throw new Refusal(this.#about.kit.words.notThere);
+    const rows = this.#lent(BigInt64Array.from(particles, BigInt), BigInt64Array.from(springs, BigInt));
+    const answer = this.#inArena('remove', [this.#block], giver, isBody ? ways.BODY : ways.HANGING, ...rows);
+    this.commands.check(type, answer, (k) => (k < particles.length ? this.names.particle[particles[k]]
+      : this.names.spring[springs[k - particles.length]]));
+    if (answer <= codes.BAD_SLOT) throw new Refusal(this.#about.kit.words.notThere);
+    this.#derive(DERIVATIONS);
   }
 
   /** Derive what follows from topology, which is everything, or from hands alone, or room; contacts of the last step stay.
@@ -368,19 +408,11 @@ export class World {
     if (names !== HANDS) CONTACTS.forEach((path, k) => put(this.view(path), contacts[k]));
   }
 
-  /** Where so many words of a call can be written.
-   * @type {(words: number) => number} */
-  #placeFor(words) {
-    if (words > this.#many[1]) this.#many = [this.#reserve(MORE * words * WORD), MORE * words];
-    return this.#many[0];
-  }
-
   /** What a kernel answers that takes numbers and no world, and its arena, as words and as floats.
    * @type {(name: string, numbers: number[]) => [answer: number, words: BigInt64Array, floats: Float64Array]} */
   answer(name, numbers) {
-    const place = this.#placeFor(numbers.length), { memory } = this.#kernels;
-    new Float64Array(memory.buffer, place, numbers.length).set(numbers);
-    const answer = this.#inArena(name, [], [place, numbers.length, WORD]), [address, size] = this.#arenas[name];
+    const { memory } = this.#kernels, answer = this.#inArena(name, [], ...this.#lent(Float64Array.from(numbers)));
+    const [address, size] = this.#arenas[name];
     return [answer, new BigInt64Array(memory.buffer, address, size), new Float64Array(memory.buffer, address, size)];
   }
 
@@ -418,9 +450,14 @@ export class World {
     return this.#joined.map(({ scene }) => scene);
   }
 
-  // First particle and spring of hands, and how many hands there are.
-  get hands() {
-    return this.#about.hands;
+  // How many bodies have joined.
+  get bodyCount() {
+    return this.#joined.reduce((sum, { bodies }) => sum + bodies, 0);
+  }
+
+  // Keys that drive parts of what joined, by their names.
+  get joinedKeys() {
+    return keysIn(this.#joined);
   }
 
   // Who gives a command; what each rule of the level does, in order.
@@ -439,16 +476,20 @@ export class World {
   /** Whether a particle is the cursor of a hand.
    * @type {(particle: number) => boolean} */
   isCursor(particle) {
-    const first = this.hands.particle;
-    return particle >= first && particle < first + this.hands.count;
+    return this.#isOfHands('particle', particle);
+  }
+
+  /** @type {(kind: 'particle' | 'spring', slot: number) => boolean} */
+  #isOfHands(kind, slot) {
+    const { [kind]: first, count } = this.hands;
+    return first >= 0 && slot >= first && slot < first + count;
   }
 
   /** Whether what a name stands for is in use, and no hand's; parts and materials always are.
    * @type {(kind: NameKind, slot: number) => boolean} */
   isInUse(kind, slot) {
     if (kind !== 'particle' && kind !== 'spring') return true;
-    const { [kind]: first, count } = this.hands;
-    return Boolean(this.view(`state.${kind}_active`)[slot]) && (slot < first || slot >= first + count);
+    return Boolean(this.view(`state.${kind}_active`)[slot]) && !this.#isOfHands(kind, slot);
   }
 
   /** Whether people see a particle, and whether it can move.
@@ -468,13 +509,12 @@ export class World {
   }
 
   get springs() {
-    const { spring: first, count } = this.hands, { spring } = this.counts;
-    return Array.from({ length: spring }, (_, s) => s).filter((s) => s < first || s >= first + count);
+    return Array.from({ length: this.counts.spring }, (_, s) => s).filter((s) => !this.#isOfHands('spring', s));
   }
 
   /** @type {(hand: number) => boolean} */
   isHeld(hand) {
-    return Boolean(this.view('state.spring_active')[this.hands.spring + hand]);
+    return this.hands.spring >= 0 && Boolean(this.view('state.spring_active')[this.hands.spring + hand]);
   }
 
   // Particles that touched something in the last step.
@@ -493,16 +533,19 @@ export class World {
       arrays.set(path, last && isEqual(last, present) ? last : present.slice());
     }
     this.#saved = arrays;
-    return { time: this.time, counts: this.counts, arrays, contacts: this.#contactRows(), joined: [...this.#joined] };
+    return { time: this.time, counts: this.counts, arrays, contacts: this.#contactRows(), joined: this.#joined,
+      names: { ...this.names, form: this.#forms }, second: { ...this.#second }, hands: this.hands };
   }
 
   /** @type {(state: SavedState) => void} */
-  restore({ time, counts, arrays, contacts, joined }) {
+  restore({ time, counts, arrays, contacts, joined, names: { form, ...names }, second, hands }) {
     const isOther = this.#about.topology.some((path) => !isEqual(this.view(path), arrays.get(path) ?? NONE));
-    this.#joined = [...joined];
-    for (const [path, bare] of this.#bare) {
-      this.#layAgain(path, this.#joined.findLast(({ laid }) => laid.has(path))?.laid.get(path) ?? bare);
-    }
+    this.#joined = joined;
+    this.#forms = form;
+    Object.assign(this.names, names);
+    for (const name of Object.keys(this.#second)) delete this.#second[name];
+    Object.assign(this.#second, second);
+    this.#hold(hands);
     this.#grow(counts);
     for (const [path, kept] of arrays) put(this.view(path), kept);
     [this.time, this.counts, this.broken] = [time, counts, []];
@@ -524,22 +567,7 @@ export class World {
   /** The hash of the whole state, and those of its arrays that are in use, by their names in files.
    * @type {() => StateHash} */
   hash() {
-    /** @type {Map<string, string>} */
-    const arrays = new Map();
-    for (const column of this.#about.columns) {
-      const present = this.rows(column);
-      let kept = this.#hashed.get(column.stored);
-      if (!kept || !isEqual(kept.array, present)) {
-        kept = { array: present.slice(), digest: digestOf(column, present) };
-        this.#hashed.set(column.stored, kept);
-      }
-      if (kept.digest) arrays.set(column.stored, kept.digest);
-    }
-    const { gravity, tick_rate, substeps, solver, iterations, warm_start, wind, drag } = this.settings();
-    const settings = [...gravity.map(hexOf), tick_rate, substeps, solver, iterations,
-      ...[warm_start, ...wind, drag].map(hexOf)];
-    const text = [...arrays.values(), this.time, ...settings].join('\n');
-    return { whole: blake2b(new TextEncoder().encode(text), 16), arrays };
+    return this.#hashes.of(this);
   }
 
   /** The settings of a tick, in the order in which they are hashed and stored.
@@ -559,13 +587,4 @@ export class World {
 function put(array, values, at = 0) {
   // Both are of 64 bits and whole, or neither is.
   /** @type {Float64Array} */ (array).set(/** @type {Float64Array} */ (values), at);
-}
-
-/** @type {(one: AnyArray, other: AnyArray) => boolean} */
-function isEqual(one, other) {
-  if (one.length !== other.length) return false;
-  const a = new Uint8Array(one.buffer, one.byteOffset, one.byteLength);
-  const b = new Uint8Array(other.buffer, other.byteOffset, other.byteLength);
-  for (let k = 0; k < a.length; k++) if (a[k] !== b[k]) return false;
-  return true;
 }

@@ -1,138 +1,304 @@
-"""Joining: the particles, springs, constraints and driven parts of one world are added behind those of another."""
+"""Joining: a kit is packed, the world gets rows for it, and the kernel appends it."""
 
-from dataclasses import fields, replace
-from typing import Any, NamedTuple, TypeVar
+import math
+from collections.abc import Mapping
+from dataclasses import astuple, fields, replace
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
-from sandbox.physics.arrays import Slots
-from sandbox.physics.keeping.equipment import Equipment
-from sandbox.physics.state import FAMILIES, Family
-from sandbox.physics.water.pools import HULL
-from sandbox.physics.world import World
+from sandbox.physics.actuators import Actuators, StrainLimits, unlimited
+from sandbox.physics.arena import NO_ARENA
+from sandbox.physics.arrays import Floats, Slots, with_empty
+from sandbox.physics.breaking import MaterialLimits
+from sandbox.physics.changing.kit import (
+    BAD_PLACE,
+    HEADER,
+    MOST,
+    NO_LIMIT_ROWS,
+    NO_ROWS,
+    NUMBER_TABLE,
+    PART_NAMES,
+    PARTICLES,
+    RANGES,
+    SLOT_TABLE,
+    TABLE,
+    TOO_MANY,
+    NumberColumn,
+    SlotColumn,
+)
+from sandbox.physics.changing.kit_kernels import Joinable, join
+from sandbox.physics.command_table import Refused
+from sandbox.physics.driving import drives_of
+from sandbox.physics.jit import bundle
+from sandbox.physics.joints.motors import wheels_of
+from sandbox.physics.keeping.arguments import FARTHEST
+from sandbox.physics.permission import DENIED
+from sandbox.physics.state import Family, Range, good_of, state_of
+from sandbox.physics.water.displacers import Water
+from sandbox.physics.water.pools import HULL_NUMBERS
+from sandbox.physics.world import World, areas_of
 
-Parts = TypeVar("Parts", Muscles, Hydraulics)
+# Why a kit cannot join; {} = what of it, and what is wrong.
+NOT_A_TABLE, NOT_ROWS = "{}: a table of columns is needed", "{}: a list of {} rows is needed"
+NOT_WHOLE, NOT_A_NUMBER = "{}: a whole number is needed", "{}: a number is needed"
+UNKNOWN, MISSING = "{}: kits have no such thing", "{}: is missing; it has no default"
+OUT_OF_RANGE, DOES_NOT_FIT = "{}: {} is not {}", "{}: {} does not fit"
+NO_PARTICLE = "{}: there is no particle {}"
+TOO_MUCH = "a world holds at most {:,} {}; this would make {:,}"
+TOO_MANY_WHEELS = "there are too many wheels that do not touch their mounts"
+NOUNS = {"muscles": "springs of limited force"}
+# A number that is out of every range.
+HUGE = 1e300
+# Columns of ends, which may be particles of the world by their names, and of 64 bits, which JSON says as text.
+ENDS, BITS = (("springs", "a"), ("springs", "b")), ("group", "collides")
+_FAMILIES = {
+    "particles": Family.PARTICLE, "springs": Family.SPRING, "constraints": Family.CONSTRAINT,
+    "corners": Family.CORNER, "parts": Family.ACTUATOR,
+}  # fmt: skip
+Columns = Mapping[str, Any]
+Counts = dict[str, int]
 
 
-class Place(NamedTuple):
-    """The slots of bodies that join: first slots of their particles, springs, constraints, corners and driven parts;
-    first owner; names of the materials from now on, and which of them (k,) each of its own is.
-    """
+class KitError(ValueError):
+    """A kit that cannot join, in a line."""
 
-    particle: int
-    spring: int
-    constraint: int
-    corner: int
-    part: int
-    owner: int
+
+class Packed(NamedTuple):
+    """A kit as the kernel takes it; how many rows each part has; the names of the world's materials from then on."""
+
+    slots: Slots
+    numbers: Floats
+    counts: Counts
     material_names: tuple[str, ...]
-    materials: Slots
 
 
-def equipped(world: World, other: World, place: Place, parts: tuple[str, ...]) -> Equipment:
-    """The equipment of a world once another is joined to it; parts: names of the other's driven parts.
+def pack(world: World, kit: Columns, bodies: int, group_bits: int, most: Mapping[str, int]) -> Packed:
+    """Pack the columns of a kit for a world at its present tick.
 
-    Bodies have the names that they have in the other.
+    A column is a list, or one value for all rows; None: as usual. Materials go by `name`, ends of springs in the world
+    by theirs. group_bits: the largest bit of the groups of the world's level; most: of parts, that a world holds.
+    Raises KitError.
     """
-    limits = StrainLimits(
-        *(
-            _limits_of(getattr(world.limits, each.name), getattr(other.limits, each.name), place)
-            for each in fields(StrainLimits)
+    stranger = next((name for name in kit if name not in PART_NAMES[PARTICLES:]), None)
+    if stranger is not None:
+        raise KitError(UNKNOWN.format(stranger))
+    names = _material_names(kit.get("materials", {}))
+    known = tuple(dict.fromkeys((*world.material_names, *names)))
+    given = dict(kit) | {"materials": _table(kit, "materials") | {"slot": [known.index(name) for name in names]}}
+    given["materials"].pop("name", None)
+    counts = {name: rows_of(name, _table(given, name)) for name in PART_NAMES} | {"bodies": bodies}
+    slots = [_slots(world, each, _column(given, each, counts)) for each in SLOT_TABLE]
+    numbers = [_numbers(each, _column(given, each, counts)) for each in NUMBER_TABLE]
+    limits = [most.get(name, FARTHEST) for name in PART_NAMES]
+    header = [*counts.values(), *_in_use(world).values(), *limits, world.tick, world.grab_particle, group_bits]
+    return Packed(np.concatenate([np.array(header, np.int64), *slots]), np.concatenate(numbers), counts, known)
+
+
+def _in_use(world: World) -> Counts:
+    """How many rows of each part a world has; of bodies the first free owner."""
+    driven, owner = world.actuators, int(world.owner.max(initial=-1)) + 1
+    rows = (
+        owner, world.particle_count, world.spring_count, world.constraint_count, len(world.corner_particle),
+        len(world.actuator_value), len(driven.muscles.spring), len(driven.hydraulics.spring), len(driven.motors.hub),
+        len(driven.motors.rim), len(world.material_names), len(world.hulls), 0,
+    )  # fmt: skip
+    return dict(zip(PART_NAMES, rows, strict=True))
+
+
+def _table(kit: Columns, part: str) -> dict[str, Any]:
+    columns = kit.get(part, {})
+    if not isinstance(columns, Mapping):
+        raise KitError(NOT_A_TABLE.format(part))
+    known = [each.name for each in (*SLOT_TABLE, *NUMBER_TABLE) if each.part == part] + ["name"] * (part == "materials")
+    stranger = next((name for name in columns if name not in known), None)
+    if stranger is not None:
+        raise KitError(UNKNOWN.format(f"{part}.{stranger}"))
+    return dict(columns)
+
+
+def _material_names(columns: Any) -> list[str]:
+    names = columns.get("name", []) if isinstance(columns, Mapping) else []
+    if not _is_rows(names) or not all(isinstance(name, str) for name in names) or len(set(names)) != len(names):
+        raise KitError(NOT_ROWS.format("materials.name", "different"))
+    return list(names)
+
+
+def _is_rows(column: Any) -> bool:
+    return isinstance(column, list | tuple | np.ndarray)
+
+
+def rows_of(part: str, columns: Any) -> int:
+    """How many rows a part has: as many as its first column that is a list. Raises KitError."""
+    if not isinstance(columns, Mapping):
+        raise KitError(NOT_A_TABLE.format(part))
+    count = next((len(column) for column in columns.values() if _is_rows(column)), 0)
+    if count == 0 and any(not _is_rows(column) for column in columns.values()):
+        raise KitError(NOT_ROWS.format(part, "some"))
+    return count
+
+
+def _column(kit: Columns, column: SlotColumn | NumberColumn, counts: Counts) -> Any:
+    """The values of a column, usual ones where none are given."""
+    place, count = f"{column.part}.{column.name}", counts[column.part]
+    given = kit.get(column.part, {}).get(column.name, column.usual)
+    if given is None and count:
+        raise KitError(MISSING.format(place))
+    if not _is_rows(given):
+        return [given] * count
+    if len(given) != count:
+        raise KitError(NOT_ROWS.format(place, count))
+    return given if isinstance(given, np.ndarray) else [column.usual if each is None else each for each in given]
+
+
+def _slots(world: World, column: SlotColumn, values: Any) -> Slots:
+    if isinstance(values, np.ndarray) and values.dtype.kind in "bi":
+        return values.astype(np.int64)
+    found = []
+    for k, value in enumerate(values):
+        place = f"{column.part}.{column.name}.{k}"
+        if isinstance(value, str) and (column.part, column.name) in ENDS:
+            try:
+                value = -1 - world.particle_slot(value)
+            except KeyError:
+                raise KitError(NO_PARTICLE.format(place, value[:60])) from None
+        elif isinstance(value, str) and column.name in BITS and value.isascii() and value.isdigit():
+            value = int(value[:20])
+        if isinstance(value, float) and value.is_integer():
+            value = int(value)
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise KitError(NOT_WHOLE.format(place))
+        found.append(max(-FARTHEST, min(value, FARTHEST)))
+    return np.array(found, np.int64)
+
+
+def _numbers(column: NumberColumn, values: Any) -> Floats:
+    if isinstance(values, np.ndarray) and values.dtype.kind == "f":
+        return values
+    found = []
+    for k, value in enumerate(values):
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise KitError(NOT_A_NUMBER.format(f"{column.part}.{column.name}.{k}"))
+        # JSON may say a whole number that no float is as large as.
+        found.append(math.inf if abs(value) > HUGE else float(value))
+    return np.array(found, np.float64)
+
+
+def join_kit(world: World, packed: Packed, giver: int, kind: int) -> None:
+    """Let a packed kit join a world: rows, driven parts, limits and hulls, without names.
+
+    giver, kind: who adds it by which command. Raises KitError and Refused.
+    """
+    check_kit(world, packed, giver, kind)
+    counts = packed.counts
+    for part, family in _FAMILIES.items():
+        world.append(family, counts[part])
+    driven = _with_rows(world.actuators, counts)
+    limits = world.limits
+    if more := len(packed.material_names) - len(world.material_names):
+        pairs = zip(astuple(limits), astuple(unlimited(more)), strict=True)
+        limits = StrainLimits(*map(np.concatenate, pairs))
+    world.hulls = np.concatenate([world.hulls, np.zeros((counts["hulls"], HULL_NUMBERS), np.int64)])
+    if _call(driven, limits, world, packed, giver, kind) != 0:
+        raise AssertionError("a kit that had no rows found none")
+    world.actuators, world.limits, world.material_names = _settled(driven), limits, packed.material_names
+    world.topology_version += 1
+
+
+def check_kit(world: World, packed: Packed, giver: int, kind: int) -> None:
+    """Raise KitError or Refused, if a packed kit could not join a world."""
+    answer = _call(world.actuators, world.limits, world, packed, giver, kind)
+    if answer <= -DENIED:
+        raise Refused.of_denied(answer, "particle", -answer % DENIED)
+    if answer not in (0, NO_ROWS, NO_LIMIT_ROWS):
+        raise KitError(_words(world, packed, answer))
+
+
+def _call(
+    actuators: Actuators, limits: StrainLimits, world: World, packed: Packed, giver: int, kind: int
+) -> int:  # fmt: skip
+    count = world.spring_count
+    of_materials = MaterialLimits(
+        limits.tension, limits.compression, limits.yielding, limits.yield_share, np.zeros(count, np.bool_),
+        np.zeros(count, np.int64),
+    )  # fmt: skip
+    pointer = bundle(
+        Joinable(
+            state_of(world), good_of(world), np.array(world.settings.numbers), np.array(world.settings.choices),
+            areas_of(world), world.form_table.forms, world.form_table.modes, drives_of(actuators),
+            wheels_of(actuators), of_materials, with_empty(Water, pool=world.water, hull=world.hulls),
         )
-    )
-    forms = [
-        replace(form, springs=form.springs + place.spring, constraints=form.constraints + place.constraint)
-        for form in other.forms
-    ]
-    areas = [range(each.start + place.constraint, each.stop + place.constraint) for each in other.area_constraints]
-    hulls = other.hulls + np.array([world.hulls[-1:, HULL].sum() + 1, place.spring, 0])
-    return Equipment(
-        place.material_names,
-        limits,
-        _joined_actuators(world.actuators, other.actuators, parts, place),
-        (*world.area_names, *other.area_names),
-        (*world.area_constraints, *areas),
-        (*world.forms, *forms),
-        np.concatenate([world.hulls, hulls]),
-        world.joined,
-    )
+    )  # fmt: skip
+    arena = np.zeros(1, np.int64)
+    while (answer := join(pointer, arena, giver, kind, TABLE, RANGES, *packed[:2])) == NO_ARENA:
+        arena = np.zeros(int(arena[0]), np.int64)
+    return answer
 
 
-def _limits_of(present: NDArray[np.float64], added: NDArray[np.float64], place: Place) -> Any:
-    result = np.zeros(len(place.material_names))
-    result[place.materials] = added
-    result[: len(present)] = present
-    return result
+def _with_rows(present: Actuators, counts: Counts) -> Actuators:
+    """Driven parts with rows for those of a kit, which the kernel fills in."""
 
+    def longer(part: Any, count: int, **others: Any) -> Any:
+        arrays = {each.name: getattr(part, each.name) for each in fields(part)} | others
+        grown = {name: np.concatenate([array, np.zeros(count, array.dtype)]) for name, array in arrays.items()}
+        return replace(part, **grown)
 
-def _joined_actuators(present: Actuators, added: Actuators, names: tuple[str, ...], place: Place) -> Actuators:
-    motors = added.motors
-    moved = replace(
-        motors,
-        hub=motors.hub + place.particle,
-        part=motors.part + place.part,
-        rim_start=motors.rim_start[1:] + present.motors.rim_start[-1],
-        rim=motors.rim + place.particle,
-    )
+    drives, motors = drives_of(present), present.motors
     return Actuators(
-        (*present.names, *names),
-        _behind(present.muscles, replace(added.muscles, spring=added.muscles.spring + place.spring)),
-        _behind(
-            present.hydraulics,
-            replace(
-                added.hydraulics,
-                spring=added.hydraulics.spring + place.spring,
-                part=added.hydraulics.part + place.part,
-            ),
-        ),
-        Motors(
-            *(
-                np.concatenate([getattr(present.motors, each.name), getattr(moved, each.name)])
-                for each in fields(Motors)
-            )
-        ),
+        present.names,
+        longer(present.muscles, counts["muscles"], force=drives.muscle_force),
+        longer(present.hydraulics, counts["hydraulics"], force=drives.hydraulic_force),
+        replace(longer(motors, counts["motors"]), rim=np.concatenate([motors.rim, np.zeros(counts["rims"], np.int64)])),
     )
 
 
-def _behind(present: Parts, added: Parts) -> Parts:
-    """Driven springs of two worlds; where any has a largest force, those that have none have an infinite one."""
-    arrays = {
-        each.name: np.concatenate([getattr(present, each.name), getattr(added, each.name)])
-        for each in fields(present)
-        if each.name != "force"
-    }
-    forces = [each.force if len(each.force) else np.full(len(each.spring), np.inf) for each in (present, added)]
-    is_limited = len(present.force) or len(added.force)
-    return type(present)(**arrays, force=np.concatenate(forces) if is_limited else np.zeros(0))
+def _settled(driven: Actuators) -> Actuators:
+    """Driven parts without forces where none is limited."""
+    muscles, hydraulics = driven.muscles, driven.hydraulics
+    none: Floats = np.zeros(0)
+    return replace(
+        driven,
+        muscles=muscles if np.isfinite(muscles.force).any() else replace(muscles, force=none),
+        hydraulics=hydraulics if np.isfinite(hydraulics.force).any() else replace(hydraulics, force=none),
+    )
 
 
-def append_state(world: World, other: World, place: Place, group: Slots, collides: Slots) -> None:
-    """Add every row of the state of another world, which has hands, but those of its hands, behind those of a world.
+def _words(world: World, packed: Packed, answer: int) -> str:
+    """Why a kit cannot join, by the kernel's answer."""
+    if answer > BAD_PLACE:
+        part = PART_NAMES[TOO_MANY - answer]
+        if part == "free_wheels":
+            return TOO_MANY_WHEELS
+        noun, most = NOUNS.get(part, part), packed.slots[MOST + TOO_MANY - answer]
+        return TOO_MUCH.format(most - (part == "materials"), noun, _would_be(world, packed, part))
+    place = BAD_PLACE - answer
+    if place < HEADER:
+        return DOES_NOT_FIT.format(PART_NAMES[place], packed.counts[PART_NAMES[place]])
+    value: float = packed.slots[place] if place < len(packed.slots) else packed.numbers[place - len(packed.slots)]
+    place -= HEADER
+    columns: tuple[SlotColumn | NumberColumn, ...] = (*SLOT_TABLE, *NUMBER_TABLE)
+    for column in columns:
+        if place < packed.counts[column.part]:
+            break
+        place -= packed.counts[column.part]
+    where = f"{column.part}.{column.name}.{place}"
+    within = column.within if isinstance(column, NumberColumn) else Range(column.low, column.high)
+    if within.lowest <= value <= within.high or (isinstance(column, SlotColumn) and column.of):
+        return DOES_NOT_FIT.format(where, f"{value:g}")
+    return OUT_OF_RANGE.format(where, f"{value:g}", within)
 
-    group, collides: of its particles from now on.
-    """
-    particles, springs = other.grab_particle, other.grab_spring
-    owners = other.owner[:particles]
-    given: dict[str, Any] = {
-        "owner": np.where(owners >= 0, owners + place.owner, owners - place.particle),
-        "group": group,
-        "collides": collides,
-        "particle_a": other.particle_a[:springs] + place.particle,
-        "particle_b": other.particle_b[:springs] + place.particle,
-        "material": place.materials[other.material[:springs]],
-        "constraint_first": other.constraint_first + place.corner,
-        "constraint_material": np.append(place.materials, -1)[other.constraint_material],
-        "corner_particle": other.corner_particle + place.particle,
-    }
-    counts = {
-        Family.PARTICLE: particles,
-        Family.SPRING: springs,
-        Family.CONSTRAINT: other.constraint_count,
-        Family.CORNER: len(other.corner_particle),
-        Family.ACTUATOR: len(other.actuator_value),
-    }
-    for family, count in counts.items():
-        rows = {column.name: given.get(column.name, getattr(other, column.name)[:count]) for column in FAMILIES[family]}
-        world.append(family, count, **rows)
+
+def _would_be(world: World, packed: Packed, part: str) -> int:
+    if part == "materials":
+        return len(packed.material_names) - 1
+    if part != "muscles":
+        return _in_use(world)[part] + packed.counts[part]
+    drives = drives_of(world.actuators)
+    forces = [drives.muscle_force, drives.hydraulic_force]
+    at = len(packed.numbers)
+    for column in reversed(NUMBER_TABLE):
+        count = packed.counts[column.part]
+        if column.name == "force":
+            forces.append(packed.numbers[at - count : at])
+        at -= count
+    return sum(int(np.isfinite(each).sum()) for each in forces)

@@ -53,16 +53,16 @@ class WorldBlock(NamedTuple):
     areas: SlotRows  # areas, forms, modes: see Commanded
     forms: Forms
     modes: FormModes
+    drives: Drives  # up to water: what a kit changes (kit_kernels.py)
+    wheels: DrivenWheels
+    limits: MaterialLimits
+    water: Water  # pools and hulls; the rest is derived
     plan: Slots  # plan, progress: see above
     progress: Slots
     wanted: Slots  # the most of each that a step has asked for (derive.py)
-    drives: Drives
-    wheels: DrivenWheels
-    limits: MaterialLimits
     tuning: Tuning  # see elimination.py
     rules: Rules
     ranges: Ranges
-    water: Water  # pools and hulls; the rest is derived
     start: FloatRows  # [m/s] (n, 2): velocities before anything acted in a substep
     start_length: Floats  # [m] (m,): rest lengths before drives
     shortest: Floats  # (GRAB_COUNT,): scratch

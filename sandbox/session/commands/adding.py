@@ -1,10 +1,12 @@
 """Particles and springs are added to a running world, and named."""
 
 from dataclasses import dataclass
+from typing import Any
 
-from sandbox.level.format.limits import PARTICLE_LIMIT, SPRING_LIMIT
+from sandbox.level.assembly.kits import join_loose
 from sandbox.level.format.quantities import FrictionCoefficient, Length, Mass, Point, Share, Velocity
-from sandbox.physics.marks import LAW_NISSEN
+from sandbox.physics.changing.joining import KitError
+from sandbox.physics.command import ADD_PARTICLE, ADD_SPRING
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot
@@ -27,19 +29,14 @@ class AddParticle(Command):
     restitution: Share | None = None
 
     def carry_out(self, world: World, giver: int) -> None:
-        if world.particle_count >= PARTICLE_LIMIT:
-            raise CommandError(f"a world holds at most {PARTICLE_LIMIT:,} particles")
-        surface = vars(world.surface)
+        (x, y), (vx, vy) = self.position, self.velocity or (0.0, 0.0)
         given = {"friction": self.friction, "restitution": self.restitution}
-        world.add_particles(
-            world.particle_naming.unused("+.", 1),
-            [self.position],
-            mass=self.mass,
-            radius=self.radius,
-            pinned=self.pinned,
-            velocity=self.velocity or (0.0, 0.0),
-            **surface | {name: value for name, value in given.items() if value is not None},
-        )
+        rows = {
+            "x": [x], "y": [y], "vx": vx, "vy": vy, "mass": self.mass, "radius": self.radius, "body": -1,
+            "pinned": int(self.pinned), **vars(world.surface),
+            **{name: value for name, value in given.items() if value is not None},
+        }  # fmt: skip
+        _join(world, {"particles": rows}, giver, ADD_PARTICLE)
 
 
 @dataclass(frozen=True)
@@ -54,20 +51,21 @@ class AddSpring(Command):
     damping: Share = 0.9
 
     def carry_out(self, world: World, giver: int) -> None:
-        if world.spring_count >= SPRING_LIMIT:
-            raise CommandError(f"a world holds at most {SPRING_LIMIT:,} springs")
         if self.particle_a == self.particle_b:
             name = world.particle_names[self.particle_a]
             raise CommandError(f"a spring joins two different particles, not {name} to itself")
-        world.add_springs(
-            world.spring_naming.unused("+:", 1),
-            [self.particle_a],
-            [self.particle_b],
-            rest_length=self.rest_length,
-            stiffness=self.stiffness,
-            damping=self.damping,
-            law=LAW_NISSEN,
-        )
+        rows = {
+            "a": [-1 - self.particle_a], "b": [-1 - self.particle_b], "rest_length": self.rest_length,
+            "stiffness": self.stiffness, "damping": self.damping,
+        }  # fmt: skip
+        _join(world, {"springs": rows, "materials": {"name": [world.material_names[0]]}}, giver, ADD_SPRING)
+
+
+def _join(world: World, columns: dict[str, dict[str, Any]], giver: int, kind: int) -> None:
+    try:
+        join_loose(world, columns, giver, kind)
+    except KitError as error:
+        raise CommandError(str(error)) from None
 
 
 def name_added(world: World) -> None:

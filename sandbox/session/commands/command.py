@@ -11,13 +11,13 @@ from sandbox.level.format.level_error import shown
 from sandbox.level.rules.hands import thing_of, words_of
 from sandbox.physics.analysis.firmness import words_of_reach
 from sandbox.physics.command import BEYOND_REACH, EXHAUSTED, FORBIDDEN, UNTOUCHABLE
-from sandbox.physics.command_table import CODES, KINDS, WORDS, Refused
+from sandbox.physics.command_table import WORDS, Refused
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.permission import HAND, RULE
 from sandbox.physics.world import World
 from sandbox.session.commands.faults import CommandError as CommandError
 from sandbox.session.commands.faults import plain_fault
-from sandbox.session.commands.named import namespaces
+from sandbox.session.commands.named import PARTICLES, SPRINGS, namespaces
 
 # Every command by the name that files use.
 COMMAND_TYPES: dict[str, type["Command"]] = {}
@@ -108,12 +108,7 @@ def _validated(world: World, command: Command) -> Command:
 
 def _carry_out(world: World, command: Command, giver: int) -> None:
     try:
-        without_kernel = giver == HAND and command.type not in KINDS
-        if without_kernel:
-            _admit(world, command)
         command.carry_out(world, giver)
-        if without_kernel and len(world.deed_budget) and world.deed_budget[CODES[command.type]] >= 0:
-            world.counter[world.deed_budget[CODES[command.type]]] -= 1
     except CommandError:
         raise
     except Refused as refused:
@@ -121,27 +116,6 @@ def _carry_out(world: World, command: Command, giver: int) -> None:
     except (IndexError, ValueError) as error:
         _check_names(world, command)
         raise CommandError(str(error)) from None
-
-
-def _admit(world: World, command: Command) -> None:
-    """Whether hands may give a command that has no kernel yet. Raises CommandError."""
-    if command.type not in CODES or not len(world.deed_refused):
-        return
-    code = CODES[command.type]
-    if world.deed_refused[code]:
-        raise Refused(FORBIDDEN, "", 0, ())
-    for field, names in namespaces(type(command)).items():
-        slot = getattr(command, field)
-        if slot is not None and slot < len(names.names(world)) and world.untouchable[slot]:
-            raise Refused(UNTOUCHABLE, field, slot, ())
-    body = getattr(command, "body", None)
-    if isinstance(body, str):
-        of_body = [k for k, name in enumerate(world.particle_names) if thing_of(name) == body]
-        if world.untouchable[of_body].any():
-            raise Refused(UNTOUCHABLE, "", body, ())
-    row = world.deed_budget[code]
-    if row >= 0 and world.counter[row] < 1:
-        raise Refused(EXHAUSTED, "", 0, ())
 
 
 def _check_names(world: World, command: Command) -> None:
@@ -152,10 +126,14 @@ def _check_names(world: World, command: Command) -> None:
             names.check(world, slot)
 
 
+# What other kernels call things, of which commands may name others.
+_THINGS = {"particle": PARTICLES, "spring": SPRINGS}
+
+
 def _words(world: World, command: Command, refused: Refused) -> str:
     """Why a command is refused, with the names of things."""
     doing, counted = words_of(command.type)
-    named = namespaces(type(command)).get(refused.field)
+    named = namespaces(type(command)).get(refused.field, _THINGS.get(refused.field))
     name = refused.value if named is None else named.names(world)[refused.value]
     what = {FORBIDDEN: doing, EXHAUSTED: counted, UNTOUCHABLE: shown(thing_of(str(name)))}
     further: tuple[str, ...] = ()

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox.level.assembly.joining import Joiners
+from sandbox.level.assembly.joining import join_definition
 from sandbox.level.format.level_error import LevelError
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
@@ -13,22 +13,25 @@ Definition = dict[str, Any]
 
 @dataclass(frozen=True)
 class AddBody(Command):
-    """Add a body, as a level file defines it; it is named +1, +2, ... in order of adding.
+    """Add a body, as a level file defines it, or a kit of bodies; it is named +1, +2, ... in order of adding.
 
     others: further bodies that belong to it, the next in order; springs, welds: between these bodies, which go by their
-    ids in the definition; materials: those that the world does not have.
+    ids in the definition; materials: those that the world does not have. kit: bodies as rows, in place of all these.
     """
 
     type = "add_body"
-    body: Definition
+    body: Definition | None = None
     others: tuple[Definition, ...] | None = None
     springs: tuple[Definition, ...] | None = None
     welds: tuple[tuple[str, str], ...] | None = None
     materials: dict[str, Any] | None = None
+    kit: Definition | None = None
 
     def carry_out(self, world: World, giver: int) -> None:
         given = {name: value for name, value in vars(self).items() if value is not None}
+        if ("kit" in given) == ("body" in given) or ("kit" in given and len(given) > 1):
+            raise CommandError("say body, or kit: one of the two")
         try:
-            Joiners(world, given).join(world)
+            join_definition(world, given, giver)
         except LevelError as error:
             raise CommandError(str(error)) from None

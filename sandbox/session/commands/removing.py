@@ -7,8 +7,7 @@ import numpy as np
 from sandbox.level.format.level_error import suggestion
 from sandbox.level.format.quantities import Name
 from sandbox.physics.arrays import Slots
-from sandbox.physics.changing.removing import remove_particles
-from sandbox.physics.pipeline.block_owner import block_of
+from sandbox.physics.changing.removing import BODY, HANGING, remove_particles
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot
@@ -30,29 +29,9 @@ class Remove(Command):
         if (self.body is None) == (self.particle is None):
             raise CommandError("say body, or particle: one of the two")
         if self.particle is not None:
-            remove_particles(world, _hanging_on(world, self.particle))
-            return
-        particles, springs = _parts_of(world, str(self.body))
-        if len(springs):
-            world.cut(springs.tolist())
-        remove_particles(world, _left_alone(world, particles))
-
-
-def _hanging_on(world: World, particle: int) -> Slots:
-    label = block_of(world).arrays.body_label
-    body = np.flatnonzero((label == label[particle]) & world.particle_active)
-    ends = np.concatenate([world.particle_a, world.particle_b])[np.tile(_held_by(world, body), 2)]
-    # What is pinned goes along where all that it holds does.
-    anchors = np.setdiff1d(ends, body)
-    holds = _held_by(world, anchors) & ~_held_by(world, body)
-    others = np.concatenate([world.particle_a[holds], world.particle_b[holds]])
-    return np.union1d(body, np.setdiff1d(anchors, others)).astype(np.int64)
-
-
-def _held_by(world: World, particles: Slots) -> np.ndarray:
-    """The active springs (m,) at any of these particles, but those of hands."""
-    is_end = np.isin(world.particle_a, particles) | np.isin(world.particle_b, particles)
-    return np.asarray(world.spring_active & (world.material >= 0) & is_end)
+            remove_particles(world, [self.particle], way=HANGING, giver=giver)
+        else:
+            remove_particles(world, *_parts_of(world, str(self.body)), way=BODY, giver=giver)
 
 
 def _parts_of(world: World, body: str) -> tuple[Slots, Slots]:
@@ -73,9 +52,3 @@ def _parts_of(world: World, body: str) -> tuple[Slots, Slots]:
 
 def _names(world: World) -> tuple[tuple[str, list[str]], tuple[str, list[str]]]:
     return (".", world.particle_names), (":", world.spring_names)
-
-
-def _left_alone(world: World, particles: Slots) -> Slots:
-    """Those of the particles that no spring holds."""
-    holds = world.spring_active & (world.material >= 0)
-    return np.setdiff1d(particles, np.concatenate([world.particle_a[holds], world.particle_b[holds]])).astype(np.int64)

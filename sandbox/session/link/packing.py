@@ -1,16 +1,14 @@
 """Packing: commands as short lists for links, and back to the very bits.
 
     [ticks since the one before, gesture, record]       a command
-    [..., told]                                         one that pages cannot carry out, and what they are told of it
     [[ticks...], [hands...], [x...], [y...]]            moves of hands, one after another
 
 Moves of a hand belong to the gesture of its last grab. Their places are whole millimetres, as differences to the place
 before of the same hand; a move to another place, or of another gesture, is a command as all others.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Any
 
 from sandbox.session.commands.records import ScriptLine
@@ -24,9 +22,6 @@ _COLUMNS = 4
 # Places of moves are no farther out [mm].
 FARTHEST = 2**39
 MOVE = "move_grab"
-
-
-NOTHING: Mapping[int, Any] = MappingProxyType({})
 
 
 class PackingError(ValueError):
@@ -50,20 +45,17 @@ class _Hands:
         return self.places.get(hand, (0, 0))
 
 
-def pack(script: Sequence[ScriptLine], told: Mapping[int, Any] = NOTHING) -> list[Any]:
-    """The commands of a script, gestures numbered anew from 1 on in the order in which they begin.
-
-    told: what pages are told of some, by their places in the script.
-    """
+def pack(script: Sequence[ScriptLine]) -> list[Any]:
+    """The commands of a script, gestures numbered anew from 1 on in the order in which they begin."""
     packed: list[Any] = []
     moves: list[list[int]] = []
     hands, numbers, tick = _Hands(), dict[int, int](), 0
-    for place, line in enumerate(script):
+    for line in script:
         gesture = numbers.setdefault(line.gesture, len(numbers) + 1)
         move = _move(line.record, gesture, hands)
         if move is None:
             moves = []
-            packed.append([line.tick - tick, gesture, line.record, *([told[place]] if place in told else [])])
+            packed.append([line.tick - tick, gesture, line.record])
             hands.note(gesture, line.record)
         else:
             if not moves:
@@ -120,8 +112,8 @@ def unpack(packed: Any) -> tuple[ScriptLine, ...]:
 def _entry(entry: Any, hands: _Hands) -> Iterator[tuple[Any, Any, dict[str, Any]]]:
     if isinstance(entry, list) and len(entry) == _COLUMNS and all(isinstance(each, list) for each in entry):
         yield from _moves(entry, hands)
-    elif isinstance(entry, list) and 3 <= len(entry) <= 4 and isinstance(entry[2], dict):
-        passed, gesture, record = entry[:3]
+    elif isinstance(entry, list) and len(entry) == 3 and isinstance(entry[2], dict):
+        passed, gesture, record = entry
         yield passed, gesture, record
         hands.note(gesture, record)
     else:

@@ -12,7 +12,7 @@ import hashlib
 import json
 import re
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -26,10 +26,10 @@ from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands.faults import plain_fault
 from sandbox.session.commands.records import ScriptLine
-from sandbox.session.link.packing import NOTHING, PackingError, pack, unpack
+from sandbox.session.link.packing import PackingError, pack, unpack
 from sandbox.session.replay.recording import Replay, ReplayError, TickHashes
 
-VERSION = 1
+VERSION = 2
 # What comes before the packed run in a fragment.
 MARK = "scene="
 # A longer link is cut by programs that pass it on [characters]; a longer run goes into a file.
@@ -38,6 +38,8 @@ LONGEST = 32_000
 UNPACKED_LIMIT = 4 * 2**20
 RUN_LIMIT = 216_000
 _DIGEST = 8
+# Whole numbers that a float is sure of are below this.
+_SAFE = 2**53
 
 _LINK = re.compile(rf"(?:^|#){MARK}(\S*)$")
 _NO_HASHES = TickHashes("", ("",) * len(BY_STORED))
@@ -46,7 +48,7 @@ _NO_HASHES = TickHashes("", ("",) * len(BY_STORED))
 class _LinkedRun(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
-    v: Literal[1]
+    v: Literal[2]
     physics: int
     level: dict[str, Any] | Annotated[str, Field(max_length=80)]
     digest: Annotated[str, Field(max_length=_DIGEST)]
@@ -61,11 +63,10 @@ def is_link(text: str) -> bool:
     return _LINK.search(text.strip()) is not None
 
 
-def fragment_of(replay: Replay, at: int = 0, told: Mapping[int, Any] = NOTHING) -> str:
+def fragment_of(replay: Replay, at: int = 0) -> str:
     """The fragment of a link to a recorded run, which pages show from a tick on.
 
-    told: what pages must know of commands that they cannot carry out, by their places in the script. Raises ReplayError
-    for a recording that is cut off, and for one that is too long for a link.
+    Raises ReplayError for a recording that is cut off, and for one that is too long for a link.
     """
     if replay.end_hash is None:
         raise ReplayError(f"{replay.source}: is cut off; a link holds the hash of its end")
@@ -73,7 +74,7 @@ def fragment_of(replay: Replay, at: int = 0, told: Mapping[int, Any] = NOTHING) 
         raise ReplayError(f"{replay.source}: {replay.ticks:,} ticks are too long for a link; send the file")
     whole = {
         "v": VERSION, "physics": PHYSICS_VERSION, **level_record(replay.level), "ticks": replay.ticks, "at": at,
-        "hash": replay.end_hash, "commands": pack(replay.script, told),
+        "hash": replay.end_hash, "commands": pack(replay.script),
     }  # fmt: skip
     data = json.dumps(whole, separators=(",", ":"), ensure_ascii=False).encode()
     packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
@@ -137,7 +138,7 @@ def _unpacked(text: str) -> _LinkedRun:
     if fault := scan(plain):
         raise ReplayError(f"the link is damaged: {fault[1]}")
     try:
-        values = json.loads(plain)
+        values = json.loads(plain, parse_float=_number)
     except (ValueError, RecursionError):
         raise ReplayError("the link is damaged: copy it again, whole") from None
     if isinstance(values, dict):
@@ -146,6 +147,12 @@ def _unpacked(text: str) -> _LinkedRun:
         return _LinkedRun.model_validate(values)
     except ValidationError as error:
         raise ReplayError(f"the link is broken: {plain_fault(error)}") from None
+
+
+def _number(text: str) -> int | float:
+    """A number as pages read it, for which 3.0 is 3; but no -0.0, which is none."""
+    value = float(text)
+    return int(value) if value.is_integer() and abs(value) < _SAFE and text[0] != "-" else value
 
 
 def _check_versions(values: dict[str, Any]) -> None:

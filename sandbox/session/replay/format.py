@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.assembly.build_world import build_world
-from sandbox.level.assembly.joining import Joiners
+from sandbox.level.assembly.joining import join_definition
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import file_of, level_data
 from sandbox.physics.constraints import AREA, CONSTRAINT_NAMES
@@ -125,9 +125,9 @@ def _equipment(world: World, joined: Sequence[Mapping[str, Any]], grabs: tuple[i
             raise ValueError("joined: bodies lie over each other")
         # What lies between them counts for its names alone.
         name_slots_to(world, each["particle"], each["spring"])
-        world.append(Family.PARTICLE, particles)
+        world.append(Family.PARTICLE, particles, particle_active=True, mass=1.0)
         world.append(Family.SPRING, springs)
-        Joiners(world, each["definition"]).join(world)
+        join_definition(world, each["definition"])
     return world.equipment
 
 

@@ -73,5 +73,8 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.command.command",
     "sandbox.physics.command.count_pieces",
     "sandbox.physics.meshing.fitting.fill_stroke",
+    "sandbox.physics.changing.kit_kernels.join",
+    "sandbox.physics.changing.kit_kernels.reserve",
+    "sandbox.physics.changing.removing.remove",
 )
 WEB = Platform("kernels", "wasm", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES)

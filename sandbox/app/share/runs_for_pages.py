@@ -1,0 +1,140 @@
+"""Runs for pages: the commands of a run with kits in place of definitions of bodies, and without what was undone."""
+
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeVar
+
+from sandbox.app.draw.scene import joined_scene
+from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.joining import Joiners
+from sandbox.level.assembly.kit_files import written
+from sandbox.level.document.model import Level
+from sandbox.level.format.level_error import LevelError
+from sandbox.level.plan.actuators import driving_keys
+from sandbox.physics.snapshot import state_hash
+from sandbox.physics.step import step
+from sandbox.physics.world import World
+from sandbox.session.actions import RuleActions
+from sandbox.session.commands import CommandError, Redo, Undo, apply
+from sandbox.session.commands.records import ScriptLine, from_record, script_of
+from sandbox.session.replay.format import TICK_DIGITS
+from sandbox.session.session import Session
+
+T = TypeVar("T")
+_ADD = "add_body"
+# Of what is drawn: fields that hold slots of particles, and of springs, at any depth.
+_PARTICLES = frozenset(("triangles", "loops", "knots", "hub", "inner", "outer", "spokes", "slot"))
+_SPRINGS = frozenset(("spring", "needs"))
+
+
+class RunForPages(NamedTuple):
+    """A script as pages carry it out, the hash of each tick, and the world at the end."""
+
+    script: tuple[ScriptLine, ...]
+    hashes: list[str]
+    world: World
+
+
+def all_at_once(slices: Generator[float, None, T]) -> T:
+    """What work in slices comes to."""
+    while True:
+        try:
+            next(slices)
+        except StopIteration as end:
+            made: T = end.value
+            return made
+
+
+def is_for_pages(line: ScriptLine) -> bool:
+    """Whether pages carry out a command as it is."""
+    return line.record["type"] not in (Undo.type, Redo.type) and not _is_defined(line.record)
+
+
+def _is_defined(record: Mapping[str, Any]) -> bool:
+    return record["type"] == _ADD and "kit" not in record
+
+
+def tick_hash(world: World) -> str:
+    """What a page compares a tick with."""
+    return state_hash(world)[:TICK_DIGITS]
+
+
+def run_for_pages(
+    level: Level, script: Sequence[ScriptLine], ticks: int, hash_of: Callable[[World], str] = tick_hash
+) -> Generator[float, None, RunForPages]:
+    """A run as pages play it, a slice of the work at a time: each gives the part that is done, 0..1.
+
+    Raises CommandError, with the number of the line.
+    """
+    begun = 0.0
+
+    def part(tick: int) -> float:
+        return begun + (1.0 - begun) * tick / max(ticks, 1)
+
+    if any(line.record["type"] in (Undo.type, Redo.type) for line in script):
+        # It is run twice.
+        begun = 0.5
+        script = yield from _without_undone(level, script, ticks)
+    world, made = build_world(level), []
+    hashes, actions = [hash_of(world)], RuleActions(level, world)
+
+    def stepped(tick: int) -> Iterator[int]:
+        while world.tick < tick:
+            actions.act(world)
+            step(world)
+            hashes.append(hash_of(world))
+            yield world.tick
+
+    for line in script:
+        yield from map(part, stepped(line.tick))
+        try:
+            made.append(replace(line, record=_carried_out(level, world, line.record)))
+        except CommandError as error:
+            raise CommandError(f"line {line.line}: {error}") from None
+    yield from map(part, stepped(ticks))
+    return RunForPages(tuple(made), hashes, world)
+
+
+def _without_undone(
+    level: Level, script: Sequence[ScriptLine], ticks: int
+) -> Generator[float, None, tuple[ScriptLine, ...]]:
+    session = Session(level, script)
+    while session.tick < ticks:
+        session.advance()
+        yield 0.5 * session.tick / ticks
+    session.apply_pending()
+    return script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
+
+
+def _carried_out(level: Level, world: World, record: dict[str, Any]) -> dict[str, Any]:
+    """Carry out a command; its record, with a kit in place of definitions."""
+    before, kit = {"particle": world.particle_count, "spring": world.spring_count}, None
+    if _is_defined(record):
+        definition = {name: value for name, value in record.items() if name != "type" and value is not None}
+        try:
+            kit = Joiners(world, definition).kit(world)
+        except LevelError as error:
+            raise CommandError(str(error)) from None
+    apply(world, from_record(record, world))
+    if kit is None:
+        return record
+    keys = {key: [list(each) for each in parts] for key, parts in driving_keys(kit.source).items()}
+    look = _in_own_slots(joined_scene(level, world, before), before)
+    for join in look.get("joins", ()):
+        # The springs say where they end.
+        del join["ends"]
+    return {"type": _ADD, "kit": written(kit, keys, look)}
+
+
+def _in_own_slots(things: Any, first: Mapping[str, int], name: str = "") -> Any:
+    """What is drawn, in slots that count from the first particle and spring of a kit on."""
+    if isinstance(things, dict):
+        found = {key: _in_own_slots(value, first, key) for key, value in things.items()}
+        if isinstance(things.get("slots"), list):
+            found["slots"] = [[slot - first["particle"], count] for slot, count in things["slots"]]
+        return found
+    if isinstance(things, list):
+        return [_in_own_slots(value, first, name) for value in things]
+    if isinstance(things, int) and not isinstance(things, bool) and name in (*_PARTICLES, *_SPRINGS):
+        return things - first["spring" if name in _SPRINGS else "particle"]
+    return things
