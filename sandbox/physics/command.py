@@ -207,6 +207,8 @@ def _first_bad(world: Commanded, kind: int, slots: Slots, numbers: Floats) -> in
     for k in range(numbers.shape[0]):
         if not -math.inf < numbers[k] < math.inf:
             return slots.shape[0] + k
+    if kind == SET_COEFFICIENTS and slots[0] != 0 and not 0 <= slots[1] < slots[5]:
+        return 1
     return _first_bad_choice(slots) if kind == SET_SOLVER else -1
 
 

@@ -60,7 +60,7 @@ NOTHING, OF_HANDS, OF_TOPOLOGY, OF_SOLVER = "", "hands", "topology", "solver"
 class KernelCommand(NamedTuple):
     """A kind of command: its number; what lies in `slots` and `numbers` then; what has to be derived again.
 
-    first_cursor, first_spring: of hands; grab: a hand; tick_rate [1/s]; duration [ticks]: see ramps.py; ?name:
+    first_cursor, first_spring: of hands; grab: a hand; materials: how many there are; tick_rate [1/s]; duration [ticks]: see ramps.py; ?name:
     whether that is given. Others are what commands of files call so: places have two numbers, springs as many slots as
     there are. What answers is written by the kernel: see ANSWERS.
     """
@@ -100,7 +100,7 @@ KINDS = {
     "part_bodies": KernelCommand(command.PART, ("springs",), (), OF_TOPOLOGY),
     "set_coefficients": KernelCommand(
         command.SET_COEFFICIENTS,
-        ("?material", "material", "?stiffness", "?damping", "duration"),
+        ("?material", "material", "?stiffness", "?damping", "duration", "materials"),
         ("stiffness", "damping"),
     ),
     "set_gravity": KernelCommand(command.SET_GRAVITY, ("duration",), ("gravity",)),
@@ -136,6 +136,7 @@ _ROWS: dict[str, tuple[str, Callable[[Any], int]]] = {
     "springs": (SPRINGS, lambda world: len(world.law)),
     "constraints": (CONSTRAINTS, lambda world: len(world.constraint_kind)),
     "part": (PARTS, lambda world: len(world.actuator_value)),
+    "material": ("materials", lambda world: len(world.material_names)),
     "key": (KEYS, lambda world: len(world.key_down)),
 }
 # What goes by words, as kernels have it.

@@ -441,8 +441,6 @@ class World(StateArrays):
 
         Grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs. duration [ticks]: see ramps.py.
         """
-        if material is not None:
-            arguments.slot("material", material, "materials", len(self.material_names))
         self.command("set_coefficients", stiffness=stiffness, damping=damping, material=material, duration=duration)
 
     def set_gravity(self, gravity: Point, duration: int = 0) -> None:
@@ -484,7 +482,10 @@ class World(StateArrays):
             arguments.active_particles(self, "particle", [given["particle"]])
             numbers_of(name, given)
             self.reserve_grabs()
-        given.update(first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate)
+        given.update(
+            first_cursor=self.grab_particle, first_spring=self.grab_spring, tick_rate=self._settings.tick_rate,
+            materials=len(self.material_names),
+        )  # fmt: skip
         given.setdefault("duration", 0)
         self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
         numbers = carry_out(self.lent, giver, name, {"factor": 0.0, **given}, self)

@@ -36,8 +36,8 @@ ARGUMENTS = {
     "set_gravity": ("gravity", "duration"),
     "set_air": ("wind", "drag", "duration"),
     "set_drive": ("part", "value"),
-    "firm_springs": ("springs", "constraints", "stiffness", "damping", "lowest_mode", "duration"),
-    "firm_constraints": ("springs", "constraints", "stiffness", "damping", "lowest_mode", "duration"),
+    "set_firmness": ("body", "sag", "duration"),
+    "soften": ("body", "value", "gravity", "duration"),
     "hold_key": ("key",),
     "push": ("position", "impulse", "outward", "radius"),
     "shake": ("acceleration",),
@@ -85,7 +85,7 @@ OTHERS = {
     "add a bend, stiffness": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], stiffness=INF), "constraint_"),
     "add a bend, material": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], material=7), "material 7: "),
     "name areas": (lambda world: world.name_areas("balloon", range(1)), "constraints 0: a world without constraints"),
-    "inflate": (lambda world: world.inflate(0, 1.0), "body 0: a world without bodies that keep areas"),
+    "inflate": (lambda world: world.inflate(9, 1.0), "body 9: there is none"),
     "fit, too many": (lambda world: world.fit(Actuators(("a",)), [0.0, 0.0]), "values of 2 parts"),
     "fit, too fast": (lambda world: world.fit(Actuators(("a",)), [2.0]), "values 2.0: "),
     "is held": (lambda world: world.is_held(10), "grab 10: a world with hands 0 to 9"),
@@ -94,7 +94,7 @@ OTHERS = {
     "move a body, NaN": (lambda world: world.move_body(0, (NAN, 0.0)), "by nan: "),
     "move a body, short": (lambda world: world.move_body(0, (1.0,)), "by (1.0,): "),
     "remove": (lambda world: remove_particles(world, np.array([0, 14])), "particles 14: "),
-    "firmness": (lambda world: set_firmness(world, 0, 0.5, 0.5), "body 0: a world without bodies"),
+    "firmness": (lambda world: set_firmness(world, 9, 0.5, 0.5), "body 9: there is none"),
 }  # fmt: skip
 
 
@@ -145,7 +145,10 @@ def test_interpreted_kernels_say_the_same_of_each():
 
 def test_a_number_that_is_not_finite_is_refused_by_the_kernel_itself():
     world, arena = made(), np.zeros(1, np.int64)
-    pointer = lend(state_of(world), good_of(world), np.zeros(6), np.zeros(5, np.int64), np.zeros((0, 2), np.int64))
+    forms = world.form_table.forms, world.form_table.modes
+    pointer = lend(
+        state_of(world), good_of(world), np.zeros(6), np.zeros(5, np.int64), np.zeros((0, 2), np.int64), *forms
+    )
     slots, before = np.array([4]), bad_commands.memory_of(world)
     result = command(pointer, arena, PROGRAM, KINDS["shake"].code, slots, np.array([NAN, 0.0, 60.0]))
     assert result == -(BAD + REASONS * len(slots)) and bad_commands.memory_of(world) == before

@@ -34,7 +34,8 @@ def freed(world, particle, words=WORDS):
 
 
 def given_to_kernel(world, particle, arena):
-    lent = lend(state_of(world), good_of(world), np.zeros(6), np.zeros(5, np.int64), np.zeros((0, 2), np.int64))
+    lent = lend(state_of(world), good_of(world), np.zeros(6), np.zeros(5, np.int64), np.zeros((0, 2), np.int64),
+                world.form_table.forms, world.form_table.modes)  # fmt: skip
     result = command(lent, arena, PROGRAM, FREE, np.array([-1, particle]), np.zeros(0))
     return result if result == NO_ARENA else -result % REASONS
 

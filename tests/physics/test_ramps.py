@@ -11,7 +11,7 @@ from sandbox.physics.analysis.firmness import FirmnessRange, set_firmness
 from sandbox.physics.analysis.last_tick import of_last_tick
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.ramps import CONSTRAINTS, SPRINGS, in_force, next_pair
-from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER_NAMES
+from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER_NAMES, WorldSettings
 from sandbox.physics.snapshot import hash_by_array, restore, state_hash, take
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.step import step
@@ -116,7 +116,7 @@ def test_gravity_and_air_come_to_what_is_set_and_settings_end_their_ramps():
     assert np.all(np.diff(np.array(seen)[:, 0]) > 0.0) and seen[-1] == (3.0, 0.0) == world.settings.gravity
     world.set_air((5.0, 0.5), 1.0, 10)
     step(world)
-    world.settings = world.settings.with_numbers((0.0, -9.0, 0.0, 0.0, 0.0, 0.5))
+    world.settings = WorldSettings.of((0.0, -9.0, 0.0, 0.0, 0.0, 0.5), world.settings.choices)
     step(world)
     assert world.settings.wind == (0.0, 0.0) and not is_moving(world)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
+from sandbox.physics.command_table import Refused
 from sandbox.physics.constraints import AREA
 from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
@@ -36,7 +37,7 @@ def test_slots_are_appended_and_named():
 def test_every_array_keeps_its_type_and_one_item_per_slot():
     world = held_rope()
     world.add_constraints(AREA, [[0, 1, 2, 3]])
-    counts = (5 + GRAB_COUNT, 4 + GRAB_COUNT, 1, 4, 0, 0, GRAB_COUNT, 6, 0, 0, 0, 0, 0)
+    counts = (5 + GRAB_COUNT, 4 + GRAB_COUNT, 1, 4, 0, 0, GRAB_COUNT, 6, 0, 0, 0, 0, 0, 0)
     for family, count in zip(Family, counts, strict=True):
         for column in FAMILIES[family]:
             array = getattr(world, column.name)
@@ -168,12 +169,13 @@ def test_ten_hands_hold_at_once():
     assert np.all(np.isfinite(world.position))
 
 
-def test_holding_a_pinned_particle_moves_nothing():
+def test_no_hand_holds_what_is_pinned_and_none_holds_two_things():
     world = held_rope()
-    world.hold(0, 0, (0.0, 5.0))
-    before = world.position.copy()
-    run(world, 10)
-    assert np.array_equal(world.position, before)
+    with pytest.raises(Refused, match="is pinned"):
+        world.hold(0, 0, (0.0, 5.0))
+    world.hold(0, 1, (0.0, 5.0))
+    with pytest.raises(Refused, match="hand 0 holds something already"):
+        world.hold(0, 2, (0.0, 5.0))
 
 
 @pytest.mark.parametrize("substeps", [1, 4])

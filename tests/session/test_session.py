@@ -344,8 +344,8 @@ def test_refusals_and_events_are_told_apart():
         (AddSpring(3, 3), "a spring joins two different particles, not rope.3 to itself"),
         (SetCoefficients(1.5), "stiffness: must be less than or equal to 1"),
         (SetCoefficients(0.5, None, 9), "there is no material 9"),
-        (SetSolver("magic"), "there is no solver 'magic'"),
-        (SetSolver(substeps=3), 'substeps is a power of two from 1 to 64 or "auto", not 3'),
+        (SetSolver("magic"), "solver: must be 'single_pass', 'iterative' or 'direct'"),
+        (SetSolver(substeps=3), "substeps: must be 1, 2, 4, 8, 16, 32, 64 or 'auto'"),
         (SetGravity((float("inf"), 0.0)), "gravity.0: must be a finite number"),
     ],
 )

@@ -13,7 +13,9 @@ import numpy as np
 from sandbox.physics.actuators import Actuators
 from sandbox.physics.changing.removing import remove_particles
 from sandbox.physics.command_table import KINDS
+from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import way
+from sandbox.physics.keeping.forms import FirmBody, StiffForm
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import COLUMNS, Family
 from sandbox.physics.world import World
@@ -38,12 +40,12 @@ POINTS = (
     *((0.0, each) for each in _NO_NUMBERS), *((each, 0.0) for each in _NO_NUMBERS), (0.0,), (0.0, 1.0, 2.0), (), 1.0,
     None, "ab", np.zeros((2, 2)), NAN,
 )  # fmt: skip
-FAR_LISTS = ([0, 13], [-1], [10**30], 0, None, "01", NAN, np.array([0.0]))
 KEYS = (1, 2, *_BEYOND, *_NO_WHOLE_NUMBER)
 DURATIONS = (-1, 1_000_001, 10**30, *_NO_WHOLE_NUMBER)
 FACTORS = (*(each for each in NUMBERS if each is not None), 1e30, 0.0, -1.0)
-SOLVERS = ("none", "", 3, -1, True, [0], 1.5)
-FIRMNESS = (FAR_LISTS, FAR_LISTS, (*SHARES, None), (*SHARES, None), NOT_BELOW_0, DURATIONS)
+SOLVERS = ("none", "", 3, -1, True, [0], 1.5, 10**6)
+ITERATIONS = ("none", "", 1001, 0, -1, True, [0], 1.5)
+SUBSTEPS = ("none", "", 3, -1, 128, True, [0], 1.5)
 _GIVEN_POINTS, _GIVEN_NUMBERS = (tuple(each for each in values if each is not None) for values in (POINTS, NOT_BELOW_0))
 
 
@@ -70,12 +72,15 @@ def set_solver(world: World, solver: Any, iterations: Any, substeps: Any, warm_s
     )
 
 
-def set_rows(world: World, springs: Any, constraints: Any, stiffness: float, damping: float, lowest_mode: float,
-             duration: int) -> None:  # fmt: skip
-    """Set Cs, Cd and lowest mode."""
-    given = {"stiffness": stiffness, "damping": damping, "lowest_mode": lowest_mode, "duration": duration}
-    world.command("firm_springs", springs=springs, **given)
-    world.command("firm_constraints", constraints=constraints, **given)
+def set_firmness(world: World, body: Any, sag: Any, duration: Any) -> None:
+    """Set how soft a body is by its sag."""
+    world.command("set_firmness", body=body, sag=sag, hz=None, ratio=None, duration=duration)
+
+
+def soften(world: World, body: Any, value: Any, gravity: Any, duration: Any) -> None:
+    """Let all of a body sag."""
+    given = {"whole": True, "way": 0, "second": 0.0}
+    world.command("soften", body=body, value=value, gravity=gravity, duration=duration, **given)
 
 
 # Of every kind: the method of World, or a function of one, arguments that are right, and for each of these what is
@@ -96,8 +101,8 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "set_gravity": ("set_gravity", ((1.0, 0.0), 3), (POINTS, DURATIONS)),
     "set_air": ("set_air", ((1.0, 0.0), 0.5, 3), (_GIVEN_POINTS, _GIVEN_NUMBERS, DURATIONS)),
     "set_drive": ("drive", (0, 0.5), (PARTS, DRIVES)),
-    "firm_springs": (set_rows, ([0, 1], [], 0.5, 0.5, 0.1, 3), FIRMNESS),
-    "firm_constraints": (set_rows, ([], [], 0.5, 0.5, 0.1, 3), FIRMNESS),
+    "set_firmness": (set_firmness, (0, 0.1, 3), (PARTS, tuple(each for each in NOT_BELOW_0 if each is not None), DURATIONS)),
+    "soften": (soften, (0, 0.1, (0.0, -9.81), 3), (PARTS, NUMBERS, POINTS, DURATIONS)),
     "hold_key": ("hold_key", (0, True), (KEYS,)),
     "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),
     "shake": ("shake", ((1.0, 0.0),), (POINTS,)),
@@ -105,7 +110,7 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "scale_mass": (scale_mass, (0, 2.0), (PARTICLES, FACTORS)),
     "free": (free, (0,), (PARTICLES,)),
     "move_body": ("move_body", (0, (1.0, 0.0)), (PARTICLES, POINTS)),
-    "set_solver": (set_solver, ("iterative", 5, 4, 0.5, 3), (SOLVERS, SOLVERS[2:], SOLVERS[2:], SHARES, DURATIONS)),
+    "set_solver": (set_solver, ("iterative", 5, 4, 0.5, 3), (SOLVERS, ITERATIONS, SUBSTEPS, SHARES, DURATIONS)),
 }  # fmt: skip
 assert CALLS.keys() == KINDS.keys()
 
@@ -115,6 +120,13 @@ def made(has_hands: bool = True) -> World:
     world = World()
     world.add_particles(["a", "b", "c", "d"], [(0, 0), (1, 0), (0, 1), (5, 5)], pinned=[False, True, False, False])
     world.add_springs(["s", "t", "u"], [0, 1, 0], [1, 2, 2])
+    world.add_constraints(AREA, [[0, 1, 2]])
+    world.name_areas("abc", range(1))
+    shape = StiffForm(
+        world.position[:3].copy(), world.mass[:3].copy(), np.array([[0, 1], [1, 2], [0, 2]]), np.array([[0, 1, 2]]),
+        np.zeros((0, 3), np.int64),
+    )  # fmt: skip
+    world.forms = (FirmBody("abc", shape, np.arange(3), np.arange(1)),)
     world.fit(Actuators(("engine",)), [0.25])
     world.append(Family.KEY, 1)
     if has_hands:

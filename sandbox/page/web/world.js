@@ -299,7 +299,7 @@ export class World {
     }
     if (record.type === 'grab' && this.hands.particle < 0 && this.isInUse('particle', record.particle)) this.#reserveHands();
     const { tick_rate } = this.settings(), { particle: first_cursor, spring: first_spring } = this.hands;
-    const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate });
+    const packed = this.commands.packed(record, { first_cursor, first_spring, tick_rate, materials: this.counts.material });
     const { code, slots, numbers, changes } = packed;
     const at = this.#arguments + ARGUMENTS * WORD, [listed] = this.#lent(BigInt64Array.from(slots, BigInt));
     new Float64Array(this.#kernels.memory.buffer, at, numbers.length).set(numbers);
