@@ -71,9 +71,10 @@ class Tab:
         """What is seen, as PNG."""
         return base64.b64decode(self.send("Page.captureScreenshot", format="png")["data"])
 
-    def mouse(self, kind: str, x: float, y: float) -> None:
-        """Press, move or release the left button at a pixel: mousePressed, mouseMoved, mouseReleased."""
-        self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+    def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
+        """Press, move or release a button at a pixel: mousePressed, mouseMoved, mouseReleased."""
+        held = {"left": 1, "right": 2}[button]
+        self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=held, clickCount=1)
 
     def touch(self, kind: str, *points: tuple[float, float]) -> None:
         """All fingers that are down after this: touchStart, touchMove, touchEnd."""

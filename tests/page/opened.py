@@ -8,7 +8,7 @@ from tests.page.browser import Browser, Tab, page_address
 START_OVER = "page.toy.restart(); page.toy.pause();"
 # What a page says of a recording at last.
 VERDICT = """new Promise((done) => {
-  const state = document.getElementById('state');
+  const state = document.getElementById('verdict');
   const look = () => (state.className ? done(state.textContent) : requestAnimationFrame(look));
   look();
 })"""

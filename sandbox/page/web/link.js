@@ -25,6 +25,15 @@ const note = ({ gestures }, gesture, { type, grab }) => {
   if (type === 'grab' && isWhole(grab, 0, HANDS)) gestures.set(grab, gesture);
 };
 
+// A link to another level, which it names where that is a shipped one.
+export class Elsewhere extends Refusal {
+  /** @param {unknown} level @param {string} text */
+  constructor(level, text) {
+    super(text);
+    this.level = level;
+  }
+}
+
 /** Whether the fragment of an address holds a run.
  * @type {(fragment: string) => boolean} */
 export const isLink = (fragment) => fragment.startsWith(`#${MARK}`);
@@ -152,7 +161,8 @@ export async function linked(fragment, { level, digest, physics }, about) {
     throw new Refusal(BROKEN);
   }
   if (link.digest !== digest) {
-    throw new Refusal(`This link is to another ${link.level === level ? 'edition of this ' : ''}level.`);
+    throw link.level === level ? new Refusal('This link is to another edition of this level.')
+      : new Elsewhere(link.level, 'This link is to another level.');
   }
   /** @type {string[]} */
   const hashes = [];
