@@ -5,7 +5,14 @@ from pathlib import Path
 
 from tests.page.browser import Browser, Tab, page_address
 
-START_OVER = "page.toy.restart(); page.toy.pause();"
+# From the start, without the words that go once somebody has played: the view then stands.
+START_OVER = """(async () => {
+  if (!document.getElementById('hints').hidden) document.getElementById('hint').click();
+  for (let left = 3; left; left--) await new Promise((done) => requestAnimationFrame(done));
+  page.toy.fit();
+  page.toy.restart();
+  page.toy.pause();
+})()"""
 # What a page says of a recording at last.
 VERDICT = """new Promise((done) => {
   const state = document.getElementById('verdict');

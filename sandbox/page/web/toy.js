@@ -98,7 +98,8 @@ export class Toy extends EventTarget {
     on(keyboard, 'blur', () => this.drives.releaseTyped());
     for (const name of ['blur', 'pagehide']) on(globalThis, name, () => this.#letGo());
     on(document, 'visibilitychange', () => this.#letGo());
-    on(canvas, 'pointerdown', () => this.refresh());
+    // Also while time stands: what is drawn there is seen, and what was made.
+    for (const name of ['pointerdown', 'pointermove', 'pointerup']) on(canvas, name, () => this.refresh());
     on(light, 'change', () => this.#dress());
     this.#dress();
     this.#resize();
