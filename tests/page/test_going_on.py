@@ -9,7 +9,7 @@ import pytest
 from sandbox.app.share.playing import page_of
 from sandbox.cli import main
 from sandbox.session.link.scene_link import MARK
-from tests.page.browser import Browser, Tab
+from tests.page.browser import Browser, Tab, page_address
 from tests.page.levels import level_page
 from tests.page.opened import FRAMES, START_OVER, VERDICT, opened
 from tests.page.pointing import click, drag, place, text
@@ -139,12 +139,19 @@ def test_what_could_not_be_fetched_is_fetched_again(browser: Browser, address: s
         assert tab.evaluate("document.getElementById('fault').innerText").strip() == ""
 
 
+def test_a_list_that_is_opened_from_a_disk_says_why_nothing_plays(browser: Browser, address: str, site: Path) -> None:
+    shown = "document.getElementById('why').offsetParent !== null"
+    tab = browser.tab().show(page_address(site / "index.html"))
+    assert tab.evaluate(shown) and "web server" in text(tab, "#why")
+    assert not browser.tab().open(f"{address}index.html").evaluate(shown)
+
+
 def test_a_verdict_stands_whatever_else_is_said(browser: Browser, tmp_path: Path) -> None:
     level = answering(goal="Bring the ball into the basket")
     tab = opened(browser, tmp_path, page_of(level, [], 60))
     said = tab.evaluate(VERDICT)
     assert said.startswith("Verified")
-    tab.evaluate("page.toy.seek(60); while (!page.toy.outcome) page.toy.tick()")
+    tab.evaluate("page.toy.seek(0); while (!page.toy.outcome) page.toy.tick()")
     tab.evaluate(FRAMES)
     assert text(tab, "#state") == "Through the ring"
     click(tab, "#make")
