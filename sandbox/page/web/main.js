@@ -9,7 +9,7 @@ import { Messages, RANKS } from './messages.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
 import { Toy } from './toy.js';
-/** @import { Done, Fresh, Level, Message, ToyEvents } from './types.js' */
+/** @import { Fresh, Level, Message, ToyEvents } from './types.js' */
 
 // Slow motion; free room around a level [pixels].
 const SLOW = 0.2, BESIDE = 8;
@@ -45,8 +45,7 @@ const isTypedInto = (target) => target instanceof Element && target.matches('inp
 
 class Page {
   #messages = new Messages();
-  /** What was done that a link or a file holds.
-   * @type {Set<Done>} */
+  // The last gesture that a link or a file holds.
   #kept;
   #isLeaving = false;
 
@@ -60,7 +59,7 @@ class Page {
       again: byId('end-again'), on: byId('end-on') });
     this.menu = new Menu(byId('menu'), this.toy, level.about.adding.made.words);
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
-    this.#kept = new Set(this.toy.run.commands);
+    this.#kept = this.toy.run.gesture;
     this.#bind();
     this.#listen();
     this.#listenToPage();
@@ -89,13 +88,13 @@ class Page {
     addEventListener('resize', () => this.panel.show());
     // Who turns a phone has another picture, whatever was pinched before.
     matchMedia('(orientation: portrait)').addEventListener('change', () => toy.fit());
-    document.addEventListener('click', ({ target }) => {
-      // Who follows a link of the page means to leave it.
-      if (target instanceof Element && target.closest('a')) this.#isLeaving = true;
+    document.addEventListener('click', ({ target, ctrlKey, metaKey, shiftKey }) => {
+      // Who follows a link of the page means to leave it, but not for another tab.
+      if (target instanceof Element && target.closest('a')) this.#isLeaving = !(ctrlKey || metaKey || shiftKey);
     });
     addEventListener('pageshow', () => { this.#isLeaving = false; });
     addEventListener('beforeunload', (event) => {
-      if (!this.#isLeaving && toy.run.commands.some((done) => !this.#kept.has(done))) event.preventDefault();
+      if (!this.#isLeaving && toy.run.commands.some(({ gesture }) => gesture > this.#kept)) event.preventDefault();
     });
   }
 
@@ -249,14 +248,14 @@ class Page {
   /** The address of this page with what was done, which it is from then on; null: that is too long.
    * @type {() => Promise<string | null>} */
   async #linked() {
-    const done = [...this.toy.run.commands], fragment = await this.toy.link();
+    const { gesture } = this.toy.run, fragment = await this.toy.link();
     if (fragment === null) {
       this.#say({ rank: 'refusal', text: 'This run is too long for a link: save it as a file, and send that.' });
       return null;
     }
     // Without a new page: it is the address of what is here.
     history.replaceState(null, '', fragment);
-    this.#kept = new Set(done);
+    this.#kept = gesture;
     return location.href;
   }
 
@@ -281,7 +280,7 @@ class Page {
   }
 
   async #save() {
-    const { toy } = this, wasPaused = toy.isPaused, done = [...toy.run.commands];
+    const { toy } = this, { isPaused: wasPaused, run: { gesture } } = toy;
     toy.pause();
     try {
       const link = document.createElement('a');
@@ -289,7 +288,7 @@ class Page {
       link.download = `${toy.level.name.toLowerCase().replace(/[^a-z0-9]+/g, '_') || 'run'}.replay.gz`;
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 60000);
-      this.#kept = new Set(done);
+      this.#kept = gesture;
       this.#say({ rank: 'done', text: `Saved ${link.download}. Spring Sandbox plays it, and verifies each bit of it.` });
     } catch (error) {
       this.#say({ rank: 'refusal', text: 'The recording could not be written.' });
