@@ -53,9 +53,9 @@ class Tab:
 
     def show(self, address: str) -> Self:
         """Go to an address, and wait until all of the page is there."""
+        self._browser.events.clear()
         self.send("Page.navigate", url=address)
         self._browser.until(lambda: "Page.loadEventFired" in self._browser.events)
-        self._browser.events.clear()
         return self
 
     def open(self, address: str) -> Self:

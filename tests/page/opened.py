@@ -5,14 +5,18 @@ from pathlib import Path
 
 from tests.page.browser import Browser, Tab, page_address
 
-# From the start, without the words that go once somebody has played: the view then stands.
-START_OVER = """(async () => {
-  if (!document.getElementById('hints').hidden) document.getElementById('hint').click();
+# Until the level is shown where bars leave room by now.
+SETTLED = """(async () => {
   for (let left = 3; left; left--) await new Promise((done) => requestAnimationFrame(done));
   page.toy.fit();
+})()"""
+# From the start, without the words that go once somebody has played: the view then stands.
+START_OVER = f"""(async () => {{
+  if (!document.getElementById('hints').hidden) document.getElementById('hint').click();
+  await {SETTLED};
   page.toy.restart();
   page.toy.pause();
-})()"""
+}})()"""
 # What a page says of a recording at last.
 VERDICT = """new Promise((done) => {
   const state = document.getElementById('verdict');

@@ -17,7 +17,7 @@ from sandbox.app.draw.themes import THEMES
 from sandbox.session.session import Session
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import FRAMES, START_OVER, opened
+from tests.page.opened import FRAMES, SETTLED, START_OVER, opened
 from tests.page.pointing import click, drag
 
 TICKS, SIZE, BLOCK = 90, (1280, 720), 16
@@ -110,7 +110,7 @@ def test_drawn_wood_steel_and_rope_look_like_these_where_a_level_has_none_of_the
     places, seen = {"wood": (200.0, 300.0), "steel": (900.0, 300.0), "rope": (900.0, 150.0)}, {}
     for stuff, (x, y) in places.items():
         click(tab, f"#{stuff}")
-        tab.evaluate("page.toy.fit()")
+        tab.evaluate(SETTLED)
         ways = [(x + 100, y), (x + 100, y + 100), (x, y + 100), (x, y + 2)]
         drag(tab, (x, y), *(ways[:1] if stuff == "rope" else ways))
         tab.evaluate(FRAMES)

@@ -8,7 +8,7 @@ import pytest
 from sandbox.app.share.playing import page_of
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import FRAMES, START_OVER, opened
+from tests.page.opened import FRAMES, SETTLED, START_OVER, opened
 from tests.page.pointing import click, drag, place, text
 from tests.support.rules_level import answering
 
@@ -85,7 +85,7 @@ def test_a_tool_ends_when_its_bar_is_shut(browser: Browser, tmp_path: Path, tool
     click(tab, "#make")
     assert tab.evaluate(TOOL) == ["drag", "play", "drag"]
     assert text(tab, "#state") == ""
-    tab.evaluate("page.toy.fit()")
+    tab.evaluate(SETTLED)
     x, y = place(tab, tab.evaluate("page.toy.particles[0]"))
     drag(tab, (x, y), (x + 20, y + 20))
     assert tab.evaluate("page.toy.run.commands.map(({ record }) => record.type)") == ["grab", "release"]
@@ -100,7 +100,7 @@ def test_a_tip_ends_with_its_deed_or_when_another_tool_is_chosen(browser: Browse
     click(tab, "#pin")
     assert text(tab, "#state") == ""
     click(tab, "#jelly")
-    tab.evaluate("page.toy.fit()")
+    tab.evaluate(SETTLED)
     assert text(tab, "#state").startswith("Draw around a shape")
     for size, said in ((4, "Draw a larger outline: press, draw around, and let go."), (90, "")):
         drag(tab, (100, 250), (100 + size, 250), (100 + size, 250 + size), (100, 250 + size))

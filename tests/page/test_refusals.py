@@ -7,7 +7,7 @@ import pytest
 
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import START_OVER, opened
+from tests.page.opened import SETTLED, START_OVER, opened
 from tests.page.pointing import click, drag, middle, place, text
 
 # Levels that keep hands from the world and from materials.
@@ -78,7 +78,7 @@ def test_a_tool_that_may_not_be_used_says_so_over_the_level(tab: Tab, level: str
 def test_what_may_not_be_made_says_so_over_the_level(tab: Tab, level: str, tool: str) -> None:
     click(tab, "#make")
     click(tab, f"#{tool}")
-    tab.evaluate("page.toy.fit()")
+    tab.evaluate(SETTLED)
     x, y = place(tab, THINGS[level])
     drag(tab, (x, y), (x + 90, y), (x + 90, y - 90))
     assert text(tab, TOLD).startswith(MAY_NOT)

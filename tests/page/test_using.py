@@ -7,7 +7,7 @@ import pytest
 from tests.page.browser import Browser, Tab
 from tests.page.contrast import CONTRAST, LEAST_CONTRAST
 from tests.page.levels import level_page
-from tests.page.opened import FRAMES, opened
+from tests.page.opened import FRAMES, SETTLED, opened
 from tests.page.pointing import middle, tap
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
@@ -69,8 +69,7 @@ def test_two_taps_beside_everything_or_a_key_show_the_whole_level_again(browser:
     view = "[page.toy.camera.x, page.toy.camera.y, page.toy.camera.zoom]"
     # Words that go once somebody has played leave more room.
     tap(tab, "#hint")
-    tab.evaluate(FRAMES)
-    tab.evaluate("page.toy.fit()")
+    tab.evaluate(SETTLED)
     whole = tab.evaluate(view)
     for again in ("taps", "f"):
         tab.touch("touchStart", (150, 250))
