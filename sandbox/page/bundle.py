@@ -19,7 +19,7 @@ _BEGIN = """export { load } from './files.js';
 export { list } from './index.js';
 export { start };
 import { start, unpack } from './main.js';
-if ('unpacked' in globalThis) start(unpack());
+if ('unpacked' in globalThis) start(unpack);
 """
 _OPTIONS = ("--bundle", "--minify", "--format=esm", "--target=es2022", "--charset=utf8", "--log-level=warning")
 

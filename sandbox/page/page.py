@@ -50,22 +50,29 @@ def page_text(title: str, hints: str, content: bytes) -> str:
     return _page(title, hints, filled("packed", **held), f"<script>{whole}</script>", script=COMPILING)
 
 
-def linked_page_text(title: str, hints: str, toy: str, bundle: str, home: str, shown: str = "") -> str:
+def linked_page_text(
+    title: str, hints: str, toy: str, bundle: str, home: str, shown: str = "", following: tuple[str, str] | None = None
+) -> str:
     """The page of a toy whose files lie beside it. toy, bundle, home: quoted addresses of file, script and list.
 
-    shown: elements of its head for who shows a link to it.
+    shown: elements of its head for who shows a link to it; following: the quoted address and the title of the page that
+    comes after it is won; None: none.
     """
-    back, parts = f'<a href="{home}">All levels</a>', filled("linked", TOY=toy, BUNDLE=bundle)
-    return _page(title, hints, parts, home=back, shown=shown, script=f"'self' {COMPILING}", connect="'self'")
+    around = {"HOME": f'<a href="{home}">All levels</a>', "SHOWN": shown}
+    if following is not None:
+        around["NEXT"] = f'<a href="{following[0]}">Next: {html.escape(following[1])}</a>'
+    parts = filled("linked", TOY=toy, BUNDLE=bundle)
+    return _page(title, hints, parts, around=around, script=f"'self' {COMPILING}", connect="'self'")
 
 
 def _page(
-    title: str, hints: str, parts: str, made: str = "", *, home: str = "", shown: str = "", **sources: str
+    title: str, hints: str, parts: str, made: str = "", around: Mapping[str, str] | None = None, **sources: str
 ) -> str:
-    """A page of these parts, which may run them and what it makes of them, and has these sources."""
+    """A page of these parts, which may run them and what it makes of them, and has these sources; around: elements by
+    the places of the template where they stand."""
     held_to = policy(_template("page"), parts, made, img=ICON, **sources)
-    given = {"TITLE": html.escape(title), "HINTS": html.escape(hints), "HOME": home, "PARTS": parts, "SHOWN": shown}
-    return filled("page", POLICY=held_to, **given)
+    given = {"TITLE": html.escape(title), "HINTS": html.escape(hints), "PARTS": parts, "POLICY": held_to}
+    return filled("page", **{"HOME": "", "SHOWN": "", "NEXT": ""} | given | dict(around or {}))
 
 
 def filled(template: str, **parts: str) -> str:

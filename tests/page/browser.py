@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Self
 
@@ -52,14 +53,25 @@ class Tab:
 
     def show(self, address: str) -> Self:
         """Go to an address, and wait until all of the page is there."""
-        self.send("Page.navigate", url=address)
-        self._browser.until(lambda: any(each == "Page.loadEventFired" for each in self._browser.events))
         self._browser.events.clear()
+        self.send("Page.navigate", url=address)
+        self._browser.until(lambda: "Page.loadEventFired" in self._browser.events)
         return self
 
     def open(self, address: str) -> Self:
         """Go to an address, and wait until the page plays or says what is wrong."""
         self.show(address)
+        return self.begun()
+
+    def led(self, act: Callable[[], None]) -> Self:
+        """Do what leads to another page that plays, and wait until it does."""
+        self._browser.events.clear()
+        act()
+        self._browser.until(lambda: "Page.loadEventFired" in self._browser.events)
+        return self.begun()
+
+    def begun(self) -> Self:
+        """Wait until the page plays or says what is wrong."""
         ready = "globalThis.page || !(document.getElementById('error')?.hidden ?? true)"
         wait = (
             f"new Promise((done) => {{ const look = () => ({ready}) ? done() : requestAnimationFrame(look); look(); }})"
@@ -71,9 +83,10 @@ class Tab:
         """What is seen, as PNG."""
         return base64.b64decode(self.send("Page.captureScreenshot", format="png")["data"])
 
-    def mouse(self, kind: str, x: float, y: float) -> None:
-        """Press, move or release the left button at a pixel: mousePressed, mouseMoved, mouseReleased."""
-        self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+    def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
+        """Press, move or release a button at a pixel: mousePressed, mouseMoved, mouseReleased."""
+        held = {"left": 1, "right": 2}[button]
+        self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=held, clickCount=1)
 
     def touch(self, kind: str, *points: tuple[float, float]) -> None:
         """All fingers that are down after this: touchStart, touchMove, touchEnd."""
@@ -95,6 +108,22 @@ class Tab:
     def release(self, key: str) -> None:
         """Release a key."""
         self.send("Input.dispatchKeyEvent", type="keyUp", key=key)
+
+    def key_with_ctrl(self, key: str) -> None:
+        """Press and release a key while Ctrl is down, and Shift for a capital letter."""
+        held = 2 | (8 if key.isupper() else 0)
+        for kind in ("rawKeyDown", "keyUp"):
+            self.send("Input.dispatchKeyEvent", type=kind, key=key, modifiers=held)
+
+    def is_asked(self, expression: str, stays: bool) -> bool:
+        """Whether the browser asks before it leaves the page as an expression says; stays: what is answered."""
+        self._browser.events.clear()
+        self.evaluate(f"setTimeout(() => {{ {expression} }})")
+        self._browser.until(lambda: {"Page.javascriptDialogOpening", "Page.loadEventFired"} & set(self._browser.events))
+        if "Page.javascriptDialogOpening" not in self._browser.events:
+            return False
+        self.send("Page.handleJavaScriptDialog", accept=not stays)
+        return True
 
     def key(self, key: str) -> None:
         """Press and release a key."""

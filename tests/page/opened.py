@@ -5,7 +5,18 @@ from pathlib import Path
 
 from tests.page.browser import Browser, Tab, page_address
 
-START_OVER = "page.toy.restart(); page.toy.pause();"
+# Until the level is shown where bars leave room by now.
+SETTLED = """(async () => {
+  for (let left = 3; left; left--) await new Promise((done) => requestAnimationFrame(done));
+  page.toy.fit();
+})()"""
+# From the start, without the words that go once somebody has played: the view then stands.
+START_OVER = f"""(async () => {{
+  if (!document.getElementById('hints').hidden) document.getElementById('hint').click();
+  await {SETTLED};
+  page.toy.restart();
+  page.toy.pause();
+}})()"""
 # What a page says of a recording at last, or why there is none.
 VERDICT = """new Promise((done) => {
   const said = () => ['verdict', 'state'].map((id) => document.getElementById(id)).find(({ className }) => className);

@@ -17,7 +17,8 @@ from sandbox.app.draw.themes import THEMES
 from sandbox.session.session import Session
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import opened
+from tests.page.opened import FRAMES, SETTLED, START_OVER, opened
+from tests.page.pointing import click, drag
 
 TICKS, SIZE, BLOCK = 90, (1280, 720), 16
 BELTS = str(Path(__file__).parents[2] / "docs" / "cookbook" / "belts.json")
@@ -98,3 +99,29 @@ def test_what_is_nowhere_is_not_drawn(browser: Browser, tmp_path: Path) -> None:
     tab.evaluate("page.toy.world.view('state.position').fill(NaN)")
     tab.evaluate(DRAW.format(*SIZE, 0.0, 0.0, 50.0, "dark", 1.0))
     assert tab.faults == []
+
+
+def test_drawn_wood_steel_and_rope_look_like_these_where_a_level_has_none_of_them(
+    browser: Browser, tmp_path: Path
+) -> None:
+    tab = opened(browser, tmp_path, level_page("jelly_cube"), width=1280, height=720)
+    tab.evaluate(START_OVER)
+    click(tab, "#make")
+    places, seen = {"wood": (200.0, 300.0), "steel": (900.0, 300.0), "rope": (900.0, 150.0)}, {}
+    for stuff, (x, y) in places.items():
+        click(tab, f"#{stuff}")
+        tab.evaluate(SETTLED)
+        ways = [(x + 100, y), (x + 100, y + 100), (x, y + 100), (x, y + 2)]
+        drag(tab, (x, y), *(ways[:1] if stuff == "rope" else ways))
+        tab.evaluate(FRAMES)
+        picture = pygame.image.load(io.BytesIO(tab.picture()))
+        box = pygame.Rect(x + 20, y - 2, 60, 4) if stuff == "rope" else pygame.Rect(x + 20, y + 20, 60, 60)
+        seen[stuff] = pygame.surfarray.array3d(picture.subsurface(box)).astype(np.float64)
+    red, _, blue = seen["wood"].mean(axis=(0, 1))
+    assert red > 1.3 * blue
+    red, _, blue = seen["steel"].mean(axis=(0, 1))
+    assert blue > red
+    # Planks have joints, and the strands of a rope are twisted: along the middle not all is of one tone.
+    assert seen["wood"].std(axis=(0, 1)).max() > 2 * seen["steel"].std(axis=(0, 1)).max()
+    assert seen["rope"].mean(axis=1).std(axis=0).max() > 8
+    assert tab.evaluate("page.toy.run.commands.length") >= 3 and tab.faults == []

@@ -57,7 +57,7 @@ def test_a_level_that_is_lost_can_be_begun_again(browser: Browser, tmp_path: Pat
 
 def test_a_button_holds_a_key_that_a_rule_asks_for(browser: Browser, tmp_path: Path) -> None:
     tab = opened(browser, tmp_path, page_of(read_level(ROOT / "docs" / "rules" / "chain.json")))
-    assert tab.evaluate("document.querySelector('#keys button').getAttribute('aria-label')") == "Key g"
+    assert tab.evaluate("document.querySelector('.key').getAttribute('aria-label')") == "Key g"
     tab.evaluate("page.toy.drives.press('g')")
     assert tab.evaluate(UNTIL_END)
     assert text_of(tab, "#end-card p").startswith("All down")

@@ -6,6 +6,7 @@ from sandbox.replay import Replay, read_replay, verify
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
 from tests.page.opened import START_OVER, opened, saved
+from tests.page.pointing import place
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 
@@ -20,13 +21,6 @@ def _steps(tab: Tab, count: int) -> None:
     tab.evaluate(f"for (let k = 0; k < {count}; k++) page.toy.tick()")
 
 
-def _place(tab: Tab, particle: str) -> tuple[float, float]:
-    slot = f"page.toy.level.about.names.particle.indexOf('{particle}')"
-    position = "page.toy.world.view('state.position')"
-    x, y = tab.evaluate(f"page.toy.camera.toPixels({position}[2 * {slot}], {position}[2 * {slot} + 1])")
-    return x, y
-
-
 def _saved(tab: Tab, folder: Path) -> Replay:
     return read_replay(saved(tab, folder))
 
@@ -38,7 +32,7 @@ def _types(replay: Replay) -> list[str]:
 def test_a_drag_by_mouse_is_verified(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "rope")
     _steps(tab, 30)
-    x, y = _place(tab, "rope.20")
+    x, y = place(tab, "rope.20")
     tab.mouse("mousePressed", x, y)
     for k in range(8):
         tab.mouse("mouseMoved", x - 12 * k, y + 6 * k)
@@ -75,7 +69,7 @@ def test_several_fingers_hold_several_bodies(browser: Browser, tmp_path: Path) -
 def test_two_fingers_on_one_particle_let_go_of_it(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "rope", **PHONE)
     _steps(tab, 20)
-    x, y = _place(tab, "rope.20")
+    x, y = place(tab, "rope.20")
     tab.touch("touchStart", (x, y))
     tab.touch("touchStart", (x, y), (x + 3, y + 2))
     tab.touch("touchMove", (x - 30, y), (x + 40, y - 20))
@@ -89,14 +83,14 @@ def test_two_fingers_on_one_particle_let_go_of_it(browser: Browser, tmp_path: Pa
 def test_what_is_dragged_is_let_go_where_somebody_goes_back_in_time(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "rope")
     _steps(tab, 20)
-    x, y = _place(tab, "rope.20")
+    x, y = place(tab, "rope.20")
     tab.mouse("mousePressed", x, y)
     _steps(tab, 20)
     tab.evaluate("page.toy.seek(30)")
     # The button is still down.
     tab.mouse("mouseMoved", x + 90, y)
     tab.mouse("mouseReleased", x + 90, y)
-    x, y = _place(tab, "rope.10")
+    x, y = place(tab, "rope.10")
     tab.mouse("mousePressed", x, y)
     _steps(tab, 10)
     tab.mouse("mouseReleased", x, y)
@@ -109,7 +103,7 @@ def test_what_is_dragged_is_let_go_where_somebody_goes_back_in_time(browser: Bro
 def test_a_button_that_is_down_over_an_undo_moves_nothing_more(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "rope")
     _steps(tab, 20)
-    x, y = _place(tab, "rope.20")
+    x, y = place(tab, "rope.20")
     tab.mouse("mousePressed", x, y)
     _steps(tab, 5)
     tab.evaluate("page.toy.undo()")
@@ -166,7 +160,7 @@ def test_a_particle_is_pinned_and_unpinned(browser: Browser, tmp_path: Path) -> 
     _steps(tab, 10)
     tab.evaluate("document.getElementById('pin').click()")
     for _ in range(2):
-        x, y = _place(tab, "rope.20")
+        x, y = place(tab, "rope.20")
         tab.mouse("mousePressed", x, y)
         tab.mouse("mouseReleased", x, y)
         _steps(tab, 40)
@@ -199,7 +193,7 @@ def test_after_an_undo_the_run_goes_on_from_where_it_was(browser: Browser, tmp_p
     tab = _opened(browser, tmp_path, "jelly_wheel")
     _steps(tab, 20)
     for way in (60, -60, 80):
-        x, y = _place(tab, "wheel.0")
+        x, y = place(tab, "wheel.0")
         tab.mouse("mousePressed", x, y)
         tab.mouse("mouseMoved", x + way, y - 40)
         _steps(tab, 15)
@@ -234,7 +228,7 @@ def test_a_bridge_is_torn_by_mouse(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "breaking_bridge")
     tab.evaluate("globalThis.torn = []; page.toy.addEventListener('break', (e) => torn.push(...e.detail.springs))")
     _steps(tab, 30)
-    x, y = _place(tab, "deck.8")
+    x, y = place(tab, "deck.8")
     tab.mouse("mousePressed", x, y)
     for k in range(20):
         tab.mouse("mouseMoved", x, min(y + 25 * k, 715))

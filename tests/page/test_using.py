@@ -7,7 +7,8 @@ import pytest
 from tests.page.browser import Browser, Tab
 from tests.page.contrast import CONTRAST, LEAST_CONTRAST
 from tests.page.levels import level_page
-from tests.page.opened import FRAMES, opened
+from tests.page.opened import FRAMES, SETTLED, opened
+from tests.page.pointing import middle, tap
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
 # Colours of text and of what is behind it, by their names in a page.
@@ -19,19 +20,6 @@ PAIRS = (
 
 def _opened(browser: Browser, folder: Path, name: str, **how: object) -> Tab:
     return opened(browser, folder, level_page(name), **how)
-
-
-def _middle(tab: Tab, chosen: str) -> tuple[float, float]:
-    box = f"document.querySelector('{chosen}').getBoundingClientRect()"
-    box = f"(({{ x, y, width, height }}) => [x + width / 2, y + height / 2])({box})"
-    x, y = tab.evaluate(box)
-    return x, y
-
-
-def _tap(tab: Tab, chosen: str) -> None:
-    place = _middle(tab, chosen)
-    tab.touch("touchStart", place)
-    tab.touch("touchEnd")
 
 
 def test_everything_that_can_be_used_has_a_name(browser: Browser, tmp_path: Path) -> None:
@@ -79,14 +67,17 @@ def test_two_fingers_zoom_and_one_moves_the_view(browser: Browser, tmp_path: Pat
 def test_two_taps_beside_everything_or_a_key_show_the_whole_level_again(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "rope", **PHONE)
     view = "[page.toy.camera.x, page.toy.camera.y, page.toy.camera.zoom]"
+    # Words that go once somebody has played leave more room.
+    tap(tab, "#hint")
+    tab.evaluate(SETTLED)
     whole = tab.evaluate(view)
     for again in ("taps", "f"):
-        tab.touch("touchStart", (150, 500))
-        tab.touch("touchMove", (100, 560))
+        tab.touch("touchStart", (150, 250))
+        tab.touch("touchMove", (100, 310))
         tab.touch("touchEnd")
         assert tab.evaluate(view) != whole
         if again == "taps":
-            tab.tap_twice((60, 600))
+            tab.tap_twice((60, 250))
         else:
             tab.key("f")
         assert tab.evaluate(view) == whole
@@ -100,11 +91,11 @@ def test_two_taps_beside_everything_or_a_key_show_the_whole_level_again(browser:
 
 def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "jelly_wheel", **PHONE)
-    _tap(tab, "#tune")
-    _tap(tab, ".words button:first-child")
+    tap(tab, "#tune")
+    tap(tab, ".words button:first-child")
     soft = tab.evaluate("page.panel.pair")
     assert tab.evaluate("document.querySelector('.words button').getAttribute('aria-pressed')") == "true"
-    x, y = _middle(tab, ".pad")
+    x, y = middle(tab, ".pad")
     tab.touch("touchStart", (x, y))
     tab.touch("touchMove", (x + 80, y - 20))
     # A finger that is lifted while it moves would be a flick, whose next tap only stops it.
@@ -113,7 +104,7 @@ def test_firmness_is_set_by_touch(browser: Browser, tmp_path: Path) -> None:
     stiff = tab.evaluate("page.panel.pair")
     assert stiff[0] > soft[0]
     tab.evaluate("page.toy.pause()")
-    _tap(tab, "#undo")
+    tap(tab, "#undo")
     assert tab.evaluate("page.panel.pair") == soft
 
 
@@ -132,7 +123,7 @@ def test_gravity_is_typed_and_undone(browser: Browser, tmp_path: Path) -> None:
 
 def test_a_button_drives_a_motor_while_it_is_touched(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
-    tab.touch("touchStart", _middle(tab, ".key"))
+    tab.touch("touchStart", middle(tab, ".key"))
     assert tab.evaluate("page.toy.world.view('state.actuator_value').some((value) => value !== 0)")
     tab.touch("touchEnd")
     assert not tab.evaluate("page.toy.world.view('state.actuator_value').some((value) => value !== 0)")
@@ -154,7 +145,7 @@ def test_keys_pause_step_and_drive(browser: Browser, tmp_path: Path) -> None:
 def test_sound_is_off_until_it_is_touched_and_then_plays_without_a_fault(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "suspension_car", **PHONE)
     assert not tab.evaluate("page.toy.sound.isOn")
-    _tap(tab, "#sound")
+    tap(tab, "#sound")
     tab.evaluate("page.toy.drives.press('d'); for (let k = 0; k < 200; k++) page.toy.tick()")
     tab.evaluate("page.toy.drives.releaseAll()")
     assert tab.evaluate("page.toy.sound.isOn")

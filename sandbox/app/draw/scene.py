@@ -34,6 +34,8 @@ from sandbox.physics.world import World
 
 # What a spring looks like that joined the world while it ran.
 ADDED = Look("", "steel", 0)
+# Lines of what people make in a page, and what sheets of that are like.
+MADE_LINES, MADE_SHEET = ("steel", "rope"), Look("wood", "paint", WOOD)
 # Digits of lengths [m]: a tenth of a millimetre.
 DIGITS = 4
 _NO_SPRINGS = np.zeros(0, np.int64), np.zeros((0, 2), np.int64), 1.0
@@ -71,6 +73,7 @@ def made_looks() -> dict[str, Any]:
         "jelly": Shape([], "jelly", 0, 1, keep=CUT_OF_SIDE, flushed=_NO_SPRINGS),
         "rubber": Shape([], "rubber", 0, 1, keep=CUT_OF_SIDE, flushed=_NO_SPRINGS),
         "plain": Shape([], "plain", 0, 1, keep=CUT_OF_SIDE),
+        "wood": Shape([], "wood", 0, 0, rounds=1, keep=0.12, line=False),
     }
     return {
         "skins": {skin: _shape(shape) for skin, shape in shapes.items()},
@@ -222,9 +225,12 @@ def _wheel(wheel: DrawnWheel) -> dict[str, Any]:
 
 
 def _pictures(slots: LevelSlots, ground: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
-    """Textures of lines by their kind or colour, of turf by theme, of sheets by skin and colour."""
+    """Textures of lines by their kind or colour, of turf by theme, of sheets by skin and colour.
+
+    Those of what people make are among them.
+    """
     looks = [actor.look for actor in slots.actors] + [join.look for join in slots.joins]
-    bars, names = Tiles(THEMES["dark"]), {"steel", *(look.line for look in looks)}
+    bars, names = Tiles(THEMES["dark"]), {*MADE_LINES, *(look.line for look in looks)}
     colours = {look.colour for look in looks if look.line == "paint"} | ({CYLINDER} if "piston" in names else set())
     names |= {"deck"} if any(actor.body.type == "bridge" for actor in slots.actors) else set()
     made = {name: bars.array[TILE[name]] for name in sorted(names & TILE.keys() - {"paint"})}
@@ -233,7 +239,7 @@ def _pictures(slots: LevelSlots, ground: list[dict[str, Any]]) -> dict[str, dict
         made[_hex(colour)] = bars.array[number]
     for name, theme in THEMES.items() if any(each["kind"] == "soil" for each in ground) else ():
         made[f"turf {name}"] = Tiles(theme).array[TILE["turf"]]
-    for look in [actor.look for actor in slots.actors if actor.is_filled]:
+    for look in [MADE_SHEET, *(actor.look for actor in slots.actors if actor.is_filled)]:
         if look.skin == CLOTH:
             made[f"{look.skin} {_hex(look.colour)}"] = _folded(woven(look.colour, CLOTH_STRIPE))
         elif look.skin in CRATES:

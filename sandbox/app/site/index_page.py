@@ -27,6 +27,8 @@ OWN = "'self' file:"
 # The level at the top, where the site has it: light, it goes on for half a minute, and there is something to pull at.
 HERO = "trampoline"
 WORDS = "Springs, jelly, bridges and machines that play in your browser: drag, cut, and set Cs and Cd."
+# Why nothing plays where the list is opened as a file.
+FROM_DISK = "From a disk browsers load no modules, so nothing plays here. Put the whole site on a web server."
 # How wide a picture is shown, in the style sheet's words.
 SHOWN = "(max-width: 560px) 92vw, 290px"
 # How much more of the height is shown at the top of the page above and below what is there at first.
@@ -121,7 +123,8 @@ def _hero(each: SiteLevel, state: Snapshot, words: str) -> str:
         f'data-view="{_numbers(_around(each.level, state))}">{_picture(each)}'
         f'<canvas tabindex="0" role="application" aria-label="{name}. N marks a particle, Enter takes it, arrows move '
         f'it, Space pauses."></canvas><button type="button" hidden><svg viewBox="0 0 24 24"><path d=""/></svg></button>'
-        f'<p><a href="{each.page}">{name}</a> <span>{html.escape(words)}</span></p></section>\n'
+        f'<p><a href="{each.page}">{name}</a> <span>{html.escape(words)}</span></p>'
+        f'<p id="why" hidden>{FROM_DISK}</p></section>\n'
     )
 
 

@@ -2,6 +2,7 @@
 
 import gzip
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 
 import pygame
@@ -18,7 +19,17 @@ from sandbox.app.draw.picture_cache import (
     shipped_picture,
 )
 from sandbox.app.share.playing import playable
-from sandbox.app.site.index_page import LEVELS, PICTURES, SCRIPTS, SMALL, STYLE, IndexPage, SiteLevel, index_text
+from sandbox.app.site.index_page import (
+    LEVELS,
+    PICTURES,
+    SCRIPTS,
+    SMALL,
+    STYLE,
+    IndexPage,
+    SiteLevel,
+    index_text,
+    sections_of,
+)
 from sandbox.app.site.link_card import link_card, write_card_picture
 from sandbox.level.format.writing import write_file
 from sandbox.page.bundle import BUNDLE
@@ -34,11 +45,11 @@ def write_site(levels: Mapping[str, SiteLevel], folder: Path, page: IndexPage) -
     kernels = gzip.compress(KERNELS.read_bytes(), GZIP_LEVEL, mtime=0)
     write_file(folder / SCRIPTS / f"{KERNELS.name}.gz", kernels)
     write_file(folder / STYLE, (WEB / STYLE).read_bytes())
-    states = {}
+    states, following = {}, _following(levels)
     for each in levels.values():
         ticks = round(SECONDS * each.level.settings.tick_rate)
         states[each.stem] = run_at_once(each.level, ticks, PARTICLES)
-        _write_level(each, states[each.stem], folder, page.address)
+        _write_level(each, states[each.stem], folder, page.address, following.get(each.stem))
         yield
     write_file(folder / "index.html", index_text(levels, states, page).encode())
 
@@ -48,12 +59,20 @@ def _made(path: Path) -> Path:
     return path
 
 
-def _write_level(each: SiteLevel, state: Snapshot, folder: Path, address: str | None) -> None:
+def _following(levels: Mapping[str, SiteLevel]) -> dict[str, SiteLevel]:
+    """By stems of levels with a goal: the next such level in the order of the list."""
+    ordered = [levels[stem] for section in sections_of(levels) for stem in section.levels if stem in levels]
+    asking = [each for each in ordered if each.level.goal]
+    return {each.stem: after for each, after in pairwise(asking)}
+
+
+def _write_level(each: SiteLevel, state: Snapshot, folder: Path, address: str | None, after: SiteLevel | None) -> None:
     made = playable(each.level)
     write_file(_made(folder / LEVELS / f"{each.stem}.toy"), toy_file(made.content))
     shown = link_card(made.title, made.hints, each.page, each.card_picture, address)
     bundle = f"../{SCRIPTS}/{BUNDLE.name}"
-    page = linked_page_text(made.title, made.hints, f"{each.address}.toy", bundle, "../index.html", shown)
+    following = None if after is None else (f"{after.address}.html", after.level.name)
+    page = linked_page_text(made.title, made.hints, f"{each.address}.toy", bundle, "../index.html", shown, following)
     write_file(folder / LEVELS / f"{each.stem}.html", page.encode())
     key = picture_key(each.path.read_bytes())
     for theme in THEME_NAMES:

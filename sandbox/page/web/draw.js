@@ -28,6 +28,8 @@ const INK = '#2a1030', DARK = '#161b26', LARGEST_PIN = 0.1;
 /** Which parts of width and height a box takes that is shown as large as it goes.
  * @type {Point} */
 export const FIT = [0.92, 0.88];
+// Which part of the height that is left is above a box.
+const LOW = 0.7;
 
 export class Camera {
   x = 0;
@@ -36,14 +38,17 @@ export class Camera {
   width = 1;
   height = 1;
 
-  /** Show a box [m] as large as it goes, above what covers `bottom` pixels of the lower edge.
-   * @type {(box: Box, bottom?: number) => void} */
-  fit([left, low, right, high], bottom = 0) {
-    const height = Math.max(this.height - bottom, 1);
-    this.zoom = Math.min((this.width * FIT[0]) / Math.max(right - left, 0.5),
-      (height * FIT[1]) / Math.max(high - low, 0.5));
-    this.x = (left + right) / 2;
-    this.y = (low + high) / 2 - bottom / 2 / this.zoom;
+  /** Show a box [m] as large as it goes in a part of the picture that nothing covers [pixels]; null: in all of it, with
+   * room around it. Where height is left it stands low: more of the sky is seen than of the ground.
+   * @type {(box: Box, room: Box | null) => void} */
+  fit([left, low, right, high], room) {
+    const beside = (this.width * (1 - FIT[0])) / 2, above = (this.height * (1 - FIT[1])) / 2;
+    const [first, top, last, bottom] = room ?? [beside, above, this.width - beside, this.height - above];
+    const wide = Math.max(right - left, 0.5), tall = Math.max(high - low, 0.5);
+    this.zoom = Math.max(Math.min((last - first) / wide, (bottom - top) / tall), 0.5);
+    const share = room ? LOW : 0.5, spare = bottom - top - tall * this.zoom;
+    this.x = (left + right) / 2 - ((first + last - this.width) / 2) / this.zoom;
+    this.y = (low + high) / 2 + (top + share * spare + (tall * this.zoom) / 2 - this.height / 2) / this.zoom;
   }
 
   /** @type {(x: number, y: number) => Point} */

@@ -1,6 +1,6 @@
 // Drives: motors and hydraulics, driven while their keys are held, and keys that rules ask for.
 /** @import { Run } from './run.js' */
-/** @import { Level } from './types.js' */
+/** @import { Command, Level } from './types.js' */
 
 /** Where a key is on the keyboard: what it is called changes with others that are down.
  * @type {(event: Pick<KeyboardEvent, 'code' | 'key'>) => string} */
@@ -17,14 +17,15 @@ export class Drives {
    * @type {Map<string, string>} */
   #typed = new Map();
 
-  /** keys: parts and values by the name of a key; ruleKeys: those that rules ask for; told: called with a key's name
-   * and whether it is held now.
-   * @param {Run} run @param {Level['keys']} keys @param {string[]} [ruleKeys]
+  /** keys: parts and values by the name of a key; ruleKeys: those that rules ask for; say: tells a person why a key does
+   * nothing; told: called with a key's name and whether it is held now.
+   * @param {Run} run @param {Level['keys']} keys @param {string[]} ruleKeys @param {(text: string) => void} say
    * @param {(name: string, isHeld: boolean) => void} [told] */
-  constructor(run, keys, ruleKeys = [], told = () => {}) {
+  constructor(run, keys, ruleKeys, say, told = () => {}) {
     this.run = run;
     this.own = { ...Object.fromEntries(ruleKeys.map((name) => [name, []])), ...keys };
     this.ruleKeys = ruleKeys;
+    this.say = say;
     this.told = told;
   }
 
@@ -69,10 +70,12 @@ export class Drives {
   /** @type {(name: string) => void} */
   press(name) {
     if (this.#held.has(name)) return;
-    const gesture = this.run.newGesture();
+    const gesture = this.run.newGesture(), records = [...this.keys[name].map(([part, value]) =>
+      /** @type {Command} */ ({ type: 'set_drive', part, value })), ...this.#forRules(name, true)];
+    // A key is held where it does something.
+    const done = records.filter((record) => this.run.submit(record, gesture, this.say));
+    if (!done.length) return;
     this.#held.set(name, gesture);
-    for (const [part, value] of this.keys[name]) this.run.submit({ type: 'set_drive', part, value }, gesture);
-    this.#tellRules(name, true, gesture);
     this.told(name, true);
   }
 
@@ -85,17 +88,17 @@ export class Drives {
     for (const [part] of this.keys[name] ?? []) {
       const others = [...this.#held.keys()].flatMap((other) => this.keys[other] ?? []);
       const value = others.findLast(([other]) => other === part)?.[1] ?? 0;
-      this.run.submit({ type: 'set_drive', part, value }, gesture);
+      this.run.submit({ type: 'set_drive', part, value }, gesture, this.say);
     }
-    this.#tellRules(name, false, gesture);
+    for (const record of this.#forRules(name, false)) this.run.submit(record, gesture, this.say);
     this.told(name, false);
   }
 
-  /** Tell rules that ask for a key whether it is held.
-   * @type {(name: string, down: boolean, gesture: number) => void} */
-  #tellRules(name, down, gesture) {
+  /** What tells rules that ask for a key whether it is held.
+   * @type {(name: string, down: boolean) => Command[]} */
+  #forRules(name, down) {
     const key = this.ruleKeys.indexOf(name);
-    if (key >= 0) this.run.submit({ type: 'hold_key', key, down }, gesture);
+    return key < 0 ? [] : [{ type: 'hold_key', key, down }];
   }
 
   // Let go the keys that a keyboard holds, as it types elsewhere now.

@@ -15,13 +15,17 @@ export async function read(content, kernels) {
   return [level, () => new World(exports(), image, level.about)];
 }
 
+// What did not come, or not whole: it may come when it is asked for again.
+export class Lost extends Refusal {}
+
 /** @type {Map<string, Promise<WebAssembly.Module>>} */
 const modules = new Map();
 
 /** @type {(address: string) => Promise<Response>} */
 async function fetched(address) {
   const answer = await fetch(address).catch(() => null);
-  if (!answer?.ok) throw new Refusal(`There is no file ${address} here.`);
+  if (!answer) throw new Lost(`${address} could not be fetched.`);
+  if (!answer.ok) throw new Lost(`There is no file ${address} here.`);
   return answer;
 }
 
@@ -34,7 +38,7 @@ async function unpacked(address) {
     if (first === 0) return await blob.arrayBuffer();
     return await new Response(blob.stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
   } catch {
-    throw new Refusal(`${address} was cut off or damaged.`);
+    throw new Lost(`${address} was cut off or damaged.`);
   }
 }
 
@@ -45,5 +49,7 @@ export async function load(address, kernels = new URL('kernels.wasm.gz', import.
   const key = String(kernels);
   const module = modules.get(key) ?? unpacked(key).then(WebAssembly.compile);
   modules.set(key, module);
+  // What has failed is not kept.
+  module.catch(() => modules.delete(key));
   return read(await unpacked(address), module);
 }

@@ -79,6 +79,8 @@ export class Goals {
     end.querySelector('p')?.replaceChildren(outcome.text, outcome.text ? element('br') : '', seconds);
     end.querySelector('div')?.replaceChildren(...(outcome.isWon ? stars(outcome.stars) : []));
     end.classList.toggle('lost', !outcome.isWon);
+    // Who has lost is not sent on.
+    for (const next of end.querySelectorAll('a')) next.hidden = !outcome.isWon;
     end.hidden = false;
     this.places.again.focus({ preventScroll: true });
   }

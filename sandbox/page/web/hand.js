@@ -16,8 +16,8 @@ const NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 // Two taps so soon after each other [ms] and so near to each other [pixels] are one gesture.
 const TWICE = 350, BESIDE = 30;
-// A press that rests so long [ms] asks for a menu.
-const LONG = 500;
+// A press that rests so long [ms] asks for a menu; what moves farther [pixels] rests no more: it drags.
+const LONG = 500, RESTS = 10;
 /** @typedef {{ x: number, y: number }} Pixel */
 /** Where and when a finger came down [ms].
  * @typedef {Pixel & { time: number }} Touch */
@@ -39,8 +39,8 @@ function shifted(point, beside, within) {
   const grains = 10 ** Math.max(3, Math.ceil(-Math.log10(within / 28)));
   return [Math.round((point[0] + beside[0]) * grains) / grains, Math.round((point[1] + beside[1]) * grains) / grains];
 }
-/** @type {(one: Pixel, two: Pixel) => boolean} */
-const isNear = (one, two) => Math.hypot(one.x - two.x, one.y - two.y) < BESIDE;
+/** @type {(one: Pixel, two: Pixel, within: number) => boolean} */
+const isNear = (one, two, within) => Math.hypot(one.x - two.x, one.y - two.y) <= within;
 
 // What of a world lies near a point [m].
 class Near {
@@ -275,8 +275,8 @@ export class Hands {
   /** Ask what is to be done to a particle, with a finger that has rested on it.
    * @type {(pointer: Pointer, particle: number) => void} */
   #ask(pointer, particle) {
-    if (pointer.hand === null || !this.#heldBy(pointer)) return;
-    this.release(pointer.hand);
+    if (pointer.hand !== null && !this.#heldBy(pointer)) return;
+    if (pointer.hand !== null) this.release(pointer.hand);
     pointer.kind = 'done';
     this.menu({ particle, x: pointer.x, y: pointer.y });
   }
@@ -284,7 +284,8 @@ export class Hands {
   /** Two taps where nothing is show all again.
    * @type {(began: Touch, ended: number) => void} */
   #tap(began, ended) {
-    const first = this.#tapped, isSecond = first !== null && ended - first.time < TWICE && isNear(began, first);
+    const first = this.#tapped, isSecond = first !== null && ended - first.time < TWICE
+      && isNear(began, first, BESIDE);
     this.#tapped = isSecond ? null : began;
     if (isSecond) this.fit();
   }
@@ -294,7 +295,7 @@ export class Hands {
     if (particle === null) return;
     pointer.kind = 'done';
     const type = near.inverse_mass[particle] > 0 ? 'pin' : 'unpin';
-    if (!this.run.submit({ type, particle }, this.run.newGesture())) this.say(this.run.refused);
+    this.run.submit({ type, particle }, this.run.newGesture(), this.say);
   }
 
   /** @type {(particle: number | null, pointer: Pointer) => void} */
@@ -308,13 +309,12 @@ export class Hands {
    * @type {(particle: number) => void} */
   remove(particle) {
     const record = /** @type {any} */ ({ type: 'remove', particle: this.run.world.names.particle[particle] });
-    if (!this.run.submit(record, this.run.newGesture())) this.say(this.run.refused);
+    this.run.submit(record, this.run.newGesture(), this.say);
   }
 
   /** @type {(gesture: number, springs: number[]) => void} */
   #cut(gesture, springs) {
-    if (!springs.length || this.run.submit({ type: 'cut_springs', springs }, gesture)) return;
-    this.say(this.run.refused);
+    if (springs.length) this.run.submit({ type: 'cut_springs', springs }, gesture, this.say);
   }
 
   /** Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
@@ -334,10 +334,7 @@ export class Hands {
     const limit = STRENGTH * near.bodyMass(particle);
     /** @type {Command} */
     const record = { type: 'grab', grab: hand, particle, target, strength: STRENGTH, radius: near.grip(particle) };
-    if (!this.run.submit(record, gesture)) {
-      this.say(this.run.refused);
-      return null;
-    }
+    if (!this.run.submit(record, gesture, this.say)) return null;
     this.#held.set(hand, { particle, gesture, beside, within, target, isMoved: false, limit });
     return hand;
   }
@@ -359,8 +356,8 @@ export class Hands {
     } else if (pointer.kind === 'make') this.maker.go(point, pointer.within);
     else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
     Object.assign(pointer, { x, y });
-    if (isNear(pointer, pointer.began)) return;
-    pointer.isBeside = false;
+    pointer.isBeside &&= isNear(pointer, pointer.began, BESIDE);
+    if (isNear(pointer, pointer.began, RESTS)) return;
     pointer.asks = null;
     clearTimeout(pointer.timer);
   }
@@ -417,7 +414,7 @@ export class Hands {
     if (!held) return;
     const { gesture } = held;
     this.#held.delete(hand);
-    if (this.run.world.isHeld(hand)) this.run.submit({ type: 'release', grab: hand }, gesture);
+    if (this.run.world.isHeld(hand)) this.run.submit({ type: 'release', grab: hand }, gesture, this.say);
   }
 
   releaseAll() {
@@ -440,9 +437,12 @@ export class Hands {
   // Before a tick: send every hand to where its pointer is now.
   update() {
     for (const [hand, held] of this.#held) {
-      if (!held.isMoved) continue;
+      // What is held may have gone.
+      if (!this.run.world.isHeld(hand)) this.#held.delete(hand);
+      else if (held.isMoved) {
+        this.run.submit({ type: 'move_grab', grab: hand, target: held.target }, held.gesture, this.say);
+      }
       held.isMoved = false;
-      this.run.submit({ type: 'move_grab', grab: hand, target: held.target }, held.gesture);
     }
   }
 

@@ -20,6 +20,15 @@ const note = ({ gestures }, gesture, { type, grab }) => {
   if (type === 'grab' && isWhole(grab, 0, HANDS)) gestures.set(grab, gesture);
 };
 
+// A link to another level, which it names where that is a shipped one.
+export class Elsewhere extends Refusal {
+  /** @param {unknown} level @param {string} text */
+  constructor(level, text) {
+    super(text);
+    this.level = level;
+  }
+}
+
 /** Whether the fragment of an address holds a run.
  * @type {(fragment: string) => boolean} */
 export const isLink = (fragment) => fragment.startsWith(`#${MARK}`);
@@ -149,8 +158,8 @@ export async function linked(fragment, { level, digest, physics }) {
     throw new Refusal(BROKEN);
   }
   if (link.digest !== digest || exactly(link.level) !== exactly(level)) {
-    const isSame = typeof level === 'string' && link.level === level;
-    throw new Refusal(`This link is to another ${isSame ? 'edition of this ' : ''}level.`);
+    throw exactly(link.level) === exactly(level) ? new Refusal('This link is to another edition of this level.')
+      : new Elsewhere(link.level, 'This link is to another level.');
   }
   /** @type {Done[]} */
   const commands = [];

@@ -1,18 +1,24 @@
 // Main: the page around a toy: its bars, panel, timeline and keys, and what it says.
 import { Refusal } from './commands.js';
-import { read } from './files.js';
-import { controlsOf, Gamepads } from './gamepad.js';
+import { Lost, read } from './files.js';
 import { Goals } from './goals.js';
-import { isLink, linked } from './link.js';
+import { Keys } from './keys.js';
+import { Elsewhere, isLink, linked } from './link.js';
 import { Menu } from './menu.js';
+import { Messages, RANKS } from './messages.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
 import { Toy } from './toy.js';
-/** @import { Fresh, Level, ToyEvents } from './types.js' */
+/** @import { Fresh, Level, Message, ToyEvents } from './types.js' */
 
-const SLOW = 0.2, NARROW = 640;
-/** @type {Record<string, string | undefined>} */
-const ARROWS = { left: '←', right: '→', up: '↑', down: '↓' };
+// Slow motion; free room around a level [pixels].
+const SLOW = 0.2, BESIDE = 8;
+// The least part of the height that words leave to a level.
+const LEAST = 0.35;
+// Where what there is to do, and a panel, leave room for a level.
+const roomy = matchMedia('(min-width: 641px) and (min-height: 501px)'), byFinger = matchMedia('(hover: none)');
+// What is said stands at these places.
+const PLACES = ['verdict', 'state', 'refused'];
 const TOOLS = ['drag', 'pin', 'cut', 'jelly', 'wood', 'steel', 'rope', 'spring', 'rod', 'erase'];
 const DRAW = 'Draw around a shape: it becomes ', PULL = 'Pull from one thing to another, or to the air: ';
 /** @type {Record<string, string | undefined>} */
@@ -20,8 +26,11 @@ const MAKES = { jelly: `${DRAW}jelly.`, wood: `${DRAW}wood.`, steel: `${DRAW}ste
   spring: `${PULL}a spring.`, rod: `${PULL}a rod.`, erase: 'Touch a thing: it goes, with what hangs on it.' };
 /** @type {Record<string, string | undefined>} */
 const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', b: 'make', j: 'jelly', o: 'rope', x: 'erase', m: 'sound', h: 'tune', '?': 'hint' };
+/** With Ctrl, or with Command on a Mac.
+ * @type {Record<string, string | undefined>} */
+const COMMANDS = { z: 'undo', y: 'redo', Z: 'redo' };
 /** Parts of the page that are no plain elements.
- * @typedef {{ picture: HTMLCanvasElement, time: HTMLInputElement }} Parts */
+ * @typedef {{ picture: HTMLCanvasElement, verifying: HTMLProgressElement, time: HTMLInputElement }} Parts */
 /** @template {string} I @typedef {I extends keyof Parts ? Parts[I] : HTMLElement} Part */
 /** @template {string} I @param {I} id @returns {Part<I>} */
 function byId(id) {
@@ -35,43 +44,65 @@ const press = (button, isOn) => button?.setAttribute('aria-pressed', String(isOn
 const isTypedInto = (target) => target instanceof Element && target.matches('input, select, .pad');
 
 class Page {
-  // Names of the keys that have buttons, and what ends with these.
-  #keys = '';
-  #closing = new AbortController();
-  /** @type {Gamepads | undefined} */
-  gamepads;
+  #messages = new Messages();
+  // The last gesture that a link or a file holds.
+  #kept;
+  #isLeaving = false;
 
-  /** words: what there is to say at first.
-   * @param {Level} level @param {Fresh} fresh @param {string} words */
-  constructor(level, fresh, words) {
+  /** said: what there is to say at first.
+   * @param {Level} level @param {Fresh} fresh @param {Message | null} said */
+  constructor(level, fresh, said) {
     this.toy = new Toy(byId('picture'), level, fresh, window);
-    this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level);
+    this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level,
+      (text) => this.#say({ rank: 'refusal', text, place: 'refused' }));
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), on: byId('end-on') });
     this.menu = new Menu(byId('menu'), this.toy, level.about.adding.made.words);
+    this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
+    this.#kept = this.toy.run.gesture;
     this.#bind();
     this.#listen();
-    this.#addDriveKeys();
+    this.#listenToPage();
     this.#theme(this.toy.theme.name);
-    this.#makeRoom();
-    addEventListener('resize', () => {
-      this.#makeRoom();
-      this.panel.show();
-    });
-    // Who turns a phone has another picture, whatever was pinched before.
-    matchMedia('(orientation: portrait)').addEventListener('change', () => this.toy.fit());
-    if (level.recording) this.#verify();
-    this.#say(words || (level.recording ? 'A recording. Touch it to take over.' : ''), words && 'bad');
+    if (level.recording) {
+      this.#say({ rank: 'tip', text: 'A recording. Touch it to take over.' });
+      this.#verify();
+    }
+    if (said) this.#say(said);
+    // Words that leave little of the level wait behind their button.
+    if (byId('room').offsetHeight < innerHeight * LEAST) this.#show('hints', 'hint');
     // A page of a disk has no address that others could open.
-    byId('link').hidden = !location.protocol.startsWith('http');
+    for (const id of ['link', 'end-send']) byId(id).hidden = !location.protocol.startsWith('http');
     byId('picture').focus({ preventScroll: true });
+  }
+
+  #listenToPage() {
+    const { toy } = this;
+    // The level is shown where nothing covers it.
+    new ResizeObserver(() => {
+      const { left, top, right, bottom } = byId('room').getBoundingClientRect();
+      if (right - left > 2 * BESIDE && bottom - top > 2 * BESIDE) {
+        toy.room = [left + BESIDE, top + BESIDE, right - BESIDE, bottom - BESIDE];
+      }
+    }).observe(byId('room'));
+    addEventListener('resize', () => this.panel.show());
+    // Who turns a phone has another picture, whatever was pinched before.
+    matchMedia('(orientation: portrait)').addEventListener('change', () => toy.fit());
+    document.addEventListener('click', ({ target, ctrlKey, metaKey, shiftKey }) => {
+      // Who follows a link of the page means to leave it, but not for another tab.
+      if (target instanceof Element && target.closest('a')) this.#isLeaving = !(ctrlKey || metaKey || shiftKey);
+    });
+    addEventListener('pageshow', () => { this.#isLeaving = false; });
+    addEventListener('beforeunload', (event) => {
+      if (!this.#isLeaving && toy.run.commands.some(({ gesture }) => gesture > this.#kept)) event.preventDefault();
+    });
   }
 
   #bind() {
     const { toy } = this;
     /** @type {Record<string, () => unknown>} */
     const acts = {
-      play: () => toy.toggle(), step: () => toy.step(), again: () => toy.restart(), undo: () => toy.undo(),
+      play: () => toy.toggle(), step: () => toy.step(), again: () => toy.restart(), undo: () => toy.undo(), redo: () => toy.redo(),
       slow: () => {
         toy.speed = toy.speed === 1 ? SLOW : 1;
         press(byId('slow'), toy.speed !== 1);
@@ -81,7 +112,11 @@ class Page {
         press(byId('sound'), toy.sound.isOn);
       },
       tune: () => this.#show('panel', 'tune'), make: () => this.#show('makers', 'make'), hint: () => this.#show('hints', 'hint'), save: () => this.#save(),
-      link: () => this.#copyLink(),
+      link: () => this.#copyLink(), 'end-send': () => this.#send(),
+      more: () => {
+        press(byId('more'), byId('tools').classList.toggle('open'));
+        byId('more').setAttribute('aria-expanded', String(byId('tools').classList.contains('open')));
+      },
     };
     for (const tool of TOOLS) acts[tool] = () => this.#choose(tool);
     for (const [id, act] of Object.entries(acts)) byId(id).addEventListener('click', act);
@@ -93,7 +128,7 @@ class Page {
     addEventListener('keydown', (event) => {
       const isCommand = event.ctrlKey || event.metaKey;
       if (event.defaultPrevented || event.altKey || isTypedInto(event.target)) return;
-      const act = isCommand ? event.key === 'z' && acts.undo : acts[KEYS[event.key] ?? ''];
+      const act = acts[(isCommand ? COMMANDS : KEYS)[isCommand && event.shiftKey ? event.key.toUpperCase() : event.key] ?? ''];
       if (!act) return;
       act();
       event.preventDefault();
@@ -106,14 +141,21 @@ class Page {
     const on = (name, act) => toy.addEventListener(name, (event) => {
       if (event instanceof CustomEvent) act(event.detail);
     });
-    on('say', ({ text, kind }) => this.#say(text, kind));
+    on('say', (message) => this.#say(message));
     on('menu', (asked) => this.menu.open(asked));
     on('theme', ({ name }) => this.#theme(name));
     on('pace', ({ isBehind }) => { byId('pace').textContent = isBehind ? 'slower than real time' : ''; });
-    on('jump', () => this.panel.show());
+    on('jump', () => {
+      this.#messages.end('jump');
+      this.#showMessages();
+      this.panel.show();
+    });
+    // Both would leave little of the level.
+    on('outcome', () => { if (!byId('panel').hidden) this.#show('panel', 'tune'); });
     on('draw', () => {
       this.#drawTime();
-      if (Object.keys(toy.drives.keys).join() !== this.#keys) this.#addDriveKeys();
+      this.keys.follow();
+      this.#showMessages();
       if (!byId('panel').hidden) this.panel.follow();
     });
     on('pause', ({ isPaused }) => {
@@ -122,8 +164,8 @@ class Page {
       button.setAttribute('aria-label', isPaused ? 'Play' : 'Pause');
       button.querySelector('path')?.setAttribute('d', isPaused ? 'M8 5l11 7-11 7z' : 'M8 5v14M16 5v14');
     });
-    // Who plays has read what there is to do.
-    byId('picture').addEventListener('pointerdown', () => {
+    // Who has played has read what there is to do. While somebody plays the level stays where it is.
+    byId('picture').addEventListener('pointerup', () => {
       if (!byId('hints').hidden) this.#show('hints', 'hint');
     });
   }
@@ -134,10 +176,29 @@ class Page {
     this.panel.show();
   }
 
-  /** @type {(text: string, kind?: string) => void} */
-  #say(text, kind = '') {
-    byId('state').textContent = text;
-    byId('state').className = kind;
+  /** @type {(message: Message) => void} */
+  #say(message) {
+    const { lasts } = RANKS[message.rank];
+    this.#messages.say(message, this.#moment);
+    this.#showMessages();
+    // Also while time stands, when nothing is drawn.
+    if (lasts) setTimeout(() => this.#showMessages(), 1000 * lasts + 20);
+  }
+
+  get #moment() {
+    const { run } = this.toy, { [run.commands.length - 1]: last } = run.commands;
+    return { tick: run.time, gesture: run.gesture, deed: last?.gesture ?? 0, now: performance.now() / 1000 };
+  }
+
+  #showMessages() {
+    this.#messages.follow(this.#moment);
+    for (const place of PLACES) {
+      const box = byId(place), { text = '', rank, isGood, href } = this.#messages.shown(place) ?? {};
+      if (box.dataset.said === text) continue;
+      box.dataset.said = text;
+      box.className = rank === 'verdict' ? (isGood ? 'good' : 'bad') : rank ?? '';
+      box.replaceChildren(text, ...(href ? [' ', element('a', { href, textContent: 'Open it there.' })] : []));
+    }
   }
 
   /** Show a part of the page by its button, or hide it.
@@ -148,20 +209,18 @@ class Page {
     press(byId(button), !part.hidden);
     byId(button).setAttribute('aria-expanded', String(!part.hidden));
     this.panel.show();
-    this.#makeRoom();
-  }
-
-  // The level is shown above what covers the lower edge.
-  #makeRoom() {
-    const covers = innerWidth < NARROW && !byId('panel').hidden;
-    this.toy.covered = covers ? innerHeight - byId('panel').getBoundingClientRect().top : byId('bars').offsetHeight;
+    // A tool is in hand as long as it is seen.
+    if (id === 'makers' && part.hidden && this.toy.hands.tool in MAKES) this.#choose('drag');
+    if (id !== 'hints' && !part.hidden && !roomy.matches && !byId('hints').hidden) this.#show('hints', 'hint');
   }
 
   /** @type {(tool: string) => void} */
   #choose(tool) {
     this.toy.hands.tool = tool;
     for (const name of TOOLS) press(byId(name), name === tool);
-    if (tool in MAKES) this.#say(MAKES[tool] ?? '');
+    this.#messages.end('tool');
+    this.#showMessages();
+    if (tool in MAKES) this.#say({ rank: 'tip', text: MAKES[tool] ?? '' });
   }
 
   #drawTime() {
@@ -172,99 +231,69 @@ class Page {
     byId('clock').textContent = text;
   }
 
-  // A button for each key that drives something, or that a rule asks for; made again where something joined.
-  #addDriveKeys() {
-    const { drives } = this.toy;
-    this.#keys = Object.keys(drives.keys).join();
-    byId('keys').replaceChildren();
-    this.#closing.abort();
-    this.#closing = new AbortController();
-    const { signal } = this.#closing;
-    /** @type {Map<string, HTMLButtonElement>} */
-    const buttons = new Map();
-    drives.told = (name, isHeld) => press(buttons.get(name), isHeld);
-    const controls = controlsOf(Object.keys(drives.keys));
-    /** Caps say what presses them on what was used last.
-     * @type {(isOnPad: boolean) => void} */
-    const show = (isOnPad) => {
-      byId('keys').classList.toggle('on-pad', isOnPad);
-      for (const [name, button] of buttons) {
-        const said = isOnPad ? controls.get(name) ?? name : name;
-        button.textContent = ARROWS[said] ?? said.toUpperCase();
-      }
-    };
-    // Who touches has them below both thumbs from then on.
-    const spread = () => byId('keys').classList.add('spread');
-    if (matchMedia('(hover: none)').matches) spread();
-    addEventListener('keydown', (event) => { if (drives.has(event)) show(false); }, { signal });
-    addEventListener('pointerdown', ({ pointerType }) => { if (pointerType === 'touch') spread(); }, { signal, capture: true });
-    for (const name of Object.keys(drives.keys)) {
-      const button = element('button', { type: 'button', className: 'key' });
-      button.setAttribute('aria-label', `Key ${name}`);
-      button.addEventListener('pointerdown', (event) => {
-        if (event.button !== 0) return;
-        show(false);
-        button.setPointerCapture(event.pointerId);
-        drives.press(name);
-      });
-      for (const end of ['lostpointercapture', 'blur', 'keyup']) button.addEventListener(end,
-        () => drives.release(name));
-      button.addEventListener('keydown', (event) => {
-        if ([' ', 'Enter'].includes(event.key)) drives.press(name);
-      });
-      buttons.set(name, button);
-    }
-    byId('keys').append(...buttons.values());
-    show(false);
-    this.gamepads ??= new Gamepads(drives);
-    this.gamepads.follow(() => show(true));
-  }
-
   async #verify() {
     const { fresh, level: { recording } } = this.toy;
     if (!recording) return;
     const count = recording.hashes.length - 1, isLinked = recording.end !== undefined;
-    /** @type {(text: string, kind?: string) => void} */
-    const say = (text, kind = '') => {
-      byId('verdict').textContent = text;
-      byId('verdict').className = kind;
+    /** @type {(text: string, isGood?: boolean) => void} */
+    const say = (text, isGood = false) => {
+      bar.hidden = true;
+      this.#say({ rank: 'verdict', text, isGood });
     };
-    const bar = element('progress', { max: count });
-    bar.setAttribute('aria-label', 'Verifying');
-    byId('verdict').replaceChildren('Verifying ', bar);
+    const bar = byId('verifying');
+    bar.max = count;
+    bar.hidden = false;
     this.goals.isAsSent = isLinked;
     try {
       const wrong = await verified(fresh(), recording, (done) => { bar.value = done; });
       this.goals.isAsSent = isLinked && wrong !== null;
       const seconds = `${((wrong?.tick ?? 0) / this.toy.rate).toFixed(1)} s`;
-      if (wrong?.words) say(`Not verified: at ${seconds} ${wrong.words}.`, 'bad');
-      else if (wrong) say(`Not verified: this browser comes to other bits at ${seconds}, tick ${wrong.tick}.`, 'bad');
-      else if (isLinked) say(`Verified: ${count} ticks, the very state that the sender had.`, 'good');
-      else say(`Verified: every bit of ${count} ticks is that of the recording.`, 'good');
+      if (wrong?.words) say(`Not verified: at ${seconds} ${wrong.words}.`);
+      else if (wrong) say(`Not verified: this browser comes to other bits at ${seconds}, tick ${wrong.tick}.`);
+      else if (isLinked) say(`Verified: ${count} ticks, the very state that the sender had.`, true);
+      else say(`Verified: every bit of ${count} ticks is that of the recording.`, true);
     } catch (error) {
-      say('Not verified: this recording could not be compared.', 'bad');
+      say('Not verified: this recording could not be compared.');
       console.error(error);
     }
   }
 
-  async #copyLink() {
-    const { toy } = this;
-    toy.pause();
-    const fragment = await toy.link();
+  /** The address of this page with what was done, which it is from then on; null: that is too long.
+   * @type {() => Promise<string | null>} */
+  async #linked() {
+    const { gesture } = this.toy.run, fragment = await this.toy.link();
     if (fragment === null) {
-      this.#say('This run is too long for a link: save it as a file, and send that.', 'bad');
-      return;
+      this.#say({ rank: 'refusal', text: 'This run is too long for a link: save it as a file, and send that.' });
+      return null;
     }
     // Without a new page: it is the address of what is here.
     history.replaceState(null, '', fragment);
-    const isCopied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
-    const length = location.href.length.toLocaleString('en');
-    if (isCopied) this.#say(`The link is copied, ${length} characters. Whoever opens it sees what you did.`, 'good');
-    else this.#say(`The address of this page is the link now, ${length} characters: copy it from there.`, 'good');
+    this.#kept = gesture;
+    return location.href;
+  }
+
+  async #copyLink() {
+    const address = await this.#linked();
+    if (address === null) return;
+    const isCopied = await navigator.clipboard?.writeText(address).then(() => true, () => false);
+    const length = address.length.toLocaleString('en');
+    this.#say({ rank: 'done', text: isCopied ? `The link is copied, ${length} characters. Whoever opens it sees what you did.`
+      : `The address of this page is the link now, ${length} characters: copy it from there.` });
+  }
+
+  // To somebody, by what a device has for that; a link where it has nothing.
+  async #send() {
+    if (!navigator.share || !byFinger.matches) {
+      await this.#copyLink();
+      return;
+    }
+    const url = await this.#linked();
+    // Who thinks better of it is told nothing.
+    if (url !== null) await navigator.share({ title: document.title, url }).catch(() => {});
   }
 
   async #save() {
-    const { toy } = this;
+    const { toy } = this, { isPaused: wasPaused, run: { gesture } } = toy;
     toy.pause();
     try {
       const link = document.createElement('a');
@@ -272,37 +301,53 @@ class Page {
       link.download = `${toy.level.name.toLowerCase().replace(/[^a-z0-9]+/g, '_') || 'run'}.replay.gz`;
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 60000);
-      this.#say(`Saved ${link.download}: sandbox replay verifies it.`, 'good');
+      this.#kept = gesture;
+      this.#say({ rank: 'done', text: `Saved ${link.download}. Spring Sandbox plays it, and verifies each bit of it.` });
     } catch (error) {
-      this.#say('The recording could not be written.', 'bad');
+      this.#say({ rank: 'refusal', text: 'The recording could not be written.' });
       console.error(error);
     }
+    if (!wasPaused) toy.play();
   }
+}
+
+/** Where the page of another level is on this site, with a link to a run of it; undefined: nowhere.
+ * @type {(stem: unknown) => Promise<string | undefined>} */
+async function pageOf(stem) {
+  if (!document.querySelector('header a') || !/^[\w-]+$/.test(String(stem))) return undefined;
+  const answer = await fetch(`${stem}.html`, { method: 'HEAD' }).catch(() => null);
+  return answer?.ok ? `${stem}.html${location.hash}` : undefined;
 }
 
 /** Take the run of a link in the address as the recording of a level. What there is to say: why it cannot be.
- * @type {(level: Level) => Promise<string>} */
+ * @type {(level: Level) => Promise<Message | null>} */
 async function follow(level) {
-  if (!isLink(location.hash)) return '';
+  if (!isLink(location.hash)) return null;
   try {
     [level.recording, level.begin] = await linked(location.hash, level.link);
-    return '';
+    return null;
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
-    return error.message;
+    const href = error instanceof Elsewhere ? await pageOf(error.level) : undefined;
+    return { rank: 'verdict', text: error.message, href };
   }
 }
 
-/** Open the page of a toy whose parts a promise gives: what its file holds, and the kernels.
- * @type {(parts: Promise<[Level, Fresh]>) => Promise<void>} */
+/** Open the page of a toy whose parts come of a promise: what its file holds, and the kernels.
+ * @type {(parts: () => Promise<[Level, Fresh]>) => Promise<void>} */
 export async function start(parts) {
+  const fault = byId('error'), retry = byId('retry');
+  fault.hidden = retry.hidden = true;
   try {
-    const [level, fresh] = await parts, words = await follow(level);
-    globalThis.page = new Page(level, fresh, words);
+    const [level, fresh] = await parts(), said = await follow(level);
+    globalThis.page = new Page(level, fresh, said);
     addEventListener('hashchange', () => { if (isLink(location.hash)) location.reload(); });
   } catch (error) {
-    byId('error').textContent = error instanceof Refusal ? error.message : 'This page could not be opened here.';
-    byId('error').hidden = false;
+    fault.textContent = error instanceof Refusal ? error.message : 'This page could not be opened here.';
+    fault.hidden = false;
+    // What did not come may come yet.
+    retry.hidden = !(error instanceof Lost);
+    retry.onclick = () => start(parts);
     if (!(error instanceof Refusal)) console.error(error);
   }
 }

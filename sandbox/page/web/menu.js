@@ -13,6 +13,11 @@ export class Menu {
       if (target instanceof Node && !box.contains(target)) this.close();
     }, true);
     addEventListener('keydown', ({ key }) => { if (key === 'Escape') this.close(); });
+    // What begins elsewhere, by whatever means, ends it.
+    for (const name of ['outcome', 'jump']) toy.addEventListener(name, () => this.close());
+    document.addEventListener('focusin', ({ target }) => {
+      if (target instanceof Node && !box.contains(target)) this.close();
+    });
   }
 
   close() {
@@ -55,13 +60,13 @@ export class Menu {
   /** @type {(material: number, word: string, stiffness: number, damping: number) => void} */
   #soften(material, word, stiffness, damping) {
     const { ramp_ticks: duration } = this.toy.level;
-    this.#submit({ type: 'set_coefficients', material, stiffness, damping, duration });
-    this.toy.say(`Everything of ${this.toy.world.names.material[material]} is ${word} now.`);
+    if (this.#submit({ type: 'set_coefficients', material, stiffness, damping, duration })) this.toy.say(`Everything of ${this.toy.world.names.material[material]} is ${word} now.`, 'done');
   }
 
-  /** @type {(record: import('./types.js').Command) => void} */
+  /** Do it, or say why it cannot be done. Whether it was.
+   * @type {(record: import('./types.js').Command) => boolean} */
   #submit(record) {
     const { run } = this.toy;
-    if (!run.submit(record, run.newGesture())) this.toy.say(run.refused);
+    return run.submit(record, run.newGesture(), (text) => this.toy.say(text));
   }
 }

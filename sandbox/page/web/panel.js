@@ -39,11 +39,13 @@ export class Panel {
   chosen = null;
 
   /** rows: materials, by the words of firmness their Cs and Cd; what sags, the sentence that says how far, and the map of
-   * the pad, where something sags.
-   * @param {HTMLElement} root @param {Run} run @param {MaterialRow[]} rows @param {Level} level */
-  constructor(root, run, rows, level) {
+   * the pad, where something sags. say: tells a person in the panel what was refused.
+   * @param {HTMLElement} root @param {Run} run @param {MaterialRow[]} rows @param {Level} level
+   * @param {(text: string) => void} say */
+  constructor(root, run, rows, level, say) {
     this.run = run;
     this.level = level;
+    this.say = say;
     const materials = this.materials = rows.map((row) => ({ ...row, sags: row.map ? new SagMap(row.map) : null,
       scale: row.map ? new Scale(row.map.lowest, row.map.rest) : PLAIN }));
     this.chosen = materials.find((each) => each.is_first) ?? materials[0] ?? null;
@@ -93,7 +95,9 @@ export class Panel {
       if (!field.reportValidity()) field.value = String(gravity[k]);
       else if (value !== gravity[k]) {
         gravity[k] = value;
-        this.run.submit({ type: 'set_gravity', gravity, duration: this.level.ramp_ticks }, this.run.newGesture());
+        const { ramp_ticks: duration } = this.level;
+        this.run.submit({ type: 'set_gravity', gravity, duration }, this.run.newGesture(), this.say);
+        field.value = String(this.run.world.settings().gravity[k]);
       }
     });
     return { field, label: element('label', {}, `Gravity ${axis} [m/s²]`, field) };
@@ -112,7 +116,10 @@ export class Panel {
     if (!this.chosen) return;
     this.#gesture ??= this.run.newGesture();
     const { slot: material } = this.chosen, { ramp_ticks: duration } = this.level;
-    this.run.submit({ type: 'set_coefficients', stiffness, damping, material, duration }, this.#gesture);
+    const isDone = this.run.submit({ type: 'set_coefficients', stiffness, damping, material, duration }, this.#gesture,
+      this.say);
+    // What shows the values goes back, also what is still being moved.
+    if (!isDone) this.#end();
     this.show();
   }
 

@@ -15,8 +15,14 @@ function isGoing(world, ending) {
   if (ending.type === 'release') return world.isHeld(ending.grab);
   return world.view('state.actuator_value')[ending.part] !== 0;
 }
+/** What an undo took back: commands from a place on, which led from a tick on to another; count, last: the commands that
+ * are left after it.
+ * @typedef {{ place: number, tick: number, taken: Done[], to: number, end: number, count: number, last: Done | undefined }} Undone */
 
 export class Run {
+  /** The newest last.
+   * @type {Undone[]} */
+  #undone = [];
   // Whether what goes on now was begun by what is told again, so that nobody is there to end it.
   #isTold = true;
 
@@ -31,8 +37,6 @@ export class Run {
     // The command that comes next; how often what would come later was forgotten.
     this.next = 0;
     this.revision = 0;
-    // Why the last command was refused that was, in words.
-    this.refused = '';
     this.gesture = commands.reduce((most, each) => Math.max(most, each.gesture), 0);
     this.#follow();
   }
@@ -60,14 +64,14 @@ export class Run {
     this.last = this.time;
   }
 
-  /** The same. Whether it could be.
-   * @type {(record: Command, gesture: number) => boolean} */
-  submit(record, gesture) {
+  /** The same; where it cannot be, say why. Whether it could be.
+   * @type {(record: Command, gesture: number, say: (text: string) => void) => boolean} */
+  submit(record, gesture, say) {
     try {
       this.command(record, gesture);
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
-      this.refused = error.message;
+      say(error.message);
       return false;
     }
     return true;
@@ -93,7 +97,9 @@ export class Run {
       else if (record.type === 'hold_key') going.set(`key ${record.key}`, [{ ...record, down: false }, begun]);
       else if (record.type === 'set_drive') going.set(`part ${record.part}`, [{ ...record, value: 0 }, begun]);
     }
-    for (const [ending, begun] of going.values()) if (isGoing(this.world, ending)) this.submit(ending, gesture ?? begun);
+    for (const [ending, begun] of going.values()) {
+      if (isGoing(this.world, ending)) this.submit(ending, gesture ?? begun, () => {});
+    }
   }
 
   // Forget what would come later.
@@ -157,10 +163,27 @@ export class Run {
     if (!this.next) return false;
     const { gesture } = this.commands[this.next - 1],
       place = this.commands.findIndex((each) => each.gesture === gesture);
-    const { tick } = this.commands[place];
-    this.seek(tick, place);
+    const { tick } = this.commands[place], { time: to, last: end } = this;
+    const taken = this.seek(tick, place);
     this.takeOver();
     this.#endAll();
+    const { length: count, [count - 1]: last } = this.commands;
+    this.#undone.push({ place, tick, taken, to, end, count, last });
+    return true;
+  }
+
+  // Do again what was undone last, and go to where the run was then, unless something was done since. Whether there was it.
+  redo() {
+    const undone = this.#undone.pop(), { length, [length - 1]: last } = this.commands;
+    if (!undone || undone.count !== length || undone.last !== last) {
+      this.#undone = [];
+      return false;
+    }
+    this.seek(undone.tick, undone.place);
+    this.takeOver();
+    this.commands.push(...undone.taken);
+    this.last = undone.end;
+    this.seek(undone.to);
     return true;
   }
 }

@@ -13,16 +13,18 @@ import { written } from './recording.js';
 import { fired, outcome } from './rules.js';
 import { Run } from './run.js';
 import { Sound } from './sound.js';
-/** @import { Command, Fresh, Level, NamedRecord, Theme, ToyEvents } from './types.js' */
+/** @import { Box, Command, Fresh, Level, NamedRecord, Rank, Theme, ToyEvents } from './types.js' */
 
 const KEY_ZOOM = 1.15, SLICE = 12;
+// How long the view takes to where another part of the canvas is free [s].
+const GLIDE = 0.3;
 const TYPED_INTO = 'input, select, textarea, [contenteditable], .pad';
-const light = matchMedia('(prefers-color-scheme: light)');
+const light = matchMedia('(prefers-color-scheme: light)'), calm = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** @typedef {'dark' | 'light'} ThemeName */
 
 // It tells what happens as events: tick, break { springs }, check { name, holds, value }, rules { actions },
-// outcome { isWon, text, stars, tick }, way { done, all }, say { text, kind }, menu { particle, x, y }, pause, pace { isBehind }, jump, theme and draw.
+// outcome { isWon, text, stars, tick }, way { done, all }, say { text, rank }, menu { particle, x, y }, pause, pace { isBehind }, jump, theme and draw.
 export class Toy extends EventTarget {
   #pace = new Pace();
   #isDirty = true;
@@ -34,7 +36,11 @@ export class Toy extends EventTarget {
   #previous;
   /** @type {ThemeName | null} */
   #chosenTheme = null;
-  #covered = 0;
+  /** @type {Box | null} */
+  #room = null;
+  /** From where the view goes to where the room is, and when that began [s].
+   * @type {{ x: number, y: number, zoom: number, began: number } | null} */
+  #glide = null;
   // The tick to which the run goes on in slices, where it has not come to it.
   #ahead = 0;
   #closing = new AbortController();
@@ -67,7 +73,7 @@ export class Toy extends EventTarget {
       menu: (asked) => this.#tell('menu', asked),
       changed: () => { this.#isMoved = this.#isDirty = true; }, fit: () => this.fit(), say: (text) => this.say(text),
     });
-    this.drives = new Drives(this.run, level.keys, level.about.names.key);
+    this.drives = new Drives(this.run, level.keys, level.about.names.key, (text) => this.say(text));
     this.sound = new Sound(this.world, level.sounds, level.scene.water);
     this.#checks = new Checks(level, this.world);
     this.#previous = this.world.view('state.position').slice();
@@ -95,9 +101,10 @@ export class Toy extends EventTarget {
     on(keyboard, 'blur', () => this.drives.releaseTyped());
     for (const name of ['blur', 'pagehide']) on(globalThis, name, () => this.#letGo());
     on(document, 'visibilitychange', () => this.#letGo());
-    on(canvas, 'pointerdown', () => this.refresh());
-    on(light, 'change', () => this.#follow());
-    this.#follow();
+    // Also while time stands: what is drawn there is seen, and what was made.
+    for (const name of ['pointerdown', 'pointermove', 'pointerup']) on(canvas, name, () => this.refresh());
+    on(light, 'change', () => this.#dress());
+    this.#dress();
     this.#resize();
   }
 
@@ -142,10 +149,10 @@ export class Toy extends EventTarget {
     this.dispatchEvent(new CustomEvent(name, { detail }));
   }
 
-  /** Tell a person something in a line; kind: '', 'good' or 'bad'.
-   * @type {(text: string, kind?: '' | 'good' | 'bad') => void} */
-  say(text, kind = '') {
-    this.#tell('say', { text, kind });
+  /** Tell a person something in a line; rank: see messages.js.
+   * @type {(text: string, rank?: Rank) => void} */
+  say(text, rank = 'refusal') {
+    this.#tell('say', { text, rank });
   }
 
   /** @type {ThemeName} */
@@ -162,26 +169,41 @@ export class Toy extends EventTarget {
    * @param {ThemeName | null} name */
   set theme(name) {
     this.#chosenTheme = name;
-    this.#follow();
+    this.#dress();
   }
 
-  #follow() {
+  #dress() {
     this.#tell('theme', { name: this.#themeName });
     this.refresh();
   }
 
-  /** How many pixels of the lower edge something covers.
-   * @param {number} pixels */
-  set covered(pixels) {
-    this.#covered = pixels;
+  /** Where nothing covers the canvas [pixels]: the level is shown there. null: nowhere something does.
+   * @param {Box | null} box */
+  set room(box) {
+    const { x, y, zoom } = this.camera, isFirst = !this.#room;
+    this.#room = box;
     this.#resize();
+    if (!isFirst && !this.#isMoved && !calm.matches) this.#glide = { x, y, zoom, began: performance.now() / 1000 };
   }
 
   #resize() {
     this.camera.width = Math.max(this.canvas.clientWidth, 1);
     this.camera.height = Math.max(this.canvas.clientHeight, 1);
-    if (!this.#isMoved) this.camera.fit(this.level.scene.view, this.#covered);
+    this.#glide = null;
+    if (!this.#isMoved) this.camera.fit(this.level.scene.view, this.#room);
     this.refresh();
+  }
+
+  /** Go on with the way to where the room is.
+   * @type {(seconds: number) => void} */
+  #follow(seconds) {
+    const from = this.#glide, { camera } = this;
+    if (!from || this.#isMoved) return;
+    const part = Math.min((seconds - from.began) / GLIDE, 1), left = (1 - part) ** 2;
+    camera.fit(this.level.scene.view, this.#room);
+    for (const key of /** @type {const} */ (['x', 'y', 'zoom'])) camera[key] += (from[key] - camera[key]) * left;
+    if (part < 1) this.refresh();
+    else this.#glide = null;
   }
 
   // Show the whole level.
@@ -212,6 +234,7 @@ export class Toy extends EventTarget {
   /** @type {(seconds: number) => void} */
   #draw(seconds) {
     this.#isDirty = false;
+    this.#follow(seconds);
     this.picture.draw(this.camera, this.theme, this.#previous, this.isPaused ? 1 : this.#pace.part, seconds);
     this.hands.draw(contextOf(this.canvas), this.picture.at, this.theme);
     this.#tell('draw');
@@ -225,7 +248,7 @@ export class Toy extends EventTarget {
     } catch (error) {
       this.#ahead = 0;
       this.pause();
-      this.say(error instanceof Refusal ? error.message : 'Something went wrong here; start again.', 'bad');
+      this.say(error instanceof Refusal ? error.message : 'Something went wrong here; start again.', 'fault');
       if (!(error instanceof Refusal)) console.error(error);
     }
   }
@@ -276,7 +299,7 @@ export class Toy extends EventTarget {
   // What rules that fired in this tick say, and whether one of them won or lost the level.
   #tellRules() {
     const { world } = this, actions = fired(world);
-    for (const { say } of actions) if (say !== undefined) this.say(say);
+    for (const { say } of actions) if (say !== undefined) this.say(say, 'rule');
     if (actions.length) this.#tell('rules', { actions });
     const ended = actions.length ? outcome(world) : null;
     if (ended?.tick === world.time) this.#tell('outcome', ended);
@@ -347,6 +370,14 @@ export class Toy extends EventTarget {
     return isDone;
   }
 
+  // Do again what was undone last. Whether there was something.
+  redo() {
+    let isDone = false;
+    this.#jump(() => { isDone = this.run.redo(); });
+    if (!isDone) this.say('There is nothing to redo.');
+    return isDone;
+  }
+
   /** Go elsewhere in time: nothing is compared with what was before.
    * @type {(go: () => void) => void} */
   #jump(go) {
@@ -361,15 +392,16 @@ export class Toy extends EventTarget {
     this.refresh();
   }
 
-  // Names of particles, as in the level's file: 'rope.39' is the last of a body named rope.
+  // Names of the particles that are there, as in the level's file: 'rope.39' is the last of a body named rope.
   get particles() {
-    return this.world.particles.map((slot) => this.world.names.particle[slot]);
+    return this.world.particles.filter((slot) => this.world.isShown(slot)).map((slot) => this.world.names.particle[slot]);
   }
 
   /** Where a particle is [m], its velocity [m/s], and whether it is pinned.
    * @type {(name: string) => { x: number, y: number, vx: number, vy: number, isPinned: boolean }} */
   particle(name) {
     const { world } = this, slot = world.commands.slot({ names: 'particle' }, name, world.counts);
+    if (!world.isShown(slot)) throw new Refusal(`particle ${name} is not there any more`);
     const [x, y] = world.view('state.position').subarray(2 * slot);
     const [vx, vy] = world.view('state.velocity').subarray(2 * slot);
     return { x, y, vx, vy, isPinned: world.view('state.inverse_mass')[slot] === 0 };
@@ -388,7 +420,7 @@ export class Toy extends EventTarget {
     const { run, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
     /** @type {(done: number, all: number) => void} */
     const progress = (done, all) => {
-      if (done % 60 === 0) this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`);
+      if (done % 60 === 0) this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`, 'done');
     };
     return written(this.fresh(), level.about, level.header, commands, run.time, progress);
   }

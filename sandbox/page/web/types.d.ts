@@ -674,13 +674,23 @@ export interface ToyEvents {
   check: CheckResult;
   rules: { actions: Action[] };
   outcome: Outcome;
-  say: { text: string; kind: '' | 'good' | 'bad' };
+  say: { text: string; rank: Rank };
   menu: Asked;
   pause: { isPaused: boolean };
   pace: { isBehind: boolean };
   jump: undefined;
   theme: { name: 'dark' | 'light' };
   draw: undefined;
+}
+
+// What a page says: of which rank, see messages.js; whether it is good news; where it was asked for; where it leads.
+export type Rank = 'verdict' | 'fault' | 'refusal' | 'done' | 'rule' | 'tip';
+export interface Message {
+  rank: Rank;
+  text: string;
+  isGood?: boolean;
+  place?: string;
+  href?: string;
 }
 
 // What a hand does to the page around it.

@@ -27,6 +27,45 @@ test('undo goes back to before a gesture, and time goes on as if it had not been
   assert.equal(run.undo(), false);
 });
 
+test('redo comes to the bits that were there before undo, until something else is done', async () => {
+  const run = await started(), seen = [];
+  for (const particle of [35, 30, 25]) {
+    hashAfter(run, 30);
+    run.command({ type: 'pin', particle }, run.newGesture());
+    seen.push(hashAfter(run, 25));
+  }
+  for (const left of [2, 1, 0]) {
+    assert.ok(run.undo());
+    assert.equal(run.commands.length, left);
+  }
+  // Time that passes is nothing that is done.
+  hashAfter(run, 70);
+  // To where each undo was asked for: before the next of them, and to the end.
+  for (const [count, tick] of [[1, 85], [2, 140], [3, 165]]) {
+    assert.ok(run.redo());
+    assert.deepEqual([run.commands.length, run.time, run.last], [count, tick, tick]);
+  }
+  assert.equal(run.world.hash().whole, seen[2]);
+  assert.equal(run.redo(), false);
+  run.undo();
+  run.command({ type: 'pin', particle: 20 }, run.newGesture());
+  assert.equal(run.redo(), false);
+});
+
+test('redo of a hold that was undone goes to where the run was, and lets go what it holds there', async () => {
+  const run = await started();
+  hashAfter(run, 40);
+  run.command(grab, run.newGesture());
+  const whole = hashAfter(run, 30);
+  run.undo();
+  hashAfter(run, 5);
+  assert.ok(run.redo());
+  assert.equal(run.time, 70);
+  assert.equal(run.world.hash().whole, whole);
+  run.step();
+  assert.equal(run.world.isHeld(0), false);
+});
+
 test('seeking back and forth comes to the bits that were there', async () => {
   const run = await started(), seen = new Map();
   for (let tick = 0; tick < 200; tick++) {
@@ -57,12 +96,12 @@ test('a command forgets what would have come later', async () => {
 });
 
 test('what cannot be done is refused in words, and is no part of the run', async () => {
-  const run = await started();
+  const run = await started(), said = [];
   run.command(pin, run.newGesture());
   assert.throws(() => run.command(pin, run.newGesture()), Refusal);
-  assert.equal(run.submit({ type: 'release', grab: 3 }, run.newGesture()), false);
-  assert.equal(run.commands.length, 1);
-  assert.throws(() => run.submit(null, 1), TypeError);
+  assert.equal(run.submit({ type: 'release', grab: 3 }, run.newGesture(), (text) => said.push(text)), false);
+  assert.deepEqual([run.commands.length, said], [1, ['hand 3 holds nothing']]);
+  assert.throws(() => run.submit(null, 1, () => {}), TypeError);
 });
 
 test('who takes over a run lets go what it holds', async () => {
