@@ -8,6 +8,7 @@ from typing import Literal
 import pygame
 
 from sandbox.editor.tools.palette import TOOLS
+from sandbox.level.hints import worded
 from sandbox.tools.play_tools import PLAY_TOOLS
 
 Mode = Literal["play", "edit"]
@@ -297,5 +298,14 @@ def action_of(key: int, modifiers: int, mode: Mode = "play") -> str | None:
 
 def tip_of(action: str, mode: Mode) -> str:
     """What an action does and its first keys, for tooltips."""
-    entry = next(entry for entry in shortcuts(mode) if entry.action == action)
+    entry = _entry_of(action, mode)
     return f"{entry.label}  [{entry.keys[0]}]" if entry.keys else entry.label
+
+
+def _entry_of(action: str, mode: Mode) -> Shortcut:
+    return next(entry for entry in shortcuts(mode) if entry.action == action)
+
+
+def hint(description: str) -> str:
+    """A level's description in the words of the window, with the keys that it has now."""
+    return worded(description, "window", lambda action: spoken(_entry_of(action, "play").keys[:1]))
