@@ -61,7 +61,7 @@ class AnyTab(ABC):
 
     @abstractmethod
     def press(self, key: str) -> None:
-        """Press a key."""
+        """Press a key, which may begin with Shift+."""
 
     @abstractmethod
     def release(self, key: str) -> None:
@@ -138,12 +138,14 @@ class Tab(AnyTab):
 
     def press(self, key: str) -> None:
         """As said of any tab."""
-        text = {"text": key} if len(key) == 1 else {}
-        self.send("Input.dispatchKeyEvent", type="keyDown", key=key, **text)
+        name = key.removeprefix("Shift+")
+        text = {"text": name} if len(name) == 1 else {}
+        self.send("Input.dispatchKeyEvent", type="keyDown", key=name, modifiers=8 * (name != key), **text)
 
     def release(self, key: str) -> None:
         """As said of any tab."""
-        self.send("Input.dispatchKeyEvent", type="keyUp", key=key)
+        name = key.removeprefix("Shift+")
+        self.send("Input.dispatchKeyEvent", type="keyUp", key=name, modifiers=8 * (name != key))
 
     def key_with_ctrl(self, key: str) -> None:
         """Press and release a key while Ctrl is down, and Shift for a capital letter."""

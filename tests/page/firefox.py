@@ -26,7 +26,14 @@ PREFERENCES = {
 LISTENING = re.compile(r"WebDriver BiDi listening on (ws://\S+)")
 # What events of a mouse and keys without a letter are called there.
 MOUSE = {"mousePressed": "pointerDown", "mouseMoved": "pointerMove", "mouseReleased": "pointerUp"}
-KEYS = {"Enter": "\ue007", "Escape": "\ue00c", "Tab": "\ue004", "ArrowUp": "\ue013", "ArrowDown": "\ue015"}
+KEYS = {
+    "Shift": "\ue008",
+    "Enter": "\ue007",
+    "Escape": "\ue00c",
+    "Tab": "\ue004",
+    "ArrowUp": "\ue013",
+    "ArrowDown": "\ue015",
+}
 
 
 def firefox_path() -> str | None:
@@ -79,14 +86,15 @@ class FirefoxTab(AnyTab):
 
     def press(self, key: str) -> None:
         """As said of any tab."""
-        self._type("keyDown", key)
+        self._type("keyDown", *re.findall(r"Shift(?=\+)|[^+]+$|\+$", key))
 
     def release(self, key: str) -> None:
         """As said of any tab."""
-        self._type("keyUp", key)
+        self._type("keyUp", *reversed(re.findall(r"Shift(?=\+)|[^+]+$|\+$", key)))
 
-    def _type(self, kind: str, key: str) -> None:
-        self._act({"type": "key", "id": "keys", "actions": [{"type": kind, "value": KEYS.get(key, key)}]})
+    def _type(self, kind: str, *keys: str) -> None:
+        deeds = [{"type": kind, "value": KEYS.get(key, key)} for key in keys]
+        self._act({"type": "key", "id": "keys", "actions": deeds})
 
     def _act(self, source: dict[str, Any]) -> None:
         self.send("input.performActions", actions=[source])

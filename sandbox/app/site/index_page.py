@@ -121,8 +121,9 @@ def _hero(each: SiteLevel, state: Snapshot, words: str) -> str:
     return (
         f'<section id="hero" aria-label="A toy to begin with" data-toy="{each.toy}" '
         f'data-view="{_numbers(_around(each.level, state))}">{_picture(each)}'
-        f'<canvas tabindex="0" role="application" aria-label="{name}. N marks a particle, Enter takes it, arrows move '
-        f'it, Space pauses."></canvas><button type="button" hidden><svg viewBox="0 0 24 24"><path d=""/></svg></button>'
+        f'<canvas tabindex="0" role="application" aria-label="{name}. N goes to the next thing, arrows move the '
+        f'cursor, Enter takes what is there, Space pauses."></canvas>'
+        f'<button type="button" hidden><svg viewBox="0 0 24 24"><path d=""/></svg></button>'
         f'<p><a href="{each.page}">{name}</a> <span>{hint_markup(words)}</span></p>'
         f'<p id="why" hidden>{FROM_DISK}</p></section>\n'
     )

@@ -66,8 +66,8 @@ export class Maker {
     return { place: [x, y], name: world.names.particle[particle] };
   }
 
-  /** Make it: the tool's, of what was drawn until now.
-   * @type {(tool: string, point: Point, particle: number | null, within: number) => void} */
+  /** Make it: the tool's, of what was drawn until now. Whether it is there.
+   * @type {(tool: string, point: Point, particle: number | null, within: number) => boolean} */
   end(tool, point, particle, within) {
     const stroke = this.#stroke, start = this.#start;
     this.#stroke = [];
@@ -76,9 +76,11 @@ export class Maker {
         : this.#joined(tool, /** @type {End} */ (start), this.#end(point, particle), within);
       const gesture = this.run.newGesture();
       for (const record of records) this.run.command(/** @type {any} */ (record), gesture);
+      return true;
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
       this.say(error.message);
+      return false;
     }
   }
 
