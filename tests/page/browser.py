@@ -17,6 +17,8 @@ NAMES = ("chromium-headless-shell", "chrome-headless-shell", "chromium", "chromi
 FLAGS = (
     "--headless", "--no-sandbox", "--remote-debugging-pipe", "--hide-scrollbars", "--no-first-run",
     "--autoplay-policy=user-gesture-required", "--disable-gpu",
+    # A mouse, which a machine for tests has not: it hovers, and points finely.
+    "--blink-settings=primaryHoverType=2,availableHoverTypes=2,primaryPointerType=4,availablePointerTypes=4",
 )  # fmt: skip
 # The browser reads from 3 and writes to 4.
 _BEGIN = """
