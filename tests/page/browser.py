@@ -105,6 +105,8 @@ class Tab(AnyTab):
 
     def show(self, address: str) -> Self:
         """As said of any tab."""
+        # The empty page of a new tab may be there only now.
+        self._browser.events.clear()
         self.send("Page.navigate", url=address)
         self._browser.until(lambda: "Page.loadEventFired" in self._browser.events)
         self._browser.events.clear()
