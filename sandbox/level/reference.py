@@ -80,7 +80,7 @@ def _sections(models: dict[str, Model], whole: Model) -> Iterator[str]:
     def table(title: str, level: int = 3) -> str:
         return _table(title, models[title], whole, level)
 
-    yield from (prose.A_FILE, prose.TABLES, table("Level", 2), table("Settings", 2), "## Materials\n")
+    yield from (prose.A_FILE, prose.TABLES, table("Level", 2), prose.HINTS, table("Settings", 2), "## Materials\n")
     yield from map(table, ("Every material", "Material", "Hooke material"))
     yield "## Contacts, walls and terrain\n"
     yield from map(table, ("Contacts", "Walls", "Terrain"))

@@ -2,6 +2,7 @@
 
 from sandbox.level.checks import STILL
 from sandbox.level.format import limits
+from sandbox.level.hints import CONTROLS, KEY
 from sandbox.level.kinds.bodies import EXPANSIONS
 from sandbox.level.rules.hands import MEANINGS
 
@@ -74,6 +75,22 @@ TABLES = """\
   in place of a value, such as *as placed*, are also what `null` means. A field without such words may not be `null`.
 - A number outside its limits is a fault. The program never clamps a number.
 - `–` stands for no unit, or for no limits other than the type's.
+"""
+
+_CONTROLS = "\n".join(
+    f"| `{{{name}}}` | {each.does} | {' | '.join((word or '–').replace(KEY, 'its key') for word in each[-3:])} |"
+    for name, each in CONTROLS.items()
+)
+HINTS = f"""\
+## Hints
+
+A `description` names a control by what it does: in place of each of these names people read the word for where they
+are. With a capital, as in `{{Again}}`, the word begins a sentence. A sentence with a control that is not there (–) is
+left out. All other braces stay as they are.
+
+| name | what the control does | in the window | in a page, by mouse | in a page, by finger |
+|---|---|---|---|---|
+{_CONTROLS}
 """
 
 WATER_EXAMPLE = """\

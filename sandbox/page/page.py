@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from sandbox.export.policy import policy
+from sandbox.level.hints import worded
 from sandbox.page.bundle import BUNDLE, WEB
 from sandbox.page.image import Image
 from sandbox.physics.jit.library import FOLDER
@@ -38,7 +39,7 @@ def toy_file(content: bytes) -> bytes:
 
 
 def page_text(title: str, hints: str, content: bytes) -> str:
-    """The page of a toy that needs no other file. hints: what there is to do."""
+    """The page of a toy that needs no other file. hints: what there is to do, as the level says it."""
     whole = BUNDLE.read_text(encoding="utf-8")
     held = {
         "TOY": packed(content),
@@ -71,8 +72,15 @@ def _page(
     """A page of these parts, which may run them and what it makes of them, and has these sources; around: elements by
     the places of the template where they stand."""
     held_to = policy(_template("page"), parts, made, img=ICON, **sources)
-    given = {"TITLE": html.escape(title), "HINTS": html.escape(hints), "PARTS": parts, "POLICY": held_to}
+    given = {"TITLE": html.escape(title), "HINTS": hint_markup(hints), "PARTS": parts, "POLICY": held_to}
+    given["ABOUT"] = html.escape(worded(hints, "mouse"))
     return filled("page", **{"HOME": "", "SHOWN": "", "NEXT": ""} | given | dict(around or {}))
+
+
+def hint_markup(text: str) -> str:
+    """A hint as HTML: where its words differ, style sheets show those for a mouse or those for fingers alone."""
+    mouse, finger = (html.escape(worded(text, place)) for place in ("mouse", "finger"))
+    return mouse if mouse == finger else f"<span class=mouse>{mouse}</span><span class=finger>{finger}</span>"
 
 
 def filled(template: str, **parts: str) -> str:

@@ -13,6 +13,7 @@ class ClickTool(Tool):
     """A tool whose clicks are a gesture each; reach: how many pick radii away a particle is hit."""
 
     reach: ClassVar[float] = 1.0
+    is_held = False
 
     def __init__(self, new_gesture: Callable[[], int]) -> None:
         self._new_gesture = new_gesture

@@ -68,11 +68,12 @@ class DropPicture:
 class Tool(ABC):
     """Turns pointer events over a snapshot into commands. Methods that are not abstract may stay as they are here.
 
-    adds: it adds bodies to the world; touches: whether these touch other things. place [m]: where the pointer is before
-    a press; None: nowhere, or unknown.
+    adds: it adds bodies to the world; touches: whether these touch other things. is_held: it goes on until it is
+    released; others act at a press alone. place [m]: where the pointer is before a press; None: nowhere, or unknown.
     """
 
     adds: ClassVar[bool] = False
+    is_held: ClassVar[bool] = True
     touches: bool = False
     place: Point | None = None
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Self
@@ -16,6 +17,8 @@ NAMES = ("chromium-headless-shell", "chrome-headless-shell", "chromium", "chromi
 FLAGS = (
     "--headless", "--no-sandbox", "--remote-debugging-pipe", "--hide-scrollbars", "--no-first-run",
     "--autoplay-policy=user-gesture-required", "--disable-gpu",
+    # A mouse, which a machine for tests has not: it hovers, and points finely.
+    "--blink-settings=primaryHoverType=2,availableHoverTypes=2,primaryPointerType=4,availablePointerTypes=4",
 )  # fmt: skip
 # The browser reads from 3 and writes to 4.
 _BEGIN = """
@@ -32,19 +35,68 @@ def browser_path() -> str | None:
     return next(filter(None, map(shutil.which, NAMES)), None)
 
 
-class Tab:
-    """A page of a browser. faults: errors of its scripts and of its log, a line each."""
+# Until a page plays, or says what is wrong.
+_READY = """new Promise((done) => {
+  const isReady = () => globalThis.page || !(document.getElementById('error')?.hidden ?? true);
+  const look = () => (isReady() ? done() : requestAnimationFrame(look));
+  look();
+})"""
+
+
+class AnyTab(ABC):
+    """A page of whichever browser. faults: errors of its scripts and of its log, a line each."""
+
+    def __init__(self) -> None:
+        self.faults: list[str] = []
+
+    @abstractmethod
+    def evaluate(self, expression: str) -> Any:
+        """The value of an expression, or what its promise comes to. Raises RuntimeError where it throws."""
+
+    @abstractmethod
+    def show(self, address: str) -> Self:
+        """Go to an address, and wait until all of the page is there."""
+
+    @abstractmethod
+    def mouse(self, kind: str, x: float, y: float) -> None:
+        """Press, move or release the left button at a pixel: mousePressed, mouseMoved, mouseReleased."""
+
+    @abstractmethod
+    def press(self, key: str) -> None:
+        """Press a key, which may begin with Shift+."""
+
+    @abstractmethod
+    def release(self, key: str) -> None:
+        """Release a key."""
+
+    def key(self, key: str) -> None:
+        """Press and release a key."""
+        self.press(key)
+        self.release(key)
+
+    def open(self, address: str) -> Self:
+        """Go to an address, and wait until the page plays or says what is wrong."""
+        return self.show(address).begun()
+
+    def begun(self) -> Self:
+        """Wait until the page plays or says what is wrong."""
+        self.evaluate(_READY)
+        return self
+
+
+class Tab(AnyTab):
+    """A page of Chromium."""
 
     def __init__(self, browser: "Browser", session: str) -> None:
+        super().__init__()
         self._browser, self._session = browser, session
-        self.faults: list[str] = []
 
     def send(self, method: str, **given: Any) -> Any:
         """What the protocol answers to a method."""
         return self._browser.send(method, given, self._session)
 
     def evaluate(self, expression: str) -> Any:
-        """The value of an expression, or what its promise comes to. Raises RuntimeError where it throws."""
+        """As said of any tab."""
         given = {"expression": expression, "awaitPromise": True, "returnByValue": True, "userGesture": True}
         answer = self.send("Runtime.evaluate", **given)
         if "exceptionDetails" in answer:
@@ -52,16 +104,12 @@ class Tab:
         return answer["result"].get("value")
 
     def show(self, address: str) -> Self:
-        """Go to an address, and wait until all of the page is there."""
+        """As said of any tab."""
+        # The empty page of a new tab may be there only now.
         self._browser.events.clear()
         self.send("Page.navigate", url=address)
         self._browser.until(lambda: "Page.loadEventFired" in self._browser.events)
         return self
-
-    def open(self, address: str) -> Self:
-        """Go to an address, and wait until the page plays or says what is wrong."""
-        self.show(address)
-        return self.begun()
 
     def led(self, act: Callable[[], None]) -> Self:
         """Do what leads to another page that plays, and wait until it does."""
@@ -70,21 +118,12 @@ class Tab:
         self._browser.until(lambda: "Page.loadEventFired" in self._browser.events)
         return self.begun()
 
-    def begun(self) -> Self:
-        """Wait until the page plays or says what is wrong."""
-        ready = "globalThis.page || !(document.getElementById('error')?.hidden ?? true)"
-        wait = (
-            f"new Promise((done) => {{ const look = () => ({ready}) ? done() : requestAnimationFrame(look); look(); }})"
-        )
-        self.evaluate(wait)
-        return self
-
     def picture(self) -> bytes:
         """What is seen, as PNG."""
         return base64.b64decode(self.send("Page.captureScreenshot", format="png")["data"])
 
     def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
-        """Press, move or release a button at a pixel: mousePressed, mouseMoved, mouseReleased."""
+        """As said of any tab; button: left or right."""
         held = {"left": 1, "right": 2}[button]
         self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=held, clickCount=1)
 
@@ -101,13 +140,15 @@ class Tab:
             self.send("Input.dispatchTouchEvent", type=kind, touchPoints=fingers, timestamp=began + 0.03 * step)
 
     def press(self, key: str) -> None:
-        """Press a key."""
-        text = {"text": key} if len(key) == 1 else {}
-        self.send("Input.dispatchKeyEvent", type="keyDown", key=key, **text)
+        """As said of any tab."""
+        name = key.removeprefix("Shift+")
+        text = {"text": name} if len(name) == 1 else {}
+        self.send("Input.dispatchKeyEvent", type="keyDown", key=name, modifiers=8 * (name != key), **text)
 
     def release(self, key: str) -> None:
-        """Release a key."""
-        self.send("Input.dispatchKeyEvent", type="keyUp", key=key)
+        """As said of any tab."""
+        name = key.removeprefix("Shift+")
+        self.send("Input.dispatchKeyEvent", type="keyUp", key=name, modifiers=8 * (name != key))
 
     def key_with_ctrl(self, key: str) -> None:
         """Press and release a key while Ctrl is down, and Shift for a capital letter."""
@@ -124,11 +165,6 @@ class Tab:
             return False
         self.send("Page.handleJavaScriptDialog", accept=not stays)
         return True
-
-    def key(self, key: str) -> None:
-        """Press and release a key."""
-        self.press(key)
-        self.release(key)
 
 
 class Browser:

@@ -19,7 +19,7 @@ from tests.page.opened import opened, saved
 
 SIZES = ({"width": 1280, "height": 720}, {"width": 390, "height": 844, "is_phone": True})
 BUTTONS = ("play", "step", "slow", "undo", *["drag"] * 6, "pin", "cut", "sound", "tune", "hint")
-KEYS = (" ", ".", "s", "d", "p", "c", "n", "Enter", "ArrowLeft", "ArrowUp", "Escape", "+", "-", "h", "a", "d", "w")
+KEYS = (" ", ".", "s", "d", "p", "c", "n", "q", "Enter", "ArrowLeft", "ArrowUp", "Escape", "+", "-", "h", "a", "d", "w")
 # Gestures from one return of the view to the next, so that something stays in sight.
 RETURN = 15
 FOLLOW = """(() => {

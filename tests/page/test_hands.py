@@ -130,7 +130,7 @@ def test_what_does_not_fit_is_not_recorded(browser: Browser, tmp_path: Path) -> 
     assert tab.evaluate("page.toy.run.commands.length") == 0
     # A particle that is pinned is not taken by the keyboard either.
     tab.key("n")
-    tab.evaluate("page.toy.run.submit({ type: 'pin', particle: page.toy.hands.marked }, 1)")
+    tab.evaluate("page.toy.run.submit({ type: 'pin', particle: page.toy.hands.cursor.marked }, 1)")
     tab.key("Enter")
     _steps(tab, 5)
     replay = _saved(tab, tmp_path)

@@ -219,7 +219,9 @@ def test_what_is_added_later_cannot_be_used_before(browser: Browser, tmp_path: P
     tab.evaluate("for (let k = 0; k < 10; k++) page.toy.tick()")
     assert tab.evaluate(gravity) == "-2"
     # Marked while it is there.
-    tab.evaluate("page.toy.hands.marked = page.toy.level.about.names.particle.indexOf('+1.0'); page.toy.seek(10)")
+    tab.evaluate(
+        "page.toy.hands.cursor.marked = page.toy.level.about.names.particle.indexOf('+1.0'); page.toy.seek(10)"
+    )
     assert "soft" not in tab.evaluate(offered)
     tab.evaluate("document.getElementById('picture').focus()")
     tab.key("Enter")

@@ -150,3 +150,11 @@ def test_sound_is_off_until_it_is_touched_and_then_plays_without_a_fault(browser
     tab.evaluate("page.toy.drives.releaseAll()")
     assert tab.evaluate("page.toy.sound.isOn")
     assert tab.faults == []
+
+
+def test_a_hint_has_the_words_of_what_people_have_at_hand(browser: Browser, tmp_path: Path) -> None:
+    hints = "document.getElementById('hints').innerText"
+    by_mouse = _opened(browser, tmp_path, "egg_drop").evaluate(hints)
+    assert "Right click the cushion" in by_mouse and by_mouse.endswith("R begins again.")
+    by_finger = _opened(browser, tmp_path, "egg_drop", **PHONE).evaluate(hints)
+    assert "Rest a finger on the cushion" in by_finger and by_finger.endswith("The round arrow begins again.")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pygame
 
+from sandbox.app.base.shortcuts import hint
 from sandbox.app.draw.picture import crop_of, draw_picture
 from sandbox.app.gallery.sections import SECTIONS
 from sandbox.level.reading.files import load_level
@@ -47,7 +48,7 @@ def page() -> str:
         lines += ["", f"## {section.title}", "", section.line]
         for name, deed in section.levels.items():
             level = load_level(name)
-            about = _wrapped(f"{deed}. {level.description}")
+            about = _wrapped(f"{deed}. {hint(level.description)}")
             picture = f"![{level.name}](gallery/{name}.png)"
             lines += ["", f"### {level.name}", "", picture, "", about, "", "```sh", f"sandbox play {name}", "```"]
     lines += ["", "The pictures are drawn by `make pictures`."]

@@ -101,7 +101,7 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "set_gravity": ("set_gravity", ((1.0, 0.0), 3), (POINTS, DURATIONS)),
     "set_air": ("set_air", ((1.0, 0.0), 0.5, 3), (_GIVEN_POINTS, _GIVEN_NUMBERS, DURATIONS)),
     "set_drive": ("drive", (0, 0.5), (PARTS, DRIVES)),
-    "set_firmness": (set_firmness, (0, 0.1, 3), (PARTS, tuple(each for each in NOT_BELOW_0 if each is not None), DURATIONS)),
+    "set_firmness": (set_firmness, (0, 0.1, 3), (PARTS, _GIVEN_NUMBERS, DURATIONS)),
     "soften": (soften, (0, 0.1, (0.0, -9.81), 3), (PARTS, NUMBERS, POINTS, DURATIONS)),
     "hold_key": ("hold_key", (0, True), (KEYS,)),
     "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),

@@ -8,16 +8,19 @@ from typing import Literal
 import pygame
 
 from sandbox.editor.tools.palette import TOOLS
+from sandbox.level.hints import worded
 from sandbox.tools.play_tools import PLAY_TOOLS
 
 Mode = Literal["play", "edit"]
 
+# The key of context menus, for which pygame has no name: SDL calls it the application key.
+_MENU_KEY = 0x40000065
 _NAMES = {
     "Escape": pygame.K_ESCAPE, "Space": pygame.K_SPACE, "Enter": pygame.K_RETURN, "Home": pygame.K_HOME,
     **{f"F{number}": pygame.K_F1 + number - 1 for number in range(1, 13)},
     ".": pygame.K_PERIOD, "+": pygame.K_PLUS, "-": pygame.K_MINUS, "=": pygame.K_EQUALS,
     "Delete": pygame.K_DELETE, "Backspace": pygame.K_BACKSPACE,
-    "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
+    "Menu": _MENU_KEY, "PageUp": pygame.K_PAGEUP, "PageDown": pygame.K_PAGEDOWN, "Tab": pygame.K_TAB,
 }  # fmt: skip
 _TWINS = {
     pygame.K_KP_ENTER: pygame.K_RETURN, pygame.K_KP_PLUS: pygame.K_PLUS, pygame.K_KP_MINUS: pygame.K_MINUS,
@@ -215,8 +218,11 @@ SHORTCUTS = (
     Shortcut("quit", ("Ctrl+Q",), "Quit", "Files"),
     Shortcut("", ("Arrows",), "Move the keyboard cursor; Shift: faster", "Keyboard", "play"),
     Shortcut("press", ("Enter",), "Press or release the tool at the cursor", "Keyboard", "play"),
-    Shortcut("next_particle", ("N",), "Cursor to the next particle", "Keyboard", "play"),
-    Shortcut("previous_particle", ("Shift+N",), "Cursor to the previous particle", "Keyboard", "play"),
+    Shortcut("thing_menu", ("Q", "Menu", "Shift+F10"), "Menu of the thing at the cursor", "Keyboard", "play"),
+    Shortcut("next_thing", ("N",), "Cursor to the next thing", "Keyboard", "play"),
+    Shortcut("previous_thing", ("Shift+N",), "Cursor to the previous thing", "Keyboard", "play"),
+    Shortcut("next_particle", ("PageDown",), "Cursor to the next particle of the thing", "Keyboard", "play"),
+    Shortcut("previous_particle", ("PageUp",), "Cursor to the previous particle of it", "Keyboard", "play"),
     Shortcut("", ("Tab", "Shift+Tab"), "Next or previous widget", "Keyboard"),
     Shortcut("", ("Left", "Right"), "Move the slider; Shift: fine", "Keyboard"),
 )
@@ -297,5 +303,14 @@ def action_of(key: int, modifiers: int, mode: Mode = "play") -> str | None:
 
 def tip_of(action: str, mode: Mode) -> str:
     """What an action does and its first keys, for tooltips."""
-    entry = next(entry for entry in shortcuts(mode) if entry.action == action)
+    entry = _entry_of(action, mode)
     return f"{entry.label}  [{entry.keys[0]}]" if entry.keys else entry.label
+
+
+def _entry_of(action: str, mode: Mode) -> Shortcut:
+    return next(entry for entry in shortcuts(mode) if entry.action == action)
+
+
+def hint(description: str) -> str:
+    """A level's description in the words of the window, with the keys that it has now."""
+    return worded(description, "window", lambda action: spoken(_entry_of(action, "play").keys[:1]))

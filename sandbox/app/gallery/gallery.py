@@ -10,6 +10,7 @@ from pathlib import Path
 import pygame
 
 from sandbox.app.base.recordings import recordings_folder, saved_recordings
+from sandbox.app.base.shortcuts import hint
 from sandbox.app.base.slice_queue import SliceQueue
 from sandbox.app.compare.lesson_picture import lesson_picture, twice
 from sandbox.app.contracts.application import Application
@@ -227,7 +228,7 @@ class Gallery:
         if is_shipped:
             # What was shipped needs no check before it is shown.
             data = json.loads(content)
-            card.show_texts(data["name"], data.get("description", ""), tuple(data.get("tags", ())))
+            card.show_texts(data["name"], hint(data.get("description", "")), tuple(data.get("tags", ())))
         else:
             card.repaint()
         self._paths[card] = path
@@ -254,7 +255,7 @@ class Gallery:
             return
         if not is_shipped:
             # Levels of one's own are often still without a name.
-            about = [one_line(path.name), *([level.description] if level.description else [])]
+            about = [one_line(path.name), *([hint(level.description)] if level.description else [])]
             card.show_texts(level.name, ": ".join(about), level.tags)
         result = best_result(level) if level.rules and not card.is_small else None
         if result is not None:

@@ -32,7 +32,7 @@ SECTIONS = (
         "egg_drop": "Make the cushion soft, then press D",
         "low_door": "Soften the deck, then drive",
         "squeeze": "Soft, then firm again",
-        "bridge_budget": "Three boxes, the wheel sizes them",
+        "bridge_budget": "Three things to fill the pit with",
         "trampoline_basket": "Tune the bed, then press D",
         "catapult_practice": "Tune the thread, then hold D",
         "basket_throw": "Swing the ball, then let go",
@@ -45,11 +45,11 @@ SECTIONS = (
     GallerySection("Soft things", "Jellies, cloth and creatures.", {
         "jelly_cube": "Lower Cs, and it softens",
         "trampoline": "Pull the bed down and let go",
-        "desk_toy": "Ctrl+T puts it on the desktop",
+        "desk_toy": "Two jellies and a marble in a box",
         "walker": "Hold it back, or lift it over",
         "beating_heart": "Pull at one, or cut its cord",
         "jelly_wheel": "Spin it by its rim",
-        "quad_mesh": "Tear it with the cutting tool",
+        "quad_mesh": "Tear it, or unpin a corner",
         "rope_bridge_jelly": "One of each kind to pull at",
     }),
     GallerySection("Machines", "Motors, wheels and balls.", {
@@ -67,11 +67,11 @@ SECTIONS = (
         "spider_web": "Pull at the fly",
     }),
     GallerySection("Proofs for engineers", "What the equations promise, and how to try it.", {
-        "girder": "Drag its free end; then choose Iterative",
-        "mast": "Drag its head; then choose Iterative",
+        "girder": "Drag its free end: it hardly gives",
+        "mast": "Drag its head: it stays where it is",
         "truss_bridge": "Cut one bar; then cut it through",
-        "wrecking_ball": "Try 5 and 20 iterations",
-        "side_by_side": "R, Space, then . for single ticks",
+        "wrecking_ball": "A ball a thousand times its links",
+        "side_by_side": "Right after one tick at Cs = Cd = 1",
         "hooke_comparison": "See the classic spring explode",
     }),
 )  # fmt: skip

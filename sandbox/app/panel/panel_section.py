@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+from sandbox.app.base.shortcuts import hint
 from sandbox.app.panel.panel_rows import PanelRows
 from sandbox.app.run.playback import Playback
 
@@ -49,7 +50,7 @@ class SectionOwner(Protocol):
 class PanelSection:
     """A section: its heading, and what makes its rows for a panel.
 
-    words: what a level's description asks for it by, beside its heading.
+    words: what a level's hint asks for it by, beside its heading.
     """
 
     title: str
@@ -58,4 +59,5 @@ class PanelSection:
 
     def is_asked_for(self, description: str) -> bool:
         """Whether a level's description speaks of what is in it."""
-        return any(re.search(rf"\b{re.escape(word)}\b", description) for word in (self.title, *self.words))
+        said = hint(description)
+        return any(re.search(rf"\b{re.escape(word)}\b", said) for word in (self.title, *self.words))

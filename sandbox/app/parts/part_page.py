@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 
 from sandbox.app.base.sentences import sentence
+from sandbox.app.base.shortcuts import hint
 from sandbox.app.base.slice_queue import SliceQueue
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import MUTED, TEXT, WARNING, Colour
@@ -139,4 +140,4 @@ def _said_of(card: PartCard) -> tuple[str, Colour]:
     level = card.part.level
     if card.refusal or level is None:
         return card.refusal or card.part.fault, WARNING
-    return f"{card.part.name}. {level.description or HINT}", MUTED
+    return f"{card.part.name}. {hint(level.description) or HINT}", MUTED

@@ -38,7 +38,7 @@ from sandbox.app.play.palette import NAMES, PartsPalette, refused_tools
 from sandbox.app.play.speeds import state_of
 from sandbox.app.play.stage import HAND_TOOL, Stage
 from sandbox.app.play.status import STATUS_HEIGHT, run_parts
-from sandbox.app.play.thing_menu import open_thing_menu
+from sandbox.app.play.thing_menu import cursor_actions, open_thing_menu
 from sandbox.app.play.time_bar import TimeBar
 from sandbox.app.play.toolbar import BAR_HEIGHT, BarState, Toolbar
 from sandbox.app.play.troubles import Troubles
@@ -190,11 +190,10 @@ class PlayScreen:
         self._ui = ui
         self.show_panel = ui.units[0] >= ROOM_FOR_PANEL if self._wants_panel is None else self._wants_panel
         self._has_ghost = self.game.has_ghost
-        absent = {"keep": not self.of_document, "ghost": not self._has_ghost}
+        offered = {"keep": self.of_document, "ghost": self._has_ghost}
+        absent = {action for action, is_offered in offered.items() if not is_offered}
         refused = refused_tools(self.playback.level)
-        self.toolbar = Toolbar(
-            ui, self._app.act, {action for action, is_absent in absent.items() if is_absent}, refused
-        )
+        self.toolbar = Toolbar(ui, self._app.act, absent, refused)
         self.stage.place(self.viewport, ui.scale)
         self.palette = None
         if self.show_palette:
@@ -249,9 +248,6 @@ class PlayScreen:
         if self.panel is not None:
             self.panel.choose_material(None if material is None else names.index(material))
 
-    def _follow(self) -> None:
-        self.say(self.stage.follow_with_camera(next(reversed(self.graphs.picked), None)))
-
     def toggle_melt(self) -> None:
         """Solve springs one by one, which melts what is stiff, or all at once again."""
         self.say(toggle_melt(self.playback))
@@ -282,7 +278,7 @@ class PlayScreen:
             **{name: partial(stage.toggle_view, name) for name in names_for(self.playback.level)},
             "hand": self._next_strength,
             "melt": self.toggle_melt,
-            "follow": self._follow,
+            "follow": lambda: self.say(stage.follow_with_camera(next(reversed(self.graphs.picked), None))),
             "touching": lambda: self.set_contacts(ContactSettings.of(self.playback.level).other),
             **self.troubles.actions,
             **self.game.actions,
@@ -302,8 +298,7 @@ class PlayScreen:
             "save": files.save_scene,
             "save_recording": files.save_run,
             "press": self._press,
-            "next_particle": lambda: stage.visit_particle(1),
-            "previous_particle": lambda: stage.visit_particle(-1),
+            **cursor_actions(stage, self.open_menu, self.say),
             "panel": self._toggle_panel,
             "gallery": self._app.open_gallery,
             "recordings": lambda: self._app.open_gallery("recordings"),
@@ -399,6 +394,7 @@ class PlayScreen:
             self.game.card.press()
         else:
             self.stage.press_cursor(pygame.key.get_mods())
+            self._choose_clicked()
 
     def _reset(self) -> None:
         """Go back to the last checkpoint, or else to the beginning."""
@@ -466,7 +462,11 @@ class PlayScreen:
         if kind == "down":
             self.stage.cursor = None
         self.stage.point(kind, pixel, modifiers)
-        clicked = self.stage.drag.take_click() if kind == "up" else None
+        self._choose_clicked()
+
+    def _choose_clicked(self) -> None:
+        """Show in the panel what the hand has clicked."""
+        clicked = self.stage.drag.take_click()
         if clicked is not None and isinstance(self.panel, Panel):
             self.panel.choose_particle(clicked)
 

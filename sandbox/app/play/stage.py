@@ -23,6 +23,7 @@ from sandbox.editor.edits.sizing import sized
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.pulls import Pull, pulls_of
 from sandbox.physics.analysis.query import nearest_particle, shown_particles
+from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command
 from sandbox.session.session import Session
@@ -54,6 +55,8 @@ class Stage:
         self.camera = Camera(viewport=viewport)
         self.renderer = Renderer(scale, playback.level)
         self.cursor: tuple[float, float] | None = None
+        # The particle that the cursor goes along with; None: it stays where arrows took it.
+        self._marked: int | None = None
         self.pressed_by_key = False
         self._hovered: int | None = None
         # An earlier run at the same tick, which is seen behind this one; None: none is.
@@ -239,6 +242,7 @@ class Stage:
 
     def move_cursor(self, dx: int, dy: int, modifiers: int) -> None:
         """Move the keyboard cursor, which appears in the middle at first; dy is upward."""
+        self._marked = None
         step = (CURSOR_LEAP if modifiers & pygame.KMOD_SHIFT else CURSOR_STEP) * self.renderer.scale
         x, y = self._cursor_pixel()
         left, top, width, height = self.camera.viewport
@@ -246,22 +250,59 @@ class Stage:
         self._cursor_to(moved, modifiers)
 
     def press_cursor(self, modifiers: int) -> None:
-        """Press the tool at the keyboard cursor, or release it."""
+        """Press the tool at the keyboard cursor, or release it, if it is one that is held."""
         pixel = self._cursor_pixel()
         self._cursor_to(pixel, modifiers)
         self.point("up" if self.pressed_by_key else "down", pixel, modifiers)
-        self.pressed_by_key = not self.pressed_by_key
+        self.pressed_by_key = not self.pressed_by_key and self.tool.is_held
 
-    def visit_particle(self, by: int) -> None:
-        """Move the keyboard cursor to the next particle, or the one before."""
-        snapshot = self.playback.current
-        slots = np.flatnonzero(shown_particles(snapshot) & np.isfinite(snapshot.position).all(axis=1))
+    def visit_thing(self, by: int) -> None:
+        """Move the keyboard cursor into the next thing, or the one before, where its middle is."""
+        snapshot, slots, here = self.playback.current, self._visited, self._here
         if not len(slots):
             return
-        here = None if self.cursor is None else nearest_particle(snapshot, self.cursor, np.inf)
-        index = int(np.searchsorted(slots, here)) + by if here is not None else 0
-        x, y = snapshot.position[slots[index % len(slots)]].tolist()
+        things, first = np.unique(snapshot.owner[slots], return_index=True)
+        things = things[np.argsort(first)]
+        # Without a cursor the first one comes, or the last one.
+        now = min(-by, 0) if here is None else int(np.flatnonzero(things == snapshot.owner[here])[0])
+        own = slots[snapshot.owner[slots] == things[(now + by) % len(things)]]
+        middle = snapshot.position[own].mean(axis=0)
+        self._mark(int(own[np.argmin(lengths(snapshot.position[own] - middle))]))
+
+    def visit_particle(self, by: int) -> None:
+        """Move the keyboard cursor to the next particle of its thing, or the one before."""
+        snapshot, slots, here = self.playback.current, self._visited, self._here
+        if here is None:
+            self.visit_thing(by)
+            return
+        own = slots[snapshot.owner[slots] == snapshot.owner[here]]
+        self._mark(int(own[(int(np.searchsorted(own, here)) + by) % len(own)]))
+
+    @property
+    def _visited(self) -> NDArray[np.intp]:
+        """The particles that the keyboard cursor goes to."""
+        snapshot = self.playback.current
+        return np.flatnonzero(shown_particles(snapshot) & np.isfinite(snapshot.position).all(axis=1))
+
+    @property
+    def _here(self) -> int | None:
+        """The particle at the keyboard cursor, or next to it; None: there is no cursor, or nothing."""
+        if self.cursor is None:
+            return None
+        return nearest_particle(self.playback.current, self.cursor, np.inf) if self._marked is None else self._marked
+
+    def _mark(self, particle: int) -> None:
+        self._marked = particle
+        x, y = self.playback.current.position[particle].tolist()
         self._cursor_to(self.camera.to_pixels((x, y)), 0)
+
+    def _go_along(self) -> None:
+        """Let the keyboard cursor be where its particle is, unless it holds something."""
+        if self._marked is not None and self._marked not in self._visited:
+            self._marked = None
+        if self._marked is not None and self.cursor is not None and not self.pressed_by_key:
+            x, y = self.playback.current.position[self._marked].tolist()
+            self.cursor = x, y
 
     def _cursor_pixel(self) -> Pixel:
         return self.camera.middle if self.cursor is None else self.camera.to_pixels(self.cursor)
@@ -274,8 +315,13 @@ class Stage:
     @property
     def pointed(self) -> int | None:
         """The particle under the mouse, or else at the keyboard cursor."""
-        if self._hovered is not None or self.cursor is None:
-            return self._hovered
+        return self.at_cursor if self._hovered is None else self._hovered
+
+    @property
+    def at_cursor(self) -> int | None:
+        """The particle at the keyboard cursor; None: there is no cursor, or nothing at it."""
+        if self.cursor is None:
+            return None
         within = PICK_RADIUS * self.renderer.scale / self.camera.zoom
         return nearest_particle(self.playback.current, self.cursor, within)
 
@@ -311,6 +357,7 @@ class Stage:
         if not self.drag.dragging:
             # A hand at the edge of the picture would else drag the picture along, and itself.
             self.following.update(self.camera, self.playback.session.world, self.playback.current, frame_time)
+        self._go_along()
         self.playback.liveliness.note(self.playback.current)
         self.stillness.follow(self.playback.current, self.camera.zoom, frame_time + passed)
         at = None if pointer is None else self.camera.to_world(pointer)

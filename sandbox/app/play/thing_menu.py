@@ -64,6 +64,26 @@ def open_thing_menu(ui: Ui, stage: Stage, pixel: Pixel, say: Say) -> bool:
     return True
 
 
+def cursor_actions(stage: Stage, open_menu: Callable[[Pixel], None], say: Say) -> dict[str, Callable[[], object]]:
+    """Where keys take the cursor, and the menu of the thing at it, or under the mouse where there is no cursor."""
+
+    def open_here() -> None:
+        particle = stage.pointed if stage.cursor is None else stage.at_cursor
+        if particle is None:
+            say("There is no thing at the cursor. N takes it to the next one.")
+        else:
+            x, y = stage.playback.current.position[particle].tolist()
+            open_menu(stage.camera.to_pixels((x, y)))
+
+    return {
+        "thing_menu": open_here,
+        "next_thing": lambda: stage.visit_thing(1),
+        "previous_thing": lambda: stage.visit_thing(-1),
+        "next_particle": lambda: stage.visit_particle(1),
+        "previous_particle": lambda: stage.visit_particle(-1),
+    }
+
+
 def _entries(stage: Stage, particle: int) -> list[_Offer]:
     """What can be made of the body of a particle."""
     playback = stage.playback

@@ -37,7 +37,7 @@ DIGITS = 4
 
 
 class Playable(NamedTuple):
-    """What a page plays: its title, what there is to do, and all that scripts open."""
+    """What a page plays: its title, what there is to do as its level says it, and all that scripts open."""
 
     title: str
     hints: str

@@ -14,7 +14,7 @@ from sandbox.app.site.link_card import link_card
 from sandbox.export.policy import policy
 from sandbox.level.document.model import Level
 from sandbox.page.bundle import BUNDLE
-from sandbox.page.page import COMPILING, ICON, KERNELS, filled
+from sandbox.page.page import COMPILING, ICON, KERNELS, filled, hint_markup
 from sandbox.physics.snapshot import Snapshot
 
 # Folders of a site: pages of levels, their pictures, and the modules with the kernels.
@@ -121,9 +121,10 @@ def _hero(each: SiteLevel, state: Snapshot, words: str) -> str:
     return (
         f'<section id="hero" aria-label="A toy to begin with" data-toy="{each.toy}" '
         f'data-view="{_numbers(_around(each.level, state))}">{_picture(each)}'
-        f'<canvas tabindex="0" role="application" aria-label="{name}. N marks a particle, Enter takes it, arrows move '
-        f'it, Space pauses."></canvas><button type="button" hidden><svg viewBox="0 0 24 24"><path d=""/></svg></button>'
-        f'<p><a href="{each.page}">{name}</a> <span>{html.escape(words)}</span></p>'
+        f'<canvas tabindex="0" role="application" aria-label="{name}. N goes to the next thing, arrows move the '
+        f'cursor, Enter takes what is there, Space pauses."></canvas>'
+        f'<button type="button" hidden><svg viewBox="0 0 24 24"><path d=""/></svg></button>'
+        f'<p><a href="{each.page}">{name}</a> <span>{hint_markup(words)}</span></p>'
         f'<p id="why" hidden>{FROM_DISK}</p></section>\n'
     )
 
@@ -139,7 +140,7 @@ def _card(each: SiteLevel, state: Snapshot, words: str) -> str:
     seen = Camera(viewport=(0, 0, *SIZE)).picture_of(crop_of(each.level, state))
     return (
         f'<li><a href="{each.page}" data-toy="{each.toy}" data-view="{_numbers(seen)}">{_picture(each, "data-")}'
-        f"<h3>{html.escape(each.level.name)}</h3><p>{html.escape(words)}</p></a></li>"
+        f"<h3>{html.escape(each.level.name)}</h3><p>{hint_markup(words)}</p></a></li>"
     )
 
 

@@ -32,6 +32,7 @@ from sandbox.app.site.index_page import (
 )
 from sandbox.app.site.link_card import link_card, write_card_picture
 from sandbox.level.format.writing import write_file
+from sandbox.level.hints import worded
 from sandbox.page.bundle import BUNDLE
 from sandbox.page.page import GZIP_LEVEL, KERNELS, MODULES, WEB, linked_page_text, toy_file
 from sandbox.physics.snapshot import Snapshot
@@ -69,7 +70,7 @@ def _following(levels: Mapping[str, SiteLevel]) -> dict[str, SiteLevel]:
 def _write_level(each: SiteLevel, state: Snapshot, folder: Path, address: str | None, after: SiteLevel | None) -> None:
     made = playable(each.level)
     write_file(_made(folder / LEVELS / f"{each.stem}.toy"), toy_file(made.content))
-    shown = link_card(made.title, made.hints, each.page, each.card_picture, address)
+    shown = link_card(made.title, worded(made.hints, "mouse"), each.page, each.card_picture, address)
     bundle = f"../{SCRIPTS}/{BUNDLE.name}"
     following = None if after is None else (f"{after.address}.html", after.level.name)
     page = linked_page_text(made.title, made.hints, f"{each.address}.toy", bundle, "../index.html", shown, following)

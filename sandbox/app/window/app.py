@@ -15,7 +15,7 @@ from sandbox.app.base.display import SCALE_RANGE, Display, fitting_layout
 from sandbox.app.base.idle import IdleCollector
 from sandbox.app.base.loop import FRAME_RATE
 from sandbox.app.base.profile import Profile
-from sandbox.app.base.shortcuts import Mode, use_keys
+from sandbox.app.base.shortcuts import Mode, hint, use_keys
 from sandbox.app.base.start_request import StartRequest
 from sandbox.app.compare.compare_screen import CompareScreen
 from sandbox.app.compare.hooke_lesson import HookeLesson
@@ -173,7 +173,7 @@ class App:
         """Show another run from its beginning; source: the file of its level."""
         self.show_screen(PlayScreen(self, playback, source))
         shown = playback.replay is None and self.chosen["hints"] == "show"
-        self._describe(playback.level.description if shown else "")
+        self._describe(hint(playback.level.description) if shown else "")
 
     def start_document(self, playback: Playback) -> PlayScreen:
         """Show a run of the level that the editor has open."""
@@ -191,7 +191,7 @@ class App:
     def _show_hint(self) -> None:
         """Show the description of the run's level once more."""
         if self.play is not None:
-            self._describe(self.play.playback.level.description or "This level has no description.")
+            self._describe(hint(self.play.playback.level.description) or "This level has no description.")
 
     def show_replay_progress(self, playback: Playback, can_cancel: bool = True) -> None:
         """Show a bar while a run is played again, for an undo or a recording, where that takes long."""

@@ -20,7 +20,7 @@ EDITING_KEYS = (pygame.K_a, pygame.K_c, pygame.K_v, pygame.K_x, pygame.K_z, pyga
 # Actions that go on while their key is held down.
 REPEATED = (
     "step", "back", "zoom_in", "zoom_out", "undo", "redo",
-    "next_particle", "previous_particle", "next_item", "previous_item",
+    "next_thing", "previous_thing", "next_particle", "previous_particle", "next_item", "previous_item",
 )  # fmt: skip
 # Keys that press a button, take a line and close a page: held down, they do so once.
 PRESSED_ONCE = (*ENTER_KEYS, pygame.K_SPACE, pygame.K_ESCAPE)

@@ -346,7 +346,10 @@ class Level(Description):
     format: Literal["spring-sandbox/level"] = Field(description="Says that the file is a level.")
     version: int = Field(description="Version of the format.", json_schema_extra={"const": VERSION})
     name: Name = Field(description="Title that the gallery shows.")
-    description: Text = Field(default="", description="What it shows and what to try.")
+    description: Text = Field(
+        default="",
+        description="What it shows and what to try. Names in braces stand for controls, see [Hints](#hints).",
+    )
     goal: Line = Field(default="", description='What wins it, in one line for players: "Bring the ball home".')
     author: Line = Field(default="", description="Who made it.")
     licence: Line = Field(default="", description='Licence, by its SPDX name: "CC0-1.0".')

@@ -35,6 +35,7 @@ export class Goals {
       this.#close();
       toy.play();
     });
+    places.end.addEventListener('keydown', (event) => this.#key(event));
     toy.addEventListener('outcome', () => this.#open());
     toy.addEventListener('jump', () => {
       if (toy.outcome?.tick !== toy.run.time) this.#close();
@@ -77,12 +78,28 @@ export class Goals {
     this.#title();
     const seconds = `${(outcome.tick / toy.rate).toFixed(2)} s`;
     end.querySelector('p')?.replaceChildren(outcome.text, outcome.text ? element('br') : '', seconds);
-    end.querySelector('div')?.replaceChildren(...(outcome.isWon ? stars(outcome.stars) : []));
+    const earned = end.querySelector('div');
+    earned?.replaceChildren(...stars(outcome.stars));
+    earned?.setAttribute('aria-label', starText(outcome.stars));
+    earned?.toggleAttribute('hidden', !outcome.isWon);
     end.classList.toggle('lost', !outcome.isWon);
     // Who has lost is not sent on.
     for (const next of end.querySelectorAll('a')) next.hidden = !outcome.isWon;
     end.hidden = false;
     this.places.again.focus({ preventScroll: true });
+  }
+
+  /** Escape closes the card; Tab goes round in it.
+   * @type {(event: KeyboardEvent) => void} */
+  #key(event) {
+    /** @type {NodeListOf<HTMLElement>} */
+    const all = this.places.end.querySelectorAll('a, button'), inside = [...all].filter((each) => !each.hidden);
+    const now = inside.findIndex((each) => each === document.activeElement), by = event.shiftKey ? -1 : 1;
+    if (event.key === 'Escape') this.#close();
+    else if (event.key === 'Tab') inside[(now + by + inside.length) % inside.length].focus({ preventScroll: true });
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
   }
 
   #close() {
@@ -93,14 +110,15 @@ export class Goals {
   }
 }
 
+/** @type {(earned: number) => string} */
+export const starText = (earned) => `${earned} of ${STARS} stars`;
+
 /** @type {(earned: number) => Element[]} */
 function stars(earned) {
-  const text = `${earned} of ${STARS} stars`;
   return Array.from({ length: STARS }, (_, k) => {
     const drawn = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
     const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
     drawn.setAttribute('viewBox', '0 0 24 24');
-    if (k === 0) drawn.setAttribute('aria-label', text);
     drawn.setAttribute('class', k < earned ? 'star earned' : 'star');
     path.setAttribute('d', starPath());
     drawn.append(path);

@@ -1,9 +1,10 @@
 // Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut, make; what is empty moves the view.
+import { Cursor, thingOf } from './cursor.js';
 import { HANDS } from './shared.js';
 /** @import { Camera } from './draw.js' */
 /** @import { Maker } from './maker.js' */
 /** @import { Run } from './run.js' */
-/** @import { Command, HandEvents, Point, Theme } from './types.js' */
+/** @import { Command, HandEvents, Point, Pressed, Theme } from './types.js' */
 /** @import { World } from './world.js' */
 
 const { STRENGTH, AT_LIMIT, SOFT_REACH, PICK_RADIUS } = HANDS;
@@ -11,9 +12,7 @@ const { STRENGTH, AT_LIMIT, SOFT_REACH, PICK_RADIUS } = HANDS;
 const FORCES = /** @type {[size: number, name: string][]} */ (HANDS.UNITS);
 /** @type {Record<string, number>} */
 const REACH = { mouse: PICK_RADIUS, pen: 16, touch: 26 };
-const NUDGE = 0.03, WHEEL_ZOOM = 1.0015;
-/** @type {Record<string, Point>} */
-const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const WHEEL_ZOOM = 1.0015;
 // Two taps so soon after each other [ms] and so near to each other [pixels] are one gesture.
 const TWICE = 350, BESIDE = 30;
 // A press that rests so long [ms] asks for a menu; what moves farther [pixels] rests no more: it drags.
@@ -23,9 +22,9 @@ const LONG = 500, RESTS = 10;
  * @typedef {Pixel & { time: number }} Touch */
 /**
  * What a pointer does, and where it is; hand: that it moves; point: where it cut last [m]; within: how far it reaches
- * [m]; asks: of which particle it asks for a menu; timer: until it does.
+ * [m]; cut: how many springs it has cut; asks: of which particle it asks for a menu; timer: until it does.
  * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'make' | 'done', began: Touch, isBeside: boolean,
- *   hand: number | null, point: Point, within: number, gesture: number, asks: number | null, timer: number }} Pointer
+ *   hand: number | null, point: Point, within: number, gesture: number, cut: number, asks: number | null, timer: number }} Pointer
  */
 /**
  * What a hand holds, where it draws it [m], how far that is from the pointer, how far that reaches [m], and its largest
@@ -175,8 +174,6 @@ class Near {
 
 export class Hands {
   tool = 'drag';
-  /** @type {number | null} */
-  marked = null;
   /** @type {Map<number, Pointer>} */
   #pointers = new Map();
   /** What each hand holds that a pointer or a key moves.
@@ -187,11 +184,12 @@ export class Hands {
   #closing = new AbortController();
 
   /** changed: called when the view has been moved by hand; fit: shows all again; say: tells a person a line;
-   * menu: asks what is to be done to a particle.
+   * menu: asks what is to be done to a particle; speak: tells who listens what was done.
    * @param {HTMLCanvasElement} canvas @param {Run} run @param {Camera} camera @param {Maker} maker
    * @param {HandEvents} events */
-  constructor(canvas, run, camera, maker, { changed, fit, say, menu }) {
+  constructor(canvas, run, camera, maker, { changed, fit, say, menu, speak }) {
     this.maker = maker;
+    this.speak = speak;
     this.menu = menu;
     this.canvas = canvas;
     this.run = run;
@@ -199,6 +197,8 @@ export class Hands {
     this.changed = changed;
     this.fit = fit;
     this.say = say;
+    this.cursor = new Cursor(run, camera, { press: (at) => this.#pressByKey(at), move: (at) => this.#move(at),
+      lift: (at) => this.#lift(at), menu, releaseAll: () => this.releaseAll() }, speak);
     const how = { signal: this.#closing.signal, passive: false };
     /** @type {<N extends keyof HTMLElementEventMap>(name: N, act: (event: HTMLElementEventMap[N]) => void) => void} */
     const on = (name, act) => canvas.addEventListener(name, act, how);
@@ -242,19 +242,38 @@ export class Hands {
     event.preventDefault();
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(event.pointerId);
+    this.cursor.forget();
+    this.#begin(event);
+  }
+
+  /** Use the tool at the cursor of keys. Whether that goes on until it is lifted.
+   * @type {(at: Pressed) => boolean} */
+  #pressByKey(at) {
+    this.#begin(at);
+    const kind = this.#pointers.get(at.pointerId)?.kind ?? 'done', goesOn = ['hold', 'cut', 'make'].includes(kind);
+    if (!goesOn) this.#pointers.delete(at.pointerId);
+    if (kind === 'pan' && at.particle === null) this.speak('Nothing is here. N goes to the next thing.');
+    return goesOn;
+  }
+
+  /** Use the tool where a pointer or the cursor of keys came down.
+   * @type {(event: Pressed) => void} */
+  #begin(event) {
     const point = this.camera.toWorld(event.offsetX, event.offsetY),
       within = REACH[event.pointerType] / this.camera.zoom;
     /** @type {Pointer} */
     const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', isBeside: false, hand: null, point, within,
-      gesture: 0, asks: null, timer: 0, began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
+      gesture: 0, cut: 0, asks: null, timer: 0, began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
     this.#pointers.set(event.pointerId, pointer);
-    const near = new Near(this.run.world), touched = near.particle(point, within), free = near.free(point, within);
+    const near = new Near(this.run.world), { particle: marked = null } = event;
+    const touched = marked ?? near.particle(point, within);
+    const free = marked === null ? near.free(point, within) : near.world.canMove(marked) ? marked : null;
     if (event.button === 2) pointer.asks = touched ?? free;
     if (event.button !== 0 || event.altKey) return;
     pointer.isBeside = this.tool !== 'cut' && touched === null && free === null && this.#pointers.size === 1;
     if (this.tool === 'cut') {
       Object.assign(pointer, { kind: 'cut', gesture: this.run.newGesture() });
-      this.#cut(pointer.gesture, near.spring(point, within / 2));
+      this.#cut(pointer, near.spring(point, within / 2));
     } else if (this.tool === 'pin') this.#pin(near, touched, pointer);
     else if (this.tool === 'erase') this.#erase(touched ?? free, pointer);
     else if (this.maker.makes(this.tool)) {
@@ -267,7 +286,10 @@ export class Hands {
     }
     else if (free !== null) {
       pointer.hand = this.hold(free, point, within);
-      if (pointer.hand !== null) pointer.kind = 'hold';
+      if (pointer.hand !== null) {
+        pointer.kind = 'hold';
+        this.speak(`Holding ${this.#thing(free)}.`);
+      }
       if (event.pointerType !== 'mouse') pointer.timer = setTimeout(() => this.#ask(pointer, free), LONG);
     } else if (touched !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
   }
@@ -295,7 +317,8 @@ export class Hands {
     if (particle === null) return;
     pointer.kind = 'done';
     const type = near.inverse_mass[particle] > 0 ? 'pin' : 'unpin';
-    this.run.submit({ type, particle }, this.run.newGesture(), this.say);
+    const isDone = this.run.submit({ type, particle }, this.run.newGesture(), this.say);
+    if (isDone) this.speak(`${this.#thing(particle)} is ${type === 'pin' ? 'pinned' : 'free'}.`);
   }
 
   /** @type {(particle: number | null, pointer: Pointer) => void} */
@@ -308,13 +331,21 @@ export class Hands {
   /** Take a particle out, with what hangs on it.
    * @type {(particle: number) => void} */
   remove(particle) {
+    const thing = this.#thing(particle);
     const record = /** @type {any} */ ({ type: 'remove', particle: this.run.world.names.particle[particle] });
-    this.run.submit(record, this.run.newGesture(), this.say);
+    if (this.run.submit(record, this.run.newGesture(), this.say)) this.speak(`${thing} is gone.`);
   }
 
-  /** @type {(gesture: number, springs: number[]) => void} */
-  #cut(gesture, springs) {
-    if (springs.length) this.run.submit({ type: 'cut_springs', springs }, gesture, this.say);
+  /** @type {(pointer: Pointer, springs: number[]) => void} */
+  #cut(pointer, springs) {
+    if (!springs.length) return;
+    if (this.run.submit({ type: 'cut_springs', springs }, pointer.gesture, this.say)) pointer.cut += springs.length;
+  }
+
+  /** The thing that a particle is of, as it is spoken of.
+   * @type {(particle: number) => string} */
+  #thing(particle) {
+    return thingOf(this.run.world.names.particle[particle]);
   }
 
   /** Take a particle into a free hand and draw it to a point [m]. The hand; null where none is free.
@@ -339,7 +370,7 @@ export class Hands {
     return hand;
   }
 
-  /** @type {(event: PointerEvent) => void} */
+  /** @type {(event: Pressed) => void} */
   #move(event) {
     const pointer = this.#pointers.get(event.pointerId);
     if (!pointer) return;
@@ -351,7 +382,7 @@ export class Hands {
       held = this.#heldBy(pointer);
     if (held) this.#aim(held, point);
     else if (pointer.kind === 'cut') {
-      this.#cut(pointer.gesture, new Near(this.run.world).crossing(pointer.point, point));
+      this.#cut(pointer, new Near(this.run.world).crossing(pointer.point, point));
       pointer.point = point;
     } else if (pointer.kind === 'make') this.maker.go(point, pointer.within);
     else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
@@ -382,7 +413,7 @@ export class Hands {
     held.isMoved = true;
   }
 
-  /** @type {(event: PointerEvent) => void} */
+  /** @type {(event: Pressed) => void} */
   #lift(event) {
     const pointer = this.#pointers.get(event.pointerId);
     this.#pointers.delete(event.pointerId);
@@ -392,7 +423,12 @@ export class Hands {
     if (event.type === 'pointerup' && pointer.asks !== null) {
       this.menu({ particle: pointer.asks, x: pointer.x, y: pointer.y });
     }
-    if (pointer.hand !== null && this.#heldBy(pointer)) this.release(pointer.hand);
+    if (pointer.cut) this.speak(`Cut: ${pointer.cut} ${pointer.cut === 1 ? 'spring' : 'springs'}.`);
+    const held = this.#heldBy(pointer);
+    if (pointer.hand !== null && held) {
+      this.release(pointer.hand);
+      this.speak(`Let go of ${this.#thing(held.particle)}.`);
+    }
     else if (pointer.isBeside && event.type === 'pointerup') this.#tap(pointer.began, event.timeStamp);
   }
 
@@ -400,7 +436,8 @@ export class Hands {
    * @type {(pointer: Pointer) => void} */
   #make({ x, y, within }) {
     const near = new Near(this.run.world), point = this.camera.toWorld(x, y);
-    this.maker.end(this.tool, point, near.particle(point, within) ?? near.free(point, within), within);
+    const isMade = this.maker.end(this.tool, point, near.particle(point, within) ?? near.free(point, within), within);
+    if (isMade) this.speak(`A new ${this.tool} is there.`);
   }
 
   /** @type {(pointer: Pointer) => Held | undefined} */
@@ -425,12 +462,14 @@ export class Hands {
   letGo() {
     for (const { hand } of this.#pointers.values()) if (hand !== null) this.release(hand);
     this.#pointers.clear();
+    this.cursor.lift();
   }
 
   // Hold nothing any more, as time has jumped.
   forget() {
     this.#held.clear();
     this.maker.forget();
+    this.cursor.lift();
     for (const pointer of this.#pointers.values()) Object.assign(pointer, { kind: 'done', hand: null });
   }
 
@@ -446,35 +485,13 @@ export class Hands {
     }
   }
 
-  /** Keys: N marks the next particle, Enter takes it, arrows move it. Whether the key was of use.
-   * @type {(event: KeyboardEvent) => boolean} */
-  key(event) {
-    const near = new Near(this.run.world), way = Object.hasOwn(WAYS, event.key) ? WAYS[event.key] : null;
-    const [hand, held] = [...this.#held].find(([, { particle }]) => particle === this.marked) ?? [];
-    if (event.key === 'n' || event.key === 'N') {
-      const free = Array.from(near.mass.keys()).filter((k) => near.world.canMove(k));
-      this.marked = free.find((k) => k > (this.marked ?? -1)) ?? free[0] ?? null;
-    } else if (event.key === 'Enter' && this.marked !== null) {
-      if (hand !== undefined) this.release(hand);
-      else this.hold(this.marked, [near.position[2 * this.marked], near.position[2 * this.marked + 1]], 1);
-    } else if (event.key === 'Escape') {
-      this.marked = null;
-      this.releaseAll();
-    } else if (way && held) {
-      const step = (NUDGE * this.camera.height) / this.camera.zoom;
-      const [x, y] = [0, 1].map((u) => held.target[u] - held.beside[u] + way[u] * step);
-      this.#aim(held, [x, y]);
-    } else return false;
-    return true;
-  }
-
   /** Lines from what is held to its cursor, with the force of each hand.
    * @type {(context: CanvasRenderingContext2D, at: Float64Array, theme: Theme) => void} */
   draw(context, at, theme) {
     const { world } = this.run, { particle: first, spring, count } = world.hands, b = world.view('state.particle_b'),
       force = world.view('state.hand_force');
     this.maker.draw(context, this.tool, (x, y) => this.camera.toPixels(x, y), theme);
-    if (this.marked !== null && world.isShown(this.marked)) circle(context, at, this.marked, 10, theme.accent);
+    this.cursor.draw(context, at, theme);
     for (let hand = 0; hand < count; hand++) {
       if (!world.isHeld(hand)) continue;
       const held = b[spring + hand], pull = Math.hypot(force[2 * hand], force[2 * hand + 1]),

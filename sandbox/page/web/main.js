@@ -1,7 +1,9 @@
 // Main: the page around a toy: its bars, panel, timeline and keys, and what it says.
 import { Refusal } from './commands.js';
+import { typed } from './cursor.js';
+import { Ears } from './ears.js';
 import { Lost, read } from './files.js';
-import { Goals } from './goals.js';
+import { Goals, starText } from './goals.js';
 import { Keys } from './keys.js';
 import { Elsewhere, isLink, linked } from './link.js';
 import { Menu } from './menu.js';
@@ -28,7 +30,7 @@ const MAKES = { jelly: `${DRAW}jelly.`, wood: `${DRAW}wood.`, steel: `${DRAW}ste
 const KEYS = { s: 'slow', r: 'again', d: 'drag', p: 'pin', c: 'cut', b: 'make', j: 'jelly', o: 'rope', x: 'erase', m: 'sound', h: 'tune', '?': 'hint' };
 /** With Ctrl, or with Command on a Mac.
  * @type {Record<string, string | undefined>} */
-const COMMANDS = { z: 'undo', y: 'redo', Z: 'redo' };
+const COMMANDS = { z: 'undo', y: 'redo', 'Shift+z': 'redo' };
 /** Parts of the page that are no plain elements.
  * @typedef {{ picture: HTMLCanvasElement, verifying: HTMLProgressElement, time: HTMLInputElement }} Parts */
 /** @template {string} I @typedef {I extends keyof Parts ? Parts[I] : HTMLElement} Part */
@@ -60,6 +62,7 @@ class Page {
     this.menu = new Menu(byId('menu'), this.toy, level.about.adding.made.words);
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;
+    this.ears = new Ears(byId('spoken'));
     this.#bind();
     this.#listen();
     this.#listenToPage();
@@ -118,6 +121,10 @@ class Page {
         byId('more').setAttribute('aria-expanded', String(byId('tools').classList.contains('open')));
       },
     };
+    // What drives something has no other meaning.
+    for (const [key, id] of Object.entries(KEYS)) {
+      if (id && key in toy.drives.keys) byId(id).title = byId(id).title.replace(` (${key.toUpperCase()})`, '');
+    }
     for (const tool of TOOLS) acts[tool] = () => this.#choose(tool);
     for (const [id, act] of Object.entries(acts)) byId(id).addEventListener('click', act);
     byId('time').addEventListener('input', () => {
@@ -128,7 +135,7 @@ class Page {
     addEventListener('keydown', (event) => {
       const isCommand = event.ctrlKey || event.metaKey;
       if (event.defaultPrevented || event.altKey || isTypedInto(event.target)) return;
-      const act = acts[(isCommand ? COMMANDS : KEYS)[isCommand && event.shiftKey ? event.key.toUpperCase() : event.key] ?? ''];
+      const act = acts[(isCommand ? COMMANDS : KEYS)[typed(event)] ?? ''];
       if (!act) return;
       act();
       event.preventDefault();
@@ -142,6 +149,8 @@ class Page {
       if (event instanceof CustomEvent) act(event.detail);
     });
     on('say', (message) => this.#say(message));
+    on('speak', ({ text }) => this.ears.say(text));
+    on('outcome', ({ isWon, text, stars }) => this.ears.say(isWon ? `Won. ${text} ${starText(stars)}.` : `Lost. ${text}`));
     on('menu', (asked) => this.menu.open(asked));
     on('theme', ({ name }) => this.#theme(name));
     on('pace', ({ isBehind }) => { byId('pace').textContent = isBehind ? 'slower than real time' : ''; });
@@ -181,6 +190,7 @@ class Page {
     const { lasts } = RANKS[message.rank];
     this.#messages.say(message, this.#moment);
     this.#showMessages();
+    if (message.rank !== 'progress') this.ears.say(message.text);
     // Also while time stands, when nothing is drawn.
     if (lasts) setTimeout(() => this.#showMessages(), 1000 * lasts + 20);
   }

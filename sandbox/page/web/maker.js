@@ -81,8 +81,8 @@ export class Maker {
     return { place: [x, y], name: world.names.particle[particle] };
   }
 
-  /** Make it: the tool's, of what was drawn until now.
-   * @type {(tool: string, point: Point, particle: number | null, within: number) => void} */
+  /** Make it: the tool's, of what was drawn until now. Whether it is there.
+   * @type {(tool: string, point: Point, particle: number | null, within: number) => boolean} */
   end(tool, point, particle, within) {
     const stroke = this.#stroke, start = this.#start;
     this.#stroke = [];
@@ -92,9 +92,11 @@ export class Maker {
       const gesture = this.run.newGesture();
       const { world } = this.run;
       for (const record of records) this.run.command(world.commands.read(record, world.counts), gesture);
+      return true;
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
       this.say(error.message);
+      return false;
     }
   }
 

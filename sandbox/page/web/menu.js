@@ -1,4 +1,5 @@
 // Menu: what can be done to a thing: its material softer or firmer, and its particle fixed or let go.
+import { thingOf } from './cursor.js';
 import { element } from './panel.js';
 /** @import { Toy } from './toy.js' */
 /** @import { Asked, Point } from './types.js' */
@@ -12,7 +13,7 @@ export class Menu {
     addEventListener('pointerdown', ({ target }) => {
       if (target instanceof Node && !box.contains(target)) this.close();
     }, true);
-    addEventListener('keydown', ({ key }) => { if (key === 'Escape') this.close(); });
+    box.addEventListener('keydown', (event) => this.#key(event));
     // What begins elsewhere, by whatever means, ends it.
     for (const name of ['outcome', 'jump']) toy.addEventListener(name, () => this.close());
     document.addEventListener('focusin', ({ target }) => {
@@ -20,8 +21,24 @@ export class Menu {
     });
   }
 
+  // Who was in it is at the picture again.
   close() {
-    this.box.hidden = true;
+    const { box, toy } = this;
+    if (box.contains(document.activeElement)) toy.canvas.focus({ preventScroll: true });
+    box.hidden = true;
+  }
+
+  /** Arrow keys go from row to row; what leads out of it closes it.
+   * @type {(event: KeyboardEvent) => void} */
+  #key(event) {
+    const rows = [...this.box.querySelectorAll('button')], last = rows.length - 1;
+    const now = rows.findIndex((row) => row === document.activeElement);
+    const to = { ArrowDown: now < last ? now + 1 : 0, ArrowUp: now > 0 ? now - 1 : last, Home: 0, End: last }[event.key];
+    if (to !== undefined) rows[to].focus({ preventScroll: true });
+    else if (['Escape', 'Tab'].includes(event.key)) this.close();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
   }
 
   /** @type {(asked: Asked) => void} */
@@ -29,7 +46,8 @@ export class Menu {
     const { box, toy } = this, { world } = toy, material = this.#materialOf(particle);
     /** @type {(text: string, act: () => void) => HTMLButtonElement} */
     const button = (text, act) => {
-      const made = element('button', { type: 'button', textContent: text });
+      const made = element('button', { type: 'button', textContent: text, tabIndex: -1 });
+      made.setAttribute('role', 'menuitem');
       made.addEventListener('click', () => {
         this.close();
         act();
@@ -42,6 +60,7 @@ export class Menu {
       button(word, () => this.#soften(material, word, stiffness, damping)));
     box.replaceChildren(...softness, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
       { type: isFixed ? 'unpin' : 'pin', particle })), button('erase', () => toy.hands.remove(particle)));
+    box.setAttribute('aria-label', thingOf(world.names.particle[particle]));
     box.hidden = false;
     box.style.left = `${Math.max(8, Math.min(x, innerWidth - box.offsetWidth - 8))}px`;
     box.style.top = `${Math.max(8, Math.min(y, innerHeight - box.offsetHeight - 8))}px`;

@@ -14,6 +14,8 @@ export const RANKS = {
   refusal: { place: 'state', lasts: 8, ends: ['deed', 'jump'] },
   // What came of something that was asked for.
   done: { place: 'state', lasts: 8, ends: ['deed', 'jump'] },
+  // Of something that was asked for, until it is done; nobody is told of it by ear.
+  progress: { place: 'state', lasts: 8, ends: ['deed', 'jump'] },
   // Of rules several stand, as time may go back to before the last.
   rule: { place: 'state', ends: ['back'] },
   tip: { place: 'state', ends: ['deed', 'tool'] },

@@ -1,6 +1,7 @@
 // Toy: a level that plays on a canvas; and the handle by which a page of one's own plays, reads and listens.
 import { Checks } from './checks.js';
 import { Refusal } from './commands.js';
+import { typed } from './cursor.js';
 import { Camera, Picture } from './draw.js';
 import { Drives } from './drives.js';
 import { load } from './files.js';
@@ -24,7 +25,8 @@ const light = matchMedia('(prefers-color-scheme: light)'), calm = matchMedia('(p
 /** @typedef {'dark' | 'light'} ThemeName */
 
 // It tells what happens as events: tick, break { springs }, check { name, holds, value }, rules { actions },
-// outcome { isWon, text, stars, tick }, way { done, all }, say { text, rank }, menu { particle, x, y }, pause, pace { isBehind }, jump, theme and draw.
+// outcome { isWon, text, stars, tick }, way { done, all }, say { text, rank }, menu { particle, x, y }, speak { text }, pause,
+// pace { isBehind }, jump, theme and draw.
 export class Toy extends EventTarget {
   #pace = new Pace();
   #isDirty = true;
@@ -70,7 +72,7 @@ export class Toy extends EventTarget {
     this.picture = new Picture(canvas, level.scene, this.world);
     const maker = new Maker(this.run, level.about.adding, (text) => this.say(text));
     this.hands = new Hands(canvas, this.run, this.camera, maker, {
-      menu: (asked) => this.#tell('menu', asked),
+      menu: (asked) => this.#tell('menu', asked), speak: (text) => this.#tell('speak', { text }),
       changed: () => { this.#isMoved = this.#isDirty = true; }, fit: () => this.fit(), say: (text) => this.say(text),
     });
     this.drives = new Drives(this.run, level.keys, level.about.names.key, (text) => this.say(text));
@@ -134,8 +136,8 @@ export class Toy extends EventTarget {
     else if (event.key === '+' || event.key === '-') {
       this.#isMoved = true;
       this.camera.zoomAbout(this.camera.width / 2, this.camera.height / 2, event.key === '+' ? KEY_ZOOM : 1 / KEY_ZOOM);
-    } else if (['f', 'home'].includes(event.key.toLowerCase())) this.fit();
-    else return this.hands.key(event);
+    } else if (['f', 'Home'].includes(typed(event))) this.fit();
+    else return this.hands.cursor.key(event);
     return true;
   }
 
@@ -420,7 +422,7 @@ export class Toy extends EventTarget {
     const { run, level } = this, commands = run.commands.filter(({ tick }) => tick <= run.time);
     /** @type {(done: number, all: number) => void} */
     const progress = (done, all) => {
-      if (done % 60 === 0) this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`, 'done');
+      if (done % 60 === 0) this.say(`Writing the recording: ${Math.round((100 * done) / Math.max(all, 1))} %`, 'progress');
     };
     return written(this.fresh(), level.about, level.header, commands, run.time, progress);
   }

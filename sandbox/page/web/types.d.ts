@@ -676,6 +676,7 @@ export interface ToyEvents {
   outcome: Outcome;
   say: { text: string; rank: Rank };
   menu: Asked;
+  speak: { text: string };
   pause: { isPaused: boolean };
   pace: { isBehind: boolean };
   jump: undefined;
@@ -684,7 +685,7 @@ export interface ToyEvents {
 }
 
 // What a page says: of which rank, see messages.js; whether it is good news; where it was asked for; where it leads.
-export type Rank = 'verdict' | 'fault' | 'refusal' | 'done' | 'rule' | 'tip';
+export type Rank = 'verdict' | 'fault' | 'refusal' | 'done' | 'progress' | 'rule' | 'tip';
 export interface Message {
   rank: Rank;
   text: string;
@@ -699,7 +700,12 @@ export interface HandEvents {
   fit: () => void;
   say: (text: string) => void;
   menu: (asked: Asked) => void;
+  speak: (text: string) => void;
 }
+
+// A press of a pointer, or of the cursor of keys, which is at a particle or at none.
+export type Pressed = Pick<PointerEvent, 'pointerId' | 'pointerType' | 'type' | 'button' | 'buttons' | 'altKey'
+  | 'timeStamp' | 'offsetX' | 'offsetY'> & { particle?: number | null };
 
 // A particle that somebody asked a menu of, and where [pixels].
 export interface Asked {

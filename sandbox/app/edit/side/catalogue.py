@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.base.sentences import sentence
-from sandbox.app.base.shortcuts import tip_of
+from sandbox.app.base.shortcuts import hint, tip_of
 from sandbox.app.base.slice_queue import SliceQueue
 from sandbox.app.contracts.editing import Editing
 from sandbox.app.contracts.screen import Pixel
@@ -151,7 +151,7 @@ class CataloguePage(SidePage):
         for place, part in zip(places, parts, strict=True):
             card = PartCard(ui, place, part, self, self.area.content, self._columns)
             if self._is_low and part.level is not None:
-                card.tip = f"{part.name}. {part.level.description}".strip()
+                card.tip = f"{part.name}. {hint(part.level.description)}".strip()
             self.cards.append(card)
             self._unfilled.add(fill_card(card))
         return end
@@ -162,7 +162,7 @@ class CataloguePage(SidePage):
         if part is not None and part.fault:
             text, colour = part.fault, DANGER
         elif part is not None and part.level is not None:
-            text = f"{part.name}. {part.level.description}".strip()
+            text = f"{part.name}. {hint(part.level.description)}".strip()
         if (text, colour) != (self._text.text, self._text.colour):
             self._text.colour = colour
             self._text.show_text(text)
