@@ -71,7 +71,7 @@ def _state(part: str, name: str, column: str, usual: float | None = None) -> Num
 
 SLOT_TABLE = (
     SlotColumn("particles", "body", -FAR, FAR),
-    SlotColumn("particles", "group", 1, ALL_GROUPS),
+    SlotColumn("particles", "group", 0, ALL_GROUPS),
     SlotColumn("particles", "collides", 0, ALL_GROUPS),
     SlotColumn("particles", "pinned", 0, 1, usual=0),
     SlotColumn("particles", "rolls", 0, 1, usual=1),
