@@ -60,9 +60,9 @@ NOTHING, OF_HANDS, OF_TOPOLOGY, OF_SOLVER = "", "hands", "topology", "solver"
 class KernelCommand(NamedTuple):
     """A kind of command: its number; what lies in `slots` and `numbers` then; what has to be derived again.
 
-    first_cursor, first_spring: of hands; grab: a hand; materials: how many there are; tick_rate [1/s]; duration [ticks]:
-    see ramps.py; ?name: whether that is given. Others are what commands of files call so: places have two numbers, springs as many slots as
-    there are. What answers is written by the kernel: see ANSWERS.
+    first_cursor, first_spring: of hands; grab: a hand; materials: how many there are; tick_rate [1/s]; duration
+    [ticks]: see ramps.py; ?name: whether that is given; of ANSWERS: what the kernel writes. Others are what commands of
+    files call so: places have two numbers, springs as many slots as there are.
     """
 
     code: int
