@@ -10,7 +10,6 @@ from sandbox.app.share.playing import page_of
 from sandbox.commands import (
     AddBody,
     AddParticle,
-    CommandError,
     CutSprings,
     Free,
     Grab,
@@ -35,7 +34,7 @@ from sandbox.editor.document import empty_level
 from sandbox.replay import Replay, read_replay, verify
 from tests.page.browser import Browser
 from tests.page.opened import VERDICT, opened, saved
-from tests.support.parts import BODIES, RandomPlayer, furnished
+from tests.support.parts import BODIES, RandomPlayer, furnished, placed_cart
 
 TICKS = 150
 # Ticks of a recording, without commands, between which a page goes back and forth.
@@ -241,8 +240,19 @@ def test_an_excerpt_has_no_commands_of_what_follows(browser: Browser, tmp_path: 
     assert tab.evaluate("page.toy.run.commands.map(({ tick }) => tick)") == [10, 40]
 
 
-def test_a_recording_that_begins_with_nothing_is_refused_in_a_line(tmp_path: Path) -> None:
+def test_a_recording_that_begins_with_nothing_plays_and_hands_get_their_slots(browser: Browser, tmp_path: Path) -> None:
     session = Session(empty_level())
-    replay = _record(tmp_path, session, lambda tick: session.submit(AddParticle((0.0, 1.0 + tick))), 2)
-    with pytest.raises(CommandError, match=r"^a page cannot play a recording that begins with nothing$"):
-        page_of(replay.level, replay.script, replay.ticks)
+
+    def act(tick: int) -> None:
+        if tick == 1:
+            session.submit(AddParticle((0.0, 1.0)))
+            session.submit(AddBody(**placed_cart(0.0, 4.0)))
+        if tick == 5:
+            session.submit(Grab(0, session.world.particle_slot("+.0"), (1.0, 2.0)))
+
+    replay = _record(tmp_path, session, act, 30)
+    assert {line.record["type"] for line in replay.script} == {"add_particle", "add_body", "grab"}
+    tab = opened(browser, tmp_path, page_of(replay.level, replay.script, replay.ticks))
+    assert tab.evaluate(VERDICT).startswith("Verified: every bit of 30 ticks")
+    tab.evaluate("page.toy.seek(2); page.toy.seek(30)")
+    assert tab.evaluate("page.toy.world.names.particle.includes('+hand.3') && page.toy.world.hands.particle > 0")

@@ -98,7 +98,7 @@ class Joiners:
             collides[mine] = built.collides[: self.particles][mine] if named is None else named
         touches = level.has_contacts
         columns = columns_of(
-            built, {"group": group, "collides": collides if touches else 0}, free_wheels(level) if touches else []
+            built, {"group": group, "collides": collides * touches}, free_wheels(level) if touches else []
         )  # fmt: skip
         return Kit(
             len(level.bodies),

@@ -39,7 +39,7 @@ digits than a number of JSON can be sure of. A kit holds at most 5,000 bodies.
 """
 _MEANS = {
     ("particles", "body"): "the number of its body; -1 - p: a piece that is named by its first particle p",
-    ("particles", "group"): "its collision group, one bit, but that of terrain",
+    ("particles", "group"): "its collision group, one bit, but that of terrain; 0: none",
     ("springs", "a"): "its first end: a row of particles; the name of a particle of the world, or -1 - its slot",
     ("springs", "b"): "its second end, another particle",
     ("springs", "rest_length"): "left out: as placed",

@@ -111,7 +111,7 @@ def replay_of(link: str) -> Replay:
         script = unpack(packed.commands)
     except PackingError as error:
         raise ReplayError(f"the link is broken: {error}") from None
-    if any(line.tick > packed.ticks for line in script[-1:]):
+    if any(line.tick > packed.ticks for line in script[-1:]) or packed.at > packed.ticks:
         raise ReplayError("the link is broken: it goes on after its end")
     return run_of("link", _level_of(packed), script, packed.ticks, packed.hash)
 
