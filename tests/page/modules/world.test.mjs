@@ -15,8 +15,8 @@ test('a state that was saved goes on to the same bits, also from before a cut an
   const world = fresh();
   ticked(world, 30);
   const saved = world.save(), expected = ticked(world, 60);
-  world.command({ type: 'cut_springs', springs: [10] });
-  world.command(pull);
+  world.command({ type: 'cut_springs', springs: [10] }, world.givers.PROGRAM);
+  world.command(pull, world.givers.PROGRAM);
   assert.notEqual(ticked(world, 60), expected);
   world.restore(saved);
   assert.equal(world.time, 30);
@@ -40,7 +40,7 @@ test('two worlds of a toy share nothing', async () => {
 test('arrays are found where they are after memory has grown', async () => {
   const [, fresh] = await toy('jelly_wheel');
   const world = fresh(), old = world.view('state.position');
-  world.command({ ...pull, particle: world.particles.find((slot) => world.canMove(slot)) });
+  world.command({ ...pull, particle: world.particles.find((slot) => world.canMove(slot)) }, world.givers.PROGRAM);
   ticked(world, 5);
   const view = world.view('state.position');
   assert.equal(view.length, old.length || view.length);
@@ -51,8 +51,8 @@ test('arrays are found where they are after memory has grown', async () => {
 test('what a kernel refuses changes nothing', async () => {
   const [, fresh] = await toy('rope');
   const world = fresh(), before = world.hash().whole;
-  assert.throws(() => world.command({ type: 'pin', particle: 1e6 }), Refusal);
-  assert.throws(() => world.command({ type: 'shake', acceleration: [NaN, 0] }), Refusal);
+  assert.throws(() => world.command({ type: 'pin', particle: 1e6 }, world.givers.PROGRAM), Refusal);
+  assert.throws(() => world.command({ type: 'shake', acceleration: [NaN, 0] }, world.givers.PROGRAM), Refusal);
   assert.equal(world.hash().whole, before);
 });
 
