@@ -113,7 +113,7 @@ def test_places_that_are_no_whole_millimetres_keep_their_bits(target):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"v": 2}, "is of version 2; this program reads 1"),
+        ({"v": 1}, "is of version 1; this program reads 2"),
         ({"physics": 9}, "was made with physics version 9"),
         ({"ticks": -1}, "ticks: must be greater than or equal to 0"),
         ({"hash": "x"}, "hash"),

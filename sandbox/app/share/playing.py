@@ -68,7 +68,7 @@ def playable_in_slices(
         "name": level.name,
         "scene": scene_of(level, take(world)),
         "sounds": _sounds(world),
-        "materials": (yield from material_rows(world, level, played is not None)),
+        "materials": (yield from material_rows(world if played is None else played.world, level, played is not None)),
         "gravity_limit": GRAVITY_LIMIT,
         "ramp_ticks": round(RAMP_TIME * world.settings.tick_rate),
         "checks": _checks(level, world),

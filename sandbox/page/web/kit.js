@@ -254,7 +254,7 @@ export function keysIn(joined) {
   for (const { keys } of joined) {
     for (const [name, parts] of Object.entries(keys)) found[name] = [...(Object.hasOwn(found, name) ? found[name] : []), ...parts];
   }
-  return found;
+  return Object.fromEntries(Object.entries(found).sort());
 }
 
 /** First constraint of each body of a kit that keeps areas, and the one behind its last, in a world.
