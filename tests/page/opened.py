@@ -19,7 +19,8 @@ START_OVER = f"""(async () => {{
 }})()"""
 # What a page says of a recording at last, or why there is none.
 VERDICT = """new Promise((done) => {
-  const said = () => ['verdict', 'state'].map((id) => document.getElementById(id)).find(({ className }) => className);
+  const said = () => ['verdict', 'state'].map((id) => document.getElementById(id)).find(({ className }) =>
+    ['good', 'bad', 'refusal'].includes(className));
   const look = () => (said() ? done(said().textContent) : requestAnimationFrame(look));
   look();
 })"""

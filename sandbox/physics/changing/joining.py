@@ -141,7 +141,8 @@ def rows_of(part: str, columns: Any) -> int:
 def _column(kit: Columns, column: SlotColumn | NumberColumn, counts: Counts) -> Any:
     """The values of a column, usual ones where none are given."""
     place, count = f"{column.part}.{column.name}", counts[column.part]
-    given = kit.get(column.part, {}).get(column.name, column.usual)
+    given = kit.get(column.part, {}).get(column.name)
+    given = column.usual if given is None else given
     if given is None and count:
         raise KitError(MISSING.format(place))
     if not _is_rows(given):

@@ -61,7 +61,10 @@ def forms_of(bodies: tuple[FirmBody, ...]) -> Forms:
     """Bodies as kernels take them."""
     first = np.zeros((len(bodies) + 1, KINDS_OF_ROWS), np.int64)
     if not bodies:
-        return with_empty(Forms, first=first)
+        # Rows have their width also where there are none: a page adds some when a body joins.
+        pair, triple = np.zeros((0, 2), np.int64), np.zeros((0, 3), np.int64)
+        none = StiffForm(np.zeros((0, 2)), np.zeros(0), pair, triple, triple)
+        return with_empty(Forms, first=first, shapes=none)
     for number, body in enumerate(bodies):
         shape = body.shape
         counts = len(shape.points), len(body.springs), len(body.constraints), len(shape.areas), len(shape.bends)
