@@ -40,15 +40,16 @@ from sandbox.level.rules.hands import DEEDS
 from sandbox.level.rules.question import ASKS, GROUPS, UNASKED
 from sandbox.page import about
 from sandbox.page.bundle import WEB
-from sandbox.physics import command, command_table, constraints, marks, settings
+from sandbox.physics import constraints, marks, settings
 from sandbox.physics.analysis.query import row_names, slot_name
 from sandbox.physics.analysis.stance import Support
 from sandbox.physics.collision import filter as edges
+from sandbox.physics.commands import command, command_table
 from sandbox.physics.pipeline import block, tick
 from sandbox.physics.rules import table, zones
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.snapshot import hash_by_array, leave, restore, take
-from sandbox.physics.state import COLUMNS, OF_RULES, Family
+from sandbox.physics.state import COLUMNS, Family
 from sandbox.session.commands import Grab
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.records import ScriptLine
@@ -108,8 +109,6 @@ REST = {
     "sandbox.physics.rules.measuring.measure: kind": OF_CENTRE | OF_TERMS | {"TOUCHES"},
     "sandbox.physics.rules.measuring._of_centre: kind": RULES - OF_CENTRE,
     "sandbox.physics.pipeline.judge._holds_of_members: terms.kind[t]": RULES - {"ALL", "ANY"},
-    # No slots, or none that this asks for.
-    "sandbox.physics.command._first_bad: kind": {"PUSH", "SET_AIR", "SET_COEFFICIENTS", "SET_GRAVITY", "SHAKE"},
     "sandbox.level.plan.rules._of_metric: kind": RULES - {"SETTLED", "DISTANCE", "INSIDE"},
     # No rim of a solid.
     "sandbox.export.outlines.outlines_of: edges": {"LINE", "NO_EDGE"},
@@ -121,8 +120,6 @@ REST = {
     "sandbox.physics.analysis.standing._drop: stance.support": {
         Support.ARM, Support.HANGING, Support.HUB, Support.SPANNED
     },
-    # Never grow, or are of a step.
-    "sandbox.page.growth._MORE": OF_RULES | {Family.HAND, Family.SETTING, Family.CONTACT},
     "sandbox.session.events.deeds._EACH": deeds._WORDS.keys() | deeds._PASSED_OVER | {"grab", "release"},
     "sandbox.session.events.deeds._WORDS": deeds._EACH.keys() | deeds._PASSED_OVER | {"grab", "release"},
     # Picked by other means: the particle that is nearest, a box that is drawn, nothing.
@@ -148,8 +145,10 @@ EXCEPTIONS = {
     "sandbox.app.edit.side.form._add: about.kind", "sandbox.app.edit.side.form._show_value: each.about.kind",
     "sandbox.app.edit.side.form._rows: about.kind", "sandbox.editor.panel.properties._made: about.kind",
     "sandbox.editor.panel.property._text: about.kind", "sandbox.editor.range_trial._numbers: about.kind",
-    # All others have kernels.
-    "sandbox.page.adding.is_done_without_kernel: record['type']",
+    # What has slots of hands reserved, and what changes settings; other commands have nothing beside their kernel.
+    "sandbox.physics.world.command: name",
+    # What other kernels than that of commands call things.
+    "sandbox.session.commands.command._THINGS",
     # Asks `_first_action`, which raises.
     "sandbox.editor.panel.rule_form._set_does: value",
 }  # fmt: skip
@@ -292,7 +291,7 @@ def keys_in_page(module, name):
         (about.PROGRESS, code_names(block, "TICK") - {"PROGRESS"}),
         (constraints.CONSTRAINT_NAMES, range(len(CODES["kinds of constraints"]))),
         (settings.NUMBER_NAMES, [name.lower().replace("_", " ") for name in code_names(settings, "DRAG")]),
-        ([kind.code for kind in command_table.KINDS.values()], range(len(CODES["codes of commands"]))),
+        (command_table.CODES.values(), range(len(CODES["codes of commands"]))),
         (keys_in_page("checks", "METRICS"), METRICS - set(NOT_MEASURED)),
         (keys_in_page("paint", "LINES"), {*LINES} - OTHERWISE),
         (keys_in_page("paint", "MARKS"), {*BALLS} - {"bumper", "plain"}),

@@ -8,7 +8,7 @@ from sandbox.level.rules.action import ActionDef
 from sandbox.level.rules.hands import words_of
 from sandbox.level.rules.rule import RuleDef
 from sandbox.page.growth import growth_of
-from sandbox.physics import command, command_table, permission
+from sandbox.physics.commands import command, command_table, permission
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.jit.making.platforms import WEB

@@ -14,9 +14,9 @@ from sandbox.level.format.limits import (
 )
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
 from sandbox.physics.arena import NO_ARENA
-from sandbox.physics.changing import joining, kit, removing
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.keeping.arguments import FARTHEST
+from sandbox.physics.kits import joining, kit, removing
 from sandbox.physics.state import Range
 from sandbox.physics.world import World
 

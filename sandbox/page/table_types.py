@@ -10,7 +10,7 @@ import numpy as np
 
 from sandbox.page.about import is_done_by_pages
 from sandbox.page.bundle import WEB
-from sandbox.physics.command_table import KINDS
+from sandbox.physics.commands.command_table import KINDS
 from sandbox.physics.state import COLUMNS
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.for_pages import table_of

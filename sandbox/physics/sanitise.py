@@ -9,7 +9,7 @@ changed.
 """
 
 from sandbox.physics.arrays import FloatRows, Floats, Slots
-from sandbox.physics.command import pin
+from sandbox.physics.commands.command import pin
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import GoodValues, Ranges, State
 

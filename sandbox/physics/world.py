@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
 from sandbox.physics.arrays import Floats, SlotRows, Slots, empty
-from sandbox.physics.command import solve
-from sandbox.physics.command_table import KINDS, OF_HANDS, OF_SOLVER, OF_TOPOLOGY, carry_out, lend, numbers_of
+from sandbox.physics.commands.command import solve
+from sandbox.physics.commands.command_table import KINDS, OF_HANDS, OF_SOLVER, OF_TOPOLOGY, carry_out, lend, numbers_of
+from sandbox.physics.commands.permission import PROGRAM
 from sandbox.physics.constraints import (
     AREA,
     BEND,
@@ -26,7 +27,6 @@ from sandbox.physics.keeping.equipment import Equipment, Joined
 from sandbox.physics.keeping.forms import FirmBody
 from sandbox.physics.keeping.names import Names
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS, LAW_NISSEN
-from sandbox.physics.permission import PROGRAM
 from sandbox.physics.rules.table import Rules
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
@@ -451,10 +451,6 @@ class World(StateArrays):
         """Set the wind [m/s], the drag [1/s] or both (None: it stays); duration [ticks]: see ramps.py."""
         self.command("set_air", wind=wind, drag=drag, duration=duration)
 
-    def hold_key(self, key: int, is_down: bool) -> None:
-        """Press a key that rules ask for, by its place in `rule_keys`, or let it go."""
-        self.command("hold_key", key=key, down=is_down)
-
     def reserve_grabs(self) -> None:
         """Reserve the slots of all grabs, inactive; done once, when the world is built."""
         if self.grab_particle >= 0 or self.particle_count == 0:
@@ -473,8 +469,7 @@ class World(StateArrays):
     def command(self, name: str, giver: int = PROGRAM, /, **given: Any) -> None:
         """Carry out a command of KINDS (command.py) that a hand, a rule or a program gives (permission.py).
 
-        given: its fields, by name, checked by whoever gives it. Raises IndexError, ValueError and Refused; nothing is
-        changed then.
+        given: its fields, by name. Raises IndexError, ValueError and RefusedCommand; nothing is changed then.
         """
         if name == "grab" and self.grab_particle < 0:
             # Nothing is left of a hold that cannot be, no slots of hands either.
@@ -488,7 +483,7 @@ class World(StateArrays):
         )  # fmt: skip
         given.setdefault("duration", 0)
         self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
-        numbers = carry_out(self.lent, giver, name, {"factor": 0.0, **given}, self)
+        numbers = carry_out(self.lent, giver, name, given, self)
         changes = KINDS[name].changes
         if changes == OF_SOLVER:
             self._multiply_contacts(numbers[-1])
@@ -525,18 +520,8 @@ class World(StateArrays):
         self.command("push", position=position, impulse=impulse, outward=outward, radius=radius)
 
     def shake(self, acceleration: Point) -> None:
-        """Accelerate the frame that holds the world, its terrain and its pins, by `acceleration` [m/s^2] for the coming
-        tick: free particles stay behind.
-        """
+        """Accelerate the frame of terrain and pins by `acceleration` [m/s^2] for a tick: free particles stay behind."""
         self.command("shake", acceleration=acceleration)
-
-    def inflate(self, body: int, inflation: float, duration: int = 0) -> None:
-        """Let each area of a body, by its place in `area_names`, want this multiple of its form's, in so many ticks."""
-        self.command("set_inflation", body=body, value=arguments.number("value", inflation, 0.0), duration=duration)
-
-    def move_body(self, particle: int, by: Point, at_rest: bool = False) -> None:
-        """Move all that springs join to a particle by a way [m]. at_rest: it stands still there."""
-        self.command("move_body", particle=particle, by=by, at_rest=at_rest)
 
     def fit(self, driven: Actuators, values: ArrayLike) -> None:
         """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
@@ -568,7 +553,7 @@ class World(StateArrays):
 
     def any_held(self) -> bool:
         """Whether any grab holds a particle."""
-        return any(self.is_held(grab) for grab in range(GRAB_COUNT))
+        return any(map(self.is_held, range(GRAB_COUNT)))
 
     def move_grab(self, grab: int, target: Point) -> None:
         """Send a grab's cursor to target [m]: it travels there in the coming tick."""

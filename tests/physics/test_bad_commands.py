@@ -12,11 +12,11 @@ import pytest
 
 from sandbox.physics.actuators import Actuators
 from sandbox.physics.analysis.firmness import set_firmness
-from sandbox.physics.changing.removing import remove_particles
-from sandbox.physics.command import BAD, REASONS, command
-from sandbox.physics.command_table import KINDS, lend
+from sandbox.physics.commands.command import BAD, REASONS, command
+from sandbox.physics.commands.command_table import KINDS, lend
+from sandbox.physics.commands.permission import PROGRAM
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.permission import PROGRAM
+from sandbox.physics.kits.removing import remove_particles
 from sandbox.physics.state import Family, good_of, state_of
 from sandbox.physics.step import step
 from tests.support import bad_commands
@@ -84,15 +84,15 @@ OTHERS = {
     "add an area, form": (lambda world: world.add_constraints(AREA, [[0, 1, 2]], form=[[0, 1, 2]]), "form of shape"),
     "add a bend, stiffness": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], stiffness=INF), "constraint_"),
     "add a bend, material": (lambda world: world.add_constraints(BEND, [[0, 1, 2]], material=7), "material 7: "),
-    "name areas": (lambda world: world.name_areas("balloon", range(1)), "constraints 0: a world without constraints"),
-    "inflate": (lambda world: world.inflate(9, 1.0), "body 9: there is none"),
+    "name areas": (lambda world: world.name_areas("balloon", range(1, 2)), "constraints 1: "),
+    "inflate": (lambda world: bad_commands.inflate(world, 9, 1.0), "body 9: there is none"),
     "fit, too many": (lambda world: world.fit(Actuators(("a",)), [0.0, 0.0]), "values of 2 parts"),
     "fit, too fast": (lambda world: world.fit(Actuators(("a",)), [2.0]), "values 2.0: "),
     "is held": (lambda world: world.is_held(10), "grab 10: a world with hands 0 to 9"),
     "forget names": (lambda world: world.forget_names_beyond(-1, 0), "particle_count -1: "),
-    "move a body, removed": (lambda world: world.move_body(3, (1.0, 0.0)), "particle 3: it is not in use"),
-    "move a body, NaN": (lambda world: world.move_body(0, (NAN, 0.0)), "by nan: "),
-    "move a body, short": (lambda world: world.move_body(0, (1.0,)), "by (1.0,): "),
+    "move a body, removed": (lambda world: bad_commands.move_body(world, 3, (1.0, 0.0)), "particle 3: it is not in use"),
+    "move a body, NaN": (lambda world: bad_commands.move_body(world, 0, (NAN, 0.0)), "by nan: "),
+    "move a body, short": (lambda world: bad_commands.move_body(world, 0, (1.0,)), "by (1.0,): "),
     "remove": (lambda world: remove_particles(world, np.array([0, 14])), "particles 14: "),
     "firmness": (lambda world: set_firmness(world, 9, 0.5, 0.5), "body 9: there is none"),
 }  # fmt: skip

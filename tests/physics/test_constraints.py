@@ -156,7 +156,7 @@ def test_a_ring_takes_the_area_it_is_inflated_to_whatever_is_pinned(solver, pinn
     world = ring(inflation=1.1, coefficient=coefficient, pinned=pinned, bending=0.05, solver=solver, substeps=2)
     run(world, scaled(300, 30))
     assert measure_constraints(world)[0][0] + world.constraint_rest[0, 0] > 1.05 * world.constraint_rest[0, 1]
-    world.inflate(0, 0.8)
+    world.command("set_inflation", body=0, value=0.8)
     run(world, scaled(300, 30))
     assert measure_constraints(world)[0][0] + world.constraint_rest[0, 0] < 0.95 * world.constraint_rest[0, 1]
 

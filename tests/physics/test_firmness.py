@@ -9,8 +9,7 @@ import pytest
 
 from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach, lowest_mode_of
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.firmness.form_table import form_table
-from sandbox.physics.firmness.reach import BY_SAG, NO_BODY, least_ratio
+from sandbox.physics.firmness.reach import BY_SAG, least_ratio
 from sandbox.physics.geometry.elementary import cosine, exponential, rounded, to_three_digits
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.keeping.forms import Firmness, StiffForm
@@ -184,7 +183,8 @@ def test_the_exponential_and_the_cosine_are_the_nearest_numbers_and_what_is_roun
 
 def test_numbers_that_are_no_body_are_refused_and_nothing_is_changed():
     world = firm_world({"sag": 0.1}, **BODIES["disc"])
-    before, found = state_hash(world), np.zeros(2)
+    before, given = state_hash(world), {"way": BY_SAG, "value": 0.2, "second": 0.0, "gravity": (0.0, -9.81)}
     for body, is_whole in ((1, False), (1, True), (-1, False), (10**12, False)):
-        assert form_table(world).firm(world, body, is_whole, BY_SAG, 0.2, 0.0, 0.0, -9.81, 60.0, 0, found) == NO_BODY
+        with pytest.raises(IndexError, match=f"body {body}: there is none"):
+            world.command("soften", body=body, whole=is_whole, **given)
     assert state_hash(world) == before

@@ -10,12 +10,12 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.changing.freeing import CLEAR, FREED, free_body
-from sandbox.physics.command import BODY_PINNED, FREE, NO_PLACE, NOTHING_TOUCHES, REASONS, command
-from sandbox.physics.command_table import lend
+from sandbox.physics.commands.command import BODY_PINNED, FREE, NO_FREE_PLACE, NOTHING_TO_FREE, REASONS, command
+from sandbox.physics.commands.command_table import lend
+from sandbox.physics.commands.permission import PROGRAM
 from sandbox.physics.components import body_of, list_body
 from sandbox.physics.geometry.polygon import winding_number
 from sandbox.physics.geometry.segment import distances_from_segments
-from sandbox.physics.permission import PROGRAM
 from sandbox.physics.state import good_of, state_of
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
@@ -149,13 +149,13 @@ def test_what_cannot_be_freed_stays_as_it_is_for_a_reason():
     world = discs(full, 0.19, [Chain(BOX, "hollow")])
     world.change("position", [0.1, 0.1], 0)
     before = bytes_of(world)
-    assert freed(world, 0) == NO_PLACE and bytes_of(world) == before
+    assert freed(world, 0) == NO_FREE_PLACE and bytes_of(world) == before
     world.pin(0)
     before = bytes_of(world)
     assert freed(world, 0) == BODY_PINNED and bytes_of(world) == before
     world.change("collides", 0)
     before = bytes_of(world)
-    assert freed(world, 0) == NOTHING_TOUCHES and bytes_of(world) == before
+    assert freed(world, 0) == NOTHING_TO_FREE and bytes_of(world) == before
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -12,13 +12,13 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach, give_firmness, lowest_mode_of
+from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
 from sandbox.physics.analysis.query import shown_springs
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import of_body
 from sandbox.physics.geometry.polygon import signed_area
-from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
@@ -304,8 +304,8 @@ def test_what_is_kept_of_a_form_is_that_of_its_pieces_as_they_are_now(stroke):
         fresh = copy.deepcopy(session.world)
         for world in (session.world, fresh):
             for number in pieces:
-                with suppress(OutOfReach):
-                    give_firmness(world, number, Firmness(sag=0.2), (0.0, -9.81), 60.0)
+                with suppress(RefusedCommand):
+                    world.command("set_firmness", body=number, sag=0.2, hz=None, ratio=None)
         assert len(pieces) > 1
         assert state_hash(session.world) == state_hash(fresh)
         session.undo()

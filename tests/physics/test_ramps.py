@@ -62,7 +62,7 @@ def test_a_ramp_ends_with_what_is_set_at_once_else_and_leaves_nothing_behind(sol
         world.set_coefficients(0.3, 0.7, 0, duration)
         world.set_gravity((1.0, -3.0), duration)
         world.set_air((2.0, 0.5), 0.25, duration)
-        world.inflate(0, 1.25, duration)
+        world.command("set_inflation", body=0, value=1.25, duration=duration)
         arrays = ("stiffness", "damping", "lowest_mode", "constraint_stiffness", "constraint_rest")
         # What is read of a world is what was set, from the start.
         assert set(world.stiffness[:-10]) == {0.3} and world.settings.gravity == (1.0, -3.0)

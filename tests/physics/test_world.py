@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy
-from sandbox.physics.command_table import Refused
+from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.constraints import AREA
 from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
@@ -171,10 +171,10 @@ def test_ten_hands_hold_at_once():
 
 def test_no_hand_holds_what_is_pinned_and_none_holds_two_things():
     world = held_rope()
-    with pytest.raises(Refused, match="is pinned"):
+    with pytest.raises(RefusedCommand, match="is pinned"):
         world.hold(0, 0, (0.0, 5.0))
     world.hold(0, 1, (0.0, 5.0))
-    with pytest.raises(Refused, match="hand 0 holds something already"):
+    with pytest.raises(RefusedCommand, match="hand 0 holds something already"):
         world.hold(0, 2, (0.0, 5.0))
 
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from sandbox.physics.actuators import Actuators
-from sandbox.physics.changing.removing import remove_particles
-from sandbox.physics.command_table import KINDS
+from sandbox.physics.commands.command_table import KINDS
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import way
 from sandbox.physics.keeping.forms import FirmBody, StiffForm
+from sandbox.physics.kits.removing import remove_particles
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import COLUMNS, Family
 from sandbox.physics.world import World
@@ -54,9 +54,23 @@ def part_bodies(world: World, springs: Any) -> None:
     world.command("part_bodies", springs=springs)
 
 
+def hold_key(world: World, key: Any, down: Any) -> None:
+    """Press a key, or let it go."""
+    world.command("hold_key", key=key, down=down)
+
+
+def inflate(world: World, body: Any, value: Any, duration: Any = 0) -> None:
+    """Inflate a body's areas."""
+    world.command("set_inflation", body=body, value=value, duration=duration)
+
+
+def move_body(world: World, particle: Any, by: Any) -> None:
+    """Move what hangs together."""
+    world.command("move_body", particle=particle, by=by, at_rest=False)
+
+
 def free(world: World, particle: Any) -> None:
-    """Free a body, where anything touches."""
-    world.collides[:] = 1
+    """Free a body."""
     world.command("free", particle=particle)
 
 
@@ -103,13 +117,13 @@ CALLS: dict[str, tuple[str | Callable[..., Any], tuple[Any, ...], tuple[tuple[An
     "set_drive": ("drive", (0, 0.5), (PARTS, DRIVES)),
     "set_firmness": (set_firmness, (0, 0.1, 3), (PARTS, _GIVEN_NUMBERS, DURATIONS)),
     "soften": (soften, (0, 0.1, (0.0, -9.81), 3), (PARTS, NUMBERS, POINTS, DURATIONS)),
-    "hold_key": ("hold_key", (0, True), (KEYS,)),
+    "hold_key": (hold_key, (0, True), (KEYS,)),
     "push": ("push", ((0.0, 0.0), (1.0, 0.0), 1.0, 2.0), (POINTS, POINTS, NUMBERS, NOT_BELOW_0)),
     "shake": ("shake", ((1.0, 0.0),), (POINTS,)),
-    "set_inflation": ("inflate", (0, 1.5, 3), (PARTS, NOT_BELOW_0, DURATIONS)),
+    "set_inflation": (inflate, (0, 1.5, 3), (PARTS, NOT_BELOW_0, DURATIONS)),
     "scale_mass": (scale_mass, (0, 2.0), (PARTICLES, FACTORS)),
-    "free": (free, (0,), (PARTICLES,)),
-    "move_body": ("move_body", (0, (1.0, 0.0)), (PARTICLES, POINTS)),
+    "free": (free, (2,), (PARTICLES,)),
+    "move_body": (move_body, (0, (1.0, 0.0)), (PARTICLES, POINTS)),
     "set_solver": (set_solver, ("iterative", 5, 4, 0.5, 3), (SOLVERS, ITERATIONS, SUBSTEPS, SHARES, DURATIONS)),
 }  # fmt: skip
 assert CALLS.keys() == KINDS.keys()
@@ -118,7 +132,8 @@ assert CALLS.keys() == KINDS.keys()
 def made(has_hands: bool = True) -> World:
     """A world with particles, springs and a part that are in use, and with some that are not any more."""
     world = World()
-    world.add_particles(["a", "b", "c", "d"], [(0, 0), (1, 0), (0, 1), (5, 5)], pinned=[False, True, False, False])
+    world.add_particles(["a", "b", "c", "d"], [(0, 0), (1, 0), (0, 1), (5, 5)], pinned=[False, True, False, False],
+                        collides=2)  # fmt: skip
     world.add_springs(["s", "t", "u"], [0, 1, 0], [1, 2, 2])
     world.add_constraints(AREA, [[0, 1, 2]])
     world.name_areas("abc", range(1))

@@ -19,6 +19,7 @@ def answering(**changes: Any) -> Level:
         "version": 3,
         "name": "A level that answers",
         "settings": {"solver": "direct"},
+        "hands": {},
         "terrain": [{"id": "floor", "polyline": [[-9, 0], [9, 0]]}],
         "zones": [
             {"id": "basket", "box": [-1, 0, 1, 1]},

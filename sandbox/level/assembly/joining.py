@@ -19,10 +19,10 @@ from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.axles import free_wheels
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.changing.joining import KitError, check_kit
 from sandbox.physics.collision.filter import ALL_GROUPS
-from sandbox.physics.command import ADD_BODY
-from sandbox.physics.permission import PROGRAM
+from sandbox.physics.commands.command import ADD_BODY
+from sandbox.physics.commands.permission import PROGRAM
+from sandbox.physics.kits.joining import KitError, check_kit
 from sandbox.physics.world import World
 
 SOURCE = "add_body"

@@ -13,10 +13,10 @@ from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.limits import BODY_RADIUS, FORMAT, VERSION
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.changing.joining import DOES_NOT_FIT, NOT_A_TABLE, UNKNOWN, KitError, rows_of
-from sandbox.physics.changing.kit import NUMBER_TABLE, PART_NAMES, SLOT_TABLE, SlotColumn
 from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.keeping.forms import FirmBody, StiffForm
+from sandbox.physics.kits.joining import DOES_NOT_FIT, NOT_A_TABLE, UNKNOWN, KitError, rows_of
+from sandbox.physics.kits.kit import NUMBER_TABLE, PART_NAMES, SLOT_TABLE, SlotColumn
 
 # Of a kit beside the columns of its parts.
 FIELDS = ("bodies", "names", "areas", "forms", "keys", "look")

@@ -5,7 +5,7 @@ python -m sandbox.level.assembly.kit_reference > docs/kits.md writes it.
 
 import math
 
-from sandbox.physics.changing.kit import NUMBER_TABLE, PART_NAMES, SLOT_TABLE, NumberColumn, SlotColumn
+from sandbox.physics.kits.kit import NUMBER_TABLE, PART_NAMES, SLOT_TABLE, NumberColumn, SlotColumn
 
 _HEAD = """# Kits
 

@@ -15,14 +15,14 @@ from sandbox.level.format.limits import (
     most_limited,
 )
 from sandbox.level.plan.surfaces import group_bits
-from sandbox.physics.changing.joining import Packed, join_kit, pack, rows_of
-from sandbox.physics.changing.kit import COUNTED
-from sandbox.physics.command import ADD_BODY
+from sandbox.physics.commands.command import ADD_BODY
+from sandbox.physics.commands.permission import PROGRAM
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drives_of
 from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.keeping.forms import FirmBody
-from sandbox.physics.permission import PROGRAM
+from sandbox.physics.kits.joining import Packed, join_kit, pack, rows_of
+from sandbox.physics.kits.kit import COUNTED
 from sandbox.physics.world import World
 
 

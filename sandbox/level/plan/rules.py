@@ -16,7 +16,7 @@ from sandbox.level.plan.welds import Slots
 from sandbox.level.rules.hands import MEANINGS, HandsDef
 from sandbox.level.rules.question import WALLS, QuestionDef
 from sandbox.level.rules.rule import RuleDef
-from sandbox.physics.command_table import CODES
+from sandbox.physics.commands.command_table import CODES
 from sandbox.physics.rules import table
 from sandbox.physics.rules.table import NOBODY, Rules, Terms, Things
 from sandbox.physics.rules.zones import BOX, CIRCLE, POLYGON, Zones

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.physics.arena import FIRST_ARENA, answer_of
-from sandbox.physics.command import count_pieces
+from sandbox.physics.commands.command import count_pieces
 from sandbox.physics.firmness.form_table import FormTable
 from sandbox.physics.keeping.forms import FirmBody, StiffForm
 from sandbox.physics.world import World

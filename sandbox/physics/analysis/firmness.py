@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.physics import command_table
 from sandbox.physics.arena import FIRST_ARENA, MORE
-from sandbox.physics.command import BEYOND_REACH, FLAT, NO_FIRMNESS
-from sandbox.physics.command_table import Refused
+from sandbox.physics.commands import command_table
+from sandbox.physics.commands.command import BEYOND_REACH, FLAT, NO_FIRMNESS
+from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.physics.firmness.lowest_mode import NO_MODE, find_lowest_mode
 from sandbox.physics.firmness.reach import (
@@ -145,7 +145,7 @@ def give_firmness(
         world.command(
             "soften", body=body, whole=True, way=way, value=value, second=second, gravity=gravity, duration=duration
         )
-    except Refused as refused:
+    except RefusedCommand as refused:
         numbers = refused.numbers[-2:]
         raise _out_of_reach(refused.reason, firmness, numbers, world.settings.tick_rate) from None
 
@@ -154,7 +154,7 @@ def set_firmness(world: World, body: int, stiffness: float, damping: float, dura
     """Give a body, by its place among `firm_bodies`, Cs and Cd as a whole: those of its slowest wobble, Cs <= Cd.
 
     They are shared out over its springs, areas and bends, in force in so many ticks (ramps.py); 0: at once.
-    Raises IndexError, ValueError, and Refused where its form is not stiff without pins.
+    Raises IndexError, ValueError, and RefusedCommand where its form is not stiff without pins.
     """
     stiffness = arguments.number("stiffness", stiffness, 0.0, 1.0)
     damping = arguments.number("damping", damping, 0.0, 1.0)

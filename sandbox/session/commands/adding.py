@@ -5,8 +5,8 @@ from typing import Any
 
 from sandbox.level.assembly.kits import join_loose
 from sandbox.level.format.quantities import FrictionCoefficient, Length, Mass, Point, Share, Velocity
-from sandbox.physics.changing.joining import KitError
-from sandbox.physics.command import ADD_PARTICLE, ADD_SPRING
+from sandbox.physics.commands.command import ADD_PARTICLE, ADD_SPRING
+from sandbox.physics.kits.joining import KitError
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot

@@ -10,10 +10,10 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from sandbox.level.format.level_error import shown
 from sandbox.level.rules.hands import thing_of, words_of
 from sandbox.physics.analysis.firmness import words_of_reach
-from sandbox.physics.command import BEYOND_REACH, EXHAUSTED, FORBIDDEN, UNTOUCHABLE
-from sandbox.physics.command_table import WORDS, Refused
+from sandbox.physics.commands.command import BEYOND_REACH, EXHAUSTED, FORBIDDEN, UNTOUCHABLE
+from sandbox.physics.commands.command_table import WORDS, RefusedCommand
+from sandbox.physics.commands.permission import HAND, RULE
 from sandbox.physics.keeping.forms import Firmness
-from sandbox.physics.permission import HAND, RULE
 from sandbox.physics.world import World
 from sandbox.session.commands.faults import CommandError as CommandError
 from sandbox.session.commands.faults import plain_fault
@@ -43,8 +43,8 @@ class Command(ABC):
             COMMAND_TYPES[cls.type] = cls
 
     def carry_out(self, world: World, giver: int) -> None:
-        """Do it, for a hand or a rule. Raises CommandError, IndexError, ValueError or Refused and changes nothing where
-        it cannot be done.
+        """Do it, for a hand or a rule. Raises CommandError, IndexError, ValueError or RefusedCommand, with nothing changed,
+        where it cannot be done.
         """
         world.command(self.type, giver, **vars(self))
 
@@ -111,7 +111,7 @@ def _carry_out(world: World, command: Command, giver: int) -> None:
         command.carry_out(world, giver)
     except CommandError:
         raise
-    except Refused as refused:
+    except RefusedCommand as refused:
         raise CommandError(_words(world, command, refused)) from None
     except (IndexError, ValueError) as error:
         _check_names(world, command)
@@ -130,7 +130,7 @@ def _check_names(world: World, command: Command) -> None:
 _THINGS = {"particle": PARTICLES, "spring": SPRINGS}
 
 
-def _words(world: World, command: Command, refused: Refused) -> str:
+def _words(world: World, command: Command, refused: RefusedCommand) -> str:
     """Why a command is refused, with the names of things."""
     doing, counted = words_of(command.type)
     named = namespaces(type(command)).get(refused.field, _THINGS.get(refused.field))

@@ -7,7 +7,7 @@ import numpy as np
 from sandbox.level.format.level_error import suggestion
 from sandbox.level.format.quantities import Name
 from sandbox.physics.arrays import Slots
-from sandbox.physics.changing.removing import BODY, HANGING, remove_particles
+from sandbox.physics.kits.removing import BODY, HANGING, remove_particles
 from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot

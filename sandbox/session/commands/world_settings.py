@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 from pydantic import Field
 
 from sandbox.level.format.quantities import Drag, Gravity, Share, Velocity
-from sandbox.physics.command import MOST_ITERATIONS
+from sandbox.physics.commands.command import MOST_ITERATIONS
 from sandbox.physics.settings import SolverName, SubstepChoice, Substeps
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.ramping import Duration

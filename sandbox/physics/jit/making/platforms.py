@@ -70,11 +70,11 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.derive.derive_hands",
     "sandbox.physics.pipeline.derive.make_room",
     "sandbox.physics.pipeline.judge.judge",
-    "sandbox.physics.command.command",
-    "sandbox.physics.command.count_pieces",
+    "sandbox.physics.commands.command.command",
+    "sandbox.physics.commands.command.count_pieces",
     "sandbox.physics.meshing.fitting.fill_stroke",
-    "sandbox.physics.changing.kit_kernels.join",
-    "sandbox.physics.changing.kit_kernels.reserve",
-    "sandbox.physics.changing.removing.remove",
+    "sandbox.physics.kits.kit_kernels.join",
+    "sandbox.physics.kits.kit_kernels.reserve",
+    "sandbox.physics.kits.removing.remove",
 )
 WEB = Platform("kernels", "wasm", "wasm32-freestanding", _WASM, entries=_CALLED_BY_PAGES)

@@ -8,7 +8,14 @@ from typing import NamedTuple
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_tuple
 from sandbox.physics.arrays import Floats, SlotRows, Slots
 from sandbox.physics.breaking import MaterialLimits
-from sandbox.physics.changing.kit import (
+from sandbox.physics.commands.permission import HAND, NOT_ALLOWED, SPENT, UNTOUCHED, denied, refusal, spend
+from sandbox.physics.constraints import AREA
+from sandbox.physics.driving import Drives, contract
+from sandbox.physics.firmness.firm import FormModes, Forms
+from sandbox.physics.geometry.segment import doubled_area
+from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
+from sandbox.physics.joints.motors import DrivenWheels
+from sandbox.physics.kits.kit import (
     AMPLITUDE,
     ANGLE,
     BAD_PLACE,
@@ -94,7 +101,7 @@ from sandbox.physics.changing.kit import (
     YIELDING,
     X,
 )
-from sandbox.physics.changing.kit_checks import (
+from sandbox.physics.kits.kit_checks import (
     KitScratch,
     find_columns,
     first_free_bit,
@@ -109,14 +116,7 @@ from sandbox.physics.changing.kit_checks import (
     has_rows,
     is_first_of_wheel,
 )
-from sandbox.physics.constraints import AREA
-from sandbox.physics.driving import Drives, contract
-from sandbox.physics.firmness.firm import FormModes, Forms
-from sandbox.physics.geometry.segment import doubled_area
-from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
-from sandbox.physics.joints.motors import DrivenWheels
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS
-from sandbox.physics.permission import HAND, NOT_ALLOWED, SPENT, UNTOUCHED, denied, refusal, spend
 from sandbox.physics.state import GoodValues, State
 from sandbox.physics.water.displacers import Water
 from sandbox.physics.water.pools import HULL, SPRING, TURNED

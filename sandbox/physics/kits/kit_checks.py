@@ -5,7 +5,13 @@ from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.breaking import MaterialLimits
-from sandbox.physics.changing.kit import (
+from sandbox.physics.collision.filter import ALL_GROUPS, TERRAIN_GROUP
+from sandbox.physics.commands.command import is_body
+from sandbox.physics.constraints import BEND
+from sandbox.physics.driving import Drives
+from sandbox.physics.jit import inner_kernel
+from sandbox.physics.joints.motors import DrivenWheels
+from sandbox.physics.kits.kit import (
     BODIES,
     BODY,
     CONSTRAINTS,
@@ -47,12 +53,6 @@ from sandbox.physics.changing.kit import (
     WHEEL,
     X,
 )
-from sandbox.physics.collision.filter import ALL_GROUPS, TERRAIN_GROUP
-from sandbox.physics.command import is_body
-from sandbox.physics.constraints import BEND
-from sandbox.physics.driving import Drives
-from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.motors import DrivenWheels
 from sandbox.physics.state import State
 from sandbox.physics.water.displacers import Water
 

@@ -11,7 +11,13 @@ from sandbox.physics.actuators import Actuators, StrainLimits, unlimited
 from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.arrays import Floats, Slots, with_empty
 from sandbox.physics.breaking import MaterialLimits
-from sandbox.physics.changing.kit import (
+from sandbox.physics.commands.command_table import RefusedCommand
+from sandbox.physics.commands.permission import DENIED
+from sandbox.physics.driving import drives_of
+from sandbox.physics.jit import bundle
+from sandbox.physics.joints.motors import wheels_of
+from sandbox.physics.keeping.arguments import FARTHEST
+from sandbox.physics.kits.kit import (
     BAD_PLACE,
     HEADER,
     MOST,
@@ -27,13 +33,7 @@ from sandbox.physics.changing.kit import (
     NumberColumn,
     SlotColumn,
 )
-from sandbox.physics.changing.kit_kernels import Joinable, join
-from sandbox.physics.command_table import Refused
-from sandbox.physics.driving import drives_of
-from sandbox.physics.jit import bundle
-from sandbox.physics.joints.motors import wheels_of
-from sandbox.physics.keeping.arguments import FARTHEST
-from sandbox.physics.permission import DENIED
+from sandbox.physics.kits.kit_kernels import Joinable, join
 from sandbox.physics.state import Family, Range, good_of, state_of
 from sandbox.physics.water.displacers import Water
 from sandbox.physics.water.pools import HULL_NUMBERS
@@ -141,8 +141,9 @@ def rows_of(part: str, columns: Any) -> int:
 def _column(kit: Columns, column: SlotColumn | NumberColumn, counts: Counts) -> Any:
     """The values of a column, usual ones where none are given."""
     place, count = f"{column.part}.{column.name}", counts[column.part]
-    given = kit.get(column.part, {}).get(column.name)
-    given = column.usual if given is None else given
+    given: Any = kit.get(column.part, {}).get(column.name)
+    if given is None:
+        given = column.usual
     if given is None and count:
         raise KitError(MISSING.format(place))
     if not _is_rows(given):
@@ -188,7 +189,7 @@ def _numbers(column: NumberColumn, values: Any) -> Floats:
 def join_kit(world: World, packed: Packed, giver: int, kind: int) -> None:
     """Let a packed kit join a world: rows, driven parts, limits and hulls, without names.
 
-    giver, kind: who adds it by which command. Raises KitError and Refused.
+    giver, kind: who adds it by which command. Raises KitError and RefusedCommand.
     """
     check_kit(world, packed, giver, kind)
     counts = packed.counts
@@ -207,10 +208,10 @@ def join_kit(world: World, packed: Packed, giver: int, kind: int) -> None:
 
 
 def check_kit(world: World, packed: Packed, giver: int, kind: int) -> None:
-    """Raise KitError or Refused, if a packed kit could not join a world."""
+    """Raise KitError or RefusedCommand, if a packed kit could not join a world."""
     answer = _call(world.actuators, world.limits, world, packed, giver, kind)
     if answer <= -DENIED:
-        raise Refused.of_denied(answer, "particle", -answer % DENIED)
+        raise RefusedCommand.of_denied(answer, "particle", -answer % DENIED)
     if answer not in (0, NO_ROWS, NO_LIMIT_ROWS):
         raise KitError(_words(world, packed, answer))
 

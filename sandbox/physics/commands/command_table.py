@@ -5,9 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics import command
 from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.arrays import Floats
+from sandbox.physics.commands import command
+from sandbox.physics.commands.permission import DENIED, NOT_ALLOWED, SPENT, UNTOUCHED
 from sandbox.physics.jit import Bundle, bundle
 from sandbox.physics.keeping.arguments import (
     CONSTRAINTS,
@@ -25,7 +26,6 @@ from sandbox.physics.keeping.arguments import (
     whole_numbers,
 )
 from sandbox.physics.marks import FARTHEST_PLACE, LEAST_MASS, MOST_MASS
-from sandbox.physics.permission import DENIED, NOT_ALLOWED, SPENT, UNTOUCHED
 from sandbox.physics.settings import AUTO, SOLVER_NAMES
 from sandbox.physics.state import StateArrays
 
@@ -43,9 +43,9 @@ WORDS = {
     command.NOTHING_THERE: "there is nothing to push there",
     command.NOTHING_MOVES: "there is nothing that moves to be shaken",
     command.TOO_FAR: f"what hangs on {{}} would be beyond {FARTHEST_PLACE:g} m",
-    command.NOTHING_TOUCHES: "nothing touches anything here: there is nothing to free",
+    command.NOTHING_TO_FREE: "nothing touches anything here: there is nothing to free",
     command.BODY_PINNED: "the body of {} is pinned: unpin it to free it",
-    command.NO_PLACE: "there is no free place for the body of {} near by",
+    command.NO_FREE_PLACE: "there is no free place for the body of {} near by",
     command.UNSAID: "say sag, or hz with or without ratio",
     command.NO_FIRMNESS: "{}: its form is not stiff without pins, so it has no firmness",
     command.FLAT: "{}: it has no height along gravity to sag by; say its frequency in Hz",
@@ -76,7 +76,7 @@ _PARTICLE = ("first_cursor", "particle")
 _SOLVER = ("?solver", "solver", "?iterations", "iterations", "?substeps", "substeps", "?warm_start", "duration")
 # Numbers that a kernel writes, and how many they are: by what the host is to multiply kept impulses of contacts; the
 # nearest firmness that can be had.
-ANSWERS = {"factor": 1, "nearest": 2}
+ANSWERS = {"contacts": 1, "nearest": 2}
 # Slots that are true or false.
 _FLAGS = frozenset({"down", "at_rest", "whole"})
 # Numbers that are pairs; ranges of others, where they have any. A drive is from -1 to 1, see World.drive.
@@ -120,7 +120,7 @@ KINDS = {
     "soften": KernelCommand(
         command.SOFTEN, ("body", "whole", "way", "duration"), ("value", "second", "gravity", "nearest")
     ),
-    "set_solver": KernelCommand(command.SET_SOLVER, _SOLVER, ("warm_start", "factor"), OF_SOLVER),
+    "set_solver": KernelCommand(command.SET_SOLVER, _SOLVER, ("warm_start", "contacts"), OF_SOLVER),
 }
 # Kinds by their numbers, those that have kernels of their own too: rows of the family DEED.
 CODES = {name: kind.code for name, kind in KINDS.items()} | {
@@ -149,7 +149,7 @@ _OF_DENIED = {
 }  # fmt: skip
 
 
-class Refused(ValueError):
+class RefusedCommand(ValueError):
     """A command that is refused, as it cannot be carried out as things are, or hands may not give it.
 
     reason: see WORDS. field: what of the command it is about, and value: its slot. numbers: with answers.
@@ -160,7 +160,7 @@ class Refused(ValueError):
         self.reason, self.field, self.value, self.numbers = reason, field, value, numbers
 
     @classmethod
-    def of_denied(cls, answer: int, field: str, value: Any) -> "Refused":
+    def of_denied(cls, answer: int, field: str, value: Any) -> "RefusedCommand":
         """That of an answer of another kernel that asks, see permission.py."""
         return cls(_OF_DENIED[-answer // DENIED], field, value, ())
 
@@ -174,7 +174,7 @@ def carry_out(pointer: Any, giver: int, name: str, given: Mapping[str, Any], wor
     """Carry out a command of KINDS with what it is given, by name; the numbers that the kernel was given, or answers.
 
     pointer: what `lend` made of the arrays of `world`. Raises IndexError for a slot that is not there or not in use,
-    ValueError for a number that is not finite or out of range, and Refused; nothing is changed then.
+    ValueError for a number that is not finite or out of range, and RefusedCommand; nothing is changed then.
     """
     kind = KINDS[name]
     if kind.slots[0] in _LISTS:
@@ -233,7 +233,7 @@ def _fault(
     name = kind.slots[0 if is_list else place]
     value = given[name][place] if is_list else given[name]
     if reason != command.BAD:
-        return Refused(reason, name, value, numbers)
+        return RefusedCommand(reason, name, value, numbers)
     if name not in _ROWS:
         return IndexError(f"{name} {value}: there is none, or it is out of range")
     rows, count = _ROWS[name][0], _ROWS[name][1](world)

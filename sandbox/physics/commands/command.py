@@ -10,12 +10,12 @@ from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_flags, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, Floats, SlotRows, Slots
-from sandbox.physics.changing import freeing
-from sandbox.physics.changing.freeing import free_body
+from sandbox.physics.changing.freeing import IS_PINNED, NO_PLACE, NOTHING_TOUCHES, free_body
 from sandbox.physics.changing.moving import move_listed, scale_mass
 from sandbox.physics.changing.ramping import firm_up, inflate, set_warm_start, solve_by
 from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
+from sandbox.physics.commands.permission import GRANTED, HAND, NOT_ALLOWED, refusal, spend
 from sandbox.physics.components import list_body
 from sandbox.physics.firmness.firm import SPRINGS, Firming, FormModes, Forms, body_of_number, count_pieces_of, firm
 from sandbox.physics.firmness.reach import (
@@ -37,7 +37,6 @@ from sandbox.physics.marks import (
     LAW_NISSEN,
     LONGEST_RAMP,
 )
-from sandbox.physics.permission import GRANTED, HAND, NOT_ALLOWED, refusal, spend
 from sandbox.physics.ramps import set_constraint, set_number, set_spring
 from sandbox.physics.settings import (
     DRAG,
@@ -62,7 +61,7 @@ SET_SOLVER, SET_FIRMNESS, FREE, REMOVE, ADD_PARTICLE, ADD_SPRING, ADD_BODY = ran
 REASONS = 64
 (
     BAD, FORBIDDEN, UNTOUCHABLE, EXHAUSTED, HOLDS, HOLDS_NOTHING, TOO_PINNED, PINNED, NOT_PINNED, NOTHING_THERE,
-    NOTHING_MOVES, TOO_FAR, TOO_HEAVY, NOTHING_TOUCHES, BODY_PINNED, NO_PLACE,
+    NOTHING_MOVES, TOO_FAR, TOO_HEAVY, NOTHING_TO_FREE, BODY_PINNED, NO_FREE_PLACE,
     UNSAID, NO_FIRMNESS, FLAT, BEYOND_REACH,
 ) = range(2, 22)  # fmt: skip
 MOST_ITERATIONS = 1000
@@ -503,11 +502,11 @@ def _move(state: State, good: GoodValues, slots: Slots, numbers: Floats, arena: 
 @inner_kernel
 def _free(state: State, good: GoodValues, particle: int, arena: Arena) -> int:
     why = free_body(state, good, arena, particle)
-    if why == freeing.NOTHING_TOUCHES:
-        return _refused(NOTHING_TOUCHES, 1)
-    if why == freeing.IS_PINNED:
+    if why == NOTHING_TOUCHES:
+        return _refused(NOTHING_TO_FREE, 1)
+    if why == IS_PINNED:
         return _refused(BODY_PINNED, 1)
-    return _refused(NO_PLACE, 1) if why == freeing.NO_PLACE else why
+    return _refused(NO_FREE_PLACE, 1) if why == NO_PLACE else why
 
 
 @inner_kernel

@@ -6,12 +6,9 @@ import numpy as np
 
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_tuple
 from sandbox.physics.arrays import Flags, Slots
-from sandbox.physics.command import CUT, REMOVE, CutScratch, cut, is_body, release
-from sandbox.physics.command_table import Refused
-from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
-from sandbox.physics.keeping.arguments import PARTICLES, SPRINGS, whole_numbers
-from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, LAW_HAND
-from sandbox.physics.permission import (
+from sandbox.physics.commands.command import CUT, REMOVE, CutScratch, cut, is_body, release
+from sandbox.physics.commands.command_table import RefusedCommand
+from sandbox.physics.commands.permission import (
     DENIED,
     HAND,
     NOT_ALLOWED,
@@ -22,6 +19,9 @@ from sandbox.physics.permission import (
     refusal,
     spend,
 )
+from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
+from sandbox.physics.keeping.arguments import PARTICLES, SPRINGS, whole_numbers
+from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, LAW_HAND
 from sandbox.physics.pipeline.block import GRAB_PARTICLE, GRAB_SPRING, WorldBlock
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.state import GoodValues, State
@@ -167,7 +167,7 @@ def remove_particles(
 ) -> None:  # fmt: skip
     """Take particles out, and every spring and constraint at them; hands that hold one let go. way: see THESE.
 
-    Raises IndexError for one that is not there or not in use, ValueError, and Refused.
+    Raises IndexError for one that is not there or not in use, ValueError, and RefusedCommand.
     """
     given = [whole_numbers(PARTICLES, particles), whole_numbers(SPRINGS, springs)]
     pointer, arena = block_of(world).pointer, np.zeros(1, np.int64)
@@ -178,6 +178,6 @@ def remove_particles(
         name, slots = (PARTICLES, given[0]) if place < len(given[0]) else (SPRINGS, given[1])
         slot = slots[place - (0 if name == PARTICLES else len(given[0]))]
         if result <= -DENIED:
-            raise Refused.of_denied(result, "particle" if name == PARTICLES else "spring", int(slot))
+            raise RefusedCommand.of_denied(result, "particle" if name == PARTICLES else "spring", int(slot))
         raise IndexError(f"{name} {slot}: it is not there, not in use, or a hand's")
     world.topology_version += 1
