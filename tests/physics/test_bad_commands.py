@@ -90,7 +90,7 @@ OTHERS = {
     "fit, too fast": (lambda world: world.fit(Actuators(("a",)), [2.0]), "values 2.0: "),
     "is held": (lambda world: world.is_held(10), "grab 10: a world with hands 0 to 9"),
     "forget names": (lambda world: world.forget_names_beyond(-1, 0), "particle_count -1: "),
-    "move a body, removed": (lambda world: bad_commands.move_body(world, 3, (1.0, 0.0)), "particle 3: it is not in use"),
+    "move a body, removed": (lambda world: bad_commands.move_body(world, 3, (1.0, 0.0)), "particle 3: it is not"),
     "move a body, NaN": (lambda world: bad_commands.move_body(world, 0, (NAN, 0.0)), "by nan: "),
     "move a body, short": (lambda world: bad_commands.move_body(world, 0, (1.0,)), "by (1.0,): "),
     "remove": (lambda world: remove_particles(world, np.array([0, 14])), "particles 14: "),

@@ -36,8 +36,10 @@ def tangle(seed: int, count: int = 40) -> World:
     world.terrain = make_terrain([
         Chain([[-2.0, -1.0], [0.0, -1.2], [2.0, -1.0]]), Chain([[0.0, -2.0], [1.0, -2.0], [0.5, -1.5]], kind="solid"),
     ])  # fmt: skip
-    world.hold(0, int(generator.integers(count)), (0.0, 0.0))
-    world.hold(1, int(generator.integers(count)), (0.0, 0.0))
+    for hand in range(2):
+        held = int(generator.integers(count))
+        if world.inverse_mass[held] > 0.0:
+            world.hold(hand, held, (0.0, 0.0))
     world.release(1)
     world.cut(generator.choice(springs, springs // 8, replace=False).tolist())
     return world

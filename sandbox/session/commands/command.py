@@ -43,8 +43,8 @@ class Command(ABC):
             COMMAND_TYPES[cls.type] = cls
 
     def carry_out(self, world: World, giver: int) -> None:
-        """Do it, for a hand or a rule. Raises CommandError, IndexError, ValueError or RefusedCommand, with nothing changed,
-        where it cannot be done.
+        """Do it, for a hand or a rule. Raises CommandError, IndexError, ValueError or RefusedCommand where it cannot be
+        done; nothing is changed then.
         """
         world.command(self.type, giver, **vars(self))
 
