@@ -90,7 +90,7 @@ CODES = {
     "edges": code_names(edges, "NO_EDGE"),
     "codes of solvers": code_names(settings, "SINGLE_PASS"),
     "kinds of zones": code_names(zones, "BOX"),
-    "codes of commands": code_names(command, "GRAB", "SET_GRAVITY"),
+    "codes of commands": code_names(command, "GRAB", "SET_GRAVITY", "SET_SOLVER"),
     "kinds of terms": code_names(table, "TOUCHES", "SETTLED"),
 }
 RULES = CODES["kinds of terms"]
@@ -109,6 +109,8 @@ REST = {
     "sandbox.physics.rules.measuring.measure: kind": OF_CENTRE | OF_TERMS | {"TOUCHES"},
     "sandbox.physics.rules.measuring._of_centre: kind": RULES - OF_CENTRE,
     "sandbox.physics.pipeline.judge._holds_of_members: terms.kind[t]": RULES - {"ALL", "ANY"},
+    # They have kernels of their own.
+    "sandbox.physics.commands.command._carry_out: kind": {"ADD_BODY", "ADD_PARTICLE", "ADD_SPRING", "REMOVE"},
     "sandbox.level.plan.rules._of_metric: kind": RULES - {"SETTLED", "DISTANCE", "INSIDE"},
     # No rim of a solid.
     "sandbox.export.outlines.outlines_of: edges": {"LINE", "NO_EDGE"},
@@ -145,6 +147,10 @@ EXCEPTIONS = {
     "sandbox.app.edit.side.form._add: about.kind", "sandbox.app.edit.side.form._show_value: each.about.kind",
     "sandbox.app.edit.side.form._rows: about.kind", "sandbox.editor.panel.properties._made: about.kind",
     "sandbox.editor.panel.property._text: about.kind", "sandbox.editor.range_trial._numbers: about.kind",
+    # Places of what commands have, -1 where they have none; what may be amiss with some alone.
+    *(f"sandbox.physics.commands.command.{name}: kind" for name in (
+        "_first_bad", "_place_of_particle", "_place_of_duration", "_unfit", "_not_for_hands", "_soften",
+    )),
     # What has slots of hands reserved, and what changes settings; other commands have nothing beside their kernel.
     "sandbox.physics.world.command: name",
     # What other kernels than that of commands call things.

@@ -31,6 +31,11 @@ SETTING_ARRAYS = ("numbers", "choices")
 CONTACT = "contact_"
 
 
+def _equipment() -> list[str]:
+    """Arrays that grow with what joins, but for what was found of them, which is found again."""
+    return [path for path in growth_of() if not path.startswith("modes.")]
+
+
 def is_done_by_pages(name: str) -> bool:
     """Whether pages carry out commands of that type."""
     return name in command_table.KINDS or name in ("add_particle", "add_spring", "add_body", "remove")
@@ -74,7 +79,7 @@ def about(world: World, words: int) -> dict[str, Any]:
         "area": AREA,
         "columns": [_column(column) for column in COLUMNS],
         "topology": [*(f"state.{column.name}" for column in TOPOLOGY), "choices"],
-        "kept": list(dict.fromkeys([*kept, *SETTING_ARRAYS, *growth_of()])),
+        "kept": list(dict.fromkeys([*kept, *SETTING_ARRAYS, *_equipment()])),
         "names": {
             "particle": world.particle_names,
             "spring": world.spring_names,

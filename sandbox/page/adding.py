@@ -19,6 +19,8 @@ from sandbox.physics.keeping.arguments import FARTHEST
 from sandbox.physics.kits import joining, kit, removing
 from sandbox.physics.state import Range
 from sandbox.physics.world import World
+from sandbox.session.commands.adding import SAME_ENDS
+from sandbox.session.commands.removing import ONE_OF_TWO
 
 # The rows of a world, by parts of kits.
 FAMILIES = {
@@ -39,7 +41,8 @@ WORDS = {
     "noParticle": joining.NO_PARTICLE,
     "tooMuch": joining.TOO_MUCH,
     "tooManyWheels": joining.TOO_MANY_WHEELS,
-    "sameEnds": "a spring joins two different particles, not {} to itself",
+    "sameEnds": SAME_ENDS,
+    "oneOfTwo": ONE_OF_TWO,
     "notThere": "it is not there any more",
 }
 

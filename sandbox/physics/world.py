@@ -534,7 +534,7 @@ class World(StateArrays):
 
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
-        self.command("set_drive", part=part, value=arguments.number("value", value, -1.0, 1.0))
+        self.command("set_drive", part=part, value=value)
 
     def hold(
         self, grab: int, particle: int, target: Point, strength: float = HAND_STRENGTH, radius: float = 0.0

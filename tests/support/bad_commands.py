@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.physics.actuators import Actuators
-from sandbox.physics.commands.command_table import KINDS
+from sandbox.physics.commands.command_table import KINDS, RefusedCommand
 from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import way
 from sandbox.physics.keeping.forms import FirmBody, StiffForm
@@ -42,7 +42,7 @@ POINTS = (
 )  # fmt: skip
 KEYS = (1, 2, *_BEYOND, *_NO_WHOLE_NUMBER)
 DURATIONS = (-1, 1_000_001, 10**30, *_NO_WHOLE_NUMBER)
-FACTORS = (*(each for each in NUMBERS if each is not None), 1e30, 0.0, -1.0)
+FACTORS = (*(each for each in NUMBERS if each is not None), 1e30, -1.0)
 SOLVERS = ("none", "", 3, -1, True, [0], 1.5, 10**6)
 ITERATIONS = ("none", "", 1001, 0, -1, True, [0], 1.5)
 SUBSTEPS = ("none", "", 3, -1, 128, True, [0], 1.5)
@@ -70,8 +70,11 @@ def move_body(world: World, particle: Any, by: Any) -> None:
 
 
 def free(world: World, particle: Any) -> None:
-    """Free a body."""
-    world.command("free", particle=particle)
+    """Free a body, unless something holds it."""
+    try:
+        world.command("free", particle=particle)
+    except RefusedCommand as refused:
+        assert "is pinned" in str(refused)
 
 
 def scale_mass(world: World, particle: Any, factor: Any) -> None:

@@ -384,7 +384,8 @@ export class World {
    * @type {(record: Extract<Command, { type: 'remove' }>, giver: number) => void} */
   #remove({ type, particle, body }, giver) {
     const { codes, ways } = this.#about.kit;
-    const isBody = particle === undefined || particle === null;
+    const isBody = particle === undefined || particle === null, isBoth = isBody === (body === undefined || body === null);
+    if (isBoth) throw new Refusal(this.#about.kit.words.oneOfTwo);
     /** @type {(kind: 'particle' | 'spring', mark: string) => number[]} */
     const named = (kind, mark) => this.names[kind].flatMap((name, slot) =>
       (name.startsWith(`${body}${mark}`) && this.isInUse(kind, slot) ? [slot] : []));

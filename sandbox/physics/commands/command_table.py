@@ -79,12 +79,13 @@ _SOLVER = ("?solver", "solver", "?iterations", "iterations", "?substeps", "subst
 ANSWERS = {"contacts": 1, "nearest": 2}
 # Slots that are true or false.
 _FLAGS = frozenset({"down", "at_rest", "whole"})
-# Numbers that are pairs; ranges of others, where they have any. A drive is from -1 to 1, see World.drive.
+# Numbers that are pairs; ranges of others, where they have any, and of values.
 _PAIRS = frozenset({"target", "gravity", "wind", "position", "impulse", "acceleration", "by"})
 _RANGES = {
     "strength": (0.0,), "radius": (0.0,), "stiffness": (0.0, 1.0), "damping": (0.0, 1.0), "lowest_mode": (0.0,),
-    "drag": (0.0,), "warm_start": (0.0, 1.0), "sag": (0.0,), "hz": (0.0,), "ratio": (0.0,),
+    "drag": (0.0,), "factor": (0.0, 1000.0), "warm_start": (0.0, 1.0), "sag": (0.0,), "hz": (0.0,), "ratio": (0.0,),
 }  # fmt: skip
+_VALUES = {command.DRIVE: (-1.0, 1.0), command.SET_INFLATION: (0.0,)}
 # What is a list of slots, of which a command has one alone.
 _LISTS = ("springs", "constraints")
 # Kinds of commands by their names in files. Files have no `break_springs`, which a tick ends with; no `part_bodies`,
@@ -205,7 +206,7 @@ def _checked(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> tuple[
         return (0.0,)
     if name in _PAIRS:
         return point(name, value)
-    return (number(name, value, *_RANGES.get(name, ())),)
+    return (number(name, value, *(_VALUES.get(kind.code, ()) if name == "value" else _RANGES.get(name, ()))),)
 
 
 def _packed(kind: KernelCommand, name: str, given: Mapping[str, Any]) -> int:
@@ -230,7 +231,7 @@ def _fault(
     beyond = place - (len(given[kind.slots[0]]) if is_list else len(kind.slots))
     if beyond >= 0:
         return ValueError(f"{', '.join(kind.numbers)} {list(numbers)}: finite numbers are needed")
-    name = kind.slots[0 if is_list else place]
+    name = kind.slots[0 if is_list else place].lstrip("?")
     value = given[name][place] if is_list else given[name]
     if reason != command.BAD:
         return RefusedCommand(reason, name, value, numbers)

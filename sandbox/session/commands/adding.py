@@ -11,6 +11,8 @@ from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot
 
+SAME_ENDS = "a spring joins two different particles, not {} to itself"
+
 
 @dataclass(frozen=True)
 class AddParticle(Command):
@@ -53,7 +55,7 @@ class AddSpring(Command):
     def carry_out(self, world: World, giver: int) -> None:
         if self.particle_a == self.particle_b:
             name = world.particle_names[self.particle_a]
-            raise CommandError(f"a spring joins two different particles, not {name} to itself")
+            raise CommandError(SAME_ENDS.format(name))
         rows = {
             "a": [-1 - self.particle_a], "b": [-1 - self.particle_b], "rest_length": self.rest_length,
             "stiffness": self.stiffness, "damping": self.damping,

@@ -12,6 +12,8 @@ from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 from sandbox.session.commands.named import ParticleSlot
 
+ONE_OF_TWO = "say body, or particle: one of the two"
+
 
 @dataclass(frozen=True)
 class Remove(Command):
@@ -27,7 +29,7 @@ class Remove(Command):
 
     def carry_out(self, world: World, giver: int) -> None:
         if (self.body is None) == (self.particle is None):
-            raise CommandError("say body, or particle: one of the two")
+            raise CommandError(ONE_OF_TWO)
         if self.particle is not None:
             remove_particles(world, [self.particle], way=HANGING, giver=giver)
         else:

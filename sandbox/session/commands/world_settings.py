@@ -1,13 +1,13 @@
 """Settings of a running world are changed: its gravity, its air, its solver."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from sandbox.level.format.quantities import Drag, Gravity, Share, Velocity
 from sandbox.physics.commands.command import MOST_ITERATIONS
-from sandbox.physics.settings import SolverName, SubstepChoice, Substeps
+from sandbox.physics.settings import SUBSTEPS, SolverName, SubstepChoice, Substeps
 from sandbox.session.commands.command import Command
 from sandbox.session.commands.ramping import Duration
 
@@ -16,7 +16,12 @@ if TYPE_CHECKING:
     SolverChoice: TypeAlias = str
     SubstepsChoice: TypeAlias = Substeps
 else:
-    SolverChoice, SubstepsChoice = SolverName, SubstepChoice
+    SolverChoice, SubstepsChoice = SolverName, Annotated[SubstepChoice, BeforeValidator(lambda value: _plain(value))]
+
+
+def _plain(value: Any) -> Any:
+    """A choice as it is; nothing that is one of where it is true, or a number that only a text can hold."""
+    return value if isinstance(value, str) or (type(value) is int and abs(value) <= SUBSTEPS[-1]) else ""
 
 
 @dataclass(frozen=True)

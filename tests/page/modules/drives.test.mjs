@@ -5,7 +5,7 @@ import { Drives } from '../../../sandbox/page/web/drives.js';
 /** Drives of a run that refuses parts, and what came of them. */
 function drives(refused) {
   const done = [], said = [], held = [];
-  const run = { gesture: 0, newGesture: () => (run.gesture += 1), submit: (record, gesture, say) => {
+  const run = { world: { joinedKeys: {} }, gesture: 0, newGesture: () => (run.gesture += 1), submit: (record, gesture, say) => {
     if (refused.includes(record.part)) say('it cannot be driven');
     else done.push(record);
     return !refused.includes(record.part);
