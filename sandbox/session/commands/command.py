@@ -134,7 +134,9 @@ def _words(world: World, command: Command, refused: RefusedCommand) -> str:
     """Why a command is refused, with the names of things."""
     doing, counted = words_of(command.type)
     named = namespaces(type(command)).get(refused.field, _THINGS.get(refused.field))
-    name = refused.value if named is None else named.names(world)[refused.value]
+    name = refused.value
+    if named is not None and isinstance(name, int):
+        name = named.names(world)[name]
     what = {FORBIDDEN: doing, EXHAUSTED: counted, UNTOUCHABLE: shown(thing_of(str(name)))}
     further: tuple[str, ...] = ()
     if refused.reason == BEYOND_REACH:
