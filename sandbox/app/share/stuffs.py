@@ -3,6 +3,7 @@
 from typing import Any
 
 from sandbox.app.share.firmness_table import USUAL
+from sandbox.physics.analysis.firmness import WORDS as SAGS
 from sandbox.tools.drawing import STUFFS
 from sandbox.tools.parts import COLOURS, USUAL_RATE, at_rate
 from sandbox.tools.pulling import FIRM
@@ -24,7 +25,7 @@ def stuffs_for(tick_rate: int) -> dict[str, Any]:
     }
     words = {word: list(_at(tick_rate, *pair).values()) for word, pair in USUAL.items()}
     firmest = {"stiffness": FIRM, "damping": FIRM}
-    return {"stuffs": stuffs, "firmest": firmest, "springy": at_rate(SPRINGY, tick_rate), "words": words}
+    return {"stuffs": stuffs, "firmest": firmest, "springy": at_rate(SPRINGY, tick_rate), "words": words, "sags": SAGS}
 
 
 def _at(tick_rate: int, stiffness: float, damping: float) -> dict[str, float]:

@@ -9,7 +9,11 @@
 /** @typedef {Omit<Kind, 'slots' | 'numbers'> & { slots: number[], numbers: number[] }} Packed */
 
 // What a person is to read, in one line.
-export class Refusal extends Error {}
+export class Refusal extends Error {
+  /** The nearest sag that a body can have, of one that it cannot.
+   * @type {number | undefined} */
+  nearest;
+}
 
 const PLAIN = /^\w+$/, UNPRINTABLE = /[\p{C}\p{Zl}\p{Zp}]|(?! )\p{Zs}/u, SHOWN = 60, PLACE = 80;
 // Beyond this JSON writes whole numbers as floats.
@@ -223,7 +227,9 @@ export class Commands {
     const { names: kind, noun } = new Map(this.#named(type)).get(field) ?? {}, name = kind && names[kind][slot];
     if (reason !== bad) {
       const further = reason === this.#about.filled.reach ? this.#reach(record, answers.slice(-2)) : [];
-      throw new Refusal(this.#words(reason, type, name ?? slot, ...further));
+      const refusal = new Refusal(this.#words(reason, type, name ?? slot, ...further));
+      if (further.length && 'sag' in record && record.sag != null) [refusal.nearest] = answers.slice(-2);
+      throw refusal;
     }
     if (name !== undefined) throw new Refusal(fill(messages.noSlot, noun, shown(name)));
     throw new Refusal(`${type}: ${slot}: it is not there, not in use, or out of range`);

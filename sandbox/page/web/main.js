@@ -59,7 +59,7 @@ class Page {
       (text) => this.#say({ rank: 'refusal', text, place: 'refused' }));
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), on: byId('end-on') });
-    this.menu = new Menu(byId('menu'), this.toy, level.about.adding.made.words);
+    this.menu = new Menu(byId('menu'), this.toy, level.about.adding.made.words, level.about.adding.made.sags);
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;
     this.ears = new Ears(byId('spoken'));

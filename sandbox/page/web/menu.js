@@ -1,15 +1,18 @@
-// Menu: what can be done to a thing: its material softer or firmer, and its particle fixed or let go.
+// Menu: what can be done to a thing: it softer or firmer, its particle fixed or let go, or all of it gone.
 import { thingOf } from './cursor.js';
 import { element } from './panel.js';
+/** @import { Refusal } from './commands.js' */
 /** @import { Toy } from './toy.js' */
 /** @import { Asked, Point } from './types.js' */
 
 export class Menu {
-  /** @param {HTMLElement} box @param {Toy} toy @param {Record<string, Point>} words Cs and Cd by words of firmness */
-  constructor(box, toy, words) {
+  /** words, sags: Cs and Cd of materials, and sags of bodies, by words of firmness.
+   * @param {HTMLElement} box @param {Toy} toy @param {Record<string, Point>} words @param {Record<string, number>} sags */
+  constructor(box, toy, words, sags) {
     this.box = box;
     this.toy = toy;
     this.words = words;
+    this.sags = sags;
     addEventListener('pointerdown', ({ target }) => {
       if (target instanceof Node && !box.contains(target)) this.close();
     }, true);
@@ -43,7 +46,7 @@ export class Menu {
 
   /** @type {(asked: Asked) => void} */
   open({ particle, x, y }) {
-    const { box, toy } = this, { world } = toy, material = this.#materialOf(particle);
+    const { box, toy } = this, { world } = toy;
     /** @type {(text: string, act: () => void) => HTMLButtonElement} */
     const button = (text, act) => {
       const made = element('button', { type: 'button', textContent: text, tabIndex: -1 });
@@ -56,8 +59,11 @@ export class Menu {
       return made;
     };
     const isFixed = world.view('state.inverse_mass')[particle] === 0;
-    const softness = material === null ? [] : Object.entries(this.words).map(([word, [stiffness, damping]]) =>
-      button(word, () => this.#soften(material, word, stiffness, damping)));
+    const spring = this.#springAt(particle), form = spring < 0 ? -1 : world.formOf(spring);
+    const words = form >= 0 ? Object.entries(this.sags).map(([word, sag]) => button(word, () => this.#firm(form, word, sag)))
+      : Object.entries(this.words).map(([word, [stiffness, damping]]) => button(word, () =>
+        this.#soften(world.view('state.material')[spring], word, stiffness, damping)));
+    const softness = spring < 0 ? [] : words;
     box.replaceChildren(...softness, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
       { type: isFixed ? 'unpin' : 'pin', particle })), button('erase', () => toy.hands.remove(particle)));
     box.setAttribute('aria-label', thingOf(world.names.particle[particle]));
@@ -67,13 +73,25 @@ export class Menu {
     box.querySelector('button')?.focus({ preventScroll: true });
   }
 
-  /** The material of the springs at a particle; null: it has none.
-   * @type {(particle: number) => number | null} */
-  #materialOf(particle) {
+  /** A spring of a material at a particle; below 0: it has none.
+   * @type {(particle: number) => number} */
+  #springAt(particle) {
     const { world } = this.toy, a = world.view('state.particle_a'), b = world.view('state.particle_b');
     const material = world.view('state.material'), active = world.view('state.spring_active');
-    const spring = material.findIndex((own, k) => own >= 0 && active[k] !== 0 && (a[k] === particle || b[k] === particle));
-    return spring < 0 ? null : material[spring];
+    return material.findIndex((own, k) => own >= 0 && active[k] !== 0 && (a[k] === particle || b[k] === particle));
+  }
+
+  /** Make a body as soft as a word says, or as near to it as it can be.
+   * @type {(body: number, word: string, sag: number) => void} */
+  #firm(body, word, sag) {
+    const { run, level: { ramp_ticks: duration }, world } = this.toy, gesture = run.newGesture();
+    const name = world.names.form[body], says = () => this.toy.say(`${name} is ${word} now.`, 'done');
+    /** @type {(text: string, refusal: Refusal) => void} */
+    const refused = (text, { nearest }) => {
+      if (nearest === undefined) this.toy.say(text);
+      else if (run.submit({ type: 'set_firmness', body, sag: nearest, duration }, gesture, (why) => this.toy.say(why))) says();
+    };
+    if (run.submit({ type: 'set_firmness', body, sag, duration }, gesture, refused)) says();
   }
 
   /** @type {(material: number, word: string, stiffness: number, damping: number) => void} */

@@ -65,13 +65,13 @@ export class Run {
   }
 
   /** The same; where it cannot be, say why. Whether it could be.
-   * @type {(record: Command, gesture: number, say: (text: string) => void) => boolean} */
+   * @type {(record: Command, gesture: number, say: (text: string, refusal: Refusal) => void) => boolean} */
   submit(record, gesture, say) {
     try {
       this.command(record, gesture);
     } catch (error) {
       if (!(error instanceof Refusal)) throw error;
-      say(error.message);
+      say(error.message, error);
       return false;
     }
     return true;

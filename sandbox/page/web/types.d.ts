@@ -498,6 +498,8 @@ export interface Made {
   springy: Pair;
   // Cs and Cd by words of firmness.
   words: Record<string, Point>;
+  // Sags of bodies by words of firmness.
+  sags: Record<string, number>;
 }
 
 export interface Pair {

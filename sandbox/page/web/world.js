@@ -132,6 +132,12 @@ export class World {
     return [...pieces.map(([first]) => first), ...pieces.flatMap(([, ...others]) => others)];
   }
 
+  /** The number of the body, or piece of one, that may be stiff by its form and has a spring; -1: none has.
+   * @type {(spring: number) => number} */
+  formOf(spring) {
+    return this.#inArena('form_of_spring', [], this.#block, spring);
+  }
+
   /** Where there are so many more bytes of memory.
    * @type {(size: number) => number} */
   #reserve(size) {

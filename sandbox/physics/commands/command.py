@@ -17,7 +17,16 @@ from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.commands.permission import GRANTED, HAND, NOT_ALLOWED, refusal, spend
 from sandbox.physics.components import list_body
-from sandbox.physics.firmness.firm import SPRINGS, Firming, FormModes, Forms, body_of_number, count_pieces_of, firm
+from sandbox.physics.firmness.firm import (
+    SPRINGS,
+    Firming,
+    FormModes,
+    Forms,
+    body_of_number,
+    count_pieces_of,
+    firm,
+    number_of_spring,
+)
 from sandbox.physics.firmness.reach import (
     BY_FREQUENCY,
     BY_SAG,
@@ -110,6 +119,13 @@ def count_pieces(arena: Arena, pointer: Bundle[Commanded], count: Slots) -> int:
     """How many pieces each body (b,) is that may be stiff by its form; NO_ARENA: the arena is too small."""
     world = unpack(pointer)
     return count_pieces_of(world.state, world.forms, arena, count)
+
+
+@kernel
+def form_of_spring(arena: Arena, pointer: Bundle[Commanded], spring: int) -> int:
+    """The number of the body, or of the piece of one, that may be stiff by its form and has a spring; -1: none has."""
+    world = unpack(pointer)
+    return number_of_spring(world.state, world.forms, arena, spring)
 
 
 @kernel

@@ -417,6 +417,26 @@ def count_pieces_of(state: State, forms: Forms, arena: Arena, count: Slots) -> i
     return 0
 
 
+@inner_kernel
+def number_of_spring(state: State, forms: Forms, arena: Arena, spring: int) -> int:
+    """The number of the body or piece that has a spring; -1: none; where the arena is full, any."""
+    begin(arena)
+    bodies = forms.first.shape[0] - 1
+    after = bodies
+    for body in range(bodies):
+        scratch = mark(arena)
+        pieces = _new_pieces(state, forms, body, arena)
+        if is_full(arena):
+            return -1
+        first = forms.first[body, SPRINGS]
+        for row in range(pieces.spring.shape[0]):
+            if forms.spring[first + row] == spring and pieces.spring[row] >= 0:
+                return body if pieces.spring[row] == 0 else after + pieces.spring[row] - 1
+        after += pieces.total[0] - 1
+        give_back(arena, scratch)
+    return -1
+
+
 @kernel
 def take_piece(pointer: Bundle[Firmable], arena: Arena, body: int, number: int) -> None:
     """Lay out a piece of a body that was cut."""

@@ -72,6 +72,7 @@ _CALLED_BY_PAGES = (
     "sandbox.physics.pipeline.judge.judge",
     "sandbox.physics.commands.command.command",
     "sandbox.physics.commands.command.count_pieces",
+    "sandbox.physics.commands.command.form_of_spring",
     "sandbox.physics.meshing.fitting.fill_stroke",
     "sandbox.physics.kits.kit_kernels.join",
     "sandbox.physics.kits.kit_kernels.reserve",
