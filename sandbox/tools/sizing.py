@@ -2,6 +2,13 @@
 
 # A step of the wheel makes it this many times larger; sizes [m] that it may have.
 SIZE_STEP, SMALLEST, LARGEST = 1.1, 0.02, 100.0
+# The part of the view's height that it is at first.
+SIZE_SHARE = 0.12
+
+
+def usual_size(height: float) -> float:
+    """How large [m] things are at first in a view of a height [m]."""
+    return float(f"{SIZE_SHARE * height:.2g}")
 
 
 class Sized:

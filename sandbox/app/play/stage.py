@@ -30,14 +30,12 @@ from sandbox.session.session import Session
 from sandbox.tools.drag import DRAG, DragTool
 from sandbox.tools.dropping import CatalogueTool
 from sandbox.tools.play_tools import PLAY_TOOLS
+from sandbox.tools.sizing import usual_size
 from sandbox.tools.tool import PointerEvent, Tool
 
 # How far off a particle a press still hits it, and a step of the keyboard cursor [layout units].
 PICK_RADIUS = 14.0
 CURSOR_STEP, CURSOR_LEAP = 4.0, 24.0
-
-# How large a dropped part is at first, as a share of the height of the view.
-SIZE_SHARE = 0.12
 
 # A run in which nothing is seen to move for so long [s] is at rest.
 AT_REST_AFTER = 1.0
@@ -123,7 +121,7 @@ class Stage:
         self.tool_name = name
         self.pressed_by_key = False
         height = self.camera.viewport[3] / self.camera.zoom
-        self.tool.take_up(self.size or float(f"{SIZE_SHARE * height:.2g}"), height)
+        self.tool.take_up(self.size or usual_size(height), height)
 
     def resize(self, steps: float) -> bool:
         """Make larger what the tool drops or reaches; whether it has a size."""

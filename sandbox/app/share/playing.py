@@ -10,7 +10,7 @@ from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
 from sandbox.app.share.firmness_table import material_rows
 from sandbox.app.share.runs_for_pages import RunForPages, all_at_once, run_for_pages
-from sandbox.app.share.stuffs import stuffs_for
+from sandbox.app.share.stuffs import parts_for, stuffs_for
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.assembly.build_world import build_world
@@ -64,9 +64,10 @@ def playable_in_slices(
     until = [line for line in script if ticks is not None and line.tick <= ticks]
     played = None if ticks is None else (yield from run_for_pages(level, until, ticks))
     world = build_world(level)
+    scene = scene_of(level, take(world))
     data = {
         "name": level.name,
-        "scene": scene_of(level, take(world)),
+        "scene": scene,
         "sounds": _sounds(world),
         "materials": (yield from material_rows(world if played is None else played.world, level, played is not None)),
         "gravity_limit": GRAVITY_LIMIT,
@@ -79,10 +80,9 @@ def playable_in_slices(
         "recording": None if played is None else _recording(played),
         "begin": begin,
     }
-    start, added = (
-        start_of(world),
-        adding(world) | {"made": made_looks() | stuffs_for(world.settings.tick_rate)},
-    )
+    _, low, _, high = scene["view"]
+    made = made_looks() | stuffs_for(world.settings.tick_rate)
+    start, added = start_of(world), adding(world) | {"made": made, "parts": parts_for(level, high - low)}
     content = toy_content(data | {"about": start.about | {"adding": added}}, start.image)
     return Playable(level.name, level.description, content)
 

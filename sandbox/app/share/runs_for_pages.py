@@ -88,7 +88,7 @@ def run_for_pages(
     for line in script:
         yield from map(part, stepped(line.tick))
         try:
-            made.append(replace(line, record=_carried_out(level, world, line.record)))
+            made.append(replace(line, record=carried_out(level, world, line.record)))
         except CommandError as error:
             raise CommandError(f"line {line.line}: {error}") from None
     yield from map(part, stepped(ticks))
@@ -106,8 +106,8 @@ def _without_undone(
     return script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
 
 
-def _carried_out(level: Level, world: World, record: dict[str, Any]) -> dict[str, Any]:
-    """Carry out a command; its record, with a kit in place of definitions."""
+def carried_out(level: Level, world: World, record: dict[str, Any]) -> dict[str, Any]:
+    """Carry out a command; its record, with a kit in place of definitions. Raises CommandError."""
     before, kit = {"particle": world.particle_count, "spring": world.spring_count}, None
     if _is_defined(record):
         definition = {name: value for name, value in record.items() if name != "type" and value is not None}

@@ -250,7 +250,10 @@ export class Hands {
    * @type {(at: Pressed) => boolean} */
   #pressByKey(at) {
     this.#begin(at);
-    const kind = this.#pointers.get(at.pointerId)?.kind ?? 'done', goesOn = ['hold', 'cut', 'make'].includes(kind);
+    const kind = this.#pointers.get(at.pointerId)?.kind ?? 'done', drops = this.maker.part(this.tool) !== undefined;
+    const goesOn = ['hold', 'cut', 'make'].includes(kind) && !drops;
+    // There is no way to go from where a part falls.
+    if (drops) this.#lift({ ...at, type: 'pointerup' });
     if (!goesOn) this.#pointers.delete(at.pointerId);
     if (kind === 'pan' && at.particle === null) this.speak('Nothing is here. N goes to the next thing.');
     return goesOn;
@@ -437,7 +440,7 @@ export class Hands {
   #make({ x, y, within }) {
     const near = new Near(this.run.world), point = this.camera.toWorld(x, y);
     const isMade = this.maker.end(this.tool, point, near.particle(point, within) ?? near.free(point, within), within);
-    if (isMade) this.speak(`A new ${this.tool} is there.`);
+    if (isMade) this.speak(`A new ${this.maker.part(this.tool)?.name ?? this.tool} is there.`);
   }
 
   /** @type {(pointer: Pointer) => Held | undefined} */

@@ -35,6 +35,17 @@ export function bodyKit(adding, body) {
   };
 }
 
+/** A kit whose particles lie elsewhere by a way [m], with the forms at rest of their corners.
+ * @type {(kit: Kit, way: Point) => Kit} */
+export function movedKit(kit, [dx, dy]) {
+  /** @type {(values: any, by: number) => any} */
+  const shifted = (values, by) => (Array.isArray(values) ? values.map((each) => shifted(each, by))
+    : typeof values === 'number' ? values + by : values);
+  /** @type {(columns: any) => Record<string, unknown>} */
+  const moved = (columns) => ({ ...columns, x: shifted(columns.x, dx), y: shifted(columns.y, dy) });
+  return { ...kit, particles: moved(kit.particles), ...(kit.corners ? { corners: moved(kit.corners) } : {}) };
+}
+
 /** Kinds of edge of springs: solid along one triangle, none along two, else a line.
  * @type {(springs: number[][], triangles: number[][], adding: Adding) => number[]} */
 function edgesOf(springs, triangles, { edges, touches }) {

@@ -11,7 +11,7 @@ import { Messages, RANKS } from './messages.js';
 import { element, Panel } from './panel.js';
 import { verified } from './recording.js';
 import { Toy } from './toy.js';
-/** @import { Fresh, Level, Message, ToyEvents } from './types.js' */
+/** @import { Droppable, Fresh, Level, Message, ToyEvents } from './types.js' */
 
 // Slow motion; free room around a level [pixels].
 const SLOW = 0.2, BESIDE = 8;
@@ -45,6 +45,13 @@ const press = (button, isOn) => button?.setAttribute('aria-pressed', String(isOn
 /** @type {(target: EventTarget | null) => boolean} */
 const isTypedInto = (target) => target instanceof Element && target.matches('input, select, .pad');
 
+/** What a person is told who takes a part in hand.
+ * @type {(part: Droppable) => string} */
+function fallOf({ name, record }) {
+  const keys = Object.keys(record.kit?.keys ?? {}).map((key) => key.toUpperCase());
+  return `Press where the ${name} is to be.${keys.length ? ` ${keys.join(' and ')} drive it.` : ''}`;
+}
+
 class Page {
   #messages = new Messages();
   // The last gesture that a link or a file holds.
@@ -57,6 +64,7 @@ class Page {
     this.toy = new Toy(byId('picture'), level, fresh, window);
     this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level,
       (text) => this.#say({ rank: 'refusal', text, place: 'refused' }));
+    this.parts = level.about.adding.parts;
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), on: byId('end-on') });
     this.menu = new Menu(byId('menu'), this.toy, level.about.adding.made.words, level.about.adding.made.sags);
@@ -101,6 +109,10 @@ class Page {
     });
   }
 
+  get #tools() {
+    return [...TOOLS, ...this.parts.map(({ id }) => id)];
+  }
+
   #bind() {
     const { toy } = this;
     /** @type {Record<string, () => unknown>} */
@@ -115,6 +127,10 @@ class Page {
         press(byId('sound'), toy.sound.isOn);
       },
       tune: () => this.#show('panel', 'tune'), make: () => this.#show('makers', 'make'), hint: () => this.#show('hints', 'hint'), save: () => this.#save(),
+      parts: () => {
+        press(byId('parts'), byId('makers').classList.toggle('parts'));
+        this.#choose('drag');
+      },
       link: () => this.#copyLink(), 'end-send': () => this.#send(),
       more: () => {
         press(byId('more'), byId('tools').classList.toggle('open'));
@@ -125,7 +141,12 @@ class Page {
     for (const [key, id] of Object.entries(KEYS)) {
       if (id && key in toy.drives.keys) byId(id).title = byId(id).title.replace(` (${key.toUpperCase()})`, '');
     }
-    for (const tool of TOOLS) acts[tool] = () => this.#choose(tool);
+    for (const { id, name } of this.parts) {
+      const button = element('button', { type: 'button', id, className: 'part', textContent: name, title: `Drop a ${name}` });
+      press(button, false);
+      byId('makers').append(button);
+    }
+    for (const tool of this.#tools) acts[tool] = () => this.#choose(tool);
     for (const [id, act] of Object.entries(acts)) byId(id).addEventListener('click', act);
     byId('time').addEventListener('input', () => {
       toy.pause();
@@ -220,17 +241,19 @@ class Page {
     byId(button).setAttribute('aria-expanded', String(!part.hidden));
     this.panel.show();
     // A tool is in hand as long as it is seen.
-    if (id === 'makers' && part.hidden && this.toy.hands.tool in MAKES) this.#choose('drag');
+    const { tool } = this.toy.hands;
+    if (id === 'makers' && part.hidden && (tool in MAKES || this.toy.hands.maker.makes(tool))) this.#choose('drag');
     if (id !== 'hints' && !part.hidden && !roomy.matches && !byId('hints').hidden) this.#show('hints', 'hint');
   }
 
   /** @type {(tool: string) => void} */
   #choose(tool) {
     this.toy.hands.tool = tool;
-    for (const name of TOOLS) press(byId(name), name === tool);
+    for (const name of this.#tools) press(byId(name), name === tool);
     this.#messages.end('tool');
     this.#showMessages();
-    if (tool in MAKES) this.#say({ rank: 'tip', text: MAKES[tool] ?? '' });
+    const part = this.parts.find(({ id }) => id === tool), text = part ? fallOf(part) : MAKES[tool];
+    if (text) this.#say({ rank: 'tip', text });
   }
 
   #drawTime() {

@@ -1,10 +1,11 @@
-// Maker: what is drawn or pulled on the picture joins the world: a body inside an outline, a rope, a spring, a rod.
+// Maker: what is drawn, pulled or dropped on the picture joins the world: a body inside an outline, a rope, a spring, a
+// rod, a part.
 import { Refusal } from './commands.js';
 import { unused } from './kit.js';
-import { bodyKit } from './made.js';
+import { bodyKit, movedKit } from './made.js';
 import { MAKING, MESH } from './shared.js';
 /** @import { Run } from './run.js' */
-/** @import { Adding, AnyArray, Mesh, NamedRecord, Point, Theme } from './types.js' */
+/** @import { Adding, AnyArray, Droppable, Mesh, NamedRecord, Point, Theme } from './types.js' */
 /** @import { World } from './world.js' */
 
 const { SEGMENTS, ROPE_MASS, ROPE_RADIUS, SHARE, PIN_RADIUS, PIN_SHARE, SKIN, THICKEST, HAND_TOLERANCE, TOO_SHORT,
@@ -48,7 +49,13 @@ export class Maker {
   /** Whether a tool makes something.
    * @type {(tool: string) => boolean} */
   makes(tool) {
-    return tool in this.adding.made.stuffs || ['rope', 'spring', 'rod'].includes(tool);
+    return tool in this.adding.made.stuffs || ['rope', 'spring', 'rod'].includes(tool) || this.part(tool) !== undefined;
+  }
+
+  /** The part that a tool drops.
+   * @type {(tool: string) => Droppable | undefined} */
+  part(tool) {
+    return this.adding.parts.find(({ id }) => id === tool);
   }
 
   get isAtWork() {
@@ -66,7 +73,8 @@ export class Maker {
   go(point, within) {
     const [x, y] = this.#stroke[this.#stroke.length - 1];
     const isFar = Math.hypot(point[0] - x, point[1] - y) > HAND_TOLERANCE * within;
-    if (isFar && this.#stroke.length < MOST_POINTS) this.#stroke.push(point);
+    // Of what is long enough the end goes along.
+    if (isFar) this.#stroke.splice(Math.min(this.#stroke.length, MOST_POINTS - 1), 1, point);
   }
 
   forget() {
@@ -84,10 +92,11 @@ export class Maker {
   /** Make it: the tool's, of what was drawn until now. Whether it is there.
    * @type {(tool: string, point: Point, particle: number | null, within: number) => boolean} */
   end(tool, point, particle, within) {
-    const stroke = this.#stroke, start = this.#start;
+    const stroke = this.#stroke, start = this.#start, part = this.part(tool);
     this.#stroke = [];
     try {
-      const records = tool in this.adding.made.stuffs ? [this.#body(tool, [...stroke, point], within)]
+      const records = part ? [this.#dropped(part, placed(point))]
+        : tool in this.adding.made.stuffs ? [this.#body(tool, [...stroke, point], within)]
         : this.#joined(tool, /** @type {End} */ (start), this.#end(point, particle), within);
       const gesture = this.run.newGesture();
       const { world } = this.run;
@@ -110,6 +119,11 @@ export class Maker {
     const radius = rounded(Math.min(SKIN * spacing, THICKEST));
     return { type: 'add_body', kit: bodyKit(this.adding, { ...mesh, ...more, mass, radius, material: name, stiffness, damping,
       look }) };
+  }
+
+  /** @type {(part: Droppable, point: Point) => NamedRecord} */
+  #dropped({ record }, point) {
+    return record.kit ? { ...record, kit: movedKit(record.kit, point) } : { ...record, position: point };
   }
 
   /** @type {(tool: string, start: End, end: End, within: number) => NamedRecord[]} */
@@ -170,13 +184,15 @@ export class Maker {
    *   void} */
   draw(context, tool, toPixels, theme) {
     if (!this.#stroke.length) return;
-    const isBody = tool in this.adding.made.stuffs, last = this.#stroke[this.#stroke.length - 1];
-    const line = isBody ? this.#stroke : [this.#start?.place ?? last, last];
+    const isBody = tool in this.adding.made.stuffs, last = this.#stroke[this.#stroke.length - 1], part = this.part(tool);
+    /** @type {Point[][]} */
+    const lines = part ? part.ghost.map((loop) => loop.map(([x, y]) => [x + last[0], y + last[1]]))
+      : isBody ? [this.#stroke] : [[this.#start?.place ?? last, last]];
     context.strokeStyle = theme.accent;
     context.lineWidth = 2;
     context.setLineDash(isBody ? [] : [6, 5]);
     context.beginPath();
-    line.forEach(([x, y]) => context.lineTo(...toPixels(x, y)));
+    for (const line of lines) line.forEach(([x, y], k) => context[k ? 'lineTo' : 'moveTo'](...toPixels(x, y)));
     context.stroke();
     context.setLineDash([]);
   }

@@ -515,6 +515,15 @@ export interface Adding {
   touches: boolean;
   edges: Record<'none' | 'line' | 'left' | 'right', number>;
   made: Made;
+  parts: Droppable[];
+}
+
+// What a page drops: the command that adds it about the origin, and lines around it there [m].
+export interface Droppable {
+  id: string;
+  name: string;
+  record: NamedRecord & { kit?: Kit };
+  ghost: Point[][];
 }
 
 // What people see of what joined a world.
