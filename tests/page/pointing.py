@@ -5,7 +5,7 @@ from tests.page.browser import Tab
 
 def middle(tab: Tab, chosen: str) -> tuple[float, float]:
     """The middle of an element [pixels]."""
-    box = f"document.querySelector('{chosen}').getBoundingClientRect()"
+    box = f"document.querySelector(`{chosen}`).getBoundingClientRect()"
     x, y = tab.evaluate(f"(({{ x, y, width, height }}) => [x + width / 2, y + height / 2])({box})")
     return x, y
 

@@ -48,7 +48,7 @@ const isTypedInto = (target) => target instanceof Element && target.matches('inp
 /** What a person is told who takes a part in hand.
  * @type {(part: Droppable) => string} */
 function fallOf({ name, record }) {
-  const keys = Object.keys(record.kit?.keys ?? {}).map((key) => key.toUpperCase());
+  const keys = Object.keys(record.kit?.keys ?? {}).map((key) => key.toUpperCase()).sort();
   return `Press where the ${name} is to be.${keys.length ? ` ${keys.join(' and ')} drive it.` : ''}`;
 }
 
