@@ -36,7 +36,9 @@ CONTROLS = {
                     "the pencil"),
     "box": Control("drops a box", "tool_box", "", KEY, None, None),
     "resize": Control("makes a part larger before it falls", "", "", "the mouse wheel", None, None),
-    "engineers": Control("has the solver and its settings", "", "", "under For engineers", None, None),
+    "engineers": Control("has the solver and its settings", "", "tune", "under For engineers",
+                         "under For engineers (H)", "behind the sliders, under For engineers"),
+    "rate": Control("has ticks a second", "", "", "under For engineers", None, None),
     "toy": Control("takes the level to the desktop", "toy", "", KEY, None, None),
 }  # fmt: skip
 _NAMED = re.compile(r"\{(" + "|".join(f"{name}|{name.capitalize()}" for name in CONTROLS) + r")\}")

@@ -22,7 +22,7 @@ CARDS = {stem: line for section in SECTIONS for stem, line in section.levels.ite
 # Letters of keys that pages have beside those of a level, each with the id of what it presses.
 PAGE_KEYS = dict(re.findall(r"(\w): '(\w+)'", re.search(r"const KEYS = \{(.*?)\}", (WEB / "main.js").read_text())[1]))
 # What hints of before named, by what is only in the window, and by what only a mouse has.
-OF_THE_WINDOW = re.compile(r"For engineers|Iterative|iterations|warm start|ticks a second|Ctrl\+T|\bkey\b|wheel makes")
+OF_THE_WINDOW = re.compile(r"ticks a second|Ctrl\+T|\bkey\b|wheel makes")
 OF_A_MOUSE = re.compile(r"\b(mouse|click|Click|wheel makes|Ctrl\+\w|Space)\b")
 # A letter that a hint says to press, if it is not the article, and formulas, whose letters nobody presses.
 LETTER, FORMULA = re.compile(r"(?<![\w.+])[A-Z](?![\w'])"), re.compile(r"F = [^,]*,")

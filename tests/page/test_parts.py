@@ -1,4 +1,4 @@
-"""Parts are dropped in a page by mouse, finger and keys; what has motors is driven there; the desktop has the same bits."""
+"""Parts are dropped in a page by mouse, finger and keys; motors are driven there; the desktop has the same bits."""
 
 import gzip
 import json

@@ -2,6 +2,7 @@
 import { Refusal } from './commands.js';
 import { typed } from './cursor.js';
 import { Ears } from './ears.js';
+import { Engineers } from './engineers.js';
 import { Lost, read } from './files.js';
 import { Goals, starText } from './goals.js';
 import { Keys } from './keys.js';
@@ -62,8 +63,10 @@ class Page {
    * @param {Level} level @param {Fresh} fresh @param {Message | null} said */
   constructor(level, fresh, said) {
     this.toy = new Toy(byId('picture'), level, fresh, window);
-    this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level,
-      (text) => this.#say({ rank: 'refusal', text, place: 'refused' }));
+    /** @type {(text: string) => void} */
+    const refuse = (text) => this.#say({ rank: 'refusal', text, place: 'refused' });
+    this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level, refuse);
+    this.engineers = new Engineers(byId('panel'), this.toy.run, level, refuse);
     this.parts = level.about.adding.parts;
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), on: byId('end-on') });
@@ -179,6 +182,7 @@ class Page {
       this.#messages.end('jump');
       this.#showMessages();
       this.panel.show();
+      this.engineers.follow();
     });
     // Both would leave little of the level.
     on('outcome', () => { if (!byId('panel').hidden) this.#show('panel', 'tune'); });
@@ -186,7 +190,9 @@ class Page {
       this.#drawTime();
       this.keys.follow();
       this.#showMessages();
-      if (!byId('panel').hidden) this.panel.follow();
+      if (byId('panel').hidden) return;
+      this.panel.follow();
+      this.engineers.follow();
     });
     on('pause', ({ isPaused }) => {
       const button = byId('play');

@@ -67,6 +67,10 @@ export const PAD = {
   RIGID: 'rigid',
   UNSEEN: 1e-05,
 };
+export const SOLVING = {
+  LABELS: {'single_pass': 'Single pass', 'iterative': 'Iterative', 'direct': 'Direct'},
+  TIPS: {'single_pass': 'The article\'s loop: solves each spring once a tick; stiff things may explode', 'iterative': 'Solves each spring several times a tick; more iterations make things firmer', 'direct': 'Solves all springs at once; stiff things stay stiff and nothing explodes'},
+};
 export const SOUND = {
   SOFTEST: 0.35,
   HARDEST: 9,
