@@ -10,13 +10,17 @@ SETTLED = """(async () => {
   for (let left = 3; left; left--) await new Promise((done) => requestAnimationFrame(done));
   page.toy.fit();
 })()"""
-# From the start, without the words that go once somebody has played: the view then stands.
+# From the start, without the words that go once somebody has played: the view then stands. Ticks are made by tests, and
+# hands take it that time passes.
 START_OVER = f"""(async () => {{
   if (!document.getElementById('hints').hidden) document.getElementById('hint').click();
   await {SETTLED};
   page.toy.restart();
   page.toy.pause();
+  page.toy.hands.isStill = () => false;
 }})()"""
+# Time stands for hands too.
+STANDS = "page.toy.hands.isStill = () => page.toy.isPaused"
 # What a page says of a recording at last, or why there is none.
 VERDICT = """new Promise((done) => {
   const said = () => ['verdict', 'state'].map((id) => document.getElementById(id)).find(({ className }) =>

@@ -1,4 +1,5 @@
-// Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut, make; what is empty moves the view.
+// Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut, make; what is empty moves the view. While
+// time stands what is dragged goes elsewhere.
 import { Cursor, thingOf } from './cursor.js';
 import { HANDS } from './shared.js';
 /** @import { Camera } from './draw.js' */
@@ -23,8 +24,8 @@ const LONG = 500, RESTS = 10;
 /**
  * What a pointer does, and where it is; hand: that it moves; point: where it cut last [m]; within: how far it reaches
  * [m]; cut: how many springs it has cut; asks: of which particle it asks for a menu; timer: until it does.
- * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'make' | 'done', began: Touch, isBeside: boolean,
- *   hand: number | null, point: Point, within: number, gesture: number, cut: number, asks: number | null, timer: number }} Pointer
+ * @typedef {Pixel & { kind: 'pan' | 'cut' | 'hold' | 'carry' | 'make' | 'done', began: Touch, isBeside: boolean,
+ *   hand: number | null, carried: number, point: Point, within: number, gesture: number, cut: number, asks: number | null, timer: number }} Pointer
  */
 /**
  * What a hand holds, where it draws it [m], how far that is from the pointer, how far that reaches [m], and its largest
@@ -183,12 +184,13 @@ export class Hands {
   #tapped = null;
   #closing = new AbortController();
 
-  /** changed: called when the view has been moved by hand; fit: shows all again; say: tells a person a line;
+  /** isStill: whether time stands; changed: called when the view has been moved by hand; fit: shows all again; say: tells a person a line;
    * menu: asks what is to be done to a particle; speak: tells who listens what was done.
    * @param {HTMLCanvasElement} canvas @param {Run} run @param {Camera} camera @param {Maker} maker
    * @param {HandEvents} events */
-  constructor(canvas, run, camera, maker, { changed, fit, say, menu, speak }) {
+  constructor(canvas, run, camera, maker, { isStill, changed, fit, say, menu, speak }) {
     this.maker = maker;
+    this.isStill = isStill;
     this.speak = speak;
     this.menu = menu;
     this.canvas = canvas;
@@ -251,7 +253,7 @@ export class Hands {
   #pressByKey(at) {
     this.#begin(at);
     const kind = this.#pointers.get(at.pointerId)?.kind ?? 'done', drops = this.maker.part(this.tool) !== undefined;
-    const goesOn = ['hold', 'cut', 'make'].includes(kind) && !drops;
+    const goesOn = ['hold', 'carry', 'cut', 'make'].includes(kind) && !drops;
     // There is no way to go from where a part falls.
     if (drops) this.#lift({ ...at, type: 'pointerup' });
     if (!goesOn) this.#pointers.delete(at.pointerId);
@@ -265,7 +267,7 @@ export class Hands {
     const point = this.camera.toWorld(event.offsetX, event.offsetY),
       within = REACH[event.pointerType] / this.camera.zoom;
     /** @type {Pointer} */
-    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', isBeside: false, hand: null, point, within,
+    const pointer = { x: event.offsetX, y: event.offsetY, kind: 'pan', isBeside: false, hand: null, carried: -1, point, within,
       gesture: 0, cut: 0, asks: null, timer: 0, began: { x: event.offsetX, y: event.offsetY, time: event.timeStamp } };
     this.#pointers.set(event.pointerId, pointer);
     const near = new Near(this.run.world), { particle: marked = null } = event;
@@ -287,14 +289,31 @@ export class Hands {
         this.maker.begin(point, touched ?? free);
       }
     }
+    else if (free !== null || (touched !== null && this.isStill())) this.#take(pointer, touched ?? free ?? -1, free, event);
+    else if (touched !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
+  }
+
+  /** Take hold of a particle that is free; while time stands, of the body of one that is touched, to put it elsewhere.
+   * @type {(pointer: Pointer, touched: number, free: number | null, event: Pressed) => void} */
+  #take(pointer, touched, free, { pointerType }) {
+    if (this.isStill()) Object.assign(pointer, { kind: 'carry', carried: touched, gesture: this.run.newGesture() });
     else if (free !== null) {
-      pointer.hand = this.hold(free, point, within);
-      if (pointer.hand !== null) {
-        pointer.kind = 'hold';
-        this.speak(`Holding ${this.#thing(free)}.`);
-      }
-      if (event.pointerType !== 'mouse') pointer.timer = setTimeout(() => this.#ask(pointer, free), LONG);
-    } else if (touched !== null) this.say('This particle is pinned. Choose Pin and touch it to unpin it.');
+      pointer.hand = this.hold(free, pointer.point, pointer.within);
+      if (pointer.hand !== null) pointer.kind = 'hold';
+    }
+    const particle = pointer.kind === 'hold' && free !== null ? free : touched;
+    if (pointer.kind !== 'pan') this.speak(`Holding ${this.#thing(particle)}.`);
+    if (pointerType !== 'mouse') pointer.timer = setTimeout(() => this.#ask(pointer, particle), LONG);
+  }
+
+  /** Put the body that a pointer carries elsewhere, as far as the pointer has gone.
+   * @type {(pointer: Pointer, point: Point) => void} */
+  #carry(pointer, [x, y]) {
+    const [fromX, fromY] = pointer.point, by = shifted([x - fromX, y - fromY], [0, 0], pointer.within);
+    if (!by[0] && !by[1]) return;
+    const record = /** @type {Command} */ ({ type: 'move_body', particle: pointer.carried, by });
+    if (this.run.submit(record, pointer.gesture, this.say)) pointer.point = [fromX + by[0], fromY + by[1]];
+    else pointer.kind = 'done';
   }
 
   /** Ask what is to be done to a particle, with a finger that has rested on it.
@@ -387,7 +406,8 @@ export class Hands {
     else if (pointer.kind === 'cut') {
       this.#cut(pointer, new Near(this.run.world).crossing(pointer.point, point));
       pointer.point = point;
-    } else if (pointer.kind === 'make') this.maker.go(point, pointer.within);
+    } else if (pointer.kind === 'carry') this.#carry(pointer, point);
+    else if (pointer.kind === 'make') this.maker.go(point, pointer.within);
     else if (pointer.kind === 'pan') this.#moveView(pointer, x, y);
     Object.assign(pointer, { x, y });
     pointer.isBeside &&= isNear(pointer, pointer.began, BESIDE);
@@ -432,6 +452,7 @@ export class Hands {
       this.release(pointer.hand);
       this.speak(`Let go of ${this.#thing(held.particle)}.`);
     }
+    else if (pointer.kind === 'carry') this.speak(`Let go of ${this.#thing(pointer.carried)}.`);
     else if (pointer.isBeside && event.type === 'pointerup') this.#tap(pointer.began, event.timeStamp);
   }
 

@@ -70,7 +70,7 @@ class Page {
     this.parts = level.about.adding.parts;
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), on: byId('end-on') });
-    this.menu = new Menu(byId('menu'), this.toy, level.about.adding.made.words, level.about.adding.made.sags);
+    this.menu = new Menu(byId('menu'), this.toy);
     this.keys = new Keys(this.toy.drives, byId('keys-left'), byId('keys-right'));
     this.#kept = this.toy.run.gesture;
     this.ears = new Ears(byId('spoken'));

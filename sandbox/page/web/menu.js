@@ -1,18 +1,24 @@
-// Menu: what can be done to a thing: it softer or firmer, its particle fixed or let go, or all of it gone.
+// Menu: what can be done to a thing: it softer or firmer, lighter or heavier, freed of what it is stuck in, its particle
+// fixed or let go, or all of it gone.
 import { thingOf } from './cursor.js';
 import { element } from './panel.js';
 /** @import { Refusal } from './commands.js' */
 /** @import { Toy } from './toy.js' */
-/** @import { Asked, Point } from './types.js' */
+/** @import { Asked } from './types.js' */
+
+/** @type {[word: string, factor: number][]} */
+const WEIGHTS = [['half as heavy', 0.5], ['twice as heavy', 2]];
 
 export class Menu {
-  /** words, sags: Cs and Cd of materials, and sags of bodies, by words of firmness.
-   * @param {HTMLElement} box @param {Toy} toy @param {Record<string, Point>} words @param {Record<string, number>} sags */
-  constructor(box, toy, words, sags) {
+  /** What it says of things: Cs and Cd of materials and sags of bodies by words of firmness, and whether they touch.
+   * @param {HTMLElement} box @param {Toy} toy */
+  constructor(box, toy) {
+    const { touches, made: { words, sags } } = toy.level.about.adding;
     this.box = box;
     this.toy = toy;
     this.words = words;
     this.sags = sags;
+    this.touches = touches;
     addEventListener('pointerdown', ({ target }) => {
       if (target instanceof Node && !box.contains(target)) this.close();
     }, true);
@@ -64,7 +70,11 @@ export class Menu {
       : Object.entries(this.words).map(([word, [stiffness, damping]]) => button(word, () =>
         this.#soften(world.view('state.material')[spring], word, stiffness, damping)));
     const softness = spring < 0 ? [] : words;
-    box.replaceChildren(...softness, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
+    const weights = WEIGHTS.map(([word, factor]) => button(word, () =>
+      this.#change(particle, word, { type: 'scale_mass', particle, factor })));
+    // What touches nothing is stuck in nothing.
+    const free = this.touches ? [button('free it', () => this.#change(particle, 'free', { type: 'free', particle }))] : [];
+    box.replaceChildren(...softness, ...weights, ...free, button(isFixed ? 'let go' : 'fix here', () => this.#submit(
       { type: isFixed ? 'unpin' : 'pin', particle })), button('erase', () => toy.hands.remove(particle)));
     box.setAttribute('aria-label', thingOf(world.names.particle[particle]));
     box.hidden = false;
@@ -92,6 +102,13 @@ export class Menu {
       else if (run.submit({ type: 'set_firmness', body, sag: nearest, duration }, gesture, (why) => this.toy.say(why))) says();
     };
     if (run.submit({ type: 'set_firmness', body, sag, duration }, gesture, refused)) says();
+  }
+
+  /** Make the body of a particle what a word says.
+   * @type {(particle: number, word: string, record: import('./types.js').Command) => void} */
+  #change(particle, word, record) {
+    const name = thingOf(this.toy.world.names.particle[particle]);
+    if (this.#submit(record)) this.toy.say(`${name} is ${word} now.`, 'done');
   }
 
   /** @type {(material: number, word: string, stiffness: number, damping: number) => void} */

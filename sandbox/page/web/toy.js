@@ -72,7 +72,7 @@ export class Toy extends EventTarget {
     this.picture = new Picture(canvas, level.scene, this.world);
     const maker = new Maker(this.run, level.about.adding, (text) => this.say(text));
     this.hands = new Hands(canvas, this.run, this.camera, maker, {
-      menu: (asked) => this.#tell('menu', asked), speak: (text) => this.#tell('speak', { text }),
+      isStill: () => this.isPaused, menu: (asked) => this.#tell('menu', asked), speak: (text) => this.#tell('speak', { text }),
       changed: () => { this.#isMoved = this.#isDirty = true; }, fit: () => this.fit(), say: (text) => this.say(text),
     });
     this.drives = new Drives(this.run, level.keys, level.about.names.key, (text) => this.say(text));

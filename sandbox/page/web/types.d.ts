@@ -705,8 +705,9 @@ export interface Message {
   href?: string;
 }
 
-// What a hand does to the page around it.
+// What a hand does to the page around it; isStill: whether time stands.
 export interface HandEvents {
+  isStill: () => boolean;
   changed: () => void;
   fit: () => void;
   say: (text: string) => void;
