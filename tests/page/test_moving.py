@@ -1,4 +1,4 @@
-"""While time stands a drag in a page puts a thing elsewhere; its menu frees it and weighs it; the desktop has the bits."""
+"""While time stands a drag in a page puts a thing elsewhere; its menu frees it and weighs it, as on the desktop."""
 
 from pathlib import Path
 
