@@ -10,14 +10,13 @@ SETTLED = """(async () => {
   for (let left = 3; left; left--) await new Promise((done) => requestAnimationFrame(done));
   page.toy.fit();
 })()"""
-# From the start, without the words that go once somebody has played: the view then stands. Ticks are made by tests, and
-# hands take it that time passes.
+# From the start, while tests make the ticks: hands take it that time passes.
+TICKED = "page.toy.restart(); page.toy.pause(); page.toy.hands.isStill = () => false"
+# The same, without the words that go once somebody has played: the view then stands.
 START_OVER = f"""(async () => {{
   if (!document.getElementById('hints').hidden) document.getElementById('hint').click();
   await {SETTLED};
-  page.toy.restart();
-  page.toy.pause();
-  page.toy.hands.isStill = () => false;
+  {TICKED};
 }})()"""
 # Time stands for hands too.
 STANDS = "page.toy.hands.isStill = () => page.toy.isPaused"

@@ -14,7 +14,7 @@ from sandbox.replay import read_replay
 from tests.page.browser import page_address
 from tests.page.firefox import Firefox, FirefoxTab
 from tests.page.levels import level_page
-from tests.page.opened import VERDICT
+from tests.page.opened import TICKED, VERDICT
 from tests.page.site_server import served
 
 TICKS = 300
@@ -37,7 +37,7 @@ def _opened(firefox: Firefox, folder: Path, name: str) -> FirefoxTab:
 @pytest.mark.parametrize("name", LEVELS)
 def test_firefox_comes_to_the_bits_of_the_desktop(firefox: Firefox, tmp_path: Path, name: str) -> None:
     tab = _opened(firefox, tmp_path, name)
-    tab.evaluate("page.toy.restart(); page.toy.pause()")
+    tab.evaluate(TICKED)
     found = tab.evaluate(f"for (let k = 0; k < {TICKS}; k++) page.toy.tick(); page.toy.world.hash().whole")
     session = Session(load_level(name))
     for _ in range(TICKS):
@@ -65,7 +65,7 @@ def test_firefox_verifies_a_run_that_comes_by_a_link(firefox: Firefox, site: str
 def test_a_puzzle_is_won_in_firefox_by_the_mouse(firefox: Firefox, site: str) -> None:
     tab = firefox.tab().open(f"{site}levels/{PUZZLE}.html")
     # Time passes where the test lets it, however fast the machine is.
-    tab.evaluate("page.toy.restart(); page.toy.pause()")
+    tab.evaluate(TICKED)
     x, y = tab.evaluate(PIXEL.replace("NAME", "marble"))
     tab.mouse("mouseMoved", x, y)
     tab.mouse("mousePressed", x, y)

@@ -9,7 +9,7 @@ from sandbox.cli import main
 from sandbox.replay import read_replay, verify
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import FRAMES, READY, opened, saved
+from tests.page.opened import FRAMES, READY, TICKED, opened, saved
 from tests.page.site_server import served
 
 PHONE = {"width": 390, "height": 844, "is_phone": True}
@@ -63,7 +63,7 @@ def _own(browser: Browser, address: str) -> Tab:
 
 def _car(browser: Browser, folder: Path, **how: object) -> Tab:
     tab = opened(browser, folder, level_page("suspension_car"), **how)
-    tab.evaluate("page.toy.restart(); page.toy.pause()")
+    tab.evaluate(TICKED)
     return tab
 
 

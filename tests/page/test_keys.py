@@ -8,7 +8,7 @@ from sandbox.app.share.playing import page_of
 from sandbox.level.reading.files import read_level
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import opened
+from tests.page.opened import TICKED, opened
 from tests.support.rules_level import answering
 from tests.test_documentation import ROOT
 
@@ -22,7 +22,7 @@ FOCUS = "document.activeElement.id || document.activeElement.textContent"
 
 def _opened(browser: Browser, folder: Path, name: str) -> Tab:
     tab = opened(browser, folder, level_page(name))
-    tab.evaluate("page.toy.restart(); page.toy.pause()")
+    tab.evaluate(TICKED)
     tab.evaluate(SPOKEN)
     return tab
 

@@ -8,6 +8,7 @@ import pytest
 
 from sandbox import load_level
 from sandbox.app.share.stuffs import parts_for
+from sandbox.editor.storage.part_files import catalogue
 from sandbox.replay import Replay, read_replay, verify
 from sandbox.session.link.scene_link import replay_of
 from sandbox.tools.parts import PARTS
@@ -97,6 +98,24 @@ def test_each_part_is_dropped_by_finger_where_it_taps(browser: Browser, tmp_path
     assert tab.faults == []
 
 
+def test_a_car_of_the_catalogue_is_dropped_and_driven(browser: Browser, tmp_path: Path) -> None:
+    tab = _opened(browser, tmp_path, "truck_bridge")
+    tab.evaluate("document.getElementById('catalogue').focus()")
+    tab.key("c")
+    assert tab.evaluate("page.toy.hands.tool") == "catalogue-car"
+    click(tab, (640.0, 150.0))
+    tab.evaluate(SETTLED)
+    (key, *_) = tab.evaluate("Object.keys(page.toy.world.joinedKeys)")
+    x, y = middle(tab, f'.key[aria-label="Key {key}"]')
+    tab.mouse("mousePressed", x, y)
+    _steps(tab, 60)
+    tab.mouse("mouseReleased", x, y)
+    assert verify(_linked(tab)) is None
+    click(tab, "#part-ball")
+    assert tab.evaluate("document.getElementById('catalogue').value") == ""
+    assert tab.faults == []
+
+
 def test_a_part_is_dropped_by_the_cursor_of_keys(browser: Browser, tmp_path: Path) -> None:
     tab = _opened(browser, tmp_path, "jelly_pile")
     click(tab, "#part-box")
@@ -129,6 +148,8 @@ def test_a_tool_that_is_seen_no_more_is_in_hand_no_more(browser: Browser, tmp_pa
 
 def test_parts_of_a_page_are_those_of_the_window_and_small() -> None:
     made = parts_for(load_level("jelly_pile"), 8.0)
-    assert [part["name"] for part in made] == list(PARTS)
-    # As a link or a page has it.
-    assert len(gzip.compress(json.dumps(made).encode())) < 5_000
+    assert [part["name"] for part in made["parts"]] == list(PARTS)
+    shipped = {f"catalogue-{file.path.stem}" for file in catalogue() if not file.is_own}
+    assert {part["id"] for part in made["catalogue"]} == shipped
+    # As a page has it.
+    assert len(gzip.compress(json.dumps(made).encode())) < 20_000

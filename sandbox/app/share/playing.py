@@ -82,7 +82,7 @@ def playable_in_slices(
     }
     _, low, _, high = scene["view"]
     made = made_looks() | stuffs_for(world.settings.tick_rate)
-    start, added = start_of(world), adding(world) | {"made": made, "parts": parts_for(level, high - low)}
+    start, added = start_of(world), adding(world) | {"made": made} | parts_for(level, high - low)
     content = toy_content(data | {"about": start.about | {"adding": added}}, start.image)
     return Playable(level.name, level.description, content)
 

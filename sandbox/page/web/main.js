@@ -48,8 +48,8 @@ const isTypedInto = (target) => target instanceof Element && target.matches('inp
 
 /** What a person is told who takes a part in hand.
  * @type {(part: Droppable) => string} */
-function fallOf({ name, record }) {
-  const keys = Object.keys(record.kit?.keys ?? {}).map((key) => key.toUpperCase()).sort();
+function fallOf({ name, records }) {
+  const keys = records.flatMap(({ kit }) => Object.keys(kit?.keys ?? {})).map((key) => key.toUpperCase()).sort();
   return `Press where the ${name} is to be.${keys.length ? ` ${keys.join(' and ')} drive it.` : ''}`;
 }
 
@@ -68,6 +68,8 @@ class Page {
     this.panel = new Panel(byId('panel'), this.toy.run, level.materials, level, refuse);
     this.engineers = new Engineers(byId('panel'), this.toy.run, level, refuse);
     this.parts = level.about.adding.parts;
+    this.catalogue = element('select', { id: 'catalogue', className: 'part' }, new Option('More', ''),
+      ...level.about.adding.catalogue.map(({ id, name }) => new Option(name[0].toUpperCase() + name.slice(1), id)));
     this.goals = new Goals(this.toy, level.goals, { goal: byId('goal'), score: byId('score'), end: byId('end-card'),
       again: byId('end-again'), on: byId('end-on') });
     this.menu = new Menu(byId('menu'), this.toy);
@@ -149,6 +151,9 @@ class Page {
       press(button, false);
       byId('makers').append(button);
     }
+    this.catalogue.setAttribute('aria-label', 'More parts');
+    this.catalogue.addEventListener('change', () => this.#choose(this.catalogue.value || 'drag'));
+    byId('makers').append(this.catalogue);
     for (const tool of this.#tools) acts[tool] = () => this.#choose(tool);
     for (const [id, act] of Object.entries(acts)) byId(id).addEventListener('click', act);
     byId('time').addEventListener('input', () => {
@@ -258,7 +263,8 @@ class Page {
     for (const name of this.#tools) press(byId(name), name === tool);
     this.#messages.end('tool');
     this.#showMessages();
-    const part = this.parts.find(({ id }) => id === tool), text = part ? fallOf(part) : MAKES[tool];
+    this.catalogue.value = [...this.catalogue.options].some(({ value }) => value === tool) ? tool : '';
+    const part = this.toy.hands.maker.part(tool), text = part ? fallOf(part) : MAKES[tool];
     if (text) this.#say({ rank: 'tip', text });
   }
 

@@ -55,7 +55,7 @@ export class Maker {
   /** The part that a tool drops.
    * @type {(tool: string) => Droppable | undefined} */
   part(tool) {
-    return this.adding.parts.find(({ id }) => id === tool);
+    return [...this.adding.parts, ...this.adding.catalogue].find(({ id }) => id === tool);
   }
 
   get isAtWork() {
@@ -95,7 +95,7 @@ export class Maker {
     const stroke = this.#stroke, start = this.#start, part = this.part(tool);
     this.#stroke = [];
     try {
-      const records = part ? [this.#dropped(part, placed(point))]
+      const records = part ? this.#dropped(part, placed(point))
         : tool in this.adding.made.stuffs ? [this.#body(tool, [...stroke, point], within)]
         : this.#joined(tool, /** @type {End} */ (start), this.#end(point, particle), within);
       const gesture = this.run.newGesture();
@@ -121,9 +121,12 @@ export class Maker {
       look }) };
   }
 
-  /** @type {(part: Droppable, point: Point) => NamedRecord} */
-  #dropped({ record }, point) {
-    return record.kit ? { ...record, kit: movedKit(record.kit, point) } : { ...record, position: point };
+  /** @type {(part: Droppable, point: Point) => NamedRecord[]} */
+  #dropped({ records }, point) {
+    return records.map((record) => {
+      const { kit, position: [x, y] = [0, 0] } = record;
+      return kit ? { ...record, kit: movedKit(kit, point) } : { ...record, position: [point[0] + x, point[1] + y] };
+    });
   }
 
   /** @type {(tool: string, start: End, end: End, within: number) => NamedRecord[]} */

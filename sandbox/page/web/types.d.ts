@@ -516,13 +516,14 @@ export interface Adding {
   edges: Record<'none' | 'line' | 'left' | 'right', number>;
   made: Made;
   parts: Droppable[];
+  catalogue: Droppable[];
 }
 
-// What a page drops: the command that adds it about the origin, and lines around it there [m].
+// What a page drops: the commands that add it about the origin, and lines around it there [m].
 export interface Droppable {
   id: string;
   name: string;
-  record: NamedRecord & { kit?: Kit };
+  records: (NamedRecord & { kit?: Kit, position?: Point })[];
   ghost: Point[][];
 }
 

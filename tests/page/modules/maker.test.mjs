@@ -14,7 +14,7 @@ async function world() {
 
 /** What a person is told who draws along places. */
 async function told(places) {
-  const said = [], maker = new Maker(new Run(await world()), { made: { stuffs: { jelly: {} } }, parts: [] }, (text) => said.push(text));
+  const said = [], maker = new Maker(new Run(await world()), { made: { stuffs: { jelly: {} } }, parts: [], catalogue: [] }, (text) => said.push(text));
   maker.begin(places[0], null);
   for (const place of places.slice(1)) maker.go(place, WITHIN);
   maker.end('jelly', places[0], null, WITHIN);
