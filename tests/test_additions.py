@@ -62,7 +62,7 @@ class Nudge(Command):
     particle: ParticleSlot
     by: Velocity
 
-    def carry_out(self, world: World) -> None:
+    def carry_out(self, world: World, giver: int) -> None:
         if world.inverse_mass[self.particle] == 0.0:
             raise CommandError(f"{particle_of(world, self.particle)} is pinned")
         world.velocity[self.particle] += self.by
@@ -435,7 +435,7 @@ def test_a_solver_is_one_file_its_line_in_the_table_its_name_and_its_branch_of_t
     put(package / "physics/solvers/gentle.py", GENTLE)
     table = package / "physics/solvers/__init__.py"
     settings = package / "physics/settings.py"
-    settings.write_text(settings.read_text(encoding="utf-8").replace('"direct")\n', '"direct", "gentle")\n', 1))
+    settings.write_text(settings.read_text(encoding="utf-8").replace('"direct"]\n', '"direct", "gentle"]\n', 1))
     put(settings, "GENTLE = 3\n", before="SINGLE_PASS, ITERATIVE, DIRECT")
     tick = package / "physics/pipeline/tick.py"
     put(tick, "from sandbox.physics.settings import GENTLE\n", before="from sandbox.physics.settings import (")

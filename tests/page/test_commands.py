@@ -4,6 +4,7 @@ import dataclasses
 import json
 import math
 import random
+import re
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
@@ -15,6 +16,7 @@ from sandbox import load_level
 from sandbox.commands import COMMAND_TYPES, CommandError, apply, from_record
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.format.quantities import replaced
+from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.level.rules.hands import HandsDef
 from sandbox.level.rules.rule import RuleDef
 from sandbox.page.about import is_done_by_pages
@@ -302,6 +304,37 @@ def test_a_page_refuses_what_the_level_does_not_let_hands_do(hands, tmp_path):
     pages, desktop = tried_in_node(tmp_path, world, before, tried), tried_on_the_desktop(limited(), before, tried)
     assert [(page["words"], page["hash"]) for page in pages] == desktop
     assert any(words.startswith(("in this level hands may not", "not enough")) for words, _ in desktop)
+
+
+# Every shipped level that says what hands may do, and two that say more.
+LIMITED = [path.stem for path in shipped_levels() if read_level(path).hands is not None]
+MORE_LIMITED = {
+    "tumble_drum": {"bodies": ["sock", "cap"], "at_most": {"grab": 3, "pin": 2}},
+    "catapult": {"may": ["cut", "remove", "firmness", "move", "mass", "inflation"], "at_most": {"cut": 4}},
+}
+
+
+@needs_node
+@pytest.mark.parametrize("name", [*LIMITED, *MORE_LIMITED])
+def test_page_and_desktop_answer_500_random_deeds_of_hands_in_the_same_words(name, tmp_path):
+    def limited():
+        level = read_level(next(path for path in shipped_levels() if path.stem == name))
+        hands = MORE_LIMITED.get(name)
+        return build_world(replaced(level, hands=HandsDef.model_validate_json(json.dumps(hands))) if hands else level)
+
+    world, chance = limited(), random.Random(name)
+    kinds = [kind for kind in GOOD if kind != "hold_key"]
+    tried = []
+    for _ in range(500):
+        kind = chance.choice(kinds)
+        text = re.sub(r"(FREE|SPRING|FORM|AREA|PART)\.\d+", lambda at: f"{at[1]}.{chance.randrange(500)}",
+                      json.dumps({"type": kind, **GOOD[kind]}))  # fmt: skip
+        tried.append(names_in(json.loads(text), world))
+    before = list(those_that_may_be(limited(), names_in(BEFORE, world)))
+    pages, desktop = tried_in_node(tmp_path, world, before, tried), tried_on_the_desktop(limited(), before, tried)
+    for record, page, said in zip(tried, pages, desktop, strict=True):
+        assert (page["words"], page["hash"]) == said, record
+    assert len({words for words, _ in desktop}) > 3
 
 
 @needs_node

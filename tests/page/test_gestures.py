@@ -91,6 +91,29 @@ def test_a_tool_ends_when_its_bar_is_shut(browser: Browser, tmp_path: Path, tool
     assert tab.evaluate("page.toy.run.commands.map(({ record }) => record.type)") == ["grab", "release"]
 
 
+def test_two_fingers_turn_the_view_larger_while_a_tool_that_draws_is_in_hand(browser: Browser, tmp_path: Path) -> None:
+    tab = _phone(browser, tmp_path, "jelly_cube")
+    tab.evaluate("document.getElementById('make').click(); document.getElementById('jelly').click()")
+    tab.evaluate(SETTLED)
+    zoom = tab.evaluate("page.toy.camera.zoom")
+    tab.touch("touchStart", (150, 300))
+    tab.touch("touchStart", (150, 300), (250, 300))
+    tab.touch("touchMove", (100, 300), (300, 300))
+    tab.evaluate(FRAMES)
+    tab.touch("touchEnd")
+    assert tab.evaluate("page.toy.camera.zoom") == pytest.approx(2.0 * zoom, rel=0.01)
+    assert tab.evaluate("page.toy.run.commands.length") == 0
+    # One finger draws again.
+    drag = [(120.0, 250.0), (260.0, 250.0), (260.0, 350.0), (120.0, 350.0)]
+    tab.touch("touchStart", drag[0])
+    for point in drag[1:]:
+        tab.touch("touchMove", point)
+        tab.evaluate("new Promise(requestAnimationFrame)")
+    tab.touch("touchEnd")
+    assert tab.evaluate("page.toy.run.commands.map(({ record }) => record.type)") == ["add_body"]
+    assert tab.faults == []
+
+
 def test_a_tip_ends_with_its_deed_or_when_another_tool_is_chosen(browser: Browser, tmp_path: Path) -> None:
     tab = opened(browser, tmp_path, level_page("rope"))
     tab.evaluate(START_OVER)

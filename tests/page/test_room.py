@@ -7,7 +7,7 @@ import pytest
 
 from tests.page.browser import Browser, Tab
 from tests.page.levels import level_page
-from tests.page.opened import FRAMES, opened
+from tests.page.opened import FRAMES, TICKED, opened
 from tests.page.pointing import click, middle, tap
 
 LEVELS = ("truck_course", "ferry", "egg_drop", "bridge_budget", "chain_of_events", "crane")
@@ -93,7 +93,7 @@ def test_words_that_go_once_somebody_has_played_leave_more_room_and_never_move_w
     browser: Browser, tmp_path: Path
 ) -> None:
     tab = page(browser, tmp_path, "chain_of_events", TURNED)
-    tab.evaluate(f"page.toy.pause(); {GLIDDEN}")
+    tab.evaluate(f"{TICKED}; {GLIDDEN}")
     zoom = tab.evaluate("page.toy.camera.zoom")
     x, y = tab.evaluate("[0, 1].map((k) => page.toy.picture.at[k])")
     tab.touch("touchStart", (x, y))

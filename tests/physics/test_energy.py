@@ -28,7 +28,7 @@ def test_kinetic_and_gravity_energy_count_free_active_particles():
 
 
 def test_a_moving_hand_has_no_energy():
-    world = network([(0, 0)], [], pinned=[0])
+    world = network([(0, 0)], [])
     world.reserve_grabs()
     world.hold(0, 0, (1.0, 1.0))
     world.move_grab(0, (9.0, 9.0))

@@ -26,7 +26,7 @@ def busy_world(solver="iterative"):
     world.add_constraints(AREA, [[0, 1, 6], [6, 7, 12]], stiffness=0.1)
     world.add_constraints(BEND, [[0, 1, 2]], damping=0.1, material=-1)
     world.fit(Actuators(("part",)), [0.5])
-    for family in (Family.RULE, Family.COUNTER, Family.PROBE, Family.STILL, Family.KEY):
+    for family in (Family.RULE, Family.COUNTER, Family.PROBE, Family.STILL, Family.KEY, Family.DEED):
         world.append(family, 1)
     world.reserve_grabs()
     world.hold(0, 12, (2.0, 2.5))

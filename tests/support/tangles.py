@@ -40,6 +40,7 @@ def tangle(seed: int, count: int = 40) -> World:
         held = int(generator.integers(count))
         if world.inverse_mass[held] > 0.0:
             world.hold(hand, held, (0.0, 0.0))
-    world.release(1)
+    if world.is_held(1):
+        world.release(1)
     world.cut(generator.choice(springs, springs // 8, replace=False).tolist())
     return world

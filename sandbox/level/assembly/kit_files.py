@@ -212,6 +212,8 @@ def _read_form(form: Any, bodies: int, counts: Mapping[str, int]) -> tuple[int, 
     for name, values in wholes.items():
         is_right &= all(_is_whole(x, 0, most.get(name, counts["constraints"]) - 1) for x in values)
         is_right &= len(values) % {"pairs": 2, "areas": 3, "bends": 3}.get(name, 1) == 0
+    is_right &= len(wholes["pairs"]) == 2 * len(wholes["springs"])
+    is_right &= len(wholes["areas"]) + len(wholes["bends"]) == 3 * len(wholes["constraints"])
     if not is_right:
         raise fault
     pairs, areas, bends, springs, constraints = (np.array(each, np.int64) for each in wholes.values())

@@ -282,9 +282,11 @@ export class Hands {
     } else if (this.tool === 'pin') this.#pin(near, touched, pointer);
     else if (this.tool === 'erase') this.#erase(touched ?? free, pointer);
     else if (this.maker.makes(this.tool)) {
-      // A second finger moves the view.
-      if (this.maker.isAtWork) this.maker.forget();
-      else {
+      // A second finger moves the view, with the one that drew.
+      if (this.#pointers.size > 1) {
+        this.maker.forget();
+        for (const each of this.#pointers.values()) if (each.kind === 'make') each.kind = 'pan';
+      } else {
         pointer.kind = 'make';
         this.maker.begin(point, touched ?? free);
       }

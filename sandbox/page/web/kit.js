@@ -238,7 +238,9 @@ export function checkForms({ areas = [], forms = [] }, { bodies, constraints, sp
     const { x, y, mass } = form, points = isShort(x) ? x.length : 0;
     const areReal = points > 0 && [x, y, mass].every((list) => isShort(list) && list.length === points && list.every((each) =>
       typeof each === 'number' && Math.abs(each) < FARTHEST_PLACE)) && isShort(mass) && mass.every((each) => each > 0);
-    return areReal && Object.entries(FORM).every(([name, size]) => {
+    const areRows = form.pairs?.length === 2 * form.springs?.length
+      && form.areas?.length + form.bends?.length === 3 * form.constraints?.length;
+    return areReal && areRows && Object.entries(FORM).every(([name, size]) => {
       const list = form[name], most = { springs, constraints }[name] ?? points;
       return isShort(list) && list.length % size === 0 && list.every((each) => isWhole(each, 0, most - 1));
     });

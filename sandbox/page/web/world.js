@@ -371,6 +371,8 @@ export class World {
     this.commands.check(type, answer, (slot) => this.names.particle[slot]);
     if (answer !== 0) throw answered(answer, made, table, (part) => (part === 'materials' ? made.materials.length - 1
       : then[families[part]]));
+    // Of what has no rows for a kernel too, areas and forms are to be named.
+    this.#grow(then);
     this.counts = then;
     put(this.view('areas'), areasOf(kit, before.constraint), 2 * before.area);
     for (const [path, values, at] of formRows(kit, before)) put(this.view(path), values, at);

@@ -9,7 +9,7 @@ import numpy as np
 
 from sandbox.physics.actuators import Actuators, StrainLimits, unlimited
 from sandbox.physics.arena import NO_ARENA
-from sandbox.physics.arrays import Floats, Slots, with_empty
+from sandbox.physics.arrays import Floats, Slots, empty
 from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.commands.permission import DENIED
@@ -228,7 +228,7 @@ def _call(
         Joinable(
             state_of(world), good_of(world), np.array(world.settings.numbers), np.array(world.settings.choices),
             areas_of(world), world.form_table.forms, world.form_table.modes, drives_of(actuators),
-            wheels_of(actuators), of_materials, with_empty(Water, pool=world.water, hull=world.hulls),
+            wheels_of(actuators), of_materials, empty(Water)._replace(pool=world.water, hull=world.hulls),
         )
     )  # fmt: skip
     arena = np.zeros(1, np.int64)

@@ -9,10 +9,9 @@ from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_tuple
 from sandbox.physics.arrays import Floats, SlotRows, Slots
 from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.commands.permission import HAND, NOT_ALLOWED, SPENT, UNTOUCHED, denied, refusal, spend
-from sandbox.physics.constraints import AREA
+from sandbox.physics.constraints import AREA, measure_rest
 from sandbox.physics.driving import Drives, contract
 from sandbox.physics.firmness.firm import FormModes, Forms
-from sandbox.physics.geometry.segment import doubled_area
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.joints.motors import DrivenWheels
 from sandbox.physics.kits.kit import (
@@ -318,44 +317,15 @@ def _add_constraints(state: State, good: GoodValues, slots: Slots, numbers: Floa
         state.constraint_stiffness[e] = good.constraint_stiffness[e] = numbers[at[OF_STIFFNESS] + k] + 0.0
         state.constraint_damping[e] = good.constraint_damping[e] = numbers[at[OF_DAMPING] + k] + 0.0
         state.constraint_lowest_mode[e] = good.constraint_lowest_mode[e] = numbers[at[OF_MODE] + k] + 0.0
-        if state.constraint_kind[e] == AREA:
-            _rest_area(state, good, e, corner, size, numbers[at[KEPT_AREA] + k])
-        else:
-            _rest_bend(state, good, e, corner)
+        kind, rest, wanted = slots[at[KIND] + k], state.constraint_rest, numbers[at[KEPT_AREA] + k]
+        measure_rest(kind, state.corner_form, corner, corner + size, rest, e, state.corner_weight)
+        if kind == AREA and wanted <= math.inf:
+            rest[e, 0] = wanted + 0.0
+        for axis in range(2):
+            good.constraint_rest[e, axis] = rest[e, axis]
+        for c in range(corner, corner + size):
+            good.corner_weight[c] = state.corner_weight[c]
         corner += size
-
-
-@inner_kernel
-def _rest_area(state: State, good: GoodValues, e: int, first: int, size: int, wanted: float) -> None:
-    # The sums are those of `rest_of_area`, in its order.
-    form, area = state.corner_form, 0.0
-    for c in range(first + 1, first + size - 1):
-        area += 0.5 * doubled_area(
-            form[first, 0], form[first, 1], form[c, 0], form[c, 1], form[c + 1, 0], form[c + 1, 1]
-        )  # fmt: skip
-    state.constraint_rest[e, 0] = good.constraint_rest[e, 0] = wanted + 0.0 if wanted <= math.inf else area
-    state.constraint_rest[e, 1] = good.constraint_rest[e, 1] = area
-    for c in range(size):
-        following, previous = first + (c + 1) % size, first + (c + size - 1) % size
-        dx, dy = form[following, 0] - form[previous, 0], form[following, 1] - form[previous, 1]
-        state.corner_weight[first + c] = good.corner_weight[first + c] = 0.25 * (dx * dx + dy * dy)
-
-
-@inner_kernel
-def _rest_bend(state: State, good: GoodValues, e: int, first: int) -> None:
-    # As `rest_of_bend`.
-    form, weight = state.corner_form, state.corner_weight
-    ax, ay = form[first + 1, 0] - form[first, 0], form[first + 1, 1] - form[first, 1]
-    bx, by = form[first + 2, 0] - form[first + 1, 0], form[first + 2, 1] - form[first + 1, 1]
-    a, b = math.sqrt(ax * ax + ay * ay), math.sqrt(bx * bx + by * by)
-    ax, ay, bx, by = ax / a, ay / a, bx / b, by / b
-    state.constraint_rest[e, 0], state.constraint_rest[e, 1] = ax * bx + ay * by, ax * by - ay * bx
-    x, y = ax / a + bx / b, ay / a + by / b
-    weight[first], weight[first + 1], weight[first + 2] = 1.0 / (a * a), x * x + y * y, 1.0 / (b * b)
-    for axis in range(2):
-        good.constraint_rest[e, axis] = state.constraint_rest[e, axis]
-    for c in range(first, first + 3):
-        good.corner_weight[c] = weight[c]
 
 
 @inner_kernel
