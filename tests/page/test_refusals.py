@@ -14,6 +14,7 @@ from tests.page.pointing import click, drag, middle, place, text
 LEVELS = ("bridge_budget", "pinball_score")
 MAY_NOT = "in this level hands may not "
 AIR, MATERIAL = f"{MAY_NOT}change gravity or air", f"{MAY_NOT}change Cs and Cd"
+FIRMNESS = f"{MAY_NOT}make bodies softer or firmer"
 SAID, TOLD = "#refused", "#state"
 GRAVITY = "page.toy.world.settings().gravity"
 COMMANDS = "page.toy.run.commands.length"
@@ -88,7 +89,7 @@ def test_a_word_of_the_menu_that_is_refused_is_not_said_to_be_done(tab: Tab, lev
     click(tab, place(tab, THINGS[level]), "right")
     click(tab, "#menu button:first-child")
     assert tab.evaluate("document.getElementById('menu').hidden")
-    assert text(tab, TOLD) == MATERIAL
+    assert text(tab, TOLD) == FIRMNESS
 
 
 def test_a_refusal_ends_when_something_is_done(browser: Browser, tmp_path: Path) -> None:

@@ -356,8 +356,7 @@ export class Hands {
    * @type {(particle: number) => void} */
   remove(particle) {
     const thing = this.#thing(particle);
-    const record = /** @type {any} */ ({ type: 'remove', particle: this.run.world.names.particle[particle] });
-    if (this.run.submit(record, this.run.newGesture(), this.say)) this.speak(`${thing} is gone.`);
+    if (this.run.submit({ type: 'remove', particle }, this.run.newGesture(), this.say)) this.speak(`${thing} is gone.`);
   }
 
   /** @type {(pointer: Pointer, springs: number[]) => void} */
