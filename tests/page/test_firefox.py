@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from sandbox.app.share.recorded import all_at_once
 
 from sandbox import Session, load_level
 from sandbox.app.share.links import link_to
+from sandbox.app.share.runs_for_pages import all_at_once
 from sandbox.cli import main
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay
