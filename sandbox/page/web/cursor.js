@@ -3,8 +3,10 @@
 /** @import { Run } from './run.js' */
 /** @import { Point, Pressed, Theme } from './types.js' */
 
-// How far an arrow key moves it, and with Shift [parts of the picture's height]; the number of its pointer.
-const STEP = 0.02, LEAP = 0.08, POINTER = -1;
+// How far an arrow key moves it, and with Shift [parts of the picture's height].
+const STEP = 0.02, LEAP = 0.08;
+// Its number among pointers.
+export const CURSOR_POINTER = -1;
 /** @type {Record<string, Point>} */
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -81,7 +83,7 @@ export class Cursor {
    * @type {(place: Point) => Pressed} */
   #at(place) {
     const [offsetX, offsetY] = this.camera.toPixels(...place), particle = this.#isPressed ? null : this.marked;
-    return { pointerId: POINTER, pointerType: 'mouse', type: 'pointerup', button: 0, buttons: 1, altKey: false,
+    return { pointerId: CURSOR_POINTER, pointerType: 'mouse', type: 'pointerup', button: 0, buttons: 1, altKey: false,
       timeStamp: performance.now(), offsetX, offsetY, particle };
   }
 

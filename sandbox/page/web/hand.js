@@ -1,6 +1,6 @@
 // Hand: mouse, fingers and keys on the picture become commands: drag, pin, cut, make; what is empty moves the view. While
 // time stands what is dragged goes elsewhere.
-import { Cursor, thingOf } from './cursor.js';
+import { Cursor, CURSOR_POINTER, thingOf } from './cursor.js';
 import { HANDS } from './shared.js';
 /** @import { Camera } from './draw.js' */
 /** @import { Maker } from './maker.js' */
@@ -483,11 +483,12 @@ export class Hands {
     [...this.#held.keys()].forEach((hand) => this.release(hand));
   }
 
-  // End what pointers do, as if they were lifted.
+  // End what pointers do, as if they were lifted. What Enter took stays in hand.
   letGo() {
-    for (const { hand } of this.#pointers.values()) if (hand !== null) this.release(hand);
-    this.#pointers.clear();
-    this.cursor.lift();
+    for (const [id, { hand }] of [...this.#pointers].filter(([id]) => id !== CURSOR_POINTER)) {
+      if (hand !== null) this.release(hand);
+      this.#pointers.delete(id);
+    }
   }
 
   // Hold nothing any more, as time has jumped.
