@@ -25,7 +25,7 @@ const LIMITS = {
 };
 /** The rows that have the names of a kind, where they are called otherwise.
  * @type {(kind: NameKind) => keyof Counts} */
-export const countedBy = (kind) => (kind === 'part' ? 'actuator' : /** @type {keyof Counts} */ (kind));
+const countedBy = (kind) => (kind === 'part' ? 'actuator' : /** @type {keyof Counts} */ (kind));
 
 /** @type {(message: string, ...values: unknown[]) => string} */
 const fill = (message, ...values) => message.replace(/\{\}/g, () => String(values.shift()));

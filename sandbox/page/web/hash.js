@@ -112,7 +112,7 @@ export function canonical(array) {
 
 /** Nothing of an array of which all is as usual, and which is left out then.
  * @type {(column: Column, array: AnyArray) => string | null} */
-export function digestOf(column, array) {
+function digestOf(column, array) {
   if (column.isSparse && array.every((value) => Number(value) === column.usual)) return null;
   return blake2b(canonical(array), 8);
 }
