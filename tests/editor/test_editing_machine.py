@@ -356,7 +356,8 @@ class EditingMachine(RuleBasedStateMachine):
             world.cut([int(share * springs) for share in shares[:1]])
         for share in shares:
             slot = int(share * int((self.scene.first_of_weld == range(len(self.scene.mass))).sum()))
-            (world.pin if soft else world.unpin)(slot)
+            if (world.inverse_mass[slot] == 0.0) != soft:
+                (world.pin if soft else world.unpin)(slot)
         if soft:
             world.set_coefficients(0.05, None, None)
         for _ in range(ticks):

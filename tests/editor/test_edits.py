@@ -152,6 +152,17 @@ def test_a_body_broken_apart_is_the_same_world_by_other_names():
         break_apart(chosen("hook"))
 
 
+def test_bodies_broken_apart_that_are_named_as_their_particles_keep_their_springs():
+    level = zoo()
+    cube = next(body for body in level.bodies if body.id == "cube")
+    other = cube.model_copy(update={"id": "cube 1", "position": (9.0, 9.0)})
+    level = level.model_copy(update={"bodies": (*level.bodies, other)})
+    before = Document(level, frozenset({body("cube"), body("cube 1")}))
+    after = break_apart(before)
+    assert len(build_world(after.level).rest_length) == len(build_world(level).rest_length)
+    assert after.selection <= set(items_of(after.level))
+
+
 def test_what_is_broken_apart_falls_and_swings_as_before():
     after = break_apart(chosen("ball", "wheel")).level
     assert {spring.drive for spring in after.springs if spring.group == "ball"} == {zoo().bodies[7].drive}

@@ -53,7 +53,7 @@ def break_apart(document: Document) -> Document:
     if not bodies:
         raise EditError("select a body to break apart")
     scene = make_scene(level)
-    taken, groups = taken_ids(level) - {body.id for body in bodies}, taken_groups(level)
+    taken, groups = taken_ids(level), taken_groups(level)
     particles, springs = list(level.particles), list(level.springs)
     names: dict[str, str] = {}
     for body in bodies:

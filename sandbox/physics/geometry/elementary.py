@@ -116,9 +116,11 @@ def cosine(x: float) -> float:
 def rounded(value: float, decimals: float) -> float:
     """The nearest number of some decimals: `decimals` is a power of ten; of two as near, the even one, as round gives.
 
-    value: of at most 2^53 units of the last decimal.
+    A value of 2^53 units of the last decimal or more is given back.
     """
     units, rest = product_pair(value, decimals)
+    if not abs(units) < 9007199254740992.0:
+        return value
     whole = math.floor(units)
     beyond = (units - whole) - 0.5
     if beyond > -rest or (beyond == -rest and whole % 2 == 1):
