@@ -61,7 +61,7 @@ def test_everything_arrives_in_the_world():
     assert world.limits.tension.tolist() == [never, 0.01, never]
     assert world.limits.compression.tolist() == [never, 0.02, never]
     assert world.limits.yielding.tolist() == [never, never, 0.1]
-    assert world.limits.yield_share.tolist() == [0.25, 0.25, 0.5]
+    assert world.limits.yield_share.tolist() == [0.0, 0.0, 0.5]
     actuators = world.actuators
     assert actuators.names == ("w", "v", ":0", ":2")
     assert world.actuator_value.tolist() == [0.0, 1.0, 0.0, 0.0]

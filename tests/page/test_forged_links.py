@@ -64,6 +64,17 @@ def test_the_first_deed_of_a_forged_link_that_may_not_be_is_named(name, tmp_path
     assert on_the_desktop(fragment) != "verified"
 
 
+def test_what_a_kit_says_of_its_keys_and_numbers_is_right_in_a_page_where_it_is_on_the_desktop(tmp_path):
+    level = load_level("rope")
+    parts = {"parts": {"value": [0.0]}, "names": {"parts": [0]}}
+    kits = [ROD | parts | {"keys": {"A": [[0, value]]}} for value in (1, -1.0, "1", True, 0, [1])]
+    kits += [ROD | {"bodies": 1.0, "names": {"particles": [[0.0, 0, len(ROD["particles"]["x"])]]}}]
+    links = [link(level, {"type": "add_body", "kit": each}) for each in kits]
+    joined = ["keys" not in words for words, _ in in_node(tmp_path, level, links)]
+    assert joined == ["refused" not in on_the_desktop(each) for each in links]
+    assert joined == [True, True, False, False, False, False, True]
+
+
 def test_a_link_that_says_what_came_out_or_of_before_is_refused_in_a_line(tmp_path):
     level = load_level("egg_drop")
     told = {"changes": {"state.gravity_scale": [[0, 1, 0.02]]}}

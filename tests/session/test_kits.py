@@ -125,3 +125,12 @@ def test_a_kit_may_be_tied_to_what_is_there_by_its_name():
     world = session.world
     assert not session.messages
     assert world.particle_b[world.spring_slot("+1:1")] == world.particle_slot("cube.0")
+
+
+def test_particles_of_no_body_in_a_kit_have_names_of_their_own():
+    world = Session(furnished()).world
+    rows = {"x": [0.0, 1.0, 2.0, 3.0], "y": 5.0, "body": [0, 0, -1, -1], "group": 2, "collides": 0}
+    names = {"particles": [[0, 0, 2], [-1, 0, 2]]}
+    apply(world, AddBody(kit={"bodies": 1, "particles": rows, "names": names}))
+    apply(world, AddBody(kit={"particles": rows | {"body": [-1, -2, -1, -2]}}))
+    assert world.particle_names[-8:] == ["+1.0", "+1.1", "+.0", "+.1", "+.2", "+.3", "+.4", "+.5"]

@@ -121,6 +121,7 @@ def read(data: Any) -> Kit:
     stranger = next((name for name in data if name not in (*FIELDS, *PART_NAMES[1:])), None)
     if stranger is not None:
         raise KitError(UNKNOWN.format(stranger[:60]))
+    data = _with_whole_numbers(data)
     bodies = data.get("bodies", 0)
     if not _is_whole(bodies, 0, MOST):
         raise KitError(DOES_NOT_FIT.format("bodies", str(bodies)[:20]))
@@ -135,6 +136,15 @@ def read(data: Any) -> Kit:
     forms = tuple(_read_form(each, bodies, counts) for each in _listed(data.get("forms", []), "forms"))
     _check_keys(data.get("keys", {}), counts["parts"])
     return Kit(bodies, columns, names, areas, forms, _source(data, columns, names, bodies), {"kit": data})
+
+
+def _with_whole_numbers(value: Any) -> Any:
+    """What JSON said, where 2.0 is 2, as it is in a page."""
+    if isinstance(value, float) and value.is_integer() and abs(value) <= _SAFE:
+        return int(value)
+    if isinstance(value, Mapping):
+        return {name: _with_whole_numbers(each) for name, each in value.items()}
+    return [_with_whole_numbers(each) for each in value] if isinstance(value, list) else value
 
 
 def _is_whole(value: Any, least: int, most: int) -> bool:
@@ -226,7 +236,7 @@ def _check_keys(keys: Any, parts: int) -> None:
     is_right = isinstance(keys, Mapping) and all(
         isinstance(driven, list)
         and all(isinstance(each, list) and len(each) == 2 and _is_whole(each[0], 0, parts - 1) for each in driven)
-        and all(each[1] in (1, -1) for each in driven)
+        and all(_is_whole(each[1], -1, 1) and each[1] != 0 for each in driven)
         for driven in keys.values()
     )
     if not is_right or any(len(name) > 40 for name in keys):

@@ -1,6 +1,6 @@
 """Kits: bodies as rows, with their names and forms, that join a running world; see docs/kits.md."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -109,10 +109,18 @@ def _world_names(
     """What the world calls the bodies of a kit, its particles, springs and driven parts."""
     first = sum(len(joined.names) for joined in world.joined) + 1
     bodies = tuple(f"+{number}" for number in range(first, first + count))
-    loose = iter(free := world.spring_naming.unused("+:", sum(body < 0 for body, _ in names.springs)))
-    springs = tuple(next(loose) if body < 0 else f"{bodies[body]}:{text}" for body, text in names.springs)
+    free = world.spring_naming.unused("+:", sum(body < 0 for body, _ in names.springs))
     parts = tuple(bodies[part] if part >= 0 else free[-1 - part] for part in names.parts)
-    return bodies, tuple(f"{bodies[body]}.{text}" for body, text in names.particles), springs, parts
+    loose = world.particle_naming.unused("+.", sum(body < 0 for body, _ in names.particles))
+    return bodies, _row_names(names.particles, bodies, ".", loose), _row_names(names.springs, bodies, ":", free), parts
+
+
+def _row_names(
+    rows: Iterable[tuple[int, str]], bodies: Sequence[str], mark: str, loose: Iterable[str]
+) -> tuple[str, ...]:
+    """The names of rows of bodies, and loose ones, in order, of those of no body."""
+    free = iter(loose)
+    return tuple(f"{bodies[body]}{mark}{text}" if body >= 0 else next(free) for body, text in rows)
 
 
 def columns_of(built: World, particles: Mapping[str, Any], free: Iterable[tuple[int, Iterable[int]]]) -> dict[str, Any]:

@@ -22,11 +22,12 @@ def strain_limits(materials: dict[str, Material]) -> StrainLimits:
         values = [getattr(material, name) for material in materials.values()]
         return np.array([NEVER if value is None else value for value in values], dtype=np.float64)
 
+    yielding = column("yield_strain")
     return StrainLimits(
         tension=column("tension_limit"),
         compression=column("compression_limit"),
-        yielding=column("yield_strain"),
-        yield_share=column("yield_limit"),
+        yielding=yielding,
+        yield_share=np.where(np.isfinite(yielding), column("yield_limit"), 0.0),
     )
 
 

@@ -290,7 +290,7 @@ export function seen({ look = {} }, { particle, spring }, counts) {
 export function keysOf({ keys = {} }, first, count) {
   const isRight = isTable(keys) && Object.entries(keys).every(([name, parts]) => name.length <= 40 && Array.isArray(parts)
     && parts.every((each) => Array.isArray(each) && each.length === 2 && isWhole(each[0], 0, count - 1)
-      && Math.abs(each[1]) === 1));
+      && [1, -1].includes(each[1])));
   if (!isRight) throw new Refusal('keys: they do not fit');
   return Object.fromEntries(Object.entries(keys).map(([name, parts]) => [name, parts.map(([part, value]) =>
     /** @type {[number, number]} */ ([part + first, value]))]));
