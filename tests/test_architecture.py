@@ -66,11 +66,22 @@ def no_tree_is_kept():
     sources.cache_clear()
 
 
+def statements(node):
+    """Parts of a tree that a program runs: without what stands below `if TYPE_CHECKING:`."""
+    yield node
+    for child in ast.iter_child_nodes(node):
+        if not (isinstance(child, ast.If) and isinstance(child.test, ast.Name) and child.test.id == "TYPE_CHECKING"):
+            yield from statements(child)
+        else:
+            for other in child.orelse:
+                yield from statements(other)
+
+
 @functools.cache
 def imported(name):
-    """Dotted names that a module imports, anywhere in it; what it names of our own are modules, not their contents."""
+    """Dotted names that a module imports where it runs; what it names of our own are modules, not their contents."""
     found = set()
-    for node in ast.walk(sources()[name]):
+    for node in statements(sources()[name]):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

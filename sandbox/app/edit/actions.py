@@ -6,8 +6,7 @@ from functools import partial
 from typing import Literal
 
 from sandbox.app.base.shortcuts import shortcuts, tip_of
-from sandbox.app.contracts.application import Application
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Application, Editing
 from sandbox.app.draw.camera import Box
 from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool

@@ -6,7 +6,7 @@ from functools import partial
 import pygame
 
 from sandbox.app.base.shortcuts import tip_of
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
 from sandbox.app.widgets.bar_title import BarTitle
 from sandbox.app.widgets.button import Button

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pygame
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document
 from sandbox.editor.edits.copying import copy_text, paste

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from sandbox.app.base.shortcuts import shortcuts
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import MUTED
 from sandbox.app.widgets.picker import open_menu_at

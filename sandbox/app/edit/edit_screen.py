@@ -12,7 +12,6 @@ from sandbox.app.base.profile import Profile
 from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import Mode
 from sandbox.app.contracts.application import Application
-from sandbox.app.contracts.editing import PointerTool
 from sandbox.app.contracts.screen import ROOM_FOR_NOTICES, Figures, NoticesPlace, Pixel, Pointer
 from sandbox.app.draw.camera import Box, Camera, Point, grid_spacing, union
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, SURFACE, TEXT, WARNING, Colour
@@ -69,7 +68,7 @@ class EditScreen:
 
     def __init__(self, app: Application, history: History, level_file: LevelFile) -> None:
         self.app = app
-        self.ui = app.ui
+        self.ui: Ui = app.ui
         self.history = history
         self.level_file = level_file
         # Whether the person wants the panel at the side; None: it is shown where there is room.
@@ -99,9 +98,9 @@ class EditScreen:
         self._scales_unevenly: tuple[Document, bool] | None = None
         self._seen: Document | None = None
         self._is_side_late = False
-        self.watch = Watch(self)
+        self.watch: Watch = Watch(self)
         self.clipboard = Clipboard(self, app.documents.edit_level)
-        self.pointer_tools: dict[str, PointerTool] = {
+        self.pointer_tools: dict[str, DrawTool | SelectTool] = {
             name: DrawTool(self, tool.drawing(), f"Draw {name}") if tool.drawing else SelectTool(self, tool is LASSO)
             for name, tool in TOOLS.items()
         }
@@ -355,7 +354,7 @@ class EditScreen:
     # Tools.
 
     @property
-    def pointer_tool(self) -> PointerTool:
+    def pointer_tool(self) -> DrawTool | SelectTool | PickTool:
         """The tool in use, as the pointer works it."""
         return self._picking or self.pointer_tools[self.tool]
 

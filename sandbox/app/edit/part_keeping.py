@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from sandbox.app.base.sentences import capitalised, sentence
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.widgets.dialogs import ask
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.parts import part_of

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.editor.edits.bake import begin_at_rest
 from sandbox.editor.firing import Deeds, Firing, deeds_of
 from sandbox.editor.forecast import Forecast

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import pygame
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.camera import Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.handles import Handles, Scaling, Turn

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pygame
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.camera import Camera, Point
 from sandbox.app.draw.colours import BACKGROUND, DRIVE, TEXT, mixed
 from sandbox.app.edit.canvas.canvas import SelectionMasks

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pygame
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.camera import Box, Point
 from sandbox.app.edit.canvas.overlay import draw_box
 from sandbox.editor.document import Document

@@ -7,7 +7,7 @@ import numpy as np
 import pygame
 
 from sandbox.app.base.sentences import capitalised, sentence
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.camera import Point
 from sandbox.app.edit.canvas.corners import CornerMoving, Corners
 from sandbox.app.edit.canvas.ends import BodyEnds, EndMoving

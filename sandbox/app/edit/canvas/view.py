@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pygame
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.camera import Box, Point
 from sandbox.app.draw.colours import ACCENT
 from sandbox.app.edit.canvas.canvas import Part, ScenePainter, SelectionMasks, moved_by

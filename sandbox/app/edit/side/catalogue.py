@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import hint, tip_of
 from sandbox.app.base.slice_queue import SliceQueue
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.contracts.screen import Pixel
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.pointer import DrawTool

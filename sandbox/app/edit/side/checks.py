@@ -5,7 +5,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED
 from sandbox.app.edit.side.form import Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead

@@ -4,7 +4,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, WARNING, Colour
 from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.edit.side.side_page import SidePage

@@ -10,7 +10,7 @@ import pygame
 from sandbox.app.base.desktop import copied_text, copy_text
 from sandbox.app.base.sentences import sentence
 from sandbox.app.base.shortcuts import action_of, tip_of
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import MUTED
 from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.draw.themes import rgb_of

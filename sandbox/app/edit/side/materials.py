@@ -9,7 +9,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.base.sentences import sentence
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import HeadButton, ListHead

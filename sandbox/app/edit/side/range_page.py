@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.base.sentences import sentence
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.trails import MOST, attempt_colour
 from sandbox.app.edit.side.form import GAP, ROW

@@ -5,7 +5,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.base.sentences import sentence
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import ROOM_FOR_LIST
 from sandbox.app.edit.side.side_page import SidePage

@@ -6,7 +6,7 @@ from typing import Any
 
 import pygame
 
-from sandbox.app.contracts.editing import Editing
+from sandbox.app.contracts.application import Editing
 from sandbox.app.edit.side.catalogue import CataloguePage
 from sandbox.app.edit.side.checks import ChecksPage
 from sandbox.app.edit.side.findings import FindingsPage
