@@ -7,7 +7,7 @@ The public names load on first use, so `import sandbox` and `sandbox --help` sta
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from sandbox.version import __version__
 
 _HOME = {
     "Level": "sandbox.level.document.model",

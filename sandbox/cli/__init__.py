@@ -7,7 +7,6 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from sandbox import __version__
 from sandbox.cli import (
     bisect,
     bring,
@@ -36,6 +35,7 @@ from sandbox.cli import (
 from sandbox.cli.base.command import Subcommand
 from sandbox.cli.base.inputs import EXIT_INTERRUPTED, EXIT_REFUSED, EXIT_UNREAD, Refused
 from sandbox.terminal import give_up_output, missing_folder, prepare_streams, refusal_of, tell
+from sandbox.version import __version__
 
 # In the order in which --help lists them.
 COMMANDS: tuple[Subcommand[Any], ...] = tuple(

@@ -5,7 +5,6 @@ from collections.abc import Generator, Sequence
 from dataclasses import asdict
 from typing import Any, NamedTuple
 
-from sandbox import __version__
 from sandbox.app.draw.scene import made_looks, scene_of
 from sandbox.app.run.playback import RAMP_TIME
 from sandbox.app.share.firmness_table import material_rows
@@ -29,6 +28,7 @@ from sandbox.physics.world import World
 from sandbox.session.commands.records import ScriptLine
 from sandbox.session.link.scene_link import level_record
 from sandbox.session.replay.format import header, seal
+from sandbox.version import __version__
 
 # Metrics that need the energies of areas and bends, which a page does not have.
 NOT_MEASURED = ("energy", "potential_energy")

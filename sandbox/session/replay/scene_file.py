@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sandbox import __version__
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import one_line
 from sandbox.level.format.limits import PARTICLE_LIMIT, SPRING_LIMIT
@@ -40,6 +39,7 @@ from sandbox.session.replay.reader import (
 from sandbox.session.replay.record import checked, json_object
 from sandbox.session.replay.recording import ReplayError
 from sandbox.session.scene import RunScene, Standing, deeds_of
+from sandbox.version import __version__
 
 FORMAT = "spring-sandbox/scene"
 VERSION = 1

@@ -9,7 +9,6 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from sandbox import __version__
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import slot_name
 from sandbox.physics.snapshot import Left, hash_by_array, leave, state_hash
@@ -18,6 +17,7 @@ from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World
 from sandbox.session.replay.format import ARRAY_DIGITS, STATE_TICKS, TICK_DIGITS, encode_state, header, seal
 from sandbox.session.replay.recording import ByHand
+from sandbox.version import __version__
 
 # Ticks after which what is compressed reaches the file: a second of the usual rate.
 FLUSH_TICKS = 60
