@@ -15,11 +15,11 @@ from PIL import Image
 from sandbox.app.base.shortcuts import shortcuts
 from sandbox.level.reading.files import load_level, parse_level, read_level, shipped_levels
 from sandbox.physics.analysis.energy import kinetic_energy, spring_energy, spring_lengths
-from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.analysis.stability import report
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.settings import WorldSettings
+from sandbox.physics.softness.firmness import lowest_mode_of
 from sandbox.physics.step import PHYSICS_VERSION, step
 from sandbox.physics.substeps import turned
 from sandbox.physics.world import World

@@ -42,13 +42,13 @@ from sandbox.page import about
 from sandbox.page.bundle import WEB
 from sandbox.physics import constraints, marks, settings
 from sandbox.physics.analysis.query import row_names, slot_name
-from sandbox.physics.analysis.stance import Support
 from sandbox.physics.collision import filter as edges
 from sandbox.physics.commands import command, command_table
 from sandbox.physics.pipeline import block, tick
 from sandbox.physics.rules import table, zones
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.snapshot import hash_by_array, leave, restore, take
+from sandbox.physics.softness.settling import Support
 from sandbox.physics.state import COLUMNS, Family
 from sandbox.session.commands import Grab
 from sandbox.session.commands.command import COMMAND_TYPES
@@ -119,7 +119,7 @@ REST = {
     # Those that run from their first end to their second.
     "sandbox.app.draw.things.treads.body_treads: state.edge[running]": {"SOLID_LEFT", "NO_EDGE"},
     # How far the lowest point is down.
-    "sandbox.physics.analysis.standing._drop: stance.support": {
+    "sandbox.physics.softness.settling._drop: body.support": {
         Support.ARM, Support.HANGING, Support.HUB, Support.SPANNED
     },
     "sandbox.session.events.deeds._EACH": deeds._WORDS.keys() | deeds._PASSED_OVER | {"grab", "release"},

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from sandbox.level.format.level_error import shown, suggestion
 from sandbox.physics.analysis.energy import reduced_masses
-from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.stability import constraint_count, effective_count
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, of_body
 from sandbox.physics.keeping.forms import design_gravity, height_of
 from sandbox.physics.marks import LAW_HAND, LAW_HOOKE
+from sandbox.physics.softness.firmness import lowest_mode_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.substeps import substep_coefficients, substep_time
 from sandbox.physics.world import World

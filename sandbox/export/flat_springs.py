@@ -9,12 +9,12 @@ from sandbox.export.engines import MOST_STEPS
 from sandbox.export.flat_model import FlatSpring
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import reduced_masses
-from sandbox.physics.analysis.firmness import LARGEST_READ, lowest_mode_of
 from sandbox.physics.analysis.stability import BOUND, effective_count
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.filter import NO_EDGE
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
 from sandbox.physics.marks import LAW_HOOKE
+from sandbox.physics.softness.firmness import LARGEST_READ, lowest_mode_of
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from sandbox.export.chosen_body import ChosenBody
 from sandbox.export.numbers import floored
-from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.stability import BOUND
 from sandbox.physics.equation import frequency_from_coefficients
+from sandbox.physics.softness.body_motion import BodyMotion
 
 SUBSTEPS = (1, 2, 4, 8)
 

@@ -9,8 +9,8 @@ from sandbox.export.numbers import percent, short
 from sandbox.export.proven import LoopRow, loop_rows
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import Level
-from sandbox.physics.analysis.body_motion import read_body, word_for
 from sandbox.physics.analysis.stability import BOUND
+from sandbox.physics.softness.body_motion import read_body, word_for
 from sandbox.physics.world import World
 
 

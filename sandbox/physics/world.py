@@ -19,7 +19,6 @@ from sandbox.physics.constraints import (
     rests_of,
 )
 from sandbox.physics.events import Containment
-from sandbox.physics.firmness.form_table import FormTable
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES
 from sandbox.physics.keeping.capacity import Capacity
@@ -29,6 +28,7 @@ from sandbox.physics.keeping.names import Names
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS, LAW_NISSEN
 from sandbox.physics.rules.table import Rules
 from sandbox.physics.settings import AUTO, WorldSettings
+from sandbox.physics.softness.kernels.firm import FormTable
 from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
 from sandbox.physics.water.pools import NO_HULLS, NO_POOLS

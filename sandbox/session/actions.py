@@ -11,7 +11,7 @@ import numpy as np
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
 from sandbox.physics.commands.permission import RULE
-from sandbox.physics.firmness.reach import BY_SAG
+from sandbox.physics.softness.kernels.reach import BY_SAG
 from sandbox.physics.world import World
 from sandbox.session.commands import CommandError, act
 from sandbox.session.commands.records import from_record

@@ -5,8 +5,8 @@ import pygame
 import pytest
 
 from sandbox.physics.analysis.coefficient_zones import coefficient_zones
-from sandbox.physics.analysis.spring_motion import errors_of, motion_of, swings_back
 from sandbox.physics.equation import frequency_from_coefficients, spring_impulse
+from sandbox.physics.softness.body_motion import errors_of, motion_of, swings_back
 from sandbox.session.commands import SetCoefficients
 from sandbox.session.session import Session
 from tests.app.conftest import small_level

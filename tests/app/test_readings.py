@@ -5,8 +5,8 @@ import math
 import pytest
 
 from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words, seconds, with_unit
-from sandbox.physics.analysis.spring_motion import motion_of
-from sandbox.physics.analysis.stance import Support
+from sandbox.physics.softness.body_motion import motion_of
+from sandbox.physics.softness.settling import Support
 
 
 @pytest.mark.parametrize(

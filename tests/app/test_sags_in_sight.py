@@ -57,8 +57,8 @@ def test_what_cannot_sag_so_far_is_left_as_it_is_and_that_is_said(open_app):
 
 
 def test_what_takes_too_long_is_said_not_to_be_measured(open_app, monkeypatch):
-    monkeypatch.setattr("sandbox.physics.analysis.sag_meter.PATIENCE", 0.0)
-    monkeypatch.setattr("sandbox.physics.analysis.sag_meter.MOST_OF_CURVE", 0.0)
+    monkeypatch.setattr("sandbox.physics.softness.sag_meter.PATIENCE", 0.0)
+    monkeypatch.setattr("sandbox.physics.softness.sag_meter.MOST_OF_CURVE", 0.0)
     driver = open_app(load_level("quad_mesh"))
     driver.frames(30)
     assert driver.panel.firmness.text.text.startswith("How far it sags cannot be measured here")

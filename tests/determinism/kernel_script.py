@@ -165,8 +165,8 @@ def modes():
     """The lowest modes of some forms, and Cs and Cd or what is nearest to them, as text that shows every bit."""
     import numpy as np
 
-    from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
     from sandbox.physics.keeping.forms import Firmness, StiffForm
+    from sandbox.physics.softness.firmness import FirmnessRange, lowest_mode_of
 
     generator = np.random.default_rng(1)
     for count in (4, 9, 30):

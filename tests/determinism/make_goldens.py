@@ -18,10 +18,9 @@ from typing import Any
 import numpy as np
 
 from sandbox.level.reading.files import read_level, shipped_levels
-from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import lowest_mode_of
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
+from sandbox.physics.softness.firmness import firm_bodies, lowest_mode_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands.records import from_record
 from sandbox.session.session import Session

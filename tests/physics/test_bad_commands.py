@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from sandbox.physics.actuators import Actuators
-from sandbox.physics.analysis.firmness import set_firmness
 from sandbox.physics.commands.command import BAD, REASONS, command
 from sandbox.physics.commands.command_table import KINDS, lend
 from sandbox.physics.commands.permission import PROGRAM
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.kits.removing import remove_particles
+from sandbox.physics.softness.firmness import set_firmness
 from sandbox.physics.state import Family, good_of, state_of
 from sandbox.physics.step import step
 from tests.support import bad_commands

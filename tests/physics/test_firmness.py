@@ -7,14 +7,14 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal, localcontext
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach, lowest_mode_of
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.firmness.reach import BY_SAG, least_ratio
 from sandbox.physics.geometry.elementary import cosine, exponential, rounded, to_three_digits
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.keeping.forms import Firmness, StiffForm
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import state_hash
+from sandbox.physics.softness.firmness import WORDS, FirmnessRange, OutOfReach, lowest_mode_of
+from sandbox.physics.softness.kernels.reach import BY_SAG, least_ratio
 from sandbox.physics.step import step
 from tests.abuse import sag as table
 from tests.support.wobbles import firm_world, height, measured_wobble, slowest_mode, standing_box

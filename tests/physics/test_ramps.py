@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.energy import spring_energy, total_energy
-from sandbox.physics.analysis.firmness import FirmnessRange, set_firmness
 from sandbox.physics.analysis.last_tick import of_last_tick
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.ramps import CONSTRAINTS, SPRINGS, in_force, next_pair
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER_NAMES, WorldSettings
 from sandbox.physics.snapshot import hash_by_array, restore, state_hash, take
+from sandbox.physics.softness.firmness import FirmnessRange, set_firmness
 from sandbox.physics.state import COLUMNS
 from sandbox.physics.step import step
 from tests.support.physics_scenes import rope, run

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.analysis.firmness import FirmnessRange, lowest_mode_of
 from sandbox.physics.equation import of_body
 from sandbox.physics.snapshot import state_hash
+from sandbox.physics.softness.firmness import FirmnessRange, lowest_mode_of
 from sandbox.replay import read_replay, verify
 from sandbox.session.commands import CommandError, SetCoefficients, SetFirmness, SetSolver, apply
 from sandbox.session.session import Session

@@ -1,6 +1,5 @@
 """SagMap: what a body sags at every Cs and Cd of a pad, and where the words for that are written: window and page."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -9,11 +8,10 @@ import numpy as np
 
 from sandbox.app.base.coefficient_scale import CoefficientScale, scale_for
 from sandbox.level.document.model import Level, NissenMaterial
-from sandbox.physics.analysis.body_motion import BodyMotion, word_edges
-from sandbox.physics.analysis.firmness import WORDS
-from sandbox.physics.analysis.sag_meter import SagMeter
 from sandbox.physics.arrays import Floats
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.softness.body_motion import BodyMotion, word_edges
+from sandbox.physics.softness.firmness import WORDS
+from sandbox.physics.softness.sag_meter import SagMeter
 
 # Values across and up, at equal distances on the axes.
 SIZE = 33
@@ -23,8 +21,8 @@ WORD_SHARE, WORD_DOWN, WORD_WIDTH = 0.015, 0.34, 0.16
 # Logarithms of sags are kept in this part of 1.
 STEP = 0.02
 
-# Frequencies [Hz] between which a word is looked for, and halvings of that range.
-FREQUENCIES, HALVINGS = (0.01, 1_000.0), 40
+# Halvings of the range of frequencies in which a word is looked for.
+HALVINGS = 39
 # Digits, and decimals at most, of its Cs and Cd.
 DIGITS, DECIMALS = 4, 12
 
@@ -100,19 +98,14 @@ def scale_of(body: BodyMotion, pairs: Pairs, own: tuple[float, ...]) -> Coeffici
 
 def word_pairs(meter: SagMeter, body: BodyMotion) -> Pairs:
     """Cs and Cd per tick of springs at which a body sags as each word says, with the damping that a firmness has."""
-    return {word: _pair(meter, body, sag) for word, sag in WORDS.items()}
 
+    def of_sag(sag: float) -> tuple[float, float]:
+        _, (stiffness, damping, _) = meter.firmness_at(
+            lambda pair: float(body.sag_of_tick(np.array(pair[:1]), np.array(pair[1:2]))[0]) > sag, HALVINGS
+        )
+        return _coefficient(stiffness), _coefficient(damping)
 
-def _pair(meter: SagMeter, body: BodyMotion, sag: float) -> tuple[float, float]:
-    low, high = (math.log(each) for each in FREQUENCIES)
-    pair = 1.0, 1.0
-    for _ in range(HALVINGS if sag > 0.0 else 0):
-        middle = 0.5 * (low + high)
-        stiffness, damping, _ = meter.springs_of(meter.range.nearest(Firmness(hz=float(f"{math.exp(middle):.4g}"))))
-        pair = stiffness, damping
-        is_softer = float(body.sag_of_tick(np.array([stiffness]), np.array([damping]))[0]) > sag
-        low, high = (middle, high) if is_softer else (low, middle)
-    return _coefficient(pair[0]), _coefficient(pair[1])
+    return {word: of_sag(sag) if sag > 0.0 else (1.0, 1.0) for word, sag in WORDS.items()}
 
 
 def _coefficient(value: float) -> float:

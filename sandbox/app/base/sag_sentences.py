@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from sandbox.app.base.sentences import capitalised
-from sandbox.physics.analysis.stance import Support
+from sandbox.physics.softness.settling import Support
 
 SAG_TIP = "Part of its height by which a body sags where it stands, or of its length where it is held; 0 is rigid"
 # What one sees of a body under its weight: the part that moves, how, and of what that is a share.

@@ -16,10 +16,9 @@ from sandbox.app.widgets.slider import FINE_KEY_STEP, KEY_STEP
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Draggable, Pixel
-from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones
-from sandbox.physics.analysis.spring_motion import swings_back
 from sandbox.physics.arrays import Floats
+from sandbox.physics.softness.body_motion import BodyMotion, swings_back
 
 # Sizes in layout units: what stands around the map, and of what is on it.
 LEFT, RIGHT, TOP, BOTTOM = 38.0, 8.0, 18.0, 34.0

@@ -19,15 +19,20 @@ from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
-from sandbox.physics.analysis.body_motion import BodyMotion, present_coefficients, read_body, word_for
-from sandbox.physics.analysis.firmness import WORDS, FirmnessRange, OutOfReach
-from sandbox.physics.analysis.sag_curve import SagCurve
-from sandbox.physics.analysis.sag_meter import SagMeter
-from sandbox.physics.analysis.spring_motion import SpringMotion
 from sandbox.physics.analysis.stability import BOUND, spring_loads
-from sandbox.physics.analysis.subjects import Meters, Subject, pair_of, subjects_of
 from sandbox.physics.arrays import Floats
 from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.softness.body_motion import (
+    BodyMotion,
+    SagCurve,
+    SpringMotion,
+    common_pair,
+    present_coefficients,
+    read_body,
+    word_for,
+)
+from sandbox.physics.softness.firmness import WORDS, FirmnessRange, OutOfReach
+from sandbox.physics.softness.sag_meter import MeasuredBody, SagMeter, SagMeters, measured_bodies
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import SetCoefficients, SetFirmness
 
@@ -46,7 +51,7 @@ DIGITS = 2
 class Reading(NamedTuple):
     """What is shown of a body: its sag, None: not measured yet, NaN: it cannot be; its wobble, None: it has none."""
 
-    subject: Subject
+    subject: MeasuredBody
     sag: float | None
     motion: SpringMotion | None
     is_rigid: bool
@@ -72,7 +77,7 @@ class FirmnessRows:
         # A panel that was laid out without bodies has no rows.
         self.shown = bool(self._subjects)
         self._shown_of: tuple[object, ...] = ()
-        self._meters = Meters()
+        self._meters = SagMeters()
         # Sags that were asked for and are looked for, by the name of the body, and the gesture that asked.
         self._asked: dict[str, tuple[float, int]] = {}
         # Those of them that have about that by now.
@@ -85,7 +90,7 @@ class FirmnessRows:
         return list(self._subjects)
 
     def _find_bodies(self) -> None:
-        self._subjects = subjects_of(self.playback.session.world)
+        self._subjects = measured_bodies(self.playback.session.world)
         if self.body not in self._subjects:
             self.body = ALL_BODIES
 
@@ -161,7 +166,7 @@ class FirmnessRows:
 
     def subject_of(self, name: str) -> str:
         """The part of a body that the words are about, as a sentence has it: "the girder's end"."""
-        return subject_words(name, self._meters.of(self.playback.session.world, self._subjects[name]).stance.support)
+        return subject_words(name, self._meters.of(self.playback.session.world, self._subjects[name]).body.support)
 
     def refresh(self, look: bool) -> None:
         """Show what the bodies have now; look: also where no command of the person's has changed them."""
@@ -217,9 +222,8 @@ class FirmnessRows:
             return "Measuring how far it sags ..."
         if not sags:
             return "How far it sags cannot be measured here: it does not come to rest, or is too large."
-        stances = {reading.subject.name: self._meters.of(self.playback.session.world, reading.subject).stance
-                   for reading in readings}  # fmt: skip
-        supports = {stance.support for stance in stances.values()}
+        world = self.playback.session.world
+        supports = {self._meters.of(world, reading.subject).body.support for reading in readings}
         name = readings[0].subject.name if len(readings) == 1 else None
         sag = sag_words(min(sags), max(sags), name, supports)
         motions = {motion_words(reading.motion) for reading in readings if reading.motion is not None}
@@ -227,14 +231,14 @@ class FirmnessRows:
 
     # Measuring.
 
-    def _meter(self, subject: Subject) -> SagMeter | None:
+    def _meter(self, subject: MeasuredBody) -> SagMeter | None:
         """The meter of a body; None while kernels are interpreted, which takes too long."""
         return self._meters.of(self.playback.session.world, subject) if jit.COMPILED else None
 
-    def _read(self, subject: Subject, present: tuple[Floats, Floats]) -> Reading | None:
+    def _read(self, subject: MeasuredBody, present: tuple[Floats, Floats]) -> Reading | None:
         """The reading of a body that the rows show; None where its springs differ."""
         world = self.playback.session.world
-        pair, meter = pair_of(world, subject.body), self._meter(subject)
+        pair, meter = common_pair(world, subject.body), self._meter(subject)
         if pair is None:
             return None
         found = None if subject.slot is None else read_body(world, subject.body, subject.lowest_mode, present)
@@ -300,14 +304,14 @@ class FirmnessRows:
             more = f" and {len(names) - 1} more" if len(names) > 1 else ""
             self._say(f"{capitalised(names[0])}{more}: {fault}")
 
-    def _answer_first(self, subject: Subject, meter: SagMeter, sag: float, gesture: int) -> None:
+    def _answer_first(self, subject: MeasuredBody, meter: SagMeter, sag: float, gesture: int) -> None:
         """Give a large body, once, about the firmness that is looked for, before the search has ended."""
         firmness = meter.first_answer(sag)
         if firmness is not None and subject.name not in self._answered:
             self._answered.add(subject.name)
             self._give(subject, firmness, gesture)
 
-    def _take(self, subject: Subject, meter: SagMeter, sag: float, firmness: Firmness | None, gesture: int) -> str:
+    def _take(self, subject: MeasuredBody, meter: SagMeter, sag: float, firmness: Firmness | None, gesture: int) -> str:
         """Give a body the firmness found for a sag; gives what to say where that is not the sag."""
         if firmness is None:
             return f"a sag of {per_cent(sag)} cannot be had or measured here. Set Cs and Cd."
@@ -319,7 +323,7 @@ class FirmnessRows:
             return ""
         return f"a sag of {per_cent(sag)} is not possible here. It has the nearest value now: {per_cent(reached)}."
 
-    def _give(self, subject: Subject, firmness: Firmness, gesture: int) -> None:
+    def _give(self, subject: MeasuredBody, firmness: Firmness, gesture: int) -> None:
         if subject.slot is not None:
             self._set_one(subject, firmness, gesture)
             return
@@ -342,10 +346,10 @@ class FirmnessRows:
             return False
         return self._set(lambda subject: Firmness(hz=self._kept(subject)[0], ratio=ratio))
 
-    def _chosen(self) -> list[Subject]:
+    def _chosen(self) -> list[MeasuredBody]:
         return list(self._subjects.values()) if self.body == ALL_BODIES else [self._subjects[self.body]]
 
-    def _kept(self, subject: Subject) -> tuple[float | None, float | None]:
+    def _kept(self, subject: MeasuredBody) -> tuple[float | None, float | None]:
         """Frequency [Hz] and damping ratio that a body has now, to be set again; None where it has none."""
         world = self.playback.session.world
         reading = None if subject.slot is None else read_body(world, subject.body, subject.lowest_mode)
@@ -359,7 +363,7 @@ class FirmnessRows:
             self._say("No body here can have a firmness: each collapses without its pins.")
         return bool(self._chosen())
 
-    def _set(self, asked: Callable[[Subject], Firmness]) -> bool:
+    def _set(self, asked: Callable[[MeasuredBody], Firmness]) -> bool:
         """Give the chosen bodies what is asked of each, or the nearest in reach, and say so."""
         if not self._can_set():
             return False
@@ -369,7 +373,7 @@ class FirmnessRows:
                 self._set_one(subject, asked(subject), gesture)
         return True
 
-    def _set_one(self, subject: Subject, wanted: Firmness, gesture: int) -> None:
+    def _set_one(self, subject: MeasuredBody, wanted: Firmness, gesture: int) -> None:
         settings = self.playback.session.world.settings
         reach = FirmnessRange.of(subject.body.shape, settings.gravity, settings.tick_rate)
         try:

@@ -28,12 +28,11 @@ from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.analysis.body_motion import BodyMotion
 from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
-from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import WORDS
 from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
 from sandbox.physics.marks import LAW_HOOKE
+from sandbox.physics.softness.body_motion import BodyMotion
+from sandbox.physics.softness.firmness import WORDS, firm_bodies
 from sandbox.session.commands import Command, SetCoefficients
 
 # Sizes in layout units.

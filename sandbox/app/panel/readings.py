@@ -6,11 +6,10 @@ from collections.abc import Collection
 import numpy as np
 
 from sandbox.app.base.sag_sentences import sag_sentence, size_word
-from sandbox.physics.analysis.body_motion import FLAT
-from sandbox.physics.analysis.spring_motion import SpringMotion
 from sandbox.physics.analysis.stability import CoefficientLimits
-from sandbox.physics.analysis.stance import Support
 from sandbox.physics.arrays import Floats
+from sandbox.physics.softness.body_motion import FLAT, SpringMotion
+from sandbox.physics.softness.settling import Support
 from sandbox.physics.solvers import SOLVERS
 
 # Names of powers of a thousand, the least first.

@@ -9,7 +9,7 @@ from sandbox.app.draw.colours import ACCENT, DECADE, FIELD, MUTED, TEXT
 from sandbox.app.panel.readings import motion_words
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
-from sandbox.physics.analysis.spring_motion import SpringMotion, errors_of, motion_of
+from sandbox.physics.softness.body_motion import SpringMotion, errors_of, motion_of
 
 # Longest time that is looked at, and those that the curve may show [ticks].
 LONGEST = 960

@@ -13,10 +13,9 @@ from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import copying_commands
-from sandbox.physics.analysis.firm_bodies import firm_bodies
-from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach
 from sandbox.physics.analysis.query import particle_at
 from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, firm_bodies
 from sandbox.physics.world import World
 from sandbox.session.commands import Command, Remove, ScaleMass, SetFirmness
 from sandbox.tools.clearance import lift

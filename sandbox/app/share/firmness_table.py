@@ -10,8 +10,8 @@ from sandbox.app.base.sag_map import SagMap, own_of, scale_of, word_pairs
 from sandbox.app.base.sag_sentences import sag_sentence, subject_words
 from sandbox.level.document.model import Level
 from sandbox.physics import jit
-from sandbox.physics.analysis.body_motion import FLAT, BodyMotion
-from sandbox.physics.analysis.subjects import Meters, Subject, subjects_of
+from sandbox.physics.softness.body_motion import FLAT, BodyMotion
+from sandbox.physics.softness.sag_meter import MeasuredBody, SagMeters, measured_bodies
 from sandbox.physics.world import World
 
 # Cs and Cd for the words of firmness where nothing sags that could tell what they mean.
@@ -35,7 +35,7 @@ def material_rows(world: World, level: Level, done: bool) -> Generator[float, No
     counts = np.bincount(world.material[world.material >= 0], minlength=1)
     first = None if level.look is None else level.look.material
     shown = first if first in world.material_names else world.material_names[int(np.argmax(counts))]
-    subjects, meters, found = subjects_of(world), Meters(), []
+    subjects, meters, found = measured_bodies(world), SagMeters(), []
     for name, slot in rows:
         own = own_of(level, name) if slot is not None else None
         made = yield from _words(world, slot, subjects, meters, own or (), float(done))
@@ -46,8 +46,8 @@ def material_rows(world: World, level: Level, done: bool) -> Generator[float, No
 def _words(
     world: World,
     material: int | None,
-    subjects: dict[str, Subject],
-    meters: Meters,
+    subjects: dict[str, MeasuredBody],
+    meters: SagMeters,
     own: tuple[float, ...],
     done: float,
 ) -> Generator[float, None, dict[str, Any]]:
@@ -65,7 +65,7 @@ def _words(
         return {"words": USUAL}
     motion = BodyMotion.of(subject.body.shape, world.settings, subject.lowest_mode or 1.0)
     motion = replace(motion, curve=meter.curve)
-    support, pairs = meter.stance.support, word_pairs(meter, motion)
+    support, pairs = meter.body.support, word_pairs(meter, motion)
     said = sag_sentence(subject.name, support)
     return {
         "words": pairs,

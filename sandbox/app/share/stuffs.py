@@ -16,7 +16,7 @@ from sandbox.level.document.model import ContactsDef, Level, Settings
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.quantities import significant
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.analysis.firmness import WORDS as SAGS
+from sandbox.physics.softness.firmness import WORDS as SAGS
 from sandbox.physics.world import World
 from sandbox.session.commands import Command
 from sandbox.session.commands.records import to_record

@@ -17,8 +17,9 @@ from sandbox.app.sound import bank, sound_events, voices, waves
 from sandbox.level import checks
 from sandbox.page.page import WEB
 from sandbox.physics import world
-from sandbox.physics.analysis import body_motion, pulls, query
+from sandbox.physics.analysis import pulls, query
 from sandbox.physics.meshing import fitting
+from sandbox.physics.softness import body_motion
 from sandbox.session import summary
 from sandbox.session.link import packing, scene_link
 from sandbox.session.replay import format

@@ -10,9 +10,9 @@ from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level, NissenMaterial
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import BoxShape, JellyDef
-from sandbox.physics.analysis.column import critical_height
-from sandbox.physics.analysis.firmness import LARGEST_READ, FirmnessRange, OutOfReach
 from sandbox.physics.equation import of_springs
+from sandbox.physics.softness.body_motion import critical_height
+from sandbox.physics.softness.firmness import LARGEST_READ, FirmnessRange, OutOfReach
 
 # What is less tall than so many times its width falls over by nothing but its corners.
 SLENDER = 2.0

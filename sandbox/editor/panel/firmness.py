@@ -16,9 +16,9 @@ from sandbox.level.format.limits import FREQUENCY_RANGE, SAG_LIMIT
 from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
-from sandbox.physics.analysis.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach
 from sandbox.physics.equation import of_body
 from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach
 
 # What the menu of words says of a body that is as its material is, and of one whose firmness has no word.
 OF_MATERIAL = "as material"

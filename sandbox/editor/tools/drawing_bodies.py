@@ -18,8 +18,8 @@ from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
 from sandbox.level.kinds.body_def import FirmnessDef
-from sandbox.physics.analysis.firmness import FirmnessRange, OutOfReach
 from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.softness.firmness import FirmnessRange, OutOfReach
 
 AnyBodyOptions = TypeVar("AnyBodyOptions", bound=BodyOptions)
 AnyLineOptions = TypeVar("AnyLineOptions", bound=LineOptions)

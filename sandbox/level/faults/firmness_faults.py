@@ -8,7 +8,7 @@ from sandbox.level.format.level_error import Fault, shown
 from sandbox.level.kinds.bodies import AnyBody
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.plan.plan import Plan
-from sandbox.physics.analysis.firmness import Firmness, FirmnessRange, OutOfReach, lowest_mode_of
+from sandbox.physics.softness.firmness import Firmness, FirmnessRange, OutOfReach, lowest_mode_of
 
 
 def firmness_faults(level: Level, plan: Plan) -> Iterator[Fault]:

@@ -1,4 +1,4 @@
-// Forms: bodies of a kit that may be stiff by their form, as rows behind those of a world (physics/firmness/firm.py).
+// Forms: bodies of a kit that may be stiff by their form, as rows behind those of a world (softness/kernels/firm.py).
 /** @import { AnyArray, Counts, Kit, KitForm } from './types.js' */
 
 /** Lists of a form: how many numbers a row has, the family that counts them, and where they lie; slots are counted on from

@@ -17,26 +17,6 @@ from sandbox.physics.collision.pieces import PieceScratch, part
 from sandbox.physics.collision.sides import end_constraints
 from sandbox.physics.commands.permission import GRANTED, HAND, NOT_ALLOWED, refusal, spend
 from sandbox.physics.components import list_body
-from sandbox.physics.firmness.firm import (
-    SPRINGS,
-    Firming,
-    FormModes,
-    Forms,
-    body_of_number,
-    count_pieces_of,
-    firm,
-    number_of_spring,
-)
-from sandbox.physics.firmness.reach import (
-    BY_FREQUENCY,
-    BY_SAG,
-    BY_WOBBLE,
-    NO_BODY,
-    NO_HEIGHT,
-    NOT_STIFF,
-    OUT_OF_REACH,
-    Asked,
-)
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.marks import (
     BANK_EMPTIED,
@@ -58,6 +38,26 @@ from sandbox.physics.settings import (
     SUBSTEPS,
     TICK_RATE,
     WIND_X,
+)
+from sandbox.physics.softness.kernels.firm import (
+    SPRINGS,
+    Firming,
+    FormModes,
+    Forms,
+    body_of_number,
+    count_pieces_of,
+    firm,
+    number_of_spring,
+)
+from sandbox.physics.softness.kernels.reach import (
+    BY_FREQUENCY,
+    BY_SAG,
+    BY_WOBBLE,
+    NO_BODY,
+    NO_HEIGHT,
+    NOT_STIFF,
+    OUT_OF_REACH,
+    Asked,
 )
 from sandbox.physics.state import GoodValues, State
 from sandbox.physics.topology.sorting import list_ends

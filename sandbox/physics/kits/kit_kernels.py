@@ -11,7 +11,6 @@ from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.commands.permission import HAND, NOT_ALLOWED, SPENT, UNTOUCHED, denied, refusal, spend
 from sandbox.physics.constraints import AREA, measure_rest
 from sandbox.physics.driving import Drives, contract
-from sandbox.physics.firmness.firm import FormModes, Forms
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.joints.motors import DrivenWheels
 from sandbox.physics.kits.kit import (
@@ -116,6 +115,7 @@ from sandbox.physics.kits.kit_checks import (
     is_first_of_wheel,
 )
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS
+from sandbox.physics.softness.kernels.firm import FormModes, Forms
 from sandbox.physics.state import GoodValues, State
 from sandbox.physics.water.displacers import Water
 from sandbox.physics.water.pools import HULL, SPRING, TURNED

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from sandbox.physics.analysis.firmness import BUT_RIGID
+from sandbox.physics.softness.firmness import BUT_RIGID
 from sandbox.session.commands.command import COMMAND_TYPES, Command, adapter
 from sandbox.session.commands.faults import NO_COMMAND, NO_NAME, NO_SLOT, UNKNOWN, WORDS, digits
 

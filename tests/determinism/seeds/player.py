@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.physics.analysis.firm_bodies import firm_bodies
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.settings import AUTO
+from sandbox.physics.softness.firmness import firm_bodies
 from sandbox.session.commands import CommandError
 from sandbox.session.commands.records import from_record
 from sandbox.session.replay.reader import read_replay

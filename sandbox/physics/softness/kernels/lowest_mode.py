@@ -40,7 +40,7 @@ SHIFT = 1e-7
 CONVERGED = 1e-9
 ROUNDS = 200
 # A form whose lowest mode is below this is not stiff: it moves without any spring being stretched, to first order.
-NOT_STIFF = 1e-9
+LEAST_STIFF_MODE = 1e-9
 # In place of a mode: the arena is too small.
 NO_MODE = -1.0
 # Corners of an area or a bend; motions of a form as a whole.
@@ -264,7 +264,7 @@ def lowest_mode_in(form: StiffForm, arena: Arena) -> float:
     _assemble(matrix, rows, springs, mass)
     _start(form.points, mass, ordered.order, vector, rigid)
     found = _iterate_inversely(matrix, rows, mass, rigid, vector, right_side)
-    return found if found >= NOT_STIFF else 0.0
+    return found if found >= LEAST_STIFF_MODE else 0.0
 
 
 @kernel

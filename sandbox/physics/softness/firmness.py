@@ -1,4 +1,7 @@
-"""Firmness of bodies, for who sets it and for who reads it: what kernels say, in words and as Python has it."""
+"""Firmness of bodies, for who sets it: which bodies have one, what of it is in reach, and setting it.
+
+It is asked for as a sag, or a frequency and damping ratio; kernels/reach.py says what Cs and Cd that is.
+"""
 
 import hashlib
 from collections.abc import Sequence
@@ -7,13 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.physics.arena import FIRST_ARENA, MORE
+from sandbox.physics.arena import FIRST_ARENA, MORE, answer_of
 from sandbox.physics.commands import command_table
-from sandbox.physics.commands.command import BEYOND_REACH, FLAT, NO_FIRMNESS
+from sandbox.physics.commands.command import BEYOND_REACH, FLAT, NO_FIRMNESS, count_pieces
 from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.equation import frequency_from_coefficients
-from sandbox.physics.firmness.lowest_mode import NO_MODE, find_lowest_mode
-from sandbox.physics.firmness.reach import (
+from sandbox.physics.keeping import arguments
+from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, design_gravity, height_of
+from sandbox.physics.softness.kernels.lowest_mode import NO_MODE, find_lowest_mode
+from sandbox.physics.softness.kernels.reach import (
     BY_FREQUENCY,
     BY_PAIR,
     BY_SAG,
@@ -25,8 +30,6 @@ from sandbox.physics.firmness.reach import (
     coefficients_within,
     sag_of,
 )
-from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.forms import Firmness, StiffForm, design_gravity, height_of
 from sandbox.physics.world import World
 
 # Sags by their words, from soft to hard.
@@ -48,23 +51,6 @@ class OutOfReach(ValueError):
     def __init__(self, text: str, nearest: Firmness | None) -> None:
         super().__init__(text)
         self.nearest = nearest
-
-
-def lowest_mode_of(shape: StiffForm) -> float:
-    """The lowest eigenvalue of a form, without unit; 0 where it is not stiff without pins."""
-    arrays: list[Any] = [np.ascontiguousarray(rows) for rows in shape]
-    form, digest = StiffForm(*arrays), hashlib.blake2b(digest_size=16)
-    for array in form:
-        digest.update(f"{array.shape}".encode() + array.tobytes())
-    key = digest.digest()
-    if key not in _kept:
-        while len(_kept) >= KEPT:
-            del _kept[next(iter(_kept))]
-        arena = np.zeros(FIRST_ARENA, np.int64)
-        while (found := find_lowest_mode(form, arena)) == NO_MODE:
-            arena = np.zeros(MORE * int(arena[0]), np.int64)
-        _kept[key] = found
-    return _kept[key]
 
 
 @dataclass(frozen=True)
@@ -109,6 +95,23 @@ class FirmnessRange:
     def sag_of(self, stiffness: float, damping: float) -> float:
         """The sag of a body of these Cs and Cd as a whole; inf where Cs is 0."""
         return sag_of(self.height, self.gravity, self.h, stiffness, damping)
+
+
+def lowest_mode_of(shape: StiffForm) -> float:
+    """The lowest eigenvalue of a form, without unit; 0 where it is not stiff without pins."""
+    arrays: list[Any] = [np.ascontiguousarray(rows) for rows in shape]
+    form, digest = StiffForm(*arrays), hashlib.blake2b(digest_size=16)
+    for array in form:
+        digest.update(f"{array.shape}".encode() + array.tobytes())
+    key = digest.digest()
+    if key not in _kept:
+        while len(_kept) >= KEPT:
+            del _kept[next(iter(_kept))]
+        arena = np.zeros(FIRST_ARENA, np.int64)
+        while (found := find_lowest_mode(form, arena)) == NO_MODE:
+            arena = np.zeros(MORE * int(arena[0]), np.int64)
+        _kept[key] = found
+    return _kept[key]
 
 
 def _asked(firmness: Firmness) -> tuple[int, float, float]:
@@ -162,3 +165,28 @@ def set_firmness(world: World, body: int, stiffness: float, damping: float, dura
         "soften", body=body, whole=False, way=BY_PAIR, value=stiffness, second=damping, gravity=(0.0, 0.0),
         duration=duration,
     )  # fmt: skip
+
+
+def firm_bodies(world: World) -> tuple[FirmBody, ...]:
+    """The bodies of `World.forms` as they are now, by the numbers of firm.py: of one that was cut its pieces,
+    "cube, 1 of 2".
+    """
+    found: tuple[FirmBody, ...] = world.derived(_find_bodies, of_hands=False)
+    return found
+
+
+def _find_bodies(world: World) -> tuple[FirmBody, ...]:
+    counts = np.zeros(len(world.forms), np.int64)
+    answer_of(count_pieces, FIRST_ARENA, world.lent, counts)
+    pieces = [
+        (body,) if count == 1 else tuple(_piece(world, number, place, count) for place in range(count))
+        for number, (body, count) in enumerate(zip(world.forms, counts.tolist(), strict=True))
+    ]
+    return (*(each[0] for each in pieces), *(piece for each in pieces for piece in each[1:]))
+
+
+def _piece(world: World, number: int, place: int, count: int) -> FirmBody:
+    piece = world.form_table.piece(world, number, place)
+    shape: list[Any] = [np.array(rows) for rows in piece.form]
+    name = f"{world.forms[number].name}, {place + 1} of {count}"
+    return FirmBody(name, StiffForm(*shape), np.array(piece.spring), np.array(piece.constraint))

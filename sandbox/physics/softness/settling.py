@@ -1,14 +1,24 @@
-"""Stance: how a body is held where one looks how far it sags: by its pins, by what hangs on pins, or by a floor."""
+"""SettleRun: how far a body sags, measured by a run of its own: alone, as it is held in its world, until it rests.
 
-from dataclasses import dataclass
+It is held (SupportedBody) by its pins, by what hangs on pins, or by a floor; then it stands, on the side of it on which
+it does so without tipping over.
+"""
+
+import math
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 
 from sandbox.physics.arrays import Flags, Floats, Slots
+from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.components import label_bodies
+from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.keeping.forms import FirmBody, design_gravity
-from sandbox.physics.terrain import Terrain
+from sandbox.physics.marks import BANK_UNOPENED
+from sandbox.physics.settings import WorldSettings
+from sandbox.physics.step import step
+from sandbox.physics.terrain import Chain, Terrain, make_terrain
 from sandbox.physics.world import World
 
 # A frame at least so many times as long as high, which nothing holds, lies on its two ends; elsewhere at its foot or at
@@ -20,6 +30,19 @@ BALANCED = 0.05
 STEADY = 0.1
 # What is no farther from terrain than this share of the body's shortest spring lies on it.
 TOUCHING = 0.3
+# Friction of a floor, and of what a beam's ends lie on.
+FRICTION = 0.5
+# How far above a floor it begins, as a share of its length.
+CLEAR = 1e-5
+# It is looked at every so many ticks, and rests where no particle has moved by more than this share of its length,
+# twice in a row, or where its sag has changed by less than this share of itself, three times; longer is not waited.
+LOOK_EVERY, AT_REST, SETTLED, LONGEST = 15, 2e-5, 5e-4, 1_500
+# A column leans by this much of gravity, so that it buckles where it would in a world that is not even; what is so many
+# times as high as wide is one.
+LEAN, COLUMN = 0.005, 1.5
+# What has dropped by so many of its lengths flies. What still moves at the end by less than this share of its length,
+# its sag by less than this share of itself, is about at rest.
+LOST, CALM, NEAR = 20.0, 2e-3, 0.02
 
 
 class Support(Enum):
@@ -34,7 +57,7 @@ class Support(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Stance:
+class SupportedBody:
     """A body alone, as it is held, upright: gravity goes down.
 
     points [m] (n, 2); mass [kg], gravity_scale, radius [m], friction (n,); pairs (m, 2) with rest lengths [m] (m,);
@@ -57,8 +80,129 @@ class Stance:
     length: float
 
 
-def stance_of(world: World, body: FirmBody) -> Stance:
-    """The stance of a body in its world."""
+class SettleRun:
+    """A run of a body alone, from rest; sag, of its length: None until it is known, NaN where it does not come to rest.
+
+    pair: Cs and Cd per tick, and the lowest mode, of its springs; moved [m] (n, 2): how far off its form it begins.
+    """
+
+    def __init__(
+        self, body: SupportedBody, settings: WorldSettings, pair: tuple[float, float, float],
+        moved: Floats | float = 0.0,
+    ) -> None:  # fmt: skip
+        self.body = body
+        self.sag: float | None = None
+        strength = design_gravity(*settings.gravity)
+        gravity = (LEAN * strength if _may_buckle(body) else 0.0, -strength)
+        self.world = world = World(replace(settings, gravity=gravity, wind=(0.0, 0.0)))
+        lowest = float((body.points[:, 1] - body.radius).min())
+        self._places = points = body.points - (body.points[:, 0].mean(), lowest - CLEAR * body.length)
+        touches = TERRAIN_GROUP if body.support in (Support.FLOOR, Support.ENDS) else 0
+        world.add_particles(
+            [str(k) for k in range(len(points))], points, mass=body.mass, radius=body.radius, pinned=body.held,
+            gravity_scale=body.gravity_scale, owner=0, group=TERRAIN_GROUP, collides=touches, friction=body.friction,
+        )  # fmt: skip
+        world.add_springs([f"s{k}" for k in range(len(body.pairs))], *body.pairs.T, rest_length=body.rest)
+        for kind, corners in ((AREA, body.areas), (BEND, body.bends)):
+            if len(corners):
+                world.add_constraints(kind, corners)
+        if touches:
+            world.terrain = make_terrain(self._ground())
+        for name, value in zip(("stiffness", "damping", "lowest_mode"), pair, strict=True):
+            world.change(name, value)
+            world.change(f"constraint_{name}", value)
+        world.change("position", points + moved)
+        self._energy, self._still, self._settled = 0.0, 0, 0
+        self._before, self._sag_before = world.position.copy(), math.inf
+
+    def _ground(self) -> list[Chain]:
+        points = self._places
+        far = 20.0 * (float(np.ptp(points)) + 1.0)
+        if self.body.support is Support.FLOOR:
+            return [Chain([[-far, 0.0], [far, 0.0]], friction=FRICTION)]
+        x = np.sort(points[self.body.rests, 0])
+        gap = int(np.argmax(np.diff(x)))
+        reach = 0.01 * self.body.length
+        ends = ((-far, float(x[gap]) + reach), (float(x[gap + 1]) - reach, far))
+        return [Chain([[start, 0.0], [end, 0.0]], friction=FRICTION) for start, end in ends]
+
+    @property
+    def moved(self) -> Floats:
+        """How far its particles (n, 2) are from their places in its form [m]."""
+        return self.world.position - self._places
+
+    def advance(self) -> bool:
+        """Step a tick; True: the sag is known, at rest or at the end."""
+        step(self.world)
+        if self.body.support is Support.HUB:
+            self._turn_back()
+        # Where it lies on its ends it has to swing, or friction keeps them where they are.
+        if self.body.support is not Support.ENDS:
+            self._calm()
+        if self.world.tick % LOOK_EVERY == 0:
+            self._look()
+        return self.sag is not None
+
+    def _turn_back(self) -> None:
+        """Take back what a wheel has turned about its hub."""
+        world, hub = self.world, self._places[self.body.held][0]
+        first, now = self._places - hub, world.position - hub
+        across = float(world.mass @ (first[:, 0] * now[:, 1] - first[:, 1] * now[:, 0]))
+        along = float(world.mass @ np.sum(first * now, axis=1))
+        size = math.hypot(along, across)
+        if size > 0.0:
+            cos, sin = along / size, across / size
+            turn = np.array([[cos, -sin], [sin, cos]])
+            world.change("position", hub + now @ turn)
+            world.change("velocity", world.velocity @ turn)
+
+    def _calm(self) -> None:
+        """Stop where the body has its greatest speed, at the middle of its swing: it stays near where it will rest."""
+        world = self.world
+        energy = float(world.mass @ np.sum(world.velocity * world.velocity, axis=1))
+        # What creeps slows down as well, by little from tick to tick.
+        if energy < 0.98 * self._energy:
+            world.change("velocity", 0.0)
+            world.slow_velocity[:] = 0.0
+            world.energy_bank[:] = BANK_UNOPENED
+            energy = 0.0
+        self._energy = energy
+
+    def _look(self) -> None:
+        position, now, length = self.world.position, self._drop(), self.body.length
+        moved, changed = float(np.abs(position - self._before).max()), abs(now - self._sag_before)
+        if not math.isfinite(moved) or abs(now) > LOST:
+            self.sag = math.nan
+            return
+        self._still = self._still + 1 if moved < AT_REST * length else 0
+        self._settled = self._settled + 1 if changed < SETTLED * now else 0
+        if self._still == 2 or self._settled == 3:
+            self.sag = max(now, 0.0)
+        elif self.world.tick >= LONGEST:
+            is_about_at_rest = moved < CALM * length and changed <= NEAR * abs(now)
+            self.sag = max(now, 0.0) if is_about_at_rest else math.nan
+        self._before, self._sag_before = position.copy(), now
+
+    def _drop(self) -> float:
+        """How far it has sagged by now, of its length."""
+        y, body = self.world.position[:, 1], self.body
+        down = self._places[:, 1] - y
+        if body.support is Support.FLOOR:
+            drop = float(np.ptp(self._places[:, 1]) - np.ptp(y))
+        elif body.support is Support.ENDS:
+            drop = float(down.max() - down[body.rests].mean())
+        else:
+            drop = float(down.max())
+        return drop / body.length if body.length > 0.0 else 0.0
+
+
+def _may_buckle(body: SupportedBody) -> bool:
+    wide, tall = np.ptp(body.points, axis=0)
+    return body.support in (Support.FLOOR, Support.ARM) and bool(tall > COLUMN * wide)
+
+
+def supported_body(world: World, body: FirmBody) -> SupportedBody:
+    """A body as it is held in its world."""
     slots = slots_of(world, body)
     turn = _upright(world.settings.gravity)
     points, pairs = body.shape.points @ turn, body.shape.pairs
@@ -78,7 +222,7 @@ def stance_of(world: World, body: FirmBody) -> Stance:
     wide, tall = (float(size) for size in np.ptp(points, axis=0))
     is_upright = support in (Support.FLOOR, Support.HANGING, Support.HUB)
     length = tall if is_upright and tall > 0.0 else max(wide, tall)
-    return Stance(
+    return SupportedBody(
         points, body.shape.mass, world.gravity_scale[slots], world.radius[slots], world.friction[slots], pairs, rest,
         body.shape.areas, body.shape.bends, held, rests, support, length,
     )  # fmt: skip

@@ -1,24 +1,26 @@
-"""SagMeter: measures how far a body sags, and what makes it sag so far, by runs of the body's own solver.
+"""How far the bodies of a world sag, and what makes them sag so far, measured by runs of their own solver.
 
-Its runs go on a little at a time, while a window shows something else.
+`measured_bodies` says which bodies can be measured, SagMeters has a SagMeter for each. Its runs go on a little at a
+time, while a window shows something else.
 """
 
 import math
-from collections.abc import Generator
+from collections.abc import Callable, Generator
+from dataclasses import dataclass, replace
 from time import perf_counter, process_time
 
 import numpy as np
 
-from sandbox.physics.analysis.body_motion import present_coefficients
-from sandbox.physics.analysis.firmness import FirmnessRange
-from sandbox.physics.analysis.sag_curve import SagCurve, softness_of
-from sandbox.physics.analysis.stance import Stance, Support
-from sandbox.physics.analysis.standing import StandingRun
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import of_springs
-from sandbox.physics.firmness.reach import STANDING
-from sandbox.physics.keeping.forms import Firmness, design_gravity
+from sandbox.physics.jit import COMPILED
+from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, design_gravity
+from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
+from sandbox.physics.softness.body_motion import Pair, SagCurve, present_coefficients, softness_of
+from sandbox.physics.softness.firmness import LARGEST_READ, FirmnessRange, firm_bodies, lowest_mode_of
+from sandbox.physics.softness.kernels.reach import STANDING
+from sandbox.physics.softness.settling import SettleRun, Support, SupportedBody, supported_body
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.world import World
 
@@ -43,24 +45,41 @@ SMALL, LARGE, FLYING = 1e-5, 0.5, 2.0
 # Frequencies [Hz] that firmness may have, and halvings of their range.
 FREQUENCIES, HALVINGS = (0.01, 1_000.0), 24
 
-# Cs and Cd per tick of springs, and the lowest mode that they have.
-Pair = tuple[float, float, float]
+# Digits of lengths and masses by which bodies count as alike.
+ALIKE = 9
+# A rope or a net is set by its material, of whose springs at least this share is its own.
+OWN = 0.9
+
+# Work that goes on a tick of a run at a time, to a sag or a share.
 Work = Generator[None, None, None]
 Measuring = Generator[None, None, float]
 
 
+@dataclass(frozen=True, eq=False)
+class MeasuredBody:
+    """A body by its name; slot: its place among `firm_bodies`, None: a rope or a net, which pins hold.
+
+    lowest_mode: of its form; 0: it is not stiff without pins, or a net.
+    """
+
+    name: str
+    body: FirmBody
+    slot: int | None
+    lowest_mode: float
+
+
 class SagMeter:
-    """Answers of one body in one stance; what is not known yet is asked for, and `advance` goes on with the work.
+    """Answers of one body as it is held; what is not known yet is asked for, and `advance` goes on with the work.
 
     What was asked last comes first, and the curve after all that somebody waits for.
 
     lowest_mode: of its form; 0: it has none, and all its springs have one Cs and Cd.
     """
 
-    def __init__(self, stance: Stance, settings: WorldSettings, lowest_mode: float) -> None:
-        self.stance, self.settings, self.mode = stance, settings, lowest_mode
+    def __init__(self, body: SupportedBody, settings: WorldSettings, lowest_mode: float) -> None:
+        self.body, self.settings, self.mode = body, settings, lowest_mode
         gravity, h = design_gravity(*settings.gravity), 1.0 / settings.tick_rate
-        self.range = FirmnessRange(lowest_mode or 1.0, stance.length, gravity, h)
+        self.range = FirmnessRange(lowest_mode or 1.0, body.length, gravity, h)
         self.curve: SagCurve | None = None
         self._share = 1.0 if SOLVERS[settings.solver].bounded else USUAL_SHARE
         # Where a spring of a pair gets what it has in a substep.
@@ -71,7 +90,7 @@ class SagMeter:
         self._given_up: dict[Pair, float] = {}
         self._found: dict[float, Firmness | None] = {}
         self._last: tuple[float, Floats] | None = None
-        self._jobs: dict[object, Work] = {}
+        self._jobs: dict[object, Work | Measuring] = {}
         self._work: dict[object, float] = {}
 
     # Questions.
@@ -79,7 +98,7 @@ class SagMeter:
     def sag(self, pair: Pair) -> float | None:
         """The sag of springs of that Cs, Cd and mode; None: not known yet, NaN: it cannot be measured."""
         if pair not in self._sags:
-            self._ask(pair, self._measure(pair))
+            self._ask(pair, self._sag_of(pair))
         return self.sag_known(pair)
 
     def sag_known(self, pair: Pair) -> float | None:
@@ -161,21 +180,17 @@ class SagMeter:
         nearest, sag = min(known, key=lambda each: abs(math.log(each[0] / soft)))
         return sag * soft / nearest
 
-    def _ask(self, question: object, job: Work) -> None:
+    def _ask(self, question: object, job: Work | Measuring) -> None:
         if question not in self._jobs and self._work.get(question, 0.0) == 0.0:
             self._jobs[question] = job
 
     # What one run tells.
 
-    def _measure(self, pair: Pair) -> Work:
-        yield from self._sag_of(pair)
-
     def _sag_of(self, pair: Pair) -> Measuring:
         """The sag at a pair, from a run of its own if it is not known."""
         if pair not in self._sags:
-            run = StandingRun(self.stance, self.settings)
-            run.take(*self._that_swings(pair), self._moved_at(pair))
-            while not run.advance(1):
+            run = SettleRun(self.body, self.settings, self._that_swings(pair), self._moved_at(pair))
+            while not run.advance():
                 yield
             assert run.sag is not None
             self._sags[pair] = run.sag
@@ -191,14 +206,14 @@ class SagMeter:
         _, swinging = self._as_soft_as(soft)
         return swinging if abs(self._softness(swinging) / soft - 1.0) < NEAR else pair
 
-    def _moved_at(self, pair: Pair) -> Floats | None:
+    def _moved_at(self, pair: Pair) -> Floats | float:
         """About how far the particles (n, 2) will move until they rest, from how far they moved in the last run."""
         # On a floor, what has moved lies in it.
-        if self._last is None or self.stance.support in (Support.FLOOR, Support.ENDS):
-            return None
+        if self._last is None or self.body.support in (Support.FLOOR, Support.ENDS):
+            return 0.0
         soft, moved = self._last
         share = self._softness(pair) / soft
-        return moved * share if float(np.abs(moved).max()) * share < LARGE * self.stance.length else None
+        return moved * share if float(np.abs(moved).max()) * share < LARGE * self.body.length else 0.0
 
     def _softness(self, pair: Pair) -> float:
         stiffness, damping = self._in_substep(pair)
@@ -223,12 +238,18 @@ class SagMeter:
         return self.range.nearest(Firmness(hz=float(f"{hz:.4g}")))
 
     def _as_soft_as(self, soft: float) -> tuple[Firmness, Pair]:
-        """The firmness, and its springs, of that softness; the softest or the stiffest where none has it."""
+        return self.firmness_at(lambda pair: self._softness(pair) > soft, HALVINGS)
+
+    def firmness_at(self, is_softer: Callable[[Pair], bool], halvings: int) -> tuple[Firmness, Pair]:
+        """The firmness, and its springs, where springs stop being softer; the softest or the stiffest if they do not.
+
+        halvings: of the range of frequencies.
+        """
         low, high = (math.log(each) for each in FREQUENCIES)
-        for _ in range(HALVINGS):
+        for _ in range(halvings):
             middle = 0.5 * (low + high)
-            is_softer = self._softness(self.springs_of(self._of_frequency(math.exp(middle)))) > soft
-            low, high = (middle, high) if is_softer else (low, middle)
+            softer = is_softer(self.springs_of(self._of_frequency(math.exp(middle))))
+            low, high = (middle, high) if softer else (low, middle)
         firmness = self._of_frequency(math.exp(0.5 * (low + high)))
         return firmness, self.springs_of(firmness)
 
@@ -306,3 +327,94 @@ class SagMeter:
         ratio = sags[1] / sags[0]
         below = ratio * dampings[0] - dampings[1]
         return min(max((ratio - 1.0) / below, 0.0), 1.0) if below > 0.0 else USUAL_SHARE
+
+
+class SagMeters:
+    """The meters of the bodies of a run: those that are alike, and held alike, have one in common."""
+
+    def __init__(self) -> None:
+        self._kept: dict[str, tuple[tuple[object, ...], SupportedBody]] = {}
+        self._meters: dict[tuple[object, ...], SagMeter] = {}
+
+    def of(self, world: World, subject: MeasuredBody) -> SagMeter:
+        """The meter of a body as it is held now."""
+        supported = self._supported(world, subject)
+        settings = replace(world.settings, wind=(0.0, 0.0))
+        places = supported.points - supported.points.min(axis=0)
+        exact = (supported.held, supported.rests, supported.gravity_scale, supported.friction, supported.pairs)
+        about = (places, supported.mass, supported.rest, supported.radius)
+        key = (
+            settings, supported.support, *(each.tobytes() for each in exact),
+            *(np.round(each, ALIKE).tobytes() for each in about),
+        )  # fmt: skip
+        if key not in self._meters:
+            self._meters[key] = SagMeter(supported, settings, subject.lowest_mode)
+        return self._meters[key]
+
+    def _supported(self, world: World, subject: MeasuredBody) -> SupportedBody:
+        made_of = (id(world), world.topology_version, subject.body.shape, world.settings.gravity)
+        kept = self._kept.get(subject.name)
+        if kept is None or kept[0] != made_of:
+            kept = self._kept[subject.name] = made_of, supported_body(world, subject.body)
+        return kept[1]
+
+    @property
+    def busy(self) -> list[SagMeter]:
+        """Those that have work to go on with."""
+        return [meter for meter in self._meters.values() if meter.is_busy]
+
+    def advance(self, seconds: float) -> bool:
+        """Work for so long at most; whether anything has come to be known."""
+        busy = self.busy
+        return any([meter.advance(seconds / len(busy)) for meter in busy])
+
+
+def measured_bodies(world: World) -> dict[str, MeasuredBody]:
+    """The bodies that are stiff by their form, and the ropes and nets that pins hold from end to end, by name."""
+    found = {}
+    for slot, body in enumerate(firm_bodies(world)):
+        mode = _mode_of(world, body)
+        # What is held everywhere cannot sag.
+        if mode > 0.0 and not supported_body(world, body).held.all():
+            found[body.name] = MeasuredBody(body.name, body, slot, mode)
+    for name, springs in _named(world).items():
+        net = None if name in found else _net(world, name, springs)
+        if net is not None:
+            supported = supported_body(world, net)
+            if supported.support is Support.SPANNED and not supported.held.all():
+                found[name] = MeasuredBody(name, net, None, 0.0)
+    return found
+
+
+def _mode_of(world: World, body: FirmBody) -> float:
+    """The lowest mode of a body; while kernels are interpreted, which takes long, only where it is known."""
+    is_whole = any(body is form for form in world.forms)
+    known = float(world.lowest_mode[body.springs[0]]) if is_whole else 0.0
+    if known > 0.0 or not COMPILED:
+        return known
+    return lowest_mode_of(body.shape) if len(body.shape.mass) <= LARGEST_READ else 0.0
+
+
+def _named(world: World) -> dict[str, list[int]]:
+    """Springs by the body that they are named after."""
+    found: dict[str, list[int]] = {}
+    for slot, name in enumerate(world.spring_names):
+        body, colon, _ = name.rpartition(":")
+        if body and colon and world.spring_active[slot] and world.law[slot] != LAW_HOOKE:
+            found.setdefault(body, []).append(slot)
+    return found
+
+
+def _net(world: World, name: str, slots: list[int]) -> FirmBody | None:
+    """A body of springs alone that has a material almost for itself; None: it is none."""
+    springs = np.array(slots, np.int64)
+    kinds = np.unique(world.material[springs])
+    if len(kinds) != 1 or kinds[0] < 0 or OWN * np.count_nonzero(world.material == kinds[0]) > len(springs):
+        return None
+    ends = np.stack([world.particle_a[springs], world.particle_b[springs]], axis=1)
+    particles, pairs = np.unique(ends, return_inverse=True)
+    if not 3 <= len(particles) <= LARGEST_READ:
+        return None
+    none = np.zeros((0, 3), np.int64)
+    shape = StiffForm(world.origin[particles], world.mass[particles], pairs.reshape(-1, 2), none, none)
+    return FirmBody(name, shape, springs, np.zeros(0, np.int64))

@@ -5,13 +5,17 @@ body, the others come after all bodies, so that a cut moves no number of what it
 area, crumbs and threads, are none.
 """
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
 
 from sandbox.physics.arena import (
+    FIRST_ARENA,
     Arena,
     begin,
     give_back,
     is_full,
+    lay_out,
     mark,
     new_float_rows,
     new_floats,
@@ -19,15 +23,15 @@ from sandbox.physics.arena import (
     new_slots,
     new_tuple,
 )
-from sandbox.physics.arrays import Floats, SlotRows, Slots
+from sandbox.physics.arrays import Floats, SlotRows, Slots, empty, with_empty
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import of_springs
-from sandbox.physics.firmness.lowest_mode import CORNERS, NO_MODE, lowest_mode_in
-from sandbox.physics.firmness.reach import FIRMED, NO_BODY, NO_ROOM, NOT_STIFF, Asked, Reach, share_out
-from sandbox.physics.jit import Bundle, inner_kernel, kernel, set_field, unpack
-from sandbox.physics.keeping.forms import StiffForm, design_gravity, height_along
+from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
+from sandbox.physics.keeping.forms import FirmBody, StiffForm, design_gravity, height_along
 from sandbox.physics.ramps import set_constraint, set_spring
-from sandbox.physics.state import GoodValues, State
+from sandbox.physics.softness.kernels.lowest_mode import CORNERS, NO_MODE, lowest_mode_in
+from sandbox.physics.softness.kernels.reach import FIRMED, NO_BODY, NO_ROOM, NOT_STIFF, Asked, Reach, share_out
+from sandbox.physics.state import GoodValues, State, StateArrays, good_of, state_of
 from sandbox.physics.topology.sorting import place_among, sort_by_value
 
 # Columns of `first`: where the rows of a body begin.
@@ -447,3 +451,57 @@ def take_piece(pointer: Bundle[Firmable], arena: Arena, body: int, number: int) 
         return
     piece = _new_piece(made.state, made.forms, body, number, pieces, arena)
     set_field(made, "piece", piece)
+
+
+class FormTable:
+    """The forms of a world, and what was found of them."""
+
+    forms: Forms
+    modes: FormModes
+    _bodies: tuple[FirmBody, ...] | None = None
+
+    def __init__(self, _world: StateArrays) -> None:
+        self.follow(())
+
+    def follow(self, bodies: tuple[FirmBody, ...]) -> None:
+        """Follow what joined the world, or left it."""
+        if self._bodies is not bodies:
+            self._bodies = bodies
+            self.forms = forms_of(bodies)
+            points, springs, constraints = self.forms.first[-1, :3].tolist()
+            numbers = np.zeros((3, points + springs + constraints), np.int64)
+            self.modes = FormModes(
+                np.zeros(len(bodies)), np.zeros(points), numbers[0, :points].copy(),
+                numbers[1, :springs].copy(), numbers[2, :constraints].copy(),
+            )  # fmt: skip
+
+    def know(self, body: int, lowest_mode: float) -> None:
+        """Keep the lowest mode of a body, which was found already."""
+        self.modes.body[body] = lowest_mode or NONE
+
+    def piece(self, world: StateArrays, body: int, number: int) -> FormPiece:
+        """A piece of a body that was cut."""
+        pointer = self._lend(world)
+        lay_out(take_piece, pointer, np.zeros(FIRST_ARENA, np.int64), body, number)
+        piece: FormPiece = items_of(pointer, ("piece",))
+        return piece
+
+    def _lend(self, world: StateArrays) -> Any:
+        return bundle(Firmable(state_of(world), good_of(world), self.forms, self.modes, empty(FormPiece)))
+
+
+def forms_of(bodies: tuple[FirmBody, ...]) -> Forms:
+    """Bodies as kernels take them."""
+    first = np.zeros((len(bodies) + 1, KINDS_OF_ROWS), np.int64)
+    if not bodies:
+        # Rows have their width also where there are none: a page adds some when a body joins.
+        pair, triple = np.zeros((0, 2), np.int64), np.zeros((0, 3), np.int64)
+        none = StiffForm(np.zeros((0, 2)), np.zeros(0), pair, triple, triple)
+        return with_empty(Forms, first=first, shapes=none)
+    for number, body in enumerate(bodies):
+        shape = body.shape
+        counts = len(shape.points), len(body.springs), len(body.constraints), len(shape.areas), len(shape.bends)
+        first[number + 1] = first[number] + counts
+    shapes = [np.concatenate(arrays) for arrays in zip(*(body.shape for body in bodies), strict=True)]
+    springs, constraints = ([getattr(body, name) for body in bodies] for name in ("springs", "constraints"))
+    return Forms(first, StiffForm(*shapes), np.concatenate(springs), np.concatenate(constraints))
