@@ -16,11 +16,14 @@
 # make soak: random mouse and keyboard at the app for minutes, on a dummy driver and on a virtual screen; and ten minutes
 # of random mouse and touch at pages, where Chromium is installed.
 # make bundle: the script of pages, after one of their modules was changed; seconds. make node: what that, lint and tests of
-# JavaScript need from npm, into node_modules. make lint: ruff and mypy, and for JavaScript TypeScript and eslint.
+# JavaScript need from npm, into .venv/npm. make lint: ruff and mypy, and for JavaScript TypeScript and eslint.
 # make pictures: draw the pictures of the gallery and of docs/ again, after a level or the look was changed.
 # make site: the levels, each at an address of its own, and the documents, as files for any web server, in the folder site.
 PYTHON ?= python3
 VENV := .venv
+# Modules of pages, what checks and bundles them, and where npm puts that.
+WEB := sandbox/page/web
+NPM := $(VENV)/npm
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 # One more than two processors: tests spend a tenth of their time waiting for windows and processes.
 WORKERS ?= 3
@@ -64,14 +67,14 @@ quick: $(VENV)/installed-dev
 	$(BIN)/python -m tests.quick -n $(WORKERS)
 
 lint: $(VENV)/installed-dev lint-pages
-	$(BIN)/ruff check sandbox tests examples
-	$(BIN)/ruff format --check sandbox tests examples
+	$(BIN)/ruff check sandbox tests docs/examples
+	$(BIN)/ruff format --check sandbox tests docs/examples
 	$(BIN)/mypy
-	$(BIN)/mypy --strict --follow-imports=silent examples
+	$(BIN)/mypy --strict --follow-imports=silent docs/examples
 
 lint-pages: $(VENV)/installed-node
-	$(BIN)/node node_modules/typescript/bin/tsc -p .
-	$(BIN)/node node_modules/eslint/bin/eslint.js .
+	$(BIN)/node $(NPM)/node_modules/typescript/bin/tsc -p $(WEB)
+	$(BIN)/node $(NPM)/node_modules/eslint/bin/eslint.js --config $(WEB)/eslint.config.mjs .
 
 bounds: export SANDBOX_KERNELS := checked
 bounds: $(VENV)/installed-dev
@@ -138,9 +141,11 @@ $(VENV)/installed-dev: $(BIN)/python pyproject.toml
 	touch $(VENV)/installed $@
 
 # node comes with the packages for Python.
-$(VENV)/installed-node: $(VENV)/installed-dev package-lock.json
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+$(VENV)/installed-node: $(VENV)/installed-dev $(WEB)/package-lock.json
+	mkdir -p $(NPM)
+	cp $(WEB)/package.json $(WEB)/package-lock.json $(NPM)
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/npm ci --prefix $(NPM) --ignore-scripts --no-audit --no-fund --loglevel=error
 	touch $@
 
 clean:
-	rm -rf $(VENV) node_modules dist build site .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) dist build site .pytest_cache .mypy_cache .ruff_cache

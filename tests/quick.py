@@ -23,12 +23,9 @@ ELSEWHERE = {
     "CONTRIBUTING.md": (),
     "docs/": ("tests/test_documentation.py", "tests/test_examples.py"),
     ".github/": ("tests/test_packaging.py",),
-    "examples/": ("tests/test_examples.py",),
     "levels/": ("tests/level/test_shipped_levels.py", "tests/level/test_levels_keep_their_word.py"),
     "assets/": ("tests/app/test_fonts.py", "tests/test_packaging.py"),
     "pyproject.toml": ("tests/test_packaging.py",),
-    "package.json": ("tests/page/test_bundle.py",),
-    "package-lock.json": ("tests/page/test_bundle.py",),
 }
 # Folders of tests that node runs, with what starts it.
 IN_NODE = {"tests/page/modules": "tests/page/test_modules.py"}

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import sandbox
+from tests import quick
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "sandbox"
@@ -42,6 +43,11 @@ LIBRARIES = {
     "cli": set(),
     "__main__": set(),
 }
+# What the project is; all else has a place in one of the folders.
+AT_THE_ROOT = {
+    "sandbox", "levels", "assets", "tests", "docs", "pyproject.toml", "Makefile", "README.md", "CONTRIBUTING.md",
+    "CHANGELOG.md", "LICENSE",
+}  # fmt: skip
 LONGEST_FILE = 600
 LONGEST_FUNCTION = 60
 MOST_FILES = 25
@@ -234,6 +240,11 @@ def test_the_window_needs_none_of_the_libraries_that_take_long_to_import():
     loaded = loaded_after("from sandbox.app.window.opening import open_app")
     assert "pygame" in loaded
     assert not loaded & {"numpy", "pydantic", "platformdirs", "sandbox.physics.jit"}
+
+
+def test_the_root_holds_what_the_project_is():
+    kept = {name.partition("/")[0] for name in quick.git("ls-files")}
+    assert {name for name in kept if not name.startswith(".")} in (AT_THE_ROOT, set())
 
 
 def test_no_file_is_longer_than_600_lines():

@@ -43,7 +43,7 @@ BENCHMARKS = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 # What kernels may take from math and numpy: results that IEEE 754 defines to the last bit, and types.
 EXACT = {"sqrt", "floor", "ceil", "inf", "int32", "int64", "uint64", "float64"}
-FOLDERS = "sandbox|levels|assets|docs|tests|examples"
+FOLDERS = "sandbox|levels|assets|docs|tests"
 
 
 def test_the_level_that_is_written_as_text_keeps_its_own_checks():

@@ -1,4 +1,4 @@
-"""The programs in examples/ do what they say, with nothing but what is public."""
+"""The programs in docs/examples do what they say, with nothing but what is public."""
 
 import ast
 import re
@@ -11,7 +11,7 @@ import pytest
 from sandbox.physics.jit import COMPILED
 
 ROOT = Path(__file__).resolve().parents[1]
-PROGRAMS = sorted((ROOT / "examples").glob("*.py"))
+PROGRAMS = sorted((ROOT / "docs" / "examples").glob("*.py"))
 PUBLIC = {"sandbox", "sandbox.commands", "sandbox.replay", "sandbox.bodies"}
 
 needs_compiled = pytest.mark.skipif(not COMPILED, reason="interpreted kernels take minutes")
@@ -30,7 +30,7 @@ def said(program, capsys, *arguments):
     """The lines that a program prints, run as from a shell."""
     known, sys.argv = sys.argv, [program, *map(str, arguments)]
     try:
-        runpy.run_path(str(ROOT / "examples" / program), run_name="__main__")
+        runpy.run_path(str(ROOT / "docs" / "examples" / program), run_name="__main__")
     finally:
         sys.argv = known
     return capsys.readouterr().out.splitlines()
@@ -39,7 +39,7 @@ def said(program, capsys, *arguments):
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: path.name)
 def test_an_example_says_what_it_is_and_how_to_run_it_and_uses_what_is_public_alone(program):
     source = program.read_text(encoding="utf-8")
-    assert f"\npython examples/{program.name}" in ast.get_docstring(ast.parse(source))
+    assert f"\npython docs/examples/{program.name}" in ast.get_docstring(ast.parse(source))
     ours = {name for name in imports_of(source) if name.partition(".")[0] == "sandbox"}
     assert ours and ours <= PUBLIC
     assert {name for name in imports_of(source)} - ours <= sys.stdlib_module_names

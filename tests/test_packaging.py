@@ -38,8 +38,10 @@ def test_an_installed_wheel_finds_its_levels_parts_and_assets_from_another_folde
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(installed)
     assert (installed / "sandbox" / "py.typed").is_file()
-    readers = {path.name for path in (installed / "sandbox" / "_shipped" / "examples" / "flat").iterdir()}
-    assert readers == {path.name for path in (ROOT / "examples" / "flat").iterdir() if path.is_file()}
+    readers = {path.name for path in (installed / "sandbox" / "_shipped" / "docs" / "examples" / "flat").iterdir()}
+    assert readers == {path.name for path in (ROOT / "docs" / "examples" / "flat").iterdir() if path.is_file()}
+    # Nothing of what checks and bundles pages.
+    assert not [path for path in (installed / "sandbox" / "page" / "web").iterdir() if path.suffix in (".json", ".mjs")]
     libraries = Path("sandbox", "physics", "jit", "libraries")
     shipped = {path.name: path.read_bytes() for path in (installed / libraries).iterdir()}
     assert shipped == {path.name: path.read_bytes() for path in (ROOT / libraries).iterdir()}

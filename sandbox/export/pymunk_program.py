@@ -12,7 +12,7 @@ USAGE, OWN_USAGE = f"python {READER} LEVEL.json [SECONDS", "python THIS_FILE [SE
 
 def pymunk_program(level: FlatLevel) -> str:
     """The program; it needs pymunk and nothing of the sandbox, prints places, and has `run` for who imports it."""
-    source = (shipped_folder("examples/flat") / READER).read_text(encoding="utf-8")
+    source = (shipped_folder("docs/examples/flat") / READER).read_text(encoding="utf-8")
     lines = "\n".join(f"    {line!r}" for line in flat_text(level).splitlines())
     assert NO_DATA in source and USAGE in source
     return source.replace(USAGE, OWN_USAGE).replace(NO_DATA, f"DATA = json.loads(\n{lines}\n)\n")

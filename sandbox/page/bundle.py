@@ -12,8 +12,9 @@ from pathlib import Path
 
 WEB = Path(__file__).with_name("web")
 BUNDLE = Path(__file__).with_name("bundle.js")
-# Where npm puts it, by package-lock.json.
-ESBUILD = Path(__file__).resolve().parents[2] / "node_modules" / "esbuild" / "bin" / "esbuild"
+# Where `make node` lets npm put packages, by package-lock.json: in the virtual environment.
+NODE_MODULES = Path(sys.prefix) / "npm" / "node_modules"
+ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 # What pages begin with that have an address of the bundle; one that holds all it needs begins by itself.
 _BEGIN = """export { load } from './files.js';
 export { list } from './index.js';

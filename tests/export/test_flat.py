@@ -27,7 +27,7 @@ from tests.support.wants import needs
 
 ROOT = Path(__file__).resolve().parents[2]
 GOLDENS = Path(__file__).parent / "golden"
-READERS = ROOT / "examples" / "flat"
+READERS = ROOT / "docs" / "examples" / "flat"
 # A soft body on a rope; muscles and rods on terrain; motors and marbles.
 KEPT = ("trampoline", "walker", "marble_mill")
 node = needs("node", shutil.which("node"))

@@ -2,11 +2,11 @@
 
 from typing import Any
 
+from sandbox.page.bundle import NODE_MODULES
 from tests.page.browser import Tab
 from tests.support.wants import skip_without
-from tests.test_documentation import ROOT
 
-AXE = ROOT / "node_modules" / "axe-core" / "axe.min.js"
+AXE = NODE_MODULES / "axe-core" / "axe.min.js"
 
 
 def violations(tab: Tab) -> list[Any]:

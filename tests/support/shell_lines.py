@@ -34,7 +34,7 @@ class ShellLine:
 
 def pages() -> list[Path]:
     """The documents that a person reads and copies lines from."""
-    found = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "examples").rglob("*")]
+    found = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "docs" / "examples").rglob("*")]
     return sorted(path for path in found if path.suffix in (".md", ".py", ".js", ".gd"))
 
 
@@ -62,7 +62,7 @@ class Reader:
     def __init__(self, folder: Path, screen: VirtualScreen | None) -> None:
         self.folder, self.home, self._screen = folder / "project", folder / "home", screen
         self.folder.mkdir()
-        for name in ("docs", "levels", "examples", "assets"):
+        for name in ("docs", "levels", "assets"):
             shutil.copytree(ROOT / name, self.folder / name, ignore=shutil.ignore_patterns("__pycache__"))
         for path in (*ROOT.glob("*.md"), ROOT / "LICENSE"):
             shutil.copy(path, self.folder)

@@ -1,7 +1,7 @@
 """How much does a bridge carry? A check that no bar breaks is run under more and more load, until one does.
 
 ```sh
-python examples/bridge_breaks.py
+python docs/examples/bridge_breaks.py
 ```
 """
 

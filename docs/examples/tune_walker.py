@@ -1,7 +1,7 @@
 """A creature learns to walk faster: a loop turns its two knobs, the swing of its muscles and their period.
 
 ```sh
-python examples/tune_walker.py 5        # seconds that it walks; 5 unless told otherwise
+python docs/examples/tune_walker.py 5        # seconds that it walks; 5 unless told otherwise
 ```
 """
 

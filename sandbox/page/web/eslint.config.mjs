@@ -1,5 +1,9 @@
-import js from '@eslint/js';
-import globals from 'globals';
+import { createRequire } from 'node:module';
+
+// Packages lie beside eslint, not above this file: in the virtual environment.
+const require = createRequire(process.argv[1]);
+const js = require('@eslint/js');
+const globals = require('globals');
 
 export default [
   { ignores: ['.venv/', 'site/', 'build/', 'dist/', 'sandbox/page/bundle.js'] },
@@ -18,5 +22,5 @@ export default [
   { files: ['sandbox/page/web/*.js'], languageOptions: { globals: globals.browser } },
   { files: ['**/*.mjs'], languageOptions: { globals: globals.node } },
   // It is for pages and for node, and as such no module.
-  { files: ['examples/flat/*.js'], languageOptions: { sourceType: 'commonjs', globals: globals.node } },
+  { files: ['docs/examples/flat/*.js'], languageOptions: { sourceType: 'commonjs', globals: globals.node } },
 ];

@@ -2,7 +2,7 @@
 //
 // ```sh
 // sandbox export walker --to flat -o walker.json
-// node examples/flat/read_flat.js walker.json 1 body.4        # for so many seconds, these particles; or all
+// node docs/examples/flat/read_flat.js walker.json 1 body.4        # for so many seconds, these particles; or all
 // ```
 //
 // What differs: discs touch terrain alone; bends, motors, hydraulics and breaking are not there.

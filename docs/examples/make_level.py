@@ -1,7 +1,7 @@
 """A level made in Python: a rope bridge over a gap, a jelly on it, a balloon tied to it; written, read back, played.
 
 ```sh
-python examples/make_level.py mind_the_gap.json
+python docs/examples/make_level.py mind_the_gap.json
 sandbox play mind_the_gap.json
 ```
 """
