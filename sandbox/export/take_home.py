@@ -8,10 +8,10 @@ from sandbox.export.loops import LoopTrial, loop_trial
 from sandbox.export.numbers import percent, short
 from sandbox.export.proven import LoopRow, loop_rows
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.stability import BOUND
 from sandbox.physics.softness.body_motion import read_body, word_for
-from sandbox.physics.world import World
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class TakeHome:
     firmness: str
 
 
-def take_home(source: Level | World, body: str | None = None) -> TakeHome:
+def take_home(source: Level | LevelWorld, body: str | None = None) -> TakeHome:
     """What a body of a level, or of a world as it is now, takes home; None: the first that has springs.
 
     Raises LevelError for a level that is not sound, NoSuchBody where there is no such body.
@@ -56,7 +56,7 @@ def take_home(source: Level | World, body: str | None = None) -> TakeHome:
     demand = BOUND / chosen.n_eff
     rows = loop_rows(chosen)
     return TakeHome(
-        level=world.source.name if isinstance(world.source, Level) else "",
+        level=world.level.name,
         body=chosen.name,
         material=chosen.material,
         springs=len(chosen.springs),

@@ -5,8 +5,8 @@ from sandbox.export.loops import LISTINGS, expected, listing
 from sandbox.export.numbers import percent, short
 from sandbox.export.proven import LoopPair, LoopRow
 from sandbox.export.take_home import TakeHome, take_home
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
-from sandbox.physics.world import World
 
 ENGINES = ("box2d", "unity", "godot", "rapier", "pymunk", "chipmunk")
 # What text can be had for; "all" is everything but the programs.
@@ -19,7 +19,7 @@ BY_FREQUENCY = ("Box2D 3", "Unity 2D")
 WITH_SUBSTEPS = ("Box2D 3", "Rapier 2D")
 
 
-def take_home_text(source: Level | World, body: str | None = None, to: str = "all") -> str:
+def take_home_text(source: Level | LevelWorld, body: str | None = None, to: str = "all") -> str:
     """What a body takes home, as text: for a button, from a running world, or from a level; see `take_home`.
 
     Raises NoSuchBody, LevelError, and KeyError for a name that is none of TARGETS.

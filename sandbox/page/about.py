@@ -1,12 +1,10 @@
 """About: what a page must know of a world beside its memory: places, names, codes and the table of state arrays."""
 
-from collections.abc import Sequence
 from typing import Any
 
-from sandbox.level.document.model import Level
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.rules.action import ActionDef
 from sandbox.level.rules.hands import words_of
-from sandbox.level.rules.rule import RuleDef
 from sandbox.page.growth import growth_of
 from sandbox.physics.commands import command, command_table, permission
 from sandbox.physics.constraints import AREA
@@ -16,7 +14,6 @@ from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.pipeline import block, collide, tick
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.state import COLUMNS, GUARDED, STATE_FIELDS, TOPOLOGY, Column, Family
-from sandbox.physics.world import World
 from sandbox.session.actions import record_of, softening_of
 from sandbox.session.commands.command import COMMAND_TYPES
 from sandbox.session.commands.for_pages import table_of
@@ -41,7 +38,7 @@ def is_done_by_pages(name: str) -> bool:
     return name in command_table.KINDS or name in ("add_particle", "add_spring", "add_body", "remove")
 
 
-def about(world: World, words: int) -> dict[str, Any]:
+def about(world: LevelWorld, words: int) -> dict[str, Any]:
     """All that a page must know of a world whose block has so many words, as JSON takes it."""
     entries = read_manifest()["entries"]
     kept = [f"state.{name}" for name in STATE_FIELDS] + [f"good.{column.name}" for column in GUARDED]
@@ -89,18 +86,14 @@ def about(world: World, words: int) -> dict[str, Any]:
             "area": world.area_names,
             "form": [form.name for form in world.forms],
         },
-        "rules": [[_action(action, world) for action in rule.then] for rule in _rules(world)],
+        "rules": [[_action(action, world) for action in rule.then] for rule in world.level.rules],
         "second": {"particle": dict(world.particle_naming.second), "spring": dict(world.spring_naming.second)},
     }
 
 
-def _rules(world: World) -> Sequence[RuleDef]:
-    return world.source.rules if isinstance(world.source, Level) else ()
-
-
-def _action(action: ActionDef, world: World) -> dict[str, Any]:
+def _action(action: ActionDef, world: LevelWorld) -> dict[str, Any]:
     """An action as a page does it: what it says, and a counter or a command with slots in place of names."""
-    level, rate = world.source, world.settings.tick_rate
+    level, rate = world.level, world.settings.tick_rate
     counters = [counter.id for counter in level.counters]
     made: dict[str, Any] = action.model_dump(include={"win", "fail", "say", "sound"}, exclude_none=True)
     if action.stars is not None:

@@ -3,7 +3,8 @@
 import math
 from typing import Any
 
-from sandbox.level.document.model import ContactsDef, Level
+from sandbox.level.assembly.level_world import LevelWorld
+from sandbox.level.document.model import ContactsDef
 from sandbox.level.format.limits import (
     LIMITED_LIMIT,
     LIMITED_WORK_LIMIT,
@@ -18,7 +19,6 @@ from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_LE
 from sandbox.physics.keeping.arguments import FARTHEST
 from sandbox.physics.kits import joining, kit, removing
 from sandbox.physics.state import Range
-from sandbox.physics.world import World
 from sandbox.session.commands.adding import SAME_ENDS
 from sandbox.session.commands.removing import ONE_OF_TWO
 
@@ -47,7 +47,7 @@ WORDS = {
 }
 
 
-def kit_table(world: World) -> dict[str, Any]:
+def kit_table(world: LevelWorld) -> dict[str, Any]:
     """The tables of a kit's columns, limits, answers of kernels and words; 64-bit numbers as text."""
     return {
         "parts": kit.PART_NAMES,
@@ -64,7 +64,7 @@ def kit_table(world: World) -> dict[str, Any]:
         },
         "limitedWork": LIMITED_WORK_LIMIT,
         "far": str(FARTHEST),
-        "groupBits": str(max(group_bits(world.source).values())),
+        "groupBits": str(max(group_bits(world.level).values())),
         "nouns": joining.NOUNS,
         "words": WORDS,
     }  # fmt: skip
@@ -82,10 +82,9 @@ def _range(column: kit.SlotColumn | kit.NumberColumn) -> list[Any] | None:
     return [_number(column.within.lowest), _number(column.within.high), str(column.within)]
 
 
-def adding(world: World) -> dict[str, Any]:
+def adding(world: LevelWorld) -> dict[str, Any]:
     """Surfaces, groups and kinds of edge, for who makes kits, as JSON takes them; 64-bit numbers as text."""
-    level = world.source
-    assert isinstance(level, Level)
+    level = world.level
     usual, surface, bits = level.contacts or ContactsDef(), vars(world.surface), group_bits(level)
     return {
         "surface": {name: str(value) if isinstance(value, int) else value for name, value in surface.items()},

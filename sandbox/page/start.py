@@ -2,12 +2,12 @@
 
 from typing import Any, NamedTuple
 
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.page.about import about
 from sandbox.page.adding import kit_table
 from sandbox.page.growth import growth_of, row_counts
 from sandbox.page.image import Image, image_of
 from sandbox.physics.pipeline.block_owner import block_of
-from sandbox.physics.world import World
 
 
 class Start(NamedTuple):
@@ -17,7 +17,7 @@ class Start(NamedTuple):
     about: dict[str, Any]
 
 
-def start_of(world: World) -> Start:
+def start_of(world: LevelWorld) -> Start:
     """The start of a world."""
     block = block_of(world)
     block.begin(world)

@@ -1,7 +1,7 @@
 """World: particles, springs, constraints, settings and tick, with the only methods that change them."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -60,8 +60,8 @@ class World(StateArrays):
     def __init__(self, settings: WorldSettings | None = None, material_names: Sequence[str] = ("default",)) -> None:
         # Never state: counts of changes of topology, those by hands apart; whether any may be `unmoved`.
         self.topology_version, self.hand_version, self.may_fly = 0, 0, True
-        self._derived: dict[Callable[[World], Any], tuple[int, Any]] = {}
-        self._lasting: dict[Callable[[World], Any], Any] = {}
+        self._derived: dict[Callable[[Any], Any], tuple[int, Any]] = {}
+        self._lasting: dict[Callable[[Any], Any], Any] = {}
         self._room = Capacity()
         for column in COLUMNS:
             setattr(self, column.name, column.empty())
@@ -84,8 +84,6 @@ class World(StateArrays):
         self.rules: Rules = empty(Rules)
         # Of each row of rules: the name of the rule, the counter or the key; of probes and stills that of the rule.
         self.row_names: dict[Family, tuple[str, ...]] = dict.fromkeys(OF_RULES, ())
-        # What it was built from, for who adds more of the kind, and what joined it since.
-        self.source: Any = None
         self.joined: tuple[Joined, ...] = ()
         self.grab_particle = self.grab_spring = -1
         self.terrain, self.water, self.hulls = NO_TERRAIN, NO_POOLS, NO_HULLS  # see terrain.py and water/pools.py
@@ -103,7 +101,7 @@ class World(StateArrays):
         """What a copy starts from: all but what was derived."""
         return self.__dict__ | {"_derived": {}, "_lasting": {}, "_room": Capacity()}
 
-    def derived(self, make: Callable[["World"], Derived], of_hands: bool = True) -> Derived:
+    def derived(self, make: Callable[[Self], Derived], of_hands: bool = True) -> Derived:
         """The result of `make` for this world, kept until topology changes or an array is replaced.
 
         of_hands: whether it also follows from what hands hold, which changes far more often. For layouts and scratch
@@ -116,7 +114,7 @@ class World(StateArrays):
             self._derived[make] = present, kept
         return kept
 
-    def lasting(self, make: Callable[["World"], Derived]) -> Derived:
+    def lasting(self, make: Callable[[Self], Derived]) -> Derived:
         """The result of `make` for this world, made once; who made it follows changes of topology itself."""
         if make not in self._lasting:
             self._lasting[make] = make(self)

@@ -8,11 +8,11 @@ from typing import Any, assert_never
 
 import numpy as np
 
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
 from sandbox.physics.commands.permission import RULE
 from sandbox.physics.softness.kernels.reach import BY_SAG
-from sandbox.physics.world import World
 from sandbox.session.commands import CommandError, act
 from sandbox.session.commands.records import from_record
 from sandbox.session.outcome import stars_of
@@ -21,12 +21,12 @@ from sandbox.session.outcome import stars_of
 class RuleActions:
     """The actions of a level's rules."""
 
-    def __init__(self, level: Level, world: World) -> None:
+    def __init__(self, level: Level, world: LevelWorld) -> None:
         """world: that of the level, at its start."""
         self._level = level
         self._counters = [counter.id for counter in level.counters]
 
-    def act(self, world: World) -> None:
+    def act(self, world: LevelWorld) -> None:
         """Do what is due: rule by rule in the order of the file, of each its actions in order.
 
         One that cannot be done, as what it names is gone, does nothing.
@@ -48,7 +48,7 @@ class RuleActions:
                         act(world, from_record(record, world))
 
 
-def softening_of(action: ActionDef, level: Level, world: World) -> dict[str, Any]:
+def softening_of(action: ActionDef, level: Level, world: LevelWorld) -> dict[str, Any]:
     """What `soften` is given for an action: all of a body sags as where its definition says it, under the gravity of
     the level.
     """
@@ -60,7 +60,7 @@ def softening_of(action: ActionDef, level: Level, world: World) -> dict[str, Any
     }  # fmt: skip
 
 
-def record_of(action: ActionDef, world: World, rate: int) -> dict[str, Any] | None:
+def record_of(action: ActionDef, world: LevelWorld, rate: int) -> dict[str, Any] | None:
     """The command of an action as recordings have it; None where it is none, or where all it names is gone.
 
     rate: ticks in a second.

@@ -294,7 +294,7 @@ def test_a_page_takes_and_refuses_what_the_desktop_does_in_its_words(records, tm
 )
 def test_a_page_refuses_what_the_level_does_not_let_hands_do(hands, tmp_path):
     def limited():
-        level = world_of().source
+        level = world_of().level
         return build_world(replaced(level, hands=HandsDef.model_validate_json(json.dumps(hands))))
 
     world = limited()

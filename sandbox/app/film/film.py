@@ -13,8 +13,8 @@ from sandbox.app.draw.renderer import Overlay, Renderer
 from sandbox.app.film.kinds import Size
 from sandbox.app.run.stability_paint import StabilityPaint
 from sandbox.app.widgets.fonts import plain_font
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.physics.snapshot import Snapshot
-from sandbox.physics.world import World
 from sandbox.session.commands.records import script_of
 from sandbox.session.session import Session
 
@@ -71,7 +71,7 @@ class Film:
         (x, y), wide, tall = self._centre, self._shown[0] / self._zoom / 2, self._shown[1] / self._zoom / 2
         return x - wide, y - tall, x + wide, y + tall
 
-    def states(self, start: float, end: float) -> Iterator[World | None]:
+    def states(self, start: float, end: float) -> Iterator[LevelWorld | None]:
         """The world at every tick of start..end [s from its beginning]: itself, to be looked at before the next.
 
         Before them None, for each tick made.

@@ -17,7 +17,7 @@ from sandbox.export.chosen_body import NoSuchBody, body_names
 from sandbox.export.paste import pasted
 from sandbox.export.take_home import TakeHome, take_home
 from sandbox.export.take_home_text import as_text
-from sandbox.physics.world import World
+from sandbox.level.assembly.level_world import LevelWorld
 
 # What it can be for, by what a person calls it.
 ENGINES = {
@@ -35,7 +35,7 @@ QUESTION, OWN_LOOP = "Which engine?", "Or a loop of your own, in"
 
 
 def show_take_home(
-    ui: Ui, world: World, say: Callable[[str], None], body: str | None = None, target: str | None = None
+    ui: Ui, world: LevelWorld, say: Callable[[str], None], body: str | None = None, target: str | None = None
 ) -> None:
     """Cover the window by what a body (None: the first) takes home, for one of TARGETS (None: it asks for which)."""
     names = body_names(world)
@@ -55,7 +55,8 @@ class _TakeHomePage:
     """The page, for a body and a target, until it is closed or another one is chosen."""
 
     def __init__(
-        self, ui: Ui, world: World, say: Callable[[str], None], take: TakeHome, names: list[str], target: str | None
+        self, ui: Ui, world: LevelWorld, say: Callable[[str], None], take: TakeHome, names: list[str],
+        target: str | None,
     ) -> None:  # fmt: skip
         self._ui, self._world, self._say, self._take, self._target = ui, world, say, take, target
         self._wide = ui.px(min(WIDTH, ui.units[0] - AROUND) - 2 * MARGIN)

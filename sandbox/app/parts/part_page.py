@@ -15,8 +15,8 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.storage.part_files import PartFile, catalogue
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
-from sandbox.physics.world import World
 
 # Sizes in layout units.
 WIDTH, HEIGHT = 690.0, 620.0
@@ -42,7 +42,7 @@ class PartPage:
     """
 
     def __init__(
-        self, ui: Ui, world: World, take: Take, reopen: Callable[[float], object], offset: float = 0.0,
+        self, ui: Ui, world: LevelWorld, take: Take, reopen: Callable[[float], object], offset: float = 0.0,
         last_taken: Level | None = None,
     ) -> None:  # fmt: skip
         self._ui, self._world, self._take = ui, world, take
@@ -124,7 +124,7 @@ class PartPage:
         """Do nothing: no part is dragged off this page."""
 
 
-def refusal(part: PartFile, world: World) -> str:
+def refusal(part: PartFile, world: LevelWorld) -> str:
     """Why a part cannot join a world, in one line; empty where it can."""
     if part.level is None:
         return part.fault

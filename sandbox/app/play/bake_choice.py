@@ -7,9 +7,9 @@ from sandbox.app.widgets.dialogs import choose
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.adopt_dropped import keep_added
 from sandbox.editor.edits.bake import keep_coefficients, keep_cuts, keep_masses, keep_pins, keep_pose, keep_settings
-from sandbox.physics.world import World
+from sandbox.level.assembly.level_world import LevelWorld
 
-Keeper = Callable[[Document, World], Document]
+Keeper = Callable[[Document, LevelWorld], Document]
 KEEPERS: tuple[tuple[str, Keeper], ...] = (
     ("Pose: the present positions", keep_pose),
     ("Cs and Cd of the materials", keep_coefficients),
@@ -66,7 +66,7 @@ def ask_to_keep(app: Application) -> None:
     choose(app.ui, "Keep in the level", "What should the sheet take over from this run?", choices)
 
 
-def _differs(document: Document, keeper: Keeper, world: World) -> bool:
+def _differs(document: Document, keeper: Keeper, world: LevelWorld) -> bool:
     """Whether a keeper finds something in the world that the level has otherwise, and can take it over."""
     try:
         return keeper(document, world).level != document.level

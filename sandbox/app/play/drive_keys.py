@@ -54,7 +54,7 @@ class DriveKeys:
         joined = self.playback.session.world.joined
         if self._joined is not joined:
             self._joined, self._all = joined, {}
-            for level, first in [(self.playback.level, 0), *((each.source, each.first_part) for each in joined)]:
+            for level, first in [(self.playback.level, 0), *((each.level, each.first_part) for each in joined)]:
                 for key, parts in driving_keys(level).items():
                     self._names[code_of(key)] = key
                     self._all.setdefault(code_of(key), []).extend((first + part, value) for part, value in parts)

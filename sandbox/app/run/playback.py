@@ -15,11 +15,11 @@ from sandbox.app.run.fired import Fired
 from sandbox.app.run.liveliness import Liveliness
 from sandbox.app.run.stopped import Stopped
 from sandbox.app.run.travel import Travel
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import Dissipation
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.step import precompute
-from sandbox.physics.world import World
 from sandbox.session.breaks import break_lines
 from sandbox.session.commands import (
     Command,
@@ -56,7 +56,7 @@ GIVEN_UP = "Cancelled. The run did not change."
 class Listener(Protocol):
     """Who is told of every tick of a run; it reads and never writes."""
 
-    def hear(self, world: World) -> None:
+    def hear(self, world: LevelWorld) -> None:
         """Take in the world after a tick."""
         ...
 

@@ -13,6 +13,7 @@ from sandbox.app.share.stuffs import parts_for, stuffs_for
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.app.sound.waves import STUFFS
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.checks import CheckDef, bounds_of, window_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import GRAVITY_LIMIT
@@ -132,7 +133,7 @@ def _header(level: Level) -> str:
     return line.decode().rpartition(', "chain"')[0]
 
 
-def _sounds(world: World) -> dict[str, Any]:
+def _sounds(world: LevelWorld) -> dict[str, Any]:
     """What bodies sound like, stuffs by their modes, and motors that hum."""
     bodies, motors = timbres_of(world), world.actuators.motors
     rows = [

@@ -8,12 +8,12 @@ from sandbox.app.draw.scene import joined_scene
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.assembly.joining import Joiners
 from sandbox.level.assembly.kit_files import written
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import step
-from sandbox.physics.world import World
 from sandbox.session.actions import RuleActions
 from sandbox.session.commands import CommandError, Redo, Undo, apply
 from sandbox.session.commands.records import ScriptLine, from_record, script_of
@@ -32,7 +32,7 @@ class RunForPages(NamedTuple):
 
     script: tuple[ScriptLine, ...]
     hashes: list[str]
-    world: World
+    world: LevelWorld
 
 
 def all_at_once(slices: Generator[float, None, T]) -> T:
@@ -54,13 +54,13 @@ def _is_defined(record: Mapping[str, Any]) -> bool:
     return record["type"] == _ADD and "kit" not in record
 
 
-def tick_hash(world: World) -> str:
+def tick_hash(world: LevelWorld) -> str:
     """What a page compares a tick with."""
     return state_hash(world)[:TICK_DIGITS]
 
 
 def run_for_pages(
-    level: Level, script: Sequence[ScriptLine], ticks: int, hash_of: Callable[[World], str] = tick_hash
+    level: Level, script: Sequence[ScriptLine], ticks: int, hash_of: Callable[[LevelWorld], str] = tick_hash
 ) -> Generator[float, None, RunForPages]:
     """A run as pages play it, a slice of the work at a time: each gives the part that is done, 0..1.
 
@@ -106,7 +106,7 @@ def _without_undone(
     return script_of([entry for entry in session.history.timeline if entry.in_effect], session.world)
 
 
-def carried_out(level: Level, world: World, record: dict[str, Any]) -> dict[str, Any]:
+def carried_out(level: Level, world: LevelWorld, record: dict[str, Any]) -> dict[str, Any]:
     """Carry out a command; its record, with a kit in place of definitions. Raises CommandError."""
     before, kit = {"particle": world.particle_count, "spring": world.spring_count}, None
     if _is_defined(record):
@@ -118,7 +118,7 @@ def carried_out(level: Level, world: World, record: dict[str, Any]) -> dict[str,
     apply(world, from_record(record, world))
     if kit is None:
         return record
-    keys = {key: [list(each) for each in parts] for key, parts in driving_keys(kit.source).items()}
+    keys = {key: [list(each) for each in parts] for key, parts in driving_keys(kit.level).items()}
     look = _in_own_slots(joined_scene(level, world, before), before)
     for join in look.get("joins", ()):
         # The springs say where they end.

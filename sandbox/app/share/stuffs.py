@@ -12,12 +12,12 @@ from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.storage.part_files import catalogue
 from sandbox.level.assembly.build_world import build_world
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import ContactsDef, Level, Settings
 from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.quantities import significant
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.softness.firmness import WORDS as SAGS
-from sandbox.physics.world import World
 from sandbox.session.commands import Command
 from sandbox.session.commands.records import to_record
 from sandbox.session.session import Session
@@ -92,7 +92,7 @@ def _catalogue_for(text: str) -> list[dict[str, Any]]:
 
 
 def _part(
-    key: str, name: str, level: Level, world: World, commands: Iterable[Command], ghost: Iterable[Loop]
+    key: str, name: str, level: Level, world: LevelWorld, commands: Iterable[Command], ghost: Iterable[Loop]
 ) -> dict[str, Any]:
     records = [carried_out(level, world, to_record(command, world)) for command in commands]
     for stuff in (record["kit"]["materials"] for record in records if "kit" in record):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.sound.bank import Note, note
 from sandbox.app.sound.timbre import Timbres, timbres_of
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP
 from sandbox.physics.marks import GRAB_COUNT
@@ -111,7 +112,7 @@ class SoundEvents:
         notes = [note("thud", float(bodies.pitch[b]), bodies.stuff[b]) for b in order]
         return list(dict.fromkeys(reversed(notes)))[::-1]
 
-    def hear(self, world: World) -> None:
+    def hear(self, world: LevelWorld) -> None:
         """Take in a tick of the world."""
         key = (world.particle_count, world.joined, self._owners_of(world))
         if self._bodies is None or self._key != key:

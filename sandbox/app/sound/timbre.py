@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from sandbox.app.draw.looks import GRAINS, STRANDS, Look, ball_look, body_looks
 from sandbox.app.draw.things.level_slots import level_slots_of
 from sandbox.app.sound.waves import STUFFS
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.world import World
 
 # What the stuff of a skin, a line or a ball sounds like.
 _SKINS = {
@@ -56,7 +56,7 @@ class Timbres:
     stuff: list[str]
 
 
-def timbres_of(world: World) -> Timbres:
+def timbres_of(world: LevelWorld) -> Timbres:
     """The bodies of a world as they are now."""
     owners, body = np.unique(world.owner, return_inverse=True)
     body = body.reshape(-1)
@@ -91,22 +91,21 @@ def timbres_of(world: World) -> Timbres:
     return Timbres(body, owners.astype(np.int64), mass, size, pitch, weight, strand, squeaks, strings, balls, stuff)
 
 
-def _kinds(world: World) -> Iterator[tuple[int, tuple[str, bool]]]:
+def _kinds(world: LevelWorld) -> Iterator[tuple[int, tuple[str, bool]]]:
     """Owner, stuff and whether it is a string, of every body of the level and of what joined it."""
-    if isinstance(world.source, Level):
-        yield from enumerate(_of_level(world.source))
+    yield from enumerate(_of_level(world.level))
     for joined in world.joined:
-        if isinstance(joined.source, Level) and joined.first_particle < len(world.owner):
-            yield from enumerate(_of_level(joined.source), int(world.owner[joined.first_particle]))
+        if joined.first_particle < len(world.owner):
+            yield from enumerate(_of_level(joined.level), int(world.owner[joined.first_particle]))
 
 
-def _wholes(world: World) -> Slots:
+def _wholes(world: LevelWorld) -> Slots:
     """The numbers (n,) that the bodies of particles had before anything was cut; -1: it is of no body of a level."""
     found = np.full(len(world.owner), -1, dtype=np.int64)
-    parts = [(0, 0, world.source)]
-    parts += [(each.first_particle, int(world.owner[each.first_particle]), each.source) for each in world.joined]
-    for first, owner, source in parts:
-        for number, actor in enumerate(level_slots_of(source).actors if isinstance(source, Level) else ()):
+    parts = [(0, 0, world.level)]
+    parts += [(each.first_particle, int(world.owner[each.first_particle]), each.level) for each in world.joined]
+    for first, owner, level in parts:
+        for number, actor in enumerate(level_slots_of(level).actors):
             found[first + actor.slots] = owner + number
     return found
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from sandbox.terminal import Progress, interrupted_between_ticks
 
 if TYPE_CHECKING:
-    from sandbox.physics.world import World
+    from sandbox.level.assembly.level_world import LevelWorld
     from sandbox.session.player.report import Watched
     from sandbox.session.replay.recording import Replay
     from sandbox.session.replay.verify import Comparison
@@ -22,7 +22,7 @@ def watching(ticks: int) -> "Iterator[Watched]":
     """Show how far it is while this many ticks are played in all, and let Ctrl+C end it between two."""
     with Progress(ticks) as bar, interrupted_between_ticks() as look_up:
 
-        def watched(states: "Iterable[World]") -> "Iterator[World]":
+        def watched(states: "Iterable[LevelWorld]") -> "Iterator[LevelWorld]":
             for state in states:
                 yield state
                 bar.update()

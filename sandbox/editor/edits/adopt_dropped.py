@@ -9,14 +9,13 @@ from sandbox.editor.document import Document, EditError, checked
 from sandbox.editor.edits.bake import as_firm, heavier, times_as_heavy
 from sandbox.editor.edits.names import free_ids, owner_of, renamed, taken_ids
 from sandbox.editor.scene import make_scene
+from sandbox.level.assembly.level_world import JoinedLevel, LevelWorld
 from sandbox.level.document.model import Level, Material, NissenMaterial, ParticleDef, SpringDef
 from sandbox.level.format.limits import COORDINATE_LIMIT, DEFAULT_MATERIAL
 from sandbox.level.format.look import look_when_added
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.kinds.mesh import MeshDef
-from sandbox.physics.keeping.equipment import Joined
-from sandbox.physics.world import World
 
 Shift = tuple[float, float]
 # How the names begin of loose particles that commands add.
@@ -25,7 +24,7 @@ ADDED_PARTICLE, ADDED_SPRING = "+.", "+:"
 COIL, ROD, FIRM = "added coil", "added rod", 0.85
 
 
-def keep_added(document: Document, world: World) -> Document:
+def keep_added(document: Document, world: LevelWorld) -> Document:
     """Take over the bodies, balls and springs that joined the played world and are still there. Raises EditError.
 
     They start at rest as they stand now, in their looks; what was pinned and cut stays so.
@@ -35,13 +34,13 @@ def keep_added(document: Document, world: World) -> Document:
     return document if level is document.level else replace(document, level=checked(level))
 
 
-def keep_added_things(document: Document, world: World) -> Document:
+def keep_added_things(document: Document, world: LevelWorld) -> Document:
     """As `keep_added`, without the springs that join them to others. Raises EditError."""
     level, _ = _with_things(document.level, world)
     return document if level is document.level else replace(document, level=checked(level))
 
 
-def _with_things(level: Level, world: World) -> tuple[Level, dict[str, str]]:
+def _with_things(level: Level, world: LevelWorld) -> tuple[Level, dict[str, str]]:
     """The level with bodies and balls that were added, and what each is called there by its name in the world."""
     names: dict[str, str] = {}
     for joined in world.joined:
@@ -49,8 +48,8 @@ def _with_things(level: Level, world: World) -> tuple[Level, dict[str, str]]:
     return _with_balls(level, world, names), names
 
 
-def _with_joined(level: Level, world: World, joined: Joined, names: dict[str, str]) -> Level:
-    source: Level = joined.source
+def _with_joined(level: Level, world: LevelWorld, joined: JoinedLevel, names: dict[str, str]) -> Level:
+    source = joined.level
     found = [(body, name, _particles(world, name)) for body, name in zip(source.bodies, joined.names, strict=False)]
     staying = [(body, name, slots) for body, name, slots in found if _is_there(world, name, slots)]
     if not staying:
@@ -90,14 +89,14 @@ def _with_joined(level: Level, world: World, joined: Joined, names: dict[str, st
     )
 
 
-def _as_played(body: BodyDef, world: World, name: str, times: float) -> BodyDef:
+def _as_played(body: BodyDef, world: LevelWorld, name: str, times: float) -> BodyDef:
     """A body so many times as heavy, and as firm as the one of that name in a world."""
     form = next((form for form in world.forms if form.name == name), None)
     body = heavier(body, times)
-    return body if form is None else as_firm(body, form, world, world.source.settings)
+    return body if form is None else as_firm(body, form, world, world.level.settings)
 
 
-def _is_there(world: World, name: str, slots: Any) -> bool:
+def _is_there(world: LevelWorld, name: str, slots: Any) -> bool:
     """Whether a body still has a particle that is no other body's."""
     own = [slot for slot in slots.tolist() if world.particle_names[slot].startswith(f"{name}.")]
     return bool(world.particle_active[own].any())
@@ -107,7 +106,7 @@ def _base(body: BodyDef) -> str:
     return body.type if body.id.startswith("body ") else body.id
 
 
-def _particles(world: World, name: str) -> Any:
+def _particles(world: LevelWorld, name: str) -> Any:
     """Slots of a body's particles, those included that are one with particles of others."""
     found, number = [], 0
     while True:
@@ -118,11 +117,11 @@ def _particles(world: World, name: str) -> Any:
         number += 1
 
 
-def _held(world: World, slots: Any) -> tuple[int, ...]:
+def _held(world: LevelWorld, slots: Any) -> tuple[int, ...]:
     return tuple(np.flatnonzero(world.inverse_mass[slots] == 0.0).tolist())
 
 
-def _cut(world: World, name: str, body: BodyDef) -> tuple[int, ...]:
+def _cut(world: LevelWorld, name: str, body: BodyDef) -> tuple[int, ...]:
     """Numbers of a body's springs that are broken or were cut."""
     numbers = set(body.cut)
     for slot, spring in enumerate(world.spring_names):
@@ -144,7 +143,7 @@ def _kept(body: BodyDef, shift: Shift, pose: Any, pinned: tuple[int, ...], cut: 
     return replaced(body, **changes, pose=tuple((x, y) for x, y in pose.tolist()))
 
 
-def _with_balls(level: Level, world: World, names: dict[str, str]) -> Level:
+def _with_balls(level: Level, world: LevelWorld, names: dict[str, str]) -> Level:
     """The level with the loose particles that were added."""
     slots = [
         slot for slot, name in enumerate(world.particle_names)
@@ -170,7 +169,7 @@ def _with_balls(level: Level, world: World, names: dict[str, str]) -> Level:
     return replaced(level, particles=(*level.particles, *balls))
 
 
-def _with_springs(level: Level, world: World, names: dict[str, str]) -> Level:
+def _with_springs(level: Level, world: LevelWorld, names: dict[str, str]) -> Level:
     """The level with the springs that were added one by one; names: see `_with_things`."""
     of_bodies = {name for joined in world.joined for name in joined.spring_names}
     materials, springs = dict(level.materials), list(level.springs)

@@ -12,13 +12,13 @@ from sandbox.editor.edits.copying import fragment, inserted, shifted
 from sandbox.editor.edits.names import owner_of, rewired, with_owner
 from sandbox.editor.items import items_of
 from sandbox.level.assembly.joining import Joiners
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level, Material, ParticleDef
 from sandbox.level.format.level_error import LevelError, one_line, shown
 from sandbox.level.format.look import BodyLook
 from sandbox.level.format.quantities import Description, Point, replaced
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.mesh import MeshDef
-from sandbox.physics.world import World
 from sandbox.session.commands import AddBody, AddParticle, Command
 
 # What of a run a copy of one of its things takes over.
@@ -30,15 +30,13 @@ UNSEEN = frozenset(("id", "group", "extras", "angle"))
 OF_FREE_DISCS = frozenset(("rolls", "rolling", "spin"))
 
 
-def joining_commands(part: Level, world: World, at: Point, velocity: Point = (0.0, 0.0)) -> tuple[Command, ...]:
+def joining_commands(part: Level, world: LevelWorld, at: Point, velocity: Point = (0.0, 0.0)) -> tuple[Command, ...]:
     """The commands that add a part with its origin at a point [m], thrown at a velocity [m/s]; one gesture.
 
     Materials of the same name and values are shared, others get a name of their own; what was made for another tick
     rate moves per second alike. Raises EditError, with one line, where commands cannot add all of it.
     """
-    source = world.source
-    assert isinstance(source, Level)
-    known = _materials(world, source)
+    source, known = world.level, world.materials
     bare = Level(
         format=source.format, version=source.version, name=source.name, settings=source.settings, materials=known,
         contacts=source.contacts,
@@ -55,7 +53,7 @@ def joining_commands(part: Level, world: World, at: Point, velocity: Point = (0.
     return *commands, *(_add_particle(each, velocity) for each in joined.particles)
 
 
-def copying_commands(level: Level, world: World, particle: int, by: Point) -> tuple[Command, ...]:
+def copying_commands(level: Level, world: LevelWorld, particle: int, by: Point) -> tuple[Command, ...]:
     """The commands that add a copy of what a particle of a run of a level belongs to, moved by [m]; one gesture.
 
     With it go the bodies that are welded to it, and their springs. It has the pose, masses, pins and cuts that it has
@@ -74,14 +72,6 @@ def copying_commands(level: Level, world: World, particle: int, by: Point) -> tu
     at_rest = tuple(replaced(body, velocity=(0.0, 0.0)) for body in part.bodies)
     loose = tuple(replaced(each, velocity=(0.0, 0.0)) for each in part.particles)
     return joining_commands(replaced(part, bodies=at_rest, particles=loose), world, by)
-
-
-def _materials(world: World, source: Level) -> dict[str, Material]:
-    """The materials that a world knows, by name; the level's go before those that have joined it."""
-    known: dict[str, Material] = {}
-    for level in (source, *(joined.source for joined in world.joined)):
-        known = {**level.materials, **known}
-    return known
 
 
 def _able_to_join(part: Level) -> Level:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level, Material, NissenMaterial
 from sandbox.level.faults.validate import check_level
 from sandbox.level.format.limits import DEFAULT_MATERIAL
@@ -18,12 +19,11 @@ from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.plan.water import hulls_of, water_of
 from sandbox.level.plan.welds import Slots
 from sandbox.physics.collision.filter import NO_EDGE
-from sandbox.physics.settings import WorldSettings
 from sandbox.physics.state import ROLLING_RESISTANCE
 from sandbox.physics.world import World
 
 
-def build_world(level: Level) -> World:
+def build_world(level: Level) -> LevelWorld:
     """Build the world that a level describes.
 
     Particle slots: the particles of the bodies in file order, then the loose particles; welded particles share the
@@ -33,7 +33,7 @@ def build_world(level: Level) -> World:
     """
     plan = check_level(level, f'level "{level.name}"')
     materials = {DEFAULT_MATERIAL: NissenMaterial(), **level.materials}
-    world = World(WorldSettings(**dict(level.settings)), list(materials))
+    world = LevelWorld(level)
     stays = plan.first_of_weld == np.arange(plan.layout.particle_count)
     slots = (np.cumsum(stays) - 1)[plan.first_of_weld]
     _add_particles(world, level, plan, slots, stays)
@@ -49,7 +49,6 @@ def build_world(level: Level) -> World:
     world.terrain, world.surface = terrain_of(level), surface_of(level)
     world.water, world.hulls = water_of(level), hulls_of(level, plan.bodies, materials)
     add_rules(world, level, plan, slots)
-    world.source = level
     return world
 
 

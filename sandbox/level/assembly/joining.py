@@ -12,6 +12,7 @@ import numpy as np
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.assembly.kit_files import read
 from sandbox.level.assembly.kits import Kit, KitNames, columns_of, join, packed_for
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level, Material, NissenMaterial
 from sandbox.level.format.level_error import Fault, LevelError, shown, suggestion
 from sandbox.level.format.limits import DEFAULT_MATERIAL, DEFINITION_LIMIT, FORMAT, VERSION
@@ -23,7 +24,6 @@ from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.commands.command import ADD_BODY
 from sandbox.physics.commands.permission import PROGRAM
 from sandbox.physics.kits.joining import KitError, check_kit
-from sandbox.physics.world import World
 
 SOURCE = "add_body"
 # Definitions that are kept once checked: undoing and redoing add the same ones again.
@@ -37,11 +37,9 @@ class Joiners:
     welds join these bodies, by their ids in the definition. Raises LevelError with every fault.
     """
 
-    def __init__(self, world: World, definition: Mapping[str, Any]) -> None:
-        if not isinstance(world.source, Level):
-            raise LevelError(SOURCE, [("", "only a world that was built from a level takes bodies")])
+    def __init__(self, world: LevelWorld, definition: Mapping[str, Any]) -> None:
         self.definition = dict(definition)
-        base, bodies = world.source, [definition["body"], *(definition.get("others") or ())]
+        base, bodies = world.level, [definition["body"], *(definition.get("others") or ())]
         bodies = [_identified(body, number) for number, body in enumerate(bodies)]
         self._said, plain = zip(*(_without_groups(body) for body in bodies), strict=True)
         self._bits = group_bits(base)
@@ -83,7 +81,7 @@ class Joiners:
                 place = f"{path}.collides.{number}"
                 yield place, f"the level has no group {shown(name)}" + suggestion(name, self._bits)
 
-    def kit(self, world: World) -> Kit:
+    def kit(self, world: LevelWorld) -> Kit:
         """The bodies as rows, for a world of the groups that this one has. Raises LevelError."""
         built, level = self.built, self.level
         number = {body.id: index for index, body in enumerate(level.bodies)}
@@ -131,7 +129,7 @@ class Joiners:
         named = dict.fromkeys(said.get("collision_group") for said in self._said)
         return [name for name in named if name is not None and name not in self._bits]
 
-    def _own_bits(self, world: World) -> dict[str, int]:
+    def _own_bits(self, world: LevelWorld) -> dict[str, int]:
         """Bits for new groups, which nothing in the world has yet. Raises LevelError if there are too many."""
         first = max(int(world.group.max(initial=1)), *self._bits.values()).bit_length()
         found = {name: 1 << number for number, name in enumerate(self._own_groups, first)}
@@ -139,14 +137,14 @@ class Joiners:
             raise LevelError(SOURCE, [("", "there are too many collision groups")])
         return found
 
-    def check_room(self, world: World) -> None:
+    def check_room(self, world: LevelWorld) -> None:
         """Raise LevelError if the bodies could not join a world."""
         try:
             check_kit(world, packed_for(world, self.kit(world)), PROGRAM, ADD_BODY)
         except KitError as error:
             raise LevelError(SOURCE, [("", str(error))]) from None
 
-    def join(self, world: World, giver: int = PROGRAM) -> None:
+    def join(self, world: LevelWorld, giver: int = PROGRAM) -> None:
         """Add the bodies to a world at its present tick. If there is no room, raises LevelError and changes nothing."""
         try:
             join(world, self.kit(world), giver)
@@ -154,7 +152,7 @@ class Joiners:
             raise LevelError(SOURCE, [("", str(error))]) from None
 
 
-def join_definition(world: World, definition: Mapping[str, Any], giver: int = PROGRAM) -> None:
+def join_definition(world: LevelWorld, definition: Mapping[str, Any], giver: int = PROGRAM) -> None:
     """Add bodies as level files define them, or a kit. Raises LevelError and Refused, and changes nothing then."""
     if "kit" not in definition:
         Joiners(world, definition).join(world, giver)
@@ -196,14 +194,13 @@ def _zones(level: Level, bodies: Sequence[Any]) -> list[dict[str, Any]]:
     return [{"id": name, "box": [0.0, 0.0, 1.0, 1.0], "water": {}}] if level.has_water else []
 
 
-def _known_material(world: World, name: str) -> Material | None:
+def _known_material(world: LevelWorld, name: str) -> Material | None:
     """The material of a world with that name."""
-    sources = [world.source, *(joined.source for joined in world.joined)]
-    found = next((source.materials[name] for source in sources if name in source.materials), None)
+    found = world.materials.get(name)
     return NissenMaterial() if found is None and name == DEFAULT_MATERIAL else found
 
 
-def _materials(world: World, definition: Mapping[str, Any], bodies: list[Any]) -> Any:
+def _materials(world: LevelWorld, definition: Mapping[str, Any], bodies: list[Any]) -> Any:
     """The materials of a definition, and those of the world that its bodies and springs name."""
     given = definition.get("materials")
     if given is not None and not isinstance(given, dict):
@@ -215,7 +212,7 @@ def _materials(world: World, definition: Mapping[str, Any], bodies: list[Any]) -
     return known | (given or {})
 
 
-def _material_faults(world: World, level: Level, given: Mapping[str, Any]) -> Iterator[Fault]:
+def _material_faults(world: LevelWorld, level: Level, given: Mapping[str, Any]) -> Iterator[Fault]:
     for name in given:
         known = _known_material(world, name)
         if known is not None and known != level.materials[name]:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sandbox.level.assembly.level_world import JoinedLevel, LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import (
     MATERIAL_LIMIT,
@@ -19,7 +20,6 @@ from sandbox.physics.commands.command import ADD_BODY
 from sandbox.physics.commands.permission import PROGRAM
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drives_of
-from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.keeping.forms import FirmBody
 from sandbox.physics.kits.joining import Packed, join_kit, pack, rows_of
 from sandbox.physics.kits.kit import COUNTED
@@ -42,7 +42,7 @@ class KitNames(NamedTuple):
 class Kit(NamedTuple):
     """Bodies as rows: how many they are, columns by part, names, areas and forms of bodies in the kit's own slots.
 
-    areas: body, and constraints; forms: body, and its form. source: the level of which they are drawn, and definition:
+    areas: body, and constraints; forms: body, and its form. level: the one of which they are drawn, and definition:
     what a command said of them.
     """
 
@@ -51,11 +51,11 @@ class Kit(NamedTuple):
     names: KitNames
     areas: tuple[tuple[int, range], ...]
     forms: tuple[tuple[int, FirmBody], ...]
-    source: Level
+    level: Level
     definition: Mapping[str, Any]
 
 
-def join(world: World, kit: Kit, giver: int = PROGRAM) -> None:
+def join(world: LevelWorld, kit: Kit, giver: int = PROGRAM) -> None:
     """Add a kit to a world at its present tick. Raises KitError and Refused, and changes nothing then."""
     packed = packed_for(world, kit)
     first = dict(zip(packed.counts, packed.slots[COUNTED : 2 * COUNTED].tolist(), strict=True))
@@ -63,9 +63,9 @@ def join(world: World, kit: Kit, giver: int = PROGRAM) -> None:
     join_kit(world, packed, giver, ADD_BODY)
     world.actuators = replace(world.actuators, names=(*world.actuators.names, *part_names))
     second = tuple((f"{bodies[body]}.{text}", slot + first["particles"]) for body, text, slot in kit.names.second)
-    joined = Joined(
-        kit.source, kit.definition, bodies, first["particles"], first["springs"], first["parts"], particle_names,
-        spring_names, second,
+    joined = JoinedLevel(
+        kit.definition, bodies, first["particles"], first["springs"], first["parts"], particle_names, spring_names,
+        second, kit.level,
     )  # fmt: skip
     world.name_slots(joined.particle_names, joined.spring_names)
     for name, slot in second:
@@ -80,7 +80,7 @@ def join(world: World, kit: Kit, giver: int = PROGRAM) -> None:
     world.joined += (joined,)
 
 
-def join_loose(world: World, columns: Mapping[str, Mapping[str, Any]], giver: int, kind: int) -> None:
+def join_loose(world: LevelWorld, columns: Mapping[str, Mapping[str, Any]], giver: int, kind: int) -> None:
     """Add particles and springs of no body, by that kind of command. Raises KitError and Refused."""
     packed = _packed(world, columns, 0, rows_of("particles", columns.get("particles", {})))
     particles = world.particle_naming.unused("+.", packed.counts["particles"])
@@ -89,18 +89,18 @@ def join_loose(world: World, columns: Mapping[str, Mapping[str, Any]], giver: in
     world.name_slots(particles, springs)
 
 
-def packed_for(world: World, kit: Kit) -> Packed:
+def packed_for(world: LevelWorld, kit: Kit) -> Packed:
     """A kit as the kernel takes it, for a world at its present tick. Raises KitError."""
     return _packed(world, kit.columns, kit.bodies, len(kit.names.particles))
 
 
-def _packed(world: World, columns: Mapping[str, Mapping[str, Any]], bodies: int, added: int) -> Packed:
+def _packed(world: LevelWorld, columns: Mapping[str, Mapping[str, Any]], bodies: int, added: int) -> Packed:
     particles = world.particle_count + added
     most = {
         "particles": PARTICLE_LIMIT, "springs": SPRING_LIMIT, "motors": MOTOR_LIMIT, "materials": MATERIAL_LIMIT + 1,
         "muscles": most_limited(particles),
     }  # fmt: skip
-    return pack(world, columns, bodies, max(group_bits(world.source).values()), most)
+    return pack(world, columns, bodies, max(group_bits(world.level).values()), most)
 
 
 def _world_names(

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.things.names import ThingNames
 from sandbox.physics.analysis.contact_points import contact_points
 from sandbox.physics.arrays import Slots
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, TIP_SHIFT
-from sandbox.physics.world import World
 
 Point = tuple[float, float]
 Pair = tuple[str, str]
@@ -49,7 +49,7 @@ class ContactEvents:
     end: tuple[Pair, ...] = ()
 
 
-def contacts(world: World) -> list[Contact]:
+def contacts(world: LevelWorld) -> list[Contact]:
     """All points at which things push each other after the last tick, in the order in which a step finds them.
 
     What rules call `touches`. It reads the contacts that the tick leaves, and costs nothing where nobody asks.
@@ -57,7 +57,7 @@ def contacts(world: World) -> list[Contact]:
     return list(_told(world, None))
 
 
-def touching_pairs(world: World) -> set[Pair]:
+def touching_pairs(world: LevelWorld) -> set[Pair]:
     """The ids of things that push each other after the last tick, each pair once, as in Contact."""
     return _Pushing.of(world).pairs()
 
@@ -81,7 +81,7 @@ class ContactListener:
         """The last tick in which pairs touched that an update at a tick tells to have parted."""
         return max(tick - self._patience - 1, 0)
 
-    def update(self, world: World) -> ContactEvents:
+    def update(self, world: LevelWorld) -> ContactEvents:
         """What changed since the last call. In a world that went back in time all contacts are over, and begin anew."""
         tick, now = world.tick, touching_pairs(world)
         ended = list(self._last) if tick < self._tick else []
@@ -97,7 +97,7 @@ class ContactListener:
         return ContactEvents(tuple(_hardest(world, begun) if begun else ()), tuple(sorted([*ended, *over])))
 
 
-def _hardest(world: World, pairs: set[Pair]) -> list[Contact]:
+def _hardest(world: LevelWorld, pairs: set[Pair]) -> list[Contact]:
     """Of each of these pairs its contact of the largest impulse."""
     found: dict[Pair, Contact] = {}
     for each in _told(world, pairs):
@@ -107,7 +107,7 @@ def _hardest(world: World, pairs: set[Pair]) -> list[Contact]:
     return list(found.values())
 
 
-def _told(world: World, pairs: set[Pair] | None) -> Iterator[Contact]:
+def _told(world: LevelWorld, pairs: set[Pair] | None) -> Iterator[Contact]:
     """The contacts that push; pairs: only those of these things."""
     pushing = _Pushing.of(world)
     if pairs is not None:
@@ -137,7 +137,7 @@ class _Pushing:
     touched: Slots
 
     @classmethod
-    def of(cls, world: World) -> "_Pushing":
+    def of(cls, world: LevelWorld) -> "_Pushing":
         """Those of a world; without those of things that are gone."""
         pushes = (world.contact_impulse[:, 0] > 0.0) | (world.contact_impact > 0.0)
         kept = np.flatnonzero(pushes & (world.contact_particle < world.particle_count))
@@ -182,7 +182,7 @@ class _Features:
     count: Slots
 
     @classmethod
-    def of(cls, world: World) -> "_Features":
+    def of(cls, world: LevelWorld) -> "_Features":
         """Those of a world as it is now."""
         things = ThingNames.of(world)
         parts = {DISC: things.of_particle, TERRAIN: things.of_terrain}
@@ -191,7 +191,7 @@ class _Features:
         return cls(np.concatenate(found), np.cumsum(count) - count, count)
 
 
-def _touched(world: World, feature: Slots) -> Slots:
+def _touched(world: LevelWorld, feature: Slots) -> Slots:
     """The things that contacts are with, -1: with something that is gone."""
     features = world.derived(_Features.of, of_hands=False)
     number, kind = np.divmod(feature, KINDS)
@@ -200,7 +200,7 @@ def _touched(world: World, feature: Slots) -> Slots:
     return np.where(known, features.thing[np.where(known, number + features.first[kind], 0)], -1)
 
 
-def _with_contacts(world: World, kept: Slots) -> World:
+def _with_contacts(world: LevelWorld, kept: Slots) -> LevelWorld:
     """The world with some of its contacts alone, to be read; it shares all other arrays."""
     view = copy.copy(world)
     names = ("contact_particle", "contact_feature", "contact_impulse", "contact_impact")

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.document.model import Level
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.rules.question import WALLS
 from sandbox.physics.arrays import Slots
-from sandbox.physics.world import World
 
 # Particles that a command adds one by one are each a thing, and all have this before the dot.
 _ADDED = "+"
@@ -27,7 +26,7 @@ class ThingNames:
     of_terrain: Slots
 
     @classmethod
-    def of(cls, world: World) -> "ThingNames":
+    def of(cls, world: LevelWorld) -> "ThingNames":
         """Those of a world as it is now; kept until something joins it, leaves it or breaks."""
         return world.derived(_named, of_hands=False)
 
@@ -44,7 +43,7 @@ def thing_of_spring(spring: str) -> str:
     return spring if body in ("", _ADDED) else body
 
 
-def _named(world: World) -> ThingNames:
+def _named(world: LevelWorld) -> ThingNames:
     numbers: dict[str, int] = {}
     of_particle = [numbers.setdefault(thing_of(name), len(numbers)) for name in world.particle_names]
     of_spring = [numbers.setdefault(thing_of_spring(name), len(numbers)) for name in world.spring_names]
@@ -54,9 +53,6 @@ def _named(world: World) -> ThingNames:
     )
 
 
-def _terrain_names(world: World) -> list[str]:
+def _terrain_names(world: LevelWorld) -> list[str]:
     """The names of the chains of a world's terrain."""
-    count = int(world.terrain.chain.max(initial=-1)) + 1
-    if not isinstance(world.source, Level):
-        return [f"terrain {number}" for number in range(count)]
-    return [*(piece.id for piece in world.source.terrain), *([WALLS] if world.source.walls is not None else [])]
+    return [*(piece.id for piece in world.level.terrain), *([WALLS] if world.level.walls is not None else [])]

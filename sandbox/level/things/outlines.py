@@ -5,14 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sandbox.level.document.model import Level
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.format.look import PALETTE, BodyLook, ParticleLook, colour_of
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.things.names import ThingNames
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.geometry.polygon import signed_area
-from sandbox.physics.world import World
 
 # The colour of terrain and walls.
 GROUND_COLOUR = 0x5B6477
@@ -36,7 +35,7 @@ class ThingOutline:
     colour: int
 
 
-def outlines(world: World) -> list[ThingOutline]:
+def outlines(world: LevelWorld) -> list[ThingOutline]:
     """The outlines of bodies in the order of the level, then those of terrain, then of walls.
 
     What was cut or broke has the outlines of its pieces; one that is torn open is a line. Balls have none: they are
@@ -70,12 +69,12 @@ class _Rims:
     colours: list[int]
 
 
-def _rims(world: World) -> _Rims:
+def _rims(world: LevelWorld) -> _Rims:
     things, colours = ThingNames.of(world), _colours(world)
     return _Rims(list(_bodies(world, things)), list(_terrain(world, things)), colours)
 
 
-def _bodies(world: World, things: ThingNames) -> Iterator[_Rim]:
+def _bodies(world: LevelWorld, things: ThingNames) -> Iterator[_Rim]:
     edge = np.where(world.spring_active, _edges(world), NO_EDGE)
     first, second = world.particle_a.astype(np.int64), world.particle_b.astype(np.int64)
     swapped = edge == SOLID_RIGHT
@@ -91,14 +90,14 @@ def _bodies(world: World, things: ThingNames) -> Iterator[_Rim]:
             yield _Rim(number, np.array(particles, np.int64), closed, False)
 
 
-def _edges(world: World) -> Slots:
+def _edges(world: LevelWorld) -> Slots:
     """The kind of edge of each spring (m,); in a level where nothing touches as the bodies were made."""
     edges = world.edge.astype(np.int64)
-    if edges.any() or not isinstance(world.source, Level):
+    if edges.any():
         return edges
-    named = [(body.id, body) for body in world.source.bodies]
+    named = [(body.id, body) for body in world.level.bodies]
     for joined in world.joined:
-        named += zip(joined.names, joined.source.bodies, strict=False)
+        named += zip(joined.names, joined.level.bodies, strict=False)
     slots = {name: slot for slot, name in enumerate(world.spring_names)}
     for name, body in named:
         made = expansion(body)
@@ -160,7 +159,7 @@ def _turns_left(points: Floats) -> bool:
     return bool(signed_area(points, np.roll(points, -1, axis=0)) > 0.0)
 
 
-def _terrain(world: World, things: ThingNames) -> Iterator[ThingOutline]:
+def _terrain(world: LevelWorld, things: ThingNames) -> Iterator[ThingOutline]:
     terrain = world.terrain
     for chain in np.unique(terrain.chain).tolist():
         edges = np.flatnonzero(terrain.chain == chain)
@@ -171,16 +170,14 @@ def _terrain(world: World, things: ThingNames) -> Iterator[ThingOutline]:
         yield ThingOutline(things.names[thing], points, closed, solid, np.zeros(0, np.int64), GROUND_COLOUR)
 
 
-def _colours(world: World) -> list[int]:
+def _colours(world: LevelWorld) -> list[int]:
     """0xRRGGBB for each thing: what the level says, or one of the palette in turn."""
     said: dict[str, int] = {}
-    if isinstance(world.source, Level):
-        level = world.source
-        usual = {name: material.look for name, material in level.materials.items()}
-        for body in level.bodies:
-            _say(said, body.id, body.look, usual.get(body.material))
-        for particle in level.particles:
-            _say(said, particle.id, particle.look)
+    usual = {name: material.look for name, material in world.level.materials.items()}
+    for body in world.level.bodies:
+        _say(said, body.id, body.look, usual.get(body.material))
+    for particle in world.level.particles:
+        _say(said, particle.id, particle.look)
     palette = list(PALETTE.values())
     return [said.get(name, palette[number % len(palette)]) for number, name in enumerate(ThingNames.of(world).names)]
 

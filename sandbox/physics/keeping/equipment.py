@@ -13,12 +13,11 @@ from sandbox.physics.keeping.forms import FirmBody
 class Joined:
     """Bodies that joined a world together while it ran.
 
-    source: what they were made of, and definition: what a command said of them, both for who made them. names: of the
-    bodies. first_particle, first_spring, first_part: their slots, in the order of the names of particles and springs;
-    second_names: further names of particles, with their slots.
+    definition: what a command said of them. names: of the bodies. first_particle, first_spring, first_part: their
+    slots, in the order of the names of particles and springs; second_names: further names of particles, with their
+    slots.
     """
 
-    source: Any
     definition: Mapping[str, Any]
     names: tuple[str, ...]
     first_particle: int

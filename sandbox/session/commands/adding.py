@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sandbox.level.assembly.kits import join_loose
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.format.quantities import FrictionCoefficient, Length, Mass, Point, Share, Velocity
 from sandbox.physics.commands.command import ADD_PARTICLE, ADD_SPRING
 from sandbox.physics.kits.joining import KitError
@@ -30,7 +31,7 @@ class AddParticle(Command):
     friction: FrictionCoefficient | None = None
     restitution: Share | None = None
 
-    def carry_out(self, world: World, giver: int) -> None:
+    def carry_out(self, world: LevelWorld, giver: int) -> None:
         (x, y), (vx, vy) = self.position, self.velocity or (0.0, 0.0)
         given = {"friction": self.friction, "restitution": self.restitution}
         rows = {
@@ -52,7 +53,7 @@ class AddSpring(Command):
     stiffness: Share = 0.5
     damping: Share = 0.9
 
-    def carry_out(self, world: World, giver: int) -> None:
+    def carry_out(self, world: LevelWorld, giver: int) -> None:
         if self.particle_a == self.particle_b:
             name = world.particle_names[self.particle_a]
             raise CommandError(SAME_ENDS.format(name))
@@ -63,7 +64,7 @@ class AddSpring(Command):
         _join(world, {"springs": rows, "materials": {"name": [world.material_names[0]]}}, giver, ADD_SPRING)
 
 
-def _join(world: World, columns: dict[str, dict[str, Any]], giver: int, kind: int) -> None:
+def _join(world: LevelWorld, columns: dict[str, dict[str, Any]], giver: int, kind: int) -> None:
     try:
         join_loose(world, columns, giver, kind)
     except KitError as error:

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.format.level_error import shown
 from sandbox.level.rules.hands import thing_of, words_of
 from sandbox.physics.commands.command import BEYOND_REACH, EXHAUSTED, FORBIDDEN, UNTOUCHABLE
@@ -42,7 +43,7 @@ class Command(ABC):
             assert cls.type not in COMMAND_TYPES, f"two commands are called {cls.type}"
             COMMAND_TYPES[cls.type] = cls
 
-    def carry_out(self, world: World, giver: int) -> None:
+    def carry_out(self, world: LevelWorld, giver: int) -> None:
         """Do it, for a hand or a rule. Raises CommandError, IndexError, ValueError or RefusedCommand where it cannot be
         done; nothing is changed then.
         """
@@ -80,7 +81,7 @@ def with_slots(world: World, command: Command) -> Command:
     return replace(command, **found) if found else command  # type: ignore[type-var]
 
 
-def apply(world: World, command: Command) -> Command:
+def apply(world: LevelWorld, command: Command) -> Command:
     """Carry out a command that hands give, and return it with slots in place of names.
 
     Raises CommandError and changes nothing where it cannot be.
@@ -90,7 +91,7 @@ def apply(world: World, command: Command) -> Command:
     return command
 
 
-def act(world: World, command: Command) -> None:
+def act(world: LevelWorld, command: Command) -> None:
     """Carry out a command of a rule, whatever hands may do. Raises CommandError, with nothing changed, where it cannot
     be.
     """
@@ -106,7 +107,7 @@ def _validated(world: World, command: Command) -> Command:
     return command
 
 
-def _carry_out(world: World, command: Command, giver: int) -> None:
+def _carry_out(world: LevelWorld, command: Command, giver: int) -> None:
     try:
         command.carry_out(world, giver)
     except CommandError:

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from sandbox.level.assembly.joining import join_definition
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.format.level_error import LevelError
-from sandbox.physics.world import World
 from sandbox.session.commands.command import Command, CommandError
 
 Definition = dict[str, Any]
@@ -27,7 +27,7 @@ class AddBody(Command):
     materials: dict[str, Any] | None = None
     kit: Definition | None = None
 
-    def carry_out(self, world: World, giver: int) -> None:
+    def carry_out(self, world: LevelWorld, giver: int) -> None:
         given = {name: value for name, value in vars(self).items() if value is not None}
         if ("kit" in given) == ("body" in given) or ("kit" in given and len(given) > 1):
             raise CommandError("say body, or kit: one of the two")

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import ZoneDef
 from sandbox.level.things.contacts import ContactListener
 from sandbox.level.things.names import ThingNames
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import Floats
-from sandbox.physics.world import World
 
 # Two things that are apart for no longer than this are still in touch [s].
 APART = 0.25
@@ -56,13 +56,13 @@ class TouchWatch:
         self._inside: set[tuple[str, str]] | None = None
         self._listener: ContactListener | None = None
 
-    def following(self, states: Iterable[World]) -> Iterator[World]:
+    def following(self, states: Iterable[LevelWorld]) -> Iterator[LevelWorld]:
         """These states, each watched before it is passed on."""
         for world in states:
             self.watch(world)
             yield world
 
-    def watch(self, world: World) -> None:
+    def watch(self, world: LevelWorld) -> None:
         """Take in the world after a tick. Ticks come in order, none left out."""
         if self._listener is None:
             self._listener = ContactListener(round(APART * world.settings.tick_rate))
@@ -74,7 +74,7 @@ class TouchWatch:
         if self._zones:
             self._watch_zones(world)
 
-    def _watch_zones(self, world: World) -> None:
+    def _watch_zones(self, world: LevelWorld) -> None:
         now = things_inside(world, self._zones)
         # What is there from the start has not entered.
         before = now if self._inside is None else self._inside
@@ -99,7 +99,7 @@ class TouchWatch:
             meetings[pair].end(tick)
 
 
-def things_inside(world: World, zones: Iterable[ZoneDef]) -> set[tuple[str, str]]:
+def things_inside(world: LevelWorld, zones: Iterable[ZoneDef]) -> set[tuple[str, str]]:
     """Things with the zones that all their particles are in, as the metric `inside` asks."""
     things, shown = ThingNames.of(world), shown_particles(world)
     count = len(things.names)

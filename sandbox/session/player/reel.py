@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
 from sandbox.physics.analysis.query import shown_particles, shown_springs
@@ -117,7 +118,7 @@ def steps_between(ticks: int, particles: int, sides: int) -> int:
     return max(1, -(-ticks * particles * sides * 4 // MOST_BYTES))
 
 
-def told_states(run: Session, first: int, last: int) -> Iterator[World]:
+def told_states(run: Session, first: int, last: int) -> Iterator[LevelWorld]:
     """States of a run at every tick of first..last, those before its present tick told again; it is advanced.
 
     The world itself is given, where it has to be looked at before the next. Ends early where a command fails.

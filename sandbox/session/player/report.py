@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.physics.world import World
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.session.events.happening import shortened
 from sandbox.session.events.story import story
 from sandbox.session.events.touch_watch import TouchWatch
@@ -17,7 +17,7 @@ from sandbox.session.replay.verify import Comparison
 from sandbox.session.session import Session
 
 # What looks on while states are gathered: gives on what it is given.
-Watched = Callable[[Iterable[World]], Iterable[World]]
+Watched = Callable[[Iterable[LevelWorld]], Iterable[LevelWorld]]
 Played = tuple[NDArray[np.float64], int, list[Reel]]
 
 

@@ -32,6 +32,7 @@ import numpy as np
 
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.assembly.joining import join_definition
+from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.reading.files import file_of, level_data
 from sandbox.physics.constraints import AREA, CONSTRAINT_NAMES
@@ -113,7 +114,7 @@ def encode_state(state: World | Snapshot, names: Iterable[str] = tuple(BY_STORED
     return {"state": arrays, "settings": asdict(state.settings)} | ({"joined": joined} if joined else {})
 
 
-def _equipment(world: World, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int]) -> Equipment:
+def _equipment(world: LevelWorld, joined: Sequence[Mapping[str, Any]], grabs: tuple[int, int]) -> Equipment:
     """The equipment of a level's world once bodies of a state line have joined it; grabs: where hands have their slots.
 
     Raises ValueError.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sandbox.app.draw.looks import GRAINS, Look, ball_look, body_looks, is_filled, spring_look
 from sandbox.app.draw.things.borders import sides_of, trace_loops
+from sandbox.level.assembly.level_world import levels_of
 from sandbox.level.document.model import Level
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.body_def import BodyDef
@@ -238,8 +239,8 @@ def joined_slots(level_slots: LevelSlots, joined: Sequence[Joined]) -> LevelSlot
     """The cast of a level, or of one that bodies have joined while it ran, once these bodies have joined it as well."""
     actors, joins = list(level_slots.actors), list(level_slots.joins)
     particles, springs = [level_slots.particles], [level_slots.springs]
-    for each in joined:
-        own, first, spring = level_slots_of(each.source), each.first_particle, each.first_spring
+    for each in levels_of(joined):
+        own, first, spring = level_slots_of(each.level), each.first_particle, each.first_spring
         actors += [replace(actor, slots=actor.slots + first, springs=actor.springs + spring) for actor in own.actors]
         joins += [
             Join(join.spring + spring, (join.ends[0] + first, join.ends[1] + first), join.look) for join in own.joins
