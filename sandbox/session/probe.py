@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox.physics.analysis.motor_readings import MotorReading, motor_readings
+from sandbox.physics.analysis.applied_forces import MotorReading, motor_readings
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.world import World

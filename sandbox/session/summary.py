@@ -7,8 +7,16 @@ from statistics import median
 
 import numpy as np
 
-from sandbox.physics.analysis.energy import Dissipation, gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.analysis.energy_tests import EnergyTests, energy_tests, forget_energy_tests, steps_by_mass
+from sandbox.physics.analysis.energy import (
+    Dissipation,
+    EnergyTests,
+    energy_tests,
+    forget_energy_tests,
+    gravity_energy,
+    kinetic_energy,
+    spring_energy,
+    steps_by_mass,
+)
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
 from sandbox.physics.settings import Substeps
 from sandbox.physics.snapshot import state_hash

@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from sandbox.physics.analysis.pulls import pulls_of
+from sandbox.physics.analysis.applied_forces import pulls_of
 from sandbox.physics.analysis.query import grip_radius
 from sandbox.physics.analysis.stability import report
 from sandbox.physics.solvers import SOLVERS

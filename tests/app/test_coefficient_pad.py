@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.physics.analysis.coefficient_zones import coefficient_zones
+from sandbox.physics.analysis.stability import coefficient_zones
 from sandbox.physics.equation import frequency_from_coefficients, spring_impulse
 from sandbox.physics.softness.body_motion import errors_of, motion_of, swings_back
 from sandbox.session.commands import SetCoefficients

@@ -6,7 +6,7 @@ import pytest
 from sandbox.app.draw.colours import ACCENT, WARNING, packed
 from sandbox.app.play.hand_labels import newtons, text_of
 from sandbox.app.play.stage import Stage
-from sandbox.physics.analysis.pulls import Pull
+from sandbox.physics.analysis.applied_forces import Pull
 from sandbox.session.commands import Grab
 from sandbox.session.replay.reader import read_replay
 from sandbox.session.replay.verify import verify

@@ -6,7 +6,7 @@ import pytest
 
 from sandbox.app.play.out_of_view import NOTICE
 from sandbox.level.reading.files import load_level, shipped_levels
-from sandbox.physics.analysis.contact_points import overlapping
+from sandbox.physics.analysis.applied_forces import overlapping
 from sandbox.session.commands import MoveBody
 from tests.app.conftest import small_level
 from tests.app.test_following import flying, places

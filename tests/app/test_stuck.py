@@ -4,7 +4,7 @@ import pygame
 import pytest
 
 from sandbox.app.play import stuck
-from sandbox.physics.analysis.contact_points import overlapping
+from sandbox.physics.analysis.applied_forces import overlapping
 from sandbox.session.commands import AddBody
 from tests.session.test_freeing import cage
 

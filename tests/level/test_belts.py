@@ -9,7 +9,7 @@ import pytest
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.format.level_error import LevelError
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.analysis.energy_tests import energy_tests
+from sandbox.physics.analysis.energy import energy_tests
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.analysis.energy_tests import steps_by_mass
+from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy, steps_by_mass
 from sandbox.session.session import Session
 from sandbox.session.summary import run
 

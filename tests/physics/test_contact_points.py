@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.contact_points import contact_points
+from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.analysis.energy import spring_forces
 from sandbox.physics.analysis.stability import BOUND, spring_loads, stability_shares
 from sandbox.physics.settings import WorldSettings

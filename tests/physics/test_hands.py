@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.pulls import pulls_of
+from sandbox.physics.analysis.applied_forces import pulls_of
 from sandbox.physics.analysis.query import grip_radius
 from sandbox.physics.analysis.stability import report
 from sandbox.physics.jit import COMPILED

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.contact_points import contact_points
+from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.filter import ALL_GROUPS, LINE, TERRAIN_GROUP
 from sandbox.physics.solvers.contact.small_steps import small_steps

@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.energy import spring_energy, total_energy
-from sandbox.physics.analysis.last_tick import of_last_tick
+from sandbox.physics.analysis.energy import of_last_tick, spring_energy, total_energy
 from sandbox.physics.keeping.forms import Firmness
 from sandbox.physics.ramps import CONSTRAINTS, SPRINGS, in_force, next_pair
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER_NAMES, WorldSettings

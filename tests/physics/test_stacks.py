@@ -7,8 +7,7 @@ import pytest
 
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
-from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
-from sandbox.physics.analysis.energy_tests import energy_tests
+from sandbox.physics.analysis.energy import energy_tests, gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.arrays import Floats
 from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.jit import COMPILED

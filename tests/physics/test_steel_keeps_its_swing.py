@@ -15,8 +15,7 @@ import pytest
 
 from sandbox.cli import main
 from sandbox.level.reading.files import load_level
-from sandbox.physics.analysis.energy import total_energy
-from sandbox.physics.analysis.energy_tests import EnergyTests, energy_tests, forget_energy_tests
+from sandbox.physics.analysis.energy import EnergyTests, energy_tests, forget_energy_tests, total_energy
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.session import Session

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.physics.analysis.energy import gravity_energy
-from sandbox.physics.analysis.water_energy import water_energy
+from sandbox.physics.analysis.energy import gravity_energy, water_energy
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.analysis.contact_points import overlapping
+from sandbox.physics.analysis.applied_forces import overlapping
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import CommandError, Free, Pin, Undo, apply
 from sandbox.session.replay.reader import read_replay

@@ -28,7 +28,7 @@ from sandbox.app.draw.views.zone_outlines import mark_zones
 from sandbox.app.draw.water import Pools
 from sandbox.app.run.playback import interpolated
 from sandbox.level.document.model import Level
-from sandbox.physics.analysis.pulls import Pull
+from sandbox.physics.analysis.applied_forces import Pull
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.keeping.equipment import Joined
 from sandbox.physics.snapshot import Snapshot

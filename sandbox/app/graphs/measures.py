@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sandbox.physics.analysis.applied_forces import motor_readings
 from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy, spring_lengths
-from sandbox.physics.analysis.motor_readings import motor_readings
 from sandbox.physics.world import World
 
 # Of more motors those with the first names are shown.

@@ -16,7 +16,7 @@ from sandbox.app.widgets.slider import FINE_KEY_STEP, KEY_STEP
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Draggable, Pixel
-from sandbox.physics.analysis.coefficient_zones import CoefficientZones
+from sandbox.physics.analysis.stability import CoefficientZones
 from sandbox.physics.arrays import Floats
 from sandbox.physics.softness.body_motion import BodyMotion, swings_back
 

@@ -28,8 +28,12 @@ from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
-from sandbox.physics.analysis.stability import CoefficientLimits, coefficient_limits
+from sandbox.physics.analysis.stability import (
+    CoefficientLimits,
+    CoefficientZones,
+    coefficient_limits,
+    coefficient_zones,
+)
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.softness.body_motion import BodyMotion
 from sandbox.physics.softness.firmness import WORDS, firm_bodies

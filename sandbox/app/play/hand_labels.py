@@ -9,7 +9,7 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import BACKGROUND, TEXT, WARNING, Colour
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.analysis.pulls import Pull
+from sandbox.physics.analysis.applied_forces import Pull
 from sandbox.physics.snapshot import Snapshot
 from sandbox.tools.tool import Tool
 

@@ -21,7 +21,7 @@ from sandbox.app.run.stability_paint import StabilityPaint
 from sandbox.editor.edits.joining import joining_commands
 from sandbox.editor.edits.sizing import sized
 from sandbox.level.document.model import Level
-from sandbox.physics.analysis.pulls import Pull, pulls_of
+from sandbox.physics.analysis.applied_forces import Pull, pulls_of
 from sandbox.physics.analysis.query import nearest_particle, shown_particles
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.snapshot import Snapshot

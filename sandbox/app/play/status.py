@@ -11,7 +11,7 @@ from sandbox.app.panel.readings import number
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.analysis.motor_readings import MotorReading, motor_readings
+from sandbox.physics.analysis.applied_forces import MotorReading, motor_readings
 from sandbox.physics.analysis.query import shown_particles, shown_springs
 from sandbox.physics.solvers import SOLVERS
 

@@ -7,7 +7,7 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import WARNING
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.ui import Ui
-from sandbox.physics.analysis.contact_points import overlapping
+from sandbox.physics.analysis.applied_forces import overlapping
 from sandbox.physics.components import body_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import World

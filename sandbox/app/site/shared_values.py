@@ -17,7 +17,7 @@ from sandbox.app.sound import bank, sound_events, voices, waves
 from sandbox.level import checks
 from sandbox.page.page import WEB
 from sandbox.physics import world
-from sandbox.physics.analysis import pulls, query
+from sandbox.physics.analysis import applied_forces, query
 from sandbox.physics.meshing import fitting
 from sandbox.physics.softness import body_motion
 from sandbox.session import summary
@@ -40,7 +40,7 @@ def shared_values() -> dict[str, dict[str, Any]]:
         "CHECKS": _of(checks, "STILL") | _of(summary, "STRAIN_WINDOW"),
         "PACE": {"LONGEST": loop.LONGEST_FRAME, "BUDGET": playback.TICK_BUDGET},
         "HANDS": {
-            "STRENGTH": world.HAND_STRENGTH, "SOFT_REACH": query.REACH, "AT_LIMIT": pulls.AT_LIMIT,
+            "STRENGTH": world.HAND_STRENGTH, "SOFT_REACH": query.REACH, "AT_LIMIT": applied_forces.HAND_AT_LIMIT,
             "PICK_RADIUS": stage.PICK_RADIUS, "UNITS": hand_labels.UNITS,
         },
         "GAMEPAD": _of(gamepads, "ACROSS", "UPWARDS", "BUTTONS", "PRESSES", "LETS_GO"),

@@ -8,7 +8,7 @@ import numpy as np
 
 from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.things.names import ThingNames
-from sandbox.physics.analysis.contact_points import contact_points
+from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.arrays import Slots
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, TIP_SHIFT
 

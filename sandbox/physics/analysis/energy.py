@@ -1,66 +1,44 @@
-"""Energy of a world [J] and what ticks take out of it: for the panel and the checks; no tick depends on it."""
+"""Energy of a world [J], what ticks take out of it, and how steps passed their energy test; no tick depends on it.
+
+Where Cs, Cd or settings ramp (ramps.py), energies and forces are of what was in force in the last tick.
+"""
+
+import copy
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from sandbox.physics.analysis.last_tick import of_last_tick
-from sandbox.physics.analysis.water_energy import water_energy
-from sandbox.physics.arrays import Floats
+from sandbox.physics.arena import FIRST_ARENA, Arena, begin, lay_out
+from sandbox.physics.arrays import Floats, with_empty
 from sandbox.physics.constraints import AREA, FLOOR, FLOOR_RATE, FLOOR_STRENGTH, TRIANGLE, constraint_values
 from sandbox.physics.geometry.segment import lengths
+from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, unpack
 from sandbox.physics.marks import GRAB_MATERIAL, LAW_HOOKE
+from sandbox.physics.pipeline.block_owner import block_of
+from sandbox.physics.ramps import COEFFICIENTS, CONSTRAINTS, SPRINGS, in_force
+from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
+from sandbox.physics.solvers.direct.energy_bank import BY_MASS
+from sandbox.physics.state import State, state_of
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
-from sandbox.physics.water.pools import FLOW_X, FLOW_Y
+from sandbox.physics.water.displacers import Water, lay_out_water
+from sandbox.physics.water.pools import BOTTOM, DENSITY, FLOW_X, FLOW_Y, LEFT, RIGHT, TOP
+from sandbox.physics.water.push import area_of, middle_of
+from sandbox.physics.water.wet_parts import PI, disc_depth, mean_depth
 from sandbox.physics.world import World
 
+AnyState = TypeVar("AnyState", World, Snapshot, World | Snapshot)
+_TICKS = ("ramp_ticks", "constraint_ramp_ticks", "constraint_area_ticks", "setting_ticks")
 # The energy of what blew up is inf or NaN, and no fault.
 _unbounded = np.errstate(over="ignore", invalid="ignore")
 
 
-def reduced_masses(world: World | Snapshot) -> Floats:
-    """Reduced mass [kg] of every spring (m,); 0 where both ends are pinned."""
-    total = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
-    return np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0)
-
-
-@_unbounded
-def spring_lengths(world: World | Snapshot) -> Floats:
-    """Present length [m] of every spring (m,)."""
-    return lengths(world.position[world.particle_b] - world.position[world.particle_a])
-
-
-def _spring_constants(state: World | Snapshot) -> Floats:
-    """k [N/m] of every spring (m,), as the solver gives it to them."""
-    solver, h = SOLVERS[state.settings.solver], substep_time(state.settings)
-    nissen = solver.spring_constant(*_halved_coefficients(state), reduced_masses(state), h)
-    return np.where(state.law == LAW_HOOKE, state.hooke_stiffness, nissen)
-
-
-def _halved_coefficients(state: World | Snapshot) -> tuple[Floats, Floats]:
-    return substep_coefficients(state, highest=SOLVERS[state.settings.solver].highest)
-
-
-@_unbounded
-def spring_forces(state: World | Snapshot) -> Floats:
-    """Force [N] of every spring (m,) as the next step begins, above 0: it pulls; 0 where inactive, and of the grabs'.
-
-    F = k x + c u, with the speed u at which the ends part once gravity has acted. Where the solver bounds the energy
-    it is k x alone: its k has the damping in it.
-    """
-    state = of_last_tick(state)
-    constant, h = _spring_constants(state), substep_time(state.settings)
-    separation = state.position[state.particle_b] - state.position[state.particle_a]
-    length = spring_lengths(state)
-    force = constant * (length - state.rest_length)
-    if not SOLVERS[state.settings.solver].bounded:
-        falling = np.where(state.inverse_mass > 0.0, state.gravity_scale * h, 0.0)[:, None] * state.settings.gravity
-        velocity = state.velocity + falling
-        parting = np.sum((velocity[state.particle_b] - velocity[state.particle_a]) * separation, axis=1)
-        speed = np.divide(parting, length, out=np.zeros_like(length), where=length > 0.0)
-        nissen = _halved_coefficients(state)[1] * reduced_masses(state) / h
-        force = force + np.where(state.law == LAW_HOOKE, state.hooke_damping, nissen) * speed
-    return np.where(state.spring_active & (state.material != GRAB_MATERIAL), force, 0.0)
+def total_energy(world: World) -> float:
+    """Kinetic energy and that of springs and gravity [J]."""
+    return kinetic_energy(world) + spring_energy(world) + gravity_energy(world)
 
 
 @_unbounded
@@ -129,9 +107,72 @@ def gravity_energy(world: World) -> float:
     return float(of_particles) + water_energy(world)
 
 
-def total_energy(world: World) -> float:
-    """Kinetic energy and that of springs and gravity [J]."""
-    return kinetic_energy(world) + spring_energy(world) + gravity_energy(world)
+@_unbounded
+def spring_forces(state: World | Snapshot) -> Floats:
+    """Force [N] of every spring (m,) as the next step begins, above 0: it pulls; 0 where inactive, and of the grabs'.
+
+    F = k x + c u, with the speed u at which the ends part once gravity has acted. Where the solver bounds the energy
+    it is k x alone: its k has the damping in it.
+    """
+    state = of_last_tick(state)
+    constant, h = _spring_constants(state), substep_time(state.settings)
+    separation = state.position[state.particle_b] - state.position[state.particle_a]
+    length = spring_lengths(state)
+    force = constant * (length - state.rest_length)
+    if not SOLVERS[state.settings.solver].bounded:
+        falling = np.where(state.inverse_mass > 0.0, state.gravity_scale * h, 0.0)[:, None] * state.settings.gravity
+        velocity = state.velocity + falling
+        parting = np.sum((velocity[state.particle_b] - velocity[state.particle_a]) * separation, axis=1)
+        speed = np.divide(parting, length, out=np.zeros_like(length), where=length > 0.0)
+        nissen = _halved_coefficients(state)[1] * reduced_masses(state) / h
+        force = force + np.where(state.law == LAW_HOOKE, state.hooke_damping, nissen) * speed
+    return np.where(state.spring_active & (state.material != GRAB_MATERIAL), force, 0.0)
+
+
+@_unbounded
+def spring_lengths(world: World | Snapshot) -> Floats:
+    """Present length [m] of every spring (m,)."""
+    return lengths(world.position[world.particle_b] - world.position[world.particle_a])
+
+
+def reduced_masses(world: World | Snapshot) -> Floats:
+    """Reduced mass [kg] of every spring (m,); 0 where both ends are pinned."""
+    total = world.inverse_mass[world.particle_a] + world.inverse_mass[world.particle_b]
+    return np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0)
+
+
+def _spring_constants(state: World | Snapshot) -> Floats:
+    """k [N/m] of every spring (m,), as the solver gives it to them."""
+    solver, h = SOLVERS[state.settings.solver], substep_time(state.settings)
+    nissen = solver.spring_constant(*_halved_coefficients(state), reduced_masses(state), h)
+    return np.where(state.law == LAW_HOOKE, state.hooke_stiffness, nissen)
+
+
+def _halved_coefficients(state: World | Snapshot) -> tuple[Floats, Floats]:
+    return substep_coefficients(state, highest=SOLVERS[state.settings.solver].highest)
+
+
+def of_last_tick(state: AnyState) -> AnyState:
+    """The state as its last tick had it, for readings of energy and force; itself where nothing ramps.
+
+    It shares all other arrays with the state, and is not to be stepped or changed.
+    """
+    if not any(getattr(state, name).any() for name in _TICKS):
+        return state
+    view = copy.copy(state)
+    arrays = {name: np.zeros_like(getattr(state, name)) for name in _TICKS} | {
+        f"{family}{name}": values
+        for family in (SPRINGS, CONSTRAINTS)
+        for name, values in zip(COEFFICIENTS, in_force(state, family), strict=True)
+    }
+    rest = state.constraint_rest.copy()
+    rest[:, 0] = np.where(state.constraint_area_ticks > 0, state.constraint_area_now, rest[:, 0])
+    numbers = np.where(state.setting_ticks > 0, state.setting_now, state.settings.numbers)
+    settings = "_settings" if isinstance(state, World) else "settings"
+    vars(view).update(
+        arrays, constraint_rest=rest, **{settings: WorldSettings.of(numbers.tolist(), state.settings.choices)}
+    )
+    return view
 
 
 class Dissipation:
@@ -167,3 +208,119 @@ def _is_worked_on(world: World) -> bool:
     flows = bool(world.water[:, FLOW_X : FLOW_Y + 1].any())
     is_driven = bool(len(world.actuators.muscles.spring)) or bool(np.any(world.actuator_value))
     return world.any_held() or is_driven or blows or flows
+
+
+def water_energy(world: World) -> float:
+    """Energy [J] of the water that a world's bodies, hulls and discs have lifted to the surface; 0 without water."""
+    if not len(world.water):
+        return 0.0
+    return float(_energy_lifted(world.derived(_lay_out, of_hands=False), max(0.0, -world.settings.gravity[1])))
+
+
+def _lay_out(world: World) -> Any:
+    water = with_empty(Water, pool=world.water, hull=world.hulls)
+    pointer = bundle(with_empty(WaterPlace, state=state_of(world), water=water))
+    lay_out(_derive_water, pointer, np.zeros(FIRST_ARENA, np.int64))
+    return pointer
+
+
+class WaterPlace(NamedTuple):
+    """A world's state, and where what it displaces is put."""
+
+    state: State
+    water: Water
+
+
+@kernel
+def _derive_water(pointer: Bundle[WaterPlace], arena: Arena) -> None:
+    place = unpack(pointer)
+    begin(arena)
+    lay_out_water(place.state, arena, place.water)
+
+
+@kernel
+def _energy_lifted(pointer: Bundle[WaterPlace], g: float) -> float:
+    place = unpack(pointer)
+    state, water, total = place.state, place.water, 0.0
+    for k in range(water.pool.shape[0]):
+        volume = 0.0
+        for i in range(water.triangle.shape[0]):
+            volume += _under_triangle(water, k, i, state)
+        for o in range(water.shell_start.shape[0] - 1):
+            volume += _under_shell(water, k, o, state)
+        for i in range(water.disc.shape[0]):
+            volume += _under_disc(water, k, i, state)
+        total += water.pool[k, DENSITY] * g * volume
+    return total
+
+
+@inner_kernel
+def _under_triangle(water: Water, k: int, i: int, state: State) -> float:
+    pool, x = water.pool, state.position
+    p, q, r = water.triangle[i, 0], water.triangle[i, 1], water.triangle[i, 2]
+    middle = (x[p, 0] + x[q, 0] + x[r, 0]) / 3.0
+    if not (pool[k, LEFT] <= middle and middle <= pool[k, RIGHT]):
+        return 0.0
+    if not x[p, 1] + x[q, 1] + x[r, 1] >= 3.0 * pool[k, BOTTOM]:
+        return 0.0
+    top = pool[k, TOP]
+    depth = mean_depth(top - x[p, 1], top - x[q, 1], top - x[r, 1])
+    return depth * abs(state.constraint_rest[water.constraint[i], 0])
+
+
+@inner_kernel
+def _under_shell(water: Water, k: int, o: int, state: State) -> float:
+    pool, y, total = water.pool, state.position, 0.0
+    middle_x, middle_y = middle_of(water, o, y)
+    if not (pool[k, LEFT] <= middle_x and middle_x <= pool[k, RIGHT] and pool[k, BOTTOM] <= middle_y):
+        return 0.0
+    for e in range(water.shell_start[o], water.shell_start[o + 1]):
+        a, b, top = water.shell_a[e], water.shell_b[e], pool[k, TOP]
+        total += water.shell_share[e] * mean_depth(top - middle_y, top - y[a, 1], top - y[b, 1])
+    return area_of(water, o, state) * total
+
+
+@inner_kernel
+def _under_disc(water: Water, k: int, i: int, state: State) -> float:
+    pool, p, area = water.pool, water.disc[i], water.disc_area[i]
+    radius = math.sqrt(area / PI) if area > 0.0 else state.radius[p]
+    x, y = state.position[p, 0], state.position[p, 1]
+    if not (pool[k, LEFT] <= x and x <= pool[k, RIGHT] and pool[k, BOTTOM] <= y and radius > 0.0):
+        return 0.0
+    return disc_depth(pool[k, TOP] - y, radius)
+
+
+@dataclass(frozen=True)
+class EnergyTests:
+    """How often each way through the energy test was the last that a step of a body or of an island needed.
+
+    passed: the first solve; solved_on: a further one; gave_way: one for a lower target; minimised: one in which
+    contacts only hold, or the minimum of f; slowed_down: velocities were reduced.
+    """
+
+    passed: int
+    solved_on: int
+    gave_way: int
+    minimised: int
+    slowed_down: int
+
+    def __str__(self) -> str:
+        return (
+            f"{self.passed:,} passed, {self.solved_on:,} solved on, {self.gave_way:,} gave way, "
+            f"{self.minimised:,} minimised, {self.slowed_down:,} slowed down"
+        )
+
+
+def energy_tests(world: World) -> EnergyTests:
+    """The counts of a world since they were forgotten; all 0 in solvers without the test."""
+    return EnergyTests(*block_of(world).given.workspace.ways[:BY_MASS].tolist())
+
+
+def steps_by_mass(world: World) -> int:
+    """How often a body had no time for its exact answer to contacts, and took that of its particles' masses."""
+    return int(block_of(world).given.workspace.ways[BY_MASS])
+
+
+def forget_energy_tests(world: World) -> None:
+    """Set the counts of energy tests to 0."""
+    block_of(world).given.workspace.ways[:] = 0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sandbox.level.assembly.build_world import build_world
-from sandbox.physics.analysis.coefficient_zones import CoefficientZones, coefficient_zones
+from sandbox.physics.analysis.stability import CoefficientZones, coefficient_zones
 from sandbox.physics.arrays import Floats
 from sandbox.session.sweep.grid import CD, CS, SweepGrid, Value, case_level
 from sandbox.session.sweep.table import Rows

@@ -12,7 +12,7 @@ from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.things.frame import Frame, Seen
 from sandbox.level.document.model import Level
-from sandbox.physics.analysis.contact_points import contact_points
+from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.analysis.energy import spring_forces
 from sandbox.physics.snapshot import Snapshot
 

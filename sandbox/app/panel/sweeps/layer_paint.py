@@ -9,7 +9,7 @@ from sandbox.app.base.coefficient_scale import CoefficientScale
 from sandbox.app.draw.colours import DECADE, MUTED, TEXT
 from sandbox.app.panel.sweeps.sweep_layer import BLOWN, SweepLayer
 from sandbox.app.widgets.layout import WindowLayout
-from sandbox.physics.analysis.coefficient_zones import CoefficientZones
+from sandbox.physics.analysis.stability import CoefficientZones
 
 # Limits are seen on every colour: a light line in a dark one.
 LIGHT, DARK = (255, 255, 255), (16, 20, 28)

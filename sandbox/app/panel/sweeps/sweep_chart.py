@@ -16,7 +16,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from sandbox.app.panel.sweeps.sweep_measures import SweepMeasure, measure_of, scale_of, shown_values
-from sandbox.physics.analysis.coefficient_zones import CoefficientZones
+from sandbox.physics.analysis.stability import CoefficientZones
 from sandbox.physics.arrays import Floats
 from sandbox.session.sweep.grid import CD, CS, SweepGrid
 from sandbox.session.sweep.sweep_map import SweepPanel, edges, is_logarithmic, sweep_panels

@@ -1,5 +1,6 @@
-"""Contact points of a state, for who looks on: where they are, which way they push and how much; no tick reads it."""
+"""What pushed, turned and pulled in the last step, for who looks on: contacts, motors, hands; no tick reads it."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -9,10 +10,16 @@ from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.filter import LINE, SOLID_RIGHT
 from sandbox.physics.collision.narrow_phase import DISC, EDGE, INSIDE, KINDS, TERRAIN, TIP, TIP_SHIFT
 from sandbox.physics.geometry.segment import lengths, nearest_on_segments
+from sandbox.physics.marks import GRAB_MATERIAL
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World
+
+# A motor that uses this share of its torque is at its limit.
+MOTOR_AT_LIMIT = 0.999
+# A hand that pulls with this share of what it can is at its limit.
+HAND_AT_LIMIT = 0.99
 
 
 class ContactPoints(NamedTuple):
@@ -22,21 +29,6 @@ class ContactPoints(NamedTuple):
     point: Floats
     normal: Floats
     force: Floats
-
-
-def overlapping(world: World) -> list[tuple[int, int]]:
-    """The pairs of bodies that lay in each other in the last step, by a particle of each; twice the same: in itself.
-
-    Lines that cross lines do not count.
-    """
-    if not world.has_contacts:
-        return []
-    collisions = block_of(world).arrays.collisions
-    outline, colliders = collisions.outline, collisions.colliders
-    shapes = colliders.parted[: colliders.parted_count[0], :2]
-    first = outline.member[outline.member_start[:-1]]
-    is_solid = outline.solid_of >= 0
-    return [(int(first[s]), int(first[t])) for s, t in shapes.tolist() if is_solid[s] or is_solid[t]]
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -49,7 +41,9 @@ def contact_points(state: World | Snapshot, position: Floats | None = None) -> C
     kind, number = state.contact_feature % KINDS, state.contact_feature // KINDS
     chosen = (state.contact_particle >= 0) & (state.contact_particle < len(position))
     last = np.where(
-        kind == DISC, len(position), np.where((kind == EDGE) | (kind == INSIDE), len(state.edge), _edges(state))
+        kind == DISC,
+        len(position),
+        np.where((kind == EDGE) | (kind == INSIDE), len(state.edge), len(state.terrain.edge_a)),
     )
     last = np.where(kind == TIP, len(state.terrain.vertex) * TIP_SHIFT, last)
     chosen &= (number < last) & ((kind != TIP) | (number % TIP_SHIFT < len(state.edge)))
@@ -76,10 +70,6 @@ def contact_points(state: World | Snapshot, position: Floats | None = None) -> C
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
     force = (along_normal * normal + across * tangent) / substep_time(state.settings)
     return ContactPoints(particle, centre - radius[:, None] * normal, normal, force)
-
-
-def _edges(state: World | Snapshot) -> int:
-    return len(state.terrain.edge_a)
 
 
 def _features(
@@ -111,3 +101,103 @@ def _unit(vectors: Floats) -> Floats:
     length = lengths(vectors)[:, None]
     up = np.broadcast_to(np.array([0.0, 1.0]), vectors.shape)
     return np.where(length > 0.0, np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0), up)
+
+
+def overlapping(world: World) -> list[tuple[int, int]]:
+    """The pairs of bodies that lay in each other in the last step, by a particle of each; twice the same: in itself.
+
+    Lines that cross lines do not count.
+    """
+    if not world.has_contacts:
+        return []
+    collisions = block_of(world).arrays.collisions
+    outline, colliders = collisions.outline, collisions.colliders
+    shapes = colliders.parted[: colliders.parted_count[0], :2]
+    first = outline.member[outline.member_start[:-1]]
+    is_solid = outline.solid_of >= 0
+    return [(int(first[s]), int(first[t])) for s, t in shapes.tolist() if is_solid[s] or is_solid[t]]
+
+
+class MotorReading(NamedTuple):
+    """A motor's name, the torque that it gave in the last step [N m], the most that it has, and whether it can act.
+
+    pushes: its wheel is on its hub, and there is something to push against.
+    """
+
+    name: str
+    torque: float
+    limit: float
+    pushes: bool
+
+    @property
+    def share(self) -> float:
+        """The share of its torque that is in use, 0..1."""
+        return abs(self.torque) / self.limit if self.limit > 0.0 else 0.0
+
+    @property
+    def at_limit(self) -> bool:
+        """Whether it gives all that it has: more load, and it falls behind its speed or stalls."""
+        return self.share >= MOTOR_AT_LIMIT
+
+
+def motor_readings(world: World) -> list[MotorReading]:
+    """The reading of every motor, in the order of a world's motors."""
+    motors, joints = world.actuators.motors, block_of(world).arrays.joints
+    # What is kept is that of a substep, with "auto" as if the tick were one.
+    h = substep_time(world.settings)
+    first = joints.rows.first
+    return [
+        MotorReading(
+            world.actuators.names[part],
+            float(world.actuator_impulse[part]) / h,
+            float(motors.torque[k]),
+            bool(first[k] < first[k + 1]),
+        )
+        for k, part in enumerate(motors.part.tolist())
+    ]
+
+
+@dataclass(frozen=True)
+class Pull:
+    """The pull of a hand in the last tick.
+
+    cursor: its slot; particle: the one that it holds; force, limit [N]; pinned: the held body has a pinned particle.
+    """
+
+    cursor: int
+    particle: int
+    force: float
+    limit: float
+    pinned: bool
+
+    @property
+    def at_limit(self) -> bool:
+        """Whether it pulls as hard as it can."""
+        return self.force >= HAND_AT_LIMIT * self.limit
+
+
+def pulls_of(world: World) -> list[Pull]:
+    """The pulls of the hands that hold something movable."""
+    grips, pulls = block_of(world).arrays.joints.hands.grips, []
+    for i, hand in enumerate(grips.hand.tolist()):
+        x, y = world.hand_force[hand].tolist()
+        particle = int(world.particle_b[grips.spring[i]])
+        limit = float(world.hand_strength[hand] * grips.mass[i])
+        pinned = particle in _joined_to_pins(world)
+        # What is clamped may be above by a rounding.
+        force = min(float(np.hypot(x, y)), limit)
+        pulls.append(Pull(int(grips.cursor[i]), particle, force, limit, pinned))
+    return pulls
+
+
+def _joined_to_pins(world: World) -> frozenset[int]:
+    return world.derived(_find_joined, of_hands=False)
+
+
+def _find_joined(world: World) -> frozenset[int]:
+    """The particles of all bodies that springs join to something pinned."""
+    free, label = world.inverse_mass > 0.0, block_of(world).arrays.body_label
+    joins = world.spring_active & (world.material != GRAB_MATERIAL)
+    a, b = world.particle_a[joins], world.particle_b[joins]
+    bodies = np.concatenate([label[a[free[a] & ~free[b]]], label[b[free[b] & ~free[a]]]])
+    return frozenset(np.flatnonzero(np.isin(label, bodies) | ~free).tolist())
