@@ -12,12 +12,9 @@ from pydantic import ValidationError
 from sandbox.bring.making import level_of_drawing, tidy
 from sandbox.bring.picture import read_picture
 from sandbox.bring.rube import level_of_rube
-from sandbox.bring.sketch import Kind, LeftOut, Sketch, Unreadable, check_points
+from sandbox.bring.sketch import Kind, LeftOut, Object, Sketch, Unreadable, check_points, local_name, xml_tree
 from sandbox.bring.svg import read_svg
-from sandbox.bring.tiled import read_tiled
-from sandbox.bring.tiled_xml import map_data, tileset_data
-from sandbox.bring.values import Object
-from sandbox.bring.xml_tree import local_name, xml_tree
+from sandbox.bring.tiled import map_data, read_tiled, tileset_data
 from sandbox.level.document.messages import worded
 from sandbox.level.document.model import Level
 from sandbox.level.faults.validate import check_level

@@ -34,8 +34,9 @@ def read_picture(data: bytes) -> Sketch:
     for outer, *holes in kept or pieces[:1]:
         rings = [outer, *(hole for hole in holes if abs(_area(hole)) >= SMALLEST)]
         mean = _mean_colour(colours, alpha, rings)
-        height = alpha.shape[0]
-        drawing.outlines.append(FilledShape(tuple(_upright(ring, height) for ring in rings), "evenodd", mean))
+        # Rows of a picture go down.
+        upright = tuple(np.stack([ring[:, 0], len(alpha) - ring[:, 1]], axis=1) for ring in rings)
+        drawing.outlines.append(FilledShape(upright, "evenodd", mean))
     drawing.left_out.add("picture inside the outline (its mean colour came in)")
     return drawing
 
@@ -80,10 +81,6 @@ def _regions(alpha: NDArray[np.float64]) -> list[list[Ring]]:
         [ring[:-1] - 0.5 for ring in np.split(place, offset[1:-1])]
         for place, offset in zip(points, offsets, strict=True)
     ]
-
-
-def _upright(ring: Ring, height: int) -> Ring:
-    return np.stack([ring[:, 0], height - ring[:, 1]], axis=1)
 
 
 def _area(ring: Ring) -> float:

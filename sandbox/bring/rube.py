@@ -3,22 +3,55 @@
 import math
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.bring.bodies import BODY_LIMIT, DENSITY, Making, common_spacing, jelly
-from sandbox.bring.joints import JoinedBodies, Joint, joined, let_pass
-from sandbox.bring.making import LARGEST, check_found, free_name, ground_of
-from sandbox.bring.shapes import Region, solid_shapes
-from sandbox.bring.sketch import FilledShape, Kind, LeftOut, OpenLine, Ring, Sketch, Unreadable, check_points
-from sandbox.bring.values import Object, number, objects, text, whole
-from sandbox.level.document.model import ContactsDef, Level, Settings, TerrainDef
-from sandbox.level.format.limits import FORMAT, GRAVITY_LIMIT, SPEED_LIMIT, VERSION
+from sandbox.bring.making import (
+    BODY_LIMIT,
+    DENSITY,
+    LARGEST,
+    Making,
+    Region,
+    check_found,
+    common_spacing,
+    free_name,
+    ground_of,
+    jelly,
+    solid_shapes,
+)
+from sandbox.bring.sketch import (
+    FilledShape,
+    Kind,
+    LeftOut,
+    Object,
+    OpenLine,
+    Ring,
+    Sketch,
+    Unreadable,
+    check_points,
+    number,
+    objects,
+    text,
+    whole,
+)
+from sandbox.level.document.model import (
+    ContactsDef,
+    Level,
+    Material,
+    NissenMaterial,
+    ParticleDef,
+    Settings,
+    SpringDef,
+    TerrainDef,
+)
+from sandbox.level.format.limits import COLLISION_GROUP_LIMIT, FORMAT, GRAVITY_LIMIT, SPEED_LIMIT, VERSION
 from sandbox.level.format.quantities import replaced
+from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
 from sandbox.level.kinds.jelly import CircleShape, JellyDef
+from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME
 
 STATIC, KINEMATIC, DYNAMIC = 0, 1, 2
 RIGID = FirmnessDef(sag=0.0)
@@ -31,8 +64,10 @@ STIFF_PARTICLES = 600
 DISC_RINGS, ROUND = 4, 32
 FRICTION_LIMIT = 100.0
 GROUND, JELLY = "ground", "jelly"
-
 Vector = tuple[float, float]
+MATERIAL = "joint"
+# Nearer than this to a particle, of the body's size, a joint is at that particle.
+SAME = 1e-3
 
 
 @dataclass(frozen=True)
@@ -58,6 +93,34 @@ class SceneBody:
         return self.place[0] + x * cosine - y * sine, self.place[1] + x * sine + y * cosine
 
 
+@dataclass(frozen=True)
+class Joint:
+    """A joint of two bodies, by index; places [m]: of its anchors; collides: whether the two touch each other."""
+
+    kind: str
+    bodies: tuple[int, int]
+    places: tuple[Vector, Vector]
+    length: float
+    collides: bool
+
+
+@dataclass
+class JoinedBodies:
+    """Bodies, and what joins them; taken: ids that are in use; passing: pairs of bodies that do not touch."""
+
+    bodies: list[BodyDef]
+    taken: set[str]
+    particles: list[ParticleDef] = field(default_factory=list)
+    springs: list[SpringDef] = field(default_factory=list)
+    welds: list[tuple[str, str]] = field(default_factory=list)
+    passing: list[tuple[str, str]] = field(default_factory=list)
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """What the springs are made of."""
+        return {MATERIAL: NissenMaterial(stiffness=1.0, damping=1.0)} if self.springs else {}
+
+
 def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: str) -> tuple[Level, LeftOut]:
     """A level of a scene, in its own metres unless a width [m] is told. Raises Unreadable."""
     left_out = LeftOut()
@@ -65,18 +128,24 @@ def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: s
     scale = _scale(bodies, width)
     bodies = [_scaled(body, scale) for body in bodies]
     places = [ring for body in bodies for outline in body.outlines for ring in outline.rings]
-    if any(
-        np.max(np.abs(ring)) > LARGEST for ring in [*places, *(line.points for body in bodies for line in body.lines)]
-    ):
+    places += [line.points for body in bodies for line in body.lines]
+    if any(np.max(np.abs(ring)) > LARGEST for ring in places):
         raise Unreadable(f"has places beyond {LARGEST:,.0f} m; give it a smaller width")
     taken: set[str] = set()
     owners: list[list[BodyDef]] = [[] for _ in bodies]
     terrain: list[TerrainDef] = []
     spacing = common_spacing(
-        [_area(body) for body in bodies if body.kind == DYNAMIC and kind != GROUND], STIFF_PARTICLES
+        [
+            sum(shape.polygon.area for shape in _shapes(body)) or 1e-6
+            for body in bodies
+            if body.kind == DYNAMIC and kind != GROUND
+        ],
+        STIFF_PARTICLES,
     )
     for index, body in enumerate(bodies):
-        if kind == JELLY or (kind is None and body.kind == DYNAMIC and not _is_chain(body)):
+        # Lines alone have no mass, so that nothing moves them.
+        is_chain = bool(body.lines) and not body.outlines
+        if kind == JELLY or (kind is None and body.kind == DYNAMIC and not is_chain):
             owners[index] = _jellies(body, name, spacing, taken, left_out)
         else:
             terrain += _terrain(body, name, taken, left_out)
@@ -85,8 +154,8 @@ def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: s
     found = JoinedBodies([body for made in owners for body in made], taken)
     for joint in _joints(scene, bodies, scale, left_out):
         one, other = (owners[index][0] if owners[index] else None for index in joint.bodies)
-        joined(found, joint, one, other)
-    let_pass(found, left_out)
+        _join(found, joint, one, other)
+    _let_pass(found, left_out)
     if objects(scene, "image"):
         left_out.add("image", len(objects(scene, "image")))
     gravity = _vector(scene, "gravity", GRAVITY_LIMIT)
@@ -98,7 +167,7 @@ def level_of_rube(scene: Object, kind: Kind | None, width: float | None, name: s
         level, terrain=tuple(terrain), bodies=tuple(found.bodies), particles=tuple(found.particles),
         springs=tuple(found.springs), welds=tuple(found.welds),
     )  # fmt: skip
-    check_found(level, left_out)
+    check_found(level.bodies or level.terrain, left_out)
     return level, left_out
 
 
@@ -172,6 +241,32 @@ def _fixture(fixture: Object, left_out: LeftOut) -> tuple[Ring, bool]:
     return np.zeros((0, 2)), False
 
 
+def _scale(bodies: Sequence[SceneBody], width: float | None) -> float:
+    if width is None:
+        return 1.0
+    rings = [ring for body in bodies for outline in body.outlines for ring in outline.rings]
+    rings += [line.points for body in bodies for line in body.lines]
+    across = float(np.ptp(np.concatenate(rings)[:, 0])) if rings else 0.0
+    if across <= 0.0:
+        raise Unreadable("has no outline to bring in")
+    return width / across
+
+
+def _scaled(body: SceneBody, scale: float) -> SceneBody:
+    if scale == 1.0:
+        return body
+
+    def larger(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+        return ring * scale
+
+    return replace(
+        body, place=(body.place[0] * scale, body.place[1] * scale),
+        outlines=tuple(replace(each, rings=tuple(map(larger, each.rings))) for each in body.outlines),
+        lines=tuple(replace(each, points=larger(each.points)) for each in body.lines),
+        circle=None if body.circle is None else body.circle * scale,
+    )  # fmt: skip
+
+
 def _jellies(body: SceneBody, base: str, spacing: float, taken: set[str], left_out: LeftOut) -> list[BodyDef]:
     """The jellies of a body: one for each part of it that is apart from the others, the largest first."""
     if body.lines:
@@ -214,19 +309,10 @@ def _terrain(body: SceneBody, base: str, taken: set[str], left_out: LeftOut) -> 
     ]
 
 
-def _is_chain(body: SceneBody) -> bool:
-    """Whether a body has lines alone, which have no mass, so that nothing moves it."""
-    return bool(body.lines) and not body.outlines
-
-
 def _shapes(body: SceneBody) -> list[Region]:
     drawing = Sketch("jelly", list(body.outlines))
     check_points(drawing)
     return solid_shapes(drawing)
-
-
-def _area(body: SceneBody) -> float:
-    return sum(shape.polygon.area for shape in _shapes(body)) or 1e-6
 
 
 def _joints(scene: Object, bodies: Sequence[SceneBody], scale: float, left_out: LeftOut) -> list[Joint]:
@@ -254,30 +340,78 @@ def _joints(scene: Object, bodies: Sequence[SceneBody], scale: float, left_out: 
     return found
 
 
-def _scale(bodies: Sequence[SceneBody], width: float | None) -> float:
-    if width is None:
-        return 1.0
-    rings = [ring for body in bodies for outline in body.outlines for ring in outline.rings]
-    rings += [line.points for body in bodies for line in body.lines]
-    across = float(np.ptp(np.concatenate(rings)[:, 0])) if rings else 0.0
-    if across <= 0.0:
-        raise Unreadable("has no outline to bring in")
-    return width / across
+def _join(found: JoinedBodies, joint: Joint, one: BodyDef | None, other: BodyDef | None) -> None:
+    """Join two bodies, None = ground; a joint of what does not move is none."""
+    held = [body for body in (one, other) if body is not None]
+    if not held:
+        return
+    if joint.kind == "distance":
+        ends = [_pin(found, place, [body]) for place, body in zip(joint.places, (one, other), strict=True)]
+        length = joint.length or None
+        found.springs.append(SpringDef(a=ends[0], b=ends[1], rest_length=length, material=MATERIAL))
+    else:
+        _pin(found, joint.places[0], [one, other])
+        if joint.kind == "weld":
+            # One more, half way to the farthest particle, lets nothing turn.
+            places, first = expansion(min(held, key=lambda body: len(expansion(body).mass))).position, joint.places[0]
+            farthest = places[int(np.argmax(np.hypot(*(places - np.array(first)).T)))]
+            x, y = (0.5 * (farthest + np.array(first))).tolist()
+            _pin(found, (x, y), [one, other])
+    if len(held) == 2 and not joint.collides:
+        found.passing.append((held[0].id, held[1].id))
 
 
-def _scaled(body: SceneBody, scale: float) -> SceneBody:
-    if scale == 1.0:
-        return body
+def _pin(found: JoinedBodies, place: Vector, bodies: list[BodyDef | None]) -> str:
+    """A particle at a place that stiff springs hold to bodies; ground pins it. Gives its id."""
+    count = len(found.particles) + 1
+    while (name := f"joint {count}") in found.taken:
+        count += 1
+    found.taken.add(name)
+    held = [body for body in bodies if body is not None]
+    mass = min((float(np.min(expansion(body).mass)) for body in held), default=1.0)
+    pinned = None in bodies
+    found.particles.append(ParticleDef(id=name, position=place, mass=mass, radius=0.03, pinned=pinned, collides=False))
+    for body in held:
+        places = expansion(body).position
+        away = np.hypot(*(places - np.array(place)).T)
+        near = _corners_around(body, place)
+        nearest = int(np.argmin(away))
+        if away[nearest] <= SAME * float(np.max(np.ptp(places, axis=0))) and not pinned:
+            found.welds.append((f"{body.id}.{nearest}", name))
+            continue
+        for index in near:
+            if away[index] > 0.0:
+                found.springs.append(SpringDef(a=name, b=f"{body.id}.{index}", material=MATERIAL))
+            else:
+                found.welds.append((f"{body.id}.{index}", name))
+    return name
 
-    def larger(ring: NDArray[np.float64]) -> NDArray[np.float64]:
-        return ring * scale
 
-    return replace(
-        body, place=(body.place[0] * scale, body.place[1] * scale),
-        outlines=tuple(replace(each, rings=tuple(map(larger, each.rings))) for each in body.outlines),
-        lines=tuple(replace(each, points=larger(each.points)) for each in body.lines),
-        circle=None if body.circle is None else body.circle * scale,
-    )  # fmt: skip
+def _corners_around(body: BodyDef, place: Vector) -> list[int]:
+    """Corners of the triangle of a body whose middle is nearest to a place."""
+    made = expansion(body)
+    triangles = made.polygons()
+    if not len(triangles):
+        return np.argsort(np.hypot(*(made.position - np.array(place)).T), kind="stable")[:3].tolist()
+    middle = made.position[triangles].mean(axis=1)
+    nearest = int(np.argmin(np.hypot(*(middle - np.array(place)).T)))
+    return [int(index) for index in triangles[nearest]]
+
+
+def _let_pass(found: JoinedBodies, left_out: LeftOut) -> None:
+    """Let joined bodies pass through each other, by a collision group for each."""
+    partners: dict[str, set[str]] = {}
+    for one, other in found.passing:
+        partners.setdefault(one, set()).add(other)
+        partners.setdefault(other, set()).add(one)
+    if len(partners) > COLLISION_GROUP_LIMIT - 2 or partners.keys() & {DEFAULT_GROUP, TERRAIN_NAME}:
+        left_out.add("pair of joined bodies that now touch", len(found.passing))
+        return
+    everything = {TERRAIN_NAME, DEFAULT_GROUP, *partners}
+    for index, body in enumerate(found.bodies):
+        if body.id in partners:
+            touched = tuple(sorted(everything - partners[body.id] - {body.id}))
+            found.bodies[index] = replaced(body, collision_group=body.id, collides=touched)
 
 
 def _within(holder: Object, key: str, most: float) -> float | None:

@@ -1,34 +1,32 @@
 """Reads an SVG drawing: shapes, paths, transforms, groups and copies; all else is counted."""
 
+import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.bring.sketch import FilledShape, OpenLine, Ring, Rule, Sketch, Unreadable, bounds
-from sandbox.bring.svg_paths import SHAPES, Paths
-from sandbox.bring.svg_style import (
-    UNFOLLOWED,
-    Sheet,
-    Style,
-    colour,
-    inherited,
-    is_painted,
-    is_seen,
-    own_properties,
-    paint_server,
-    style_sheet,
+from sandbox.bring.sketch import (
+    FilledShape,
+    LeftOut,
+    OpenLine,
+    Ring,
+    Rule,
+    Sketch,
+    Unreadable,
+    bounds,
+    local_name,
+    xml_tree,
 )
-from sandbox.bring.xml_tree import local_name, xml_tree
 
 # Elements that are drawn, copies of copies among them.
 DRAWN_LIMIT = 20_000
 DEPTH_LIMIT = 40
 # A first outline that covers this share of the page, or more, is its background.
 BACKGROUND = 0.98
-
 CONTAINERS = ("svg", "g", "a", "switch", "symbol")
 # Elements that say nothing of an outline, and are no loss.
 QUIET = ("defs", "style", "metadata", "title", "desc", "namedview", "linearGradient", "radialGradient", "pattern",
@@ -37,12 +35,42 @@ NAMES = {"text": "text element", "image": "image", "foreignObject": "foreign obj
 ANIMATED = ("animate", "animateTransform", "animateMotion", "set", "animateColor")
 SERVERS = {"linearGradient": "gradient", "radialGradient": "gradient", "pattern": "pattern"}
 SVG = "http://www.w3.org/2000/svg"
-
 _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _LINK = "{http://www.w3.org/1999/xlink}href"
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?")
 # Where svgelements stumbles over what is no drawing.
 STUMBLES = (ValueError, TypeError, IndexError, KeyError, AttributeError, ArithmeticError)
+_RULE = re.compile(r"([^{}]+)\{([^{}]*)\}")
+_SIMPLE = re.compile(r"[.#]?[A-Za-z_][\w-]*")
+_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+_PAINT_SERVER = re.compile(r"url\(\s*['\"]?#([^'\")]*)['\"]?\s*\)")
+READ = ("fill", "stroke", "stroke-width", "fill-rule", "display", "visibility", "fill-opacity", "opacity", "color")
+# What an element says that changes how it is seen, and is not followed.
+UNFOLLOWED = {"clip-path": "clip path", "mask": "mask", "filter": "filter"}
+RULE_LIMIT = 10_000
+Sheet = dict[str, dict[str, str]]
+# Points of a curve, and of a whole turn of an arc.
+CURVE_POINTS, TURN_POINTS = 14, 48
+# Characters of all paths of a drawing: reading a million of them takes five seconds.
+PATH_LIMIT = 1_000_000
+SHAPES = ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")
+_T = np.linspace(0.0, 1.0, CURVE_POINTS + 1)[1:, None]
+# Weights (points, controls) of a quadratic and a cubic curve.
+_QUADRATIC = np.concatenate([(1 - _T) ** 2, 2 * _T * (1 - _T), _T**2], axis=1)
+_CUBIC = np.concatenate([(1 - _T) ** 3, 3 * _T * (1 - _T) ** 2, 3 * _T**2 * (1 - _T), _T**3], axis=1)
+
+
+@dataclass(frozen=True)
+class Style:
+    """What an element inherits: paints as they are written, and whether it is seen."""
+
+    fill: str = "black"
+    stroke: str = "none"
+    stroke_width: str = "1"
+    fill_rule: str = "nonzero"
+    visibility: str = "visible"
+    fill_opacity: str = "1"
+    color: str = "black"
 
 
 def read_svg(data: bytes) -> Sketch:
@@ -61,7 +89,7 @@ class _Reader:
         self.drawing = Sketch("jelly")
         self._box = _page(root)
         self._paths = Paths((self._box[2], self._box[3]))
-        self._sheet: Sheet = style_sheet(root, self.drawing.left_out)
+        self._sheet: Sheet = _style_sheet(root, self.drawing.left_out)
         self._by_id: dict[str, Element] = {}
         for element in root.iter():
             self._by_id.setdefault(element.get("id", ""), element)
@@ -71,8 +99,8 @@ class _Reader:
 
     def read(self, element: Element, matrix: NDArray[np.float64], style: Style, depth: int, name: str) -> None:
         """Take in an element and all in it; matrix: from its parent's coordinates to those of the page."""
-        own = own_properties(element, self._sheet)
-        style = inherited(style, own)
+        own = _own_properties(element, self._sheet)
+        style = _inherited(style, own)
         if own.get("display") == "none":
             self.drawing.left_out.add("hidden element")
             return
@@ -95,7 +123,7 @@ class _Reader:
         elif kind in CONTAINERS:
             for child in self._children(element):
                 self.read(child, matrix, style, depth + 1, name)
-        elif is_seen(style, own):
+        elif style.visibility not in ("hidden", "collapse") and not _is_zero(own.get("opacity", "1")):
             self._take(element, matrix, style, name)
 
     def _children(self, element: Element) -> Iterator[Element]:
@@ -139,10 +167,10 @@ class _Reader:
             self.drawing.left_out.add(f"{kind} that cannot be read")
             return
         rings = tuple(points for points, _ in ways if len(points) > 2)
-        if rings and is_painted(style.fill, style.fill_opacity):
+        if rings and _is_painted(style.fill, style.fill_opacity):
             rule: Rule = "evenodd" if style.fill_rule == "evenodd" else "nonzero"
             self.drawing.outlines.append(FilledShape(rings, rule, self._colour(style.fill, style), name))
-        elif is_painted(style.stroke, "1"):
+        elif _is_painted(style.stroke, "1"):
             self._take_stroke(ways, matrix, style, name)
 
     def _take_stroke(self, ways: list[tuple[Ring, bool]], matrix: NDArray[np.float64], style: Style, name: str) -> None:
@@ -159,9 +187,9 @@ class _Reader:
                 self.drawing.lines.append(OpenLine(points, width, tint, name))
 
     def _colour(self, paint: str, style: Style) -> str | None:
-        server = paint_server(paint)
+        server = _paint_server(paint)
         if server is None:
-            return colour(paint, style)
+            return _colour_of(paint, style)
         found = self._by_id.get(server)
         kind = SERVERS.get(local_name(found), "paint") if found is not None else "paint that is not in the file"
         if server not in self._told_servers:
@@ -176,7 +204,7 @@ class _Reader:
                 for part in stops[0].get("style", "").split(";"):
                     key, _, value = part.partition(":")
                     own[key.strip()] = value.strip()
-                return colour(own["stop-color"], style)
+                return _colour_of(own["stop-color"], style)
             found = self._by_id.get((found.get("href") or found.get(_LINK) or "").removeprefix("#"))
         return None
 
@@ -230,3 +258,156 @@ def _page(root: Element) -> tuple[float, float, float, float]:
     sizes = [_NUMBER.match(root.get(key, "")) for key in ("width", "height")]
     width, height = (float(found[0]) if found else 100.0 for found in sizes)
     return 0.0, 0.0, width, height
+
+
+def _style_sheet(root: Element, left_out: LeftOut) -> Sheet:
+    """What the style elements of a drawing say, by ".class", "#id" or the name of elements."""
+    found: Sheet = {}
+    for element in root.iter():
+        if local_name(element) != "style" or not element.text:
+            continue
+        for count, rule in enumerate(_RULE.finditer(_COMMENT.sub("", element.text))):
+            if count > RULE_LIMIT:
+                left_out.add(f"style sheet too long (its first {RULE_LIMIT:,} rules came in)")
+                break
+            for selector in rule[1].split(","):
+                if _SIMPLE.fullmatch(selector.strip()):
+                    found.setdefault(selector.strip(), {}).update(_declarations(rule[2]))
+                elif not selector.strip().startswith("@"):
+                    left_out.add("style rule")
+    return found
+
+
+def _declarations(text: str) -> dict[str, str]:
+    """The properties of "fill: red; stroke: none"."""
+    pairs = (part.partition(":") for part in text.split(";"))
+    return {key.strip(): value.replace("!important", "").strip() for key, _, value in pairs if value.strip()}
+
+
+def _own_properties(element: Element, sheet: Sheet) -> dict[str, str]:
+    """What an element says of itself; its style attribute counts most, then its id, its classes and its name."""
+    found = {key: value.strip() for key, value in element.attrib.items() if key in READ or key in UNFOLLOWED}
+    classes = element.get("class", "").split()[:20]
+    for selector in (local_name(element), *(f".{name}" for name in classes), f"#{element.get('id', '')}"):
+        found.update(sheet.get(selector, {}))
+    return found | _declarations(element.get("style", ""))
+
+
+def _inherited(style: Style, own: Mapping[str, str]) -> Style:
+    """The style of an element in one of another."""
+    given = {key.replace("-", "_"): value for key, value in own.items() if value != "inherit"}
+    return replace(style, **{key: value for key, value in given.items() if key in Style.__dataclass_fields__})
+
+
+def _paint_server(paint: str) -> str | None:
+    """The id of the gradient or pattern that a paint names; None for a colour."""
+    found = _PAINT_SERVER.match(paint)
+    return found[1] if found else None
+
+
+def _colour_of(paint: str, style: Style) -> str | None:
+    """A paint as "#RRGGBB"; None for one that is no colour."""
+    from svgelements import Color
+
+    if paint.lower() == "currentcolor":
+        paint = style.color
+    if len(paint) > 100:
+        return None
+    try:
+        found = Color(paint)
+        value = None if found.value is None else (found.red, found.green, found.blue)
+    except (ValueError, TypeError, IndexError, AttributeError, OverflowError):
+        return None
+    return None if value is None else "#" + "".join(f"{min(255, max(0, part)):02X}" for part in value)
+
+
+def _is_painted(paint: str, opacity: str) -> bool:
+    """Whether a paint is seen."""
+    return paint.lower() not in ("none", "transparent", "") and not _is_zero(opacity)
+
+
+def _is_zero(text: str) -> bool:
+    try:
+        return float(text.removesuffix("%")) == 0.0
+    except ValueError:
+        return False
+
+
+class Paths:
+    """Reads shapes, of a drawing of this page [px], as long as it has not more of them than can be read."""
+
+    def __init__(self, page: tuple[float, float]) -> None:
+        self._page = page
+        self._read = 0
+
+    def of(self, element: Element) -> list[tuple[Ring, bool]]:
+        """Each way of a shape: its points (n, 2), and whether it is closed.
+
+        Raises Unreadable for too much; ValueError and the like for what cannot be read.
+        """
+        kind = local_name(element)
+        self._read += sum(len(element.get(key, "")) for key in ("d", "points"))
+        if self._read > PATH_LIMIT:
+            raise Unreadable(f"has more than {PATH_LIMIT:,} characters of paths; simplify it")
+        if kind in ("polyline", "polygon"):
+            numbers = np.array(element.get("points", "").replace(",", " ").split(), dtype=np.float64)
+            return [(numbers[: len(numbers) // 2 * 2].reshape(-1, 2), kind == "polygon")]
+        if kind == "line":
+            ends = [[self.length(element, f"x{k}", 0), self.length(element, f"y{k}", 1)] for k in (1, 2)]
+            return [(np.array(ends), False)]
+        return self._ways(self._path(element, kind))
+
+    def length(self, element: Element, key: str, axis: int, default: str = "0") -> float:
+        """An attribute as pixels; axis: what a percentage is of, 0 = width, 1 = height, 2 = both."""
+        from svgelements import Length
+
+        width, height = self._page
+        whole = (width, height, math.hypot(width, height) / math.sqrt(2.0))[axis]
+        text = element.get(key) or default
+        return float(Length("0" if text == "auto" else text).value(ppi=96.0, relative_length=whole, font_size=16.0))
+
+    def _path(self, element: Element, kind: str) -> object:
+        from svgelements import Circle, Ellipse, Path, Rect
+
+        if kind == "path":
+            return Path(element.get("d", ""))
+        if kind == "rect":
+            x, y, width, height = (
+                self.length(element, key, k % 2) for k, key in enumerate(("x", "y", "width", "height"))
+            )
+            rx, ry = element.get("rx"), element.get("ry")
+            across = self.length(element, "rx" if rx else "ry", 0)
+            up = self.length(element, "ry" if ry else "rx", 1)
+            if width <= 0.0 or height <= 0.0:
+                return Path()
+            return Path(Rect(x, y, width, height, min(across, width / 2), min(up, height / 2)))
+        centre = self.length(element, "cx", 0), self.length(element, "cy", 1)
+        if kind == "circle":
+            return Path(Circle(*centre, self.length(element, "r", 2)))
+        return Path(Ellipse(*centre, self.length(element, "rx", 0), self.length(element, "ry", 1)))
+
+    def _ways(self, path: object) -> list[tuple[Ring, bool]]:
+        from svgelements import Arc, Close, CubicBezier, Move, QuadraticBezier
+
+        ways: list[tuple[list[NDArray[np.float64]], bool]] = []
+        for segment in path:  # type: ignore[attr-defined]
+            if isinstance(segment, Move) or not ways:
+                ways.append(([_points(segment.end)], False))
+            elif isinstance(segment, Close):
+                ways[-1] = ways[-1][0], True
+                # What follows without a move begins where the closed way began.
+                ways.append(([ways[-1][0][0]], False))
+            elif isinstance(segment, QuadraticBezier):
+                ways[-1][0].append(_QUADRATIC @ _points(segment.start, segment.control, segment.end))
+            elif isinstance(segment, CubicBezier):
+                ways[-1][0].append(_CUBIC @ _points(segment.start, segment.control1, segment.control2, segment.end))
+            elif isinstance(segment, Arc):
+                count = min(TURN_POINTS, max(4, math.ceil(abs(float(segment.sweep)) / math.tau * TURN_POINTS)))
+                ways[-1][0].append(np.array(segment.npoint(np.linspace(0.0, 1.0, count + 1)[1:]), dtype=np.float64))
+            else:
+                ways[-1][0].append(_points(segment.end))
+        return [(np.concatenate(parts), closed) for parts, closed in ways if closed or len(parts) > 1]
+
+
+def _points(*places: object) -> NDArray[np.float64]:
+    return np.array([(place.x, place.y) for place in places], dtype=np.float64)  # type: ignore[attr-defined]

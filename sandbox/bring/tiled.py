@@ -1,19 +1,37 @@
-"""Reads a Tiled map: shapes of object layers, and tiles that are solid."""
+"""Reads a Tiled map: shapes of object layers, and tiles that are solid. Its XML is told as its JSON is."""
 
+import base64
+import binascii
+import gzip
+import io
 import math
 import re
+import zlib
 from collections.abc import Callable, Iterator
+from typing import Any
+from xml.etree.ElementTree import Element
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.bring.sketch import POINT_LIMIT, FilledShape, OpenLine, Sketch, Unreadable
-from sandbox.bring.tile_cells import layer_cells
-from sandbox.bring.values import Object, number, objects, text, whole
+from sandbox.bring.sketch import (
+    POINT_LIMIT,
+    FilledShape,
+    LeftOut,
+    Object,
+    OpenLine,
+    Sketch,
+    Unreadable,
+    local_name,
+    number,
+    objects,
+    text,
+    whole,
+)
 
+Cells = NDArray[np.int64]
 # Gives the tile set of a file that a map names, or None where it is not there.
 Beside = Callable[[str], Object | None]
-
 LAYER_DEPTH = 8
 # Corners of an ellipse.
 ROUND = 32
@@ -30,6 +48,13 @@ BACKGROUND = 0.95
 # Shapes of a map, tiles that lie together counted as one.
 BLOCK_LIMIT = 10_000
 _AXES = np.array([1.0, -1.0])
+# Tiles of all layers.
+CELL_LIMIT = 1_000_000
+# Attributes of XML that are whole numbers, and numbers; names of layers, and elements that are a form.
+_WHOLE = ("width", "height", "tilewidth", "tileheight", "firstgid", "gid", "columns", "tilecount", "id")
+_PLAIN = ("x", "y", "rotation", "offsetx", "offsety", "opacity")
+_LAYERS = {"layer": "tilelayer", "objectgroup": "objectgroup", "imagelayer": "imagelayer", "group": "group"}
+_FORMS = ("ellipse", "point", "capsule", "text")
 
 
 def read_tiled(data: Object, beside: Beside) -> Sketch:
@@ -106,7 +131,7 @@ class _Map:
                     else:
                         self.drawing.left_out.add("object of the game")
             elif kind == "tilelayer":
-                for cells, corner in layer_cells(layer, self.drawing.left_out):
+                for cells, corner in _layer_cells(layer, self.drawing.left_out):
                     self._layers.append((text(layer, "name"), _is_marked(layer), cells, corner, place))
             else:
                 self.drawing.left_out.add("image layer" if kind == "imagelayer" else "layer of another kind")
@@ -232,18 +257,15 @@ def _says_solid(layers: list[Object], depth: int) -> bool:
     )
 
 
-def _blocks(solid: NDArray[np.bool_]) -> Iterator[tuple[int, int, int, int]]:
-    """Left, top, right, bottom of rectangles that cover the cells: runs of a row, as far down as they are the same."""
-    running: dict[tuple[int, int], int] = {}
-    for row in range(len(solid) + 1):
-        runs = set()
-        if row < len(solid):
-            turns = np.flatnonzero(np.diff(np.concatenate([[False], solid[row], [False]]).astype(np.int8)))
-            runs = set(zip(turns[0::2].tolist(), turns[1::2].tolist(), strict=True))
-        for ended in sorted(running.keys() - runs):
-            yield ended[0], running.pop(ended), ended[1], row
-        for run in runs:
-            running.setdefault(run, row)
+def _is_marked(holder: Object) -> bool:
+    """Whether a property says that a tile or a layer is solid."""
+    properties = holder.get("properties")
+    if not isinstance(properties, list):
+        return False
+    return any(
+        isinstance(each, dict) and each.get("value") is True and SOLID_PROPERTY.fullmatch(str(each.get("name")))
+        for each in properties
+    )
 
 
 def _form(each: Object) -> tuple[NDArray[np.float64], bool] | None:
@@ -274,12 +296,179 @@ def _mirroring(cell: int, width: float, height: float) -> tuple[NDArray[np.float
     return matrix, (move[0], move[1])
 
 
-def _is_marked(holder: Object) -> bool:
-    """Whether a property says that a tile or a layer is solid."""
-    properties = holder.get("properties")
-    if not isinstance(properties, list):
-        return False
-    return any(
-        isinstance(each, dict) and each.get("value") is True and SOLID_PROPERTY.fullmatch(str(each.get("name")))
+def _blocks(solid: NDArray[np.bool_]) -> Iterator[tuple[int, int, int, int]]:
+    """Left, top, right, bottom of rectangles that cover the cells: runs of a row, as far down as they are the same."""
+    running: dict[tuple[int, int], int] = {}
+    for row in range(len(solid) + 1):
+        runs = set()
+        if row < len(solid):
+            turns = np.flatnonzero(np.diff(np.concatenate([[False], solid[row], [False]]).astype(np.int8)))
+            runs = set(zip(turns[0::2].tolist(), turns[1::2].tolist(), strict=True))
+        for ended in sorted(running.keys() - runs):
+            yield ended[0], running.pop(ended), ended[1], row
+        for run in runs:
+            running.setdefault(run, row)
+
+
+def _layer_cells(layer: Object, left_out: LeftOut) -> Iterator[tuple[Cells, tuple[int, int]]]:
+    """Numbers of tiles (rows, columns), and the column and row of the first, of each part of a layer.
+
+    Raises Unreadable for what is damaged.
+    """
+    parts = objects(layer, "chunks") if "chunks" in layer else [layer]
+    packing = text(layer, "compression")
+    if packing not in ("", "zlib", "gzip"):
+        left_out.add(f"tile layer packed as {packing[:20]}")
+        return
+    total = 0
+    for part in parts:
+        width, height = whole(part, "width"), whole(part, "height")
+        total += max(0, width) * max(0, height)
+        if width < 0 or height < 0 or total > CELL_LIMIT:
+            raise Unreadable(f"has a layer of tiles of no size, or of more than {CELL_LIMIT:,}")
+        cells = _cells(part.get("data"), width * height, packing)
+        yield cells.reshape(height, width), (whole(part, "x"), whole(part, "y"))
+
+
+def _cells(data: Any, count: int, packing: str) -> Cells:
+    if data is None:
+        return np.zeros(count, dtype=np.int64)
+    if isinstance(data, str):
+        return _unpacked(data, count, packing)
+    if not isinstance(data, list) or len(data) != count:
+        raise Unreadable("has a layer of tiles whose data is no list as long as its size")
+    if not all(type(cell) is int and 0 <= cell < 2**32 for cell in data):
+        raise Unreadable("has a layer of tiles whose data holds more than numbers of tiles")
+    return np.array(data, dtype=np.int64)
+
+
+def _unpacked(data: str, count: int, packing: str) -> Cells:
+    try:
+        packed = base64.b64decode(data.strip(), validate=False)
+        if packing == "zlib":
+            packed = zlib.decompressobj().decompress(packed, 4 * count + 1)
+        elif packing == "gzip":
+            with gzip.GzipFile(fileobj=io.BytesIO(packed)) as file:
+                packed = file.read(4 * count + 1)
+    except (binascii.Error, zlib.error, OSError, EOFError, ValueError):
+        raise Unreadable("has a layer of tiles whose packed data is damaged") from None
+    if len(packed) != 4 * count:
+        raise Unreadable("has a layer of tiles whose data is not as long as its size")
+    return np.frombuffer(packed, dtype="<u4").astype(np.int64)
+
+
+def map_data(root: Element) -> dict[str, Any]:
+    """A map as data. Raises Unreadable."""
+    data = _attributes(root)
+    data["infinite"] = root.get("infinite") == "1"
+    data["tilesets"] = [tileset_data(child) for child in root if local_name(child) == "tileset"]
+    data["layers"] = _layers(root)
+    return data
+
+
+def tileset_data(root: Element) -> dict[str, Any]:
+    """A tile set as data. Raises Unreadable."""
+    data = _attributes(root)
+    data["tiles"] = []
+    for child in root:
+        if local_name(child) == "tile":
+            tile = _attributes(child)
+            groups = [_group(each) for each in child if local_name(each) == "objectgroup"]
+            if groups:
+                tile["objectgroup"] = groups[0]
+            data["tiles"].append(tile)
+    return data
+
+
+def _layers(parent: Element) -> list[dict[str, Any]]:
+    made: dict[str, Callable[[Element], dict[str, Any]]] = {
+        "layer": _tile_layer, "objectgroup": _group, "imagelayer": _attributes,
+        "group": lambda each: _attributes(each) | {"layers": _layers(each)},
+    }  # fmt: skip
+    layers = []
+    for child in parent:
+        kind = local_name(child)
+        if kind in made:
+            layers.append(made[kind](child) | {"type": _LAYERS[kind], "visible": child.get("visible") != "0"})
+    return layers
+
+
+def _tile_layer(element: Element) -> dict[str, Any]:
+    layer = _attributes(element)
+    data = next((child for child in element if local_name(child) == "data"), None)
+    if data is None:
+        return layer
+    layer |= {"encoding": data.get("encoding", "xml"), "compression": data.get("compression", "")}
+    chunks = [child for child in data if local_name(child) == "chunk"]
+    if chunks:
+        layer["chunks"] = [_attributes(chunk) | {"data": _xml_cells(chunk, layer["encoding"])} for chunk in chunks]
+    else:
+        layer["data"] = _xml_cells(data, layer["encoding"])
+    return layer
+
+
+def _xml_cells(element: Element, encoding: str) -> Any:
+    content = (element.text or "").strip()
+    if encoding == "base64":
+        return content
+    if encoding == "csv":
+        return [_whole(cell, "a tile") for cell in content.replace("\n", "").split(",") if cell.strip()]
+    return [_whole(child.get("gid", "0"), "gid") for child in element if local_name(child) == "tile"]
+
+
+def _group(element: Element) -> dict[str, Any]:
+    return _attributes(element) | {"objects": [_object(each) for each in element if local_name(each) == "object"]}
+
+
+def _object(element: Element) -> dict[str, Any]:
+    data = _attributes(element) | {"visible": element.get("visible") != "0"}
+    for child in element:
+        kind = local_name(child)
+        if kind in _FORMS:
+            data[kind] = True
+        elif kind in ("polygon", "polyline"):
+            data[kind] = [_place(pair) for pair in (child.get("points") or "").split()]
+    return data
+
+
+def _place(pair: str) -> dict[str, float]:
+    x, comma, y = pair.partition(",")
+    if not comma:
+        raise Unreadable(f"points: {pair[:40]} is no pair of numbers")
+    return {"x": _number(x, "points"), "y": _number(y, "points")}
+
+
+def _attributes(element: Element) -> dict[str, Any]:
+    data: dict[str, Any] = {
+        key: _whole(value, key) if key in _WHOLE and local_name(element) != "object" else value
+        for key, value in element.attrib.items()
+        if key != "visible"
+    }
+    for key in (*_PLAIN, *(("width", "height") if local_name(element) == "object" else ())):
+        if key in data:
+            data[key] = _number(data[key], key)
+    if local_name(element) == "object" and "gid" in data:
+        data["gid"] = _whole(data["gid"], "gid")
+    properties = [each for child in element if local_name(child) == "properties" for each in child]
+    data["properties"] = [
+        {"name": each.get("name", ""), "value": each.get("value") == "true"}
         for each in properties
-    )
+        if each.get("type") == "bool"
+    ]
+    return data
+
+
+def _whole(text: str, key: str) -> int:
+    try:
+        if len(text) > 20:
+            raise ValueError
+        return int(text)
+    except ValueError:
+        raise Unreadable(f"{key}: {text[:40]!r} is no whole number") from None
+
+
+def _number(text: str, key: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise Unreadable(f"{key}: {text[:40]!r} is no number") from None
