@@ -113,7 +113,7 @@ REST = {
     "sandbox.physics.commands.command._carry_out: kind": {"ADD_BODY", "ADD_PARTICLE", "ADD_SPRING", "REMOVE"},
     "sandbox.level.plan.rules._of_metric: kind": RULES - {"SETTLED", "DISTANCE", "INSIDE"},
     # No rim of a solid.
-    "sandbox.export.outlines.outlines_of: edges": {"LINE", "NO_EDGE"},
+    "sandbox.export.flat.outlines_of: edges": {"LINE", "NO_EDGE"},
     "sandbox.level.kinds.expansion.outline_of: edges": {"LINE", "NO_EDGE"},
     "sandbox.physics.collision.pieces._find_soft: state.edge[s]": {"LINE", "NO_EDGE"},
     # Those that run from their first end to their second.

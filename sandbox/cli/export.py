@@ -34,7 +34,7 @@ class ExportOptions:
 
 def export(options: ExportOptions) -> int:
     """Write what was asked for, or print it. Raises Refused."""
-    from sandbox.export.flat_model import flat_schema
+    from sandbox.export.flat import flat_schema
 
     if options.schema == (options.level is not None):
         raise Refused("name a level, or say --schema: one of the two")
@@ -58,8 +58,7 @@ def _commands(name: str) -> str:
 
 
 def _text(level: "Level", form: str) -> str:
-    from sandbox.export.flat import flat, flat_text
-    from sandbox.export.pymunk_program import pymunk_program
+    from sandbox.export.flat import flat, flat_text, pymunk_program
     from sandbox.export.svg import svg
 
     made = flat(level)

@@ -24,8 +24,8 @@ class TakeHomeOptions:
 
 def take_home(options: TakeHomeOptions) -> int:
     """Print what a body takes home. Raises Refused."""
-    from sandbox.export.chosen_body import NoSuchBody
-    from sandbox.export.take_home_text import TARGETS, take_home_text
+    from sandbox.export.engines import NoSuchBody
+    from sandbox.export.take_home import TARGETS, take_home_text
     from sandbox.level.format.level_error import shown, suggestion
 
     if options.to not in TARGETS:

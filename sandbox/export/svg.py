@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from xml.sax.saxutils import escape, quoteattr
 
-from sandbox.export.flat_model import FlatBody, FlatLevel, Place
+from sandbox.export.flat import FlatBody, FlatLevel, Place
 from sandbox.level.format.look import PALETTE, colour_of
 
 # Share of the larger side of the picture that is left free around, and by which the thinnest lines are thick.

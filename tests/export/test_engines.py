@@ -10,10 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.export.chosen_body import choose_body
-from sandbox.export.engines import MOST_STEPS, engine_numbers
-from sandbox.export.take_home import take_home
-from sandbox.export.take_home_text import as_text
+from sandbox.export.engines import MOST_STEPS, choose_body, engine_numbers
+from sandbox.export.take_home import as_text, take_home
 from sandbox.physics.analysis.energy import reduced_masses
 from tests.support.springs_elsewhere import Swing, lattice, level_of_springs, swing, swing_here, weight
 from tests.support.wants import skip_without

@@ -6,8 +6,7 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 from sandbox.cli import main
-from sandbox.export.take_home import take_home
-from sandbox.export.take_home_text import TARGETS, as_text
+from sandbox.export.take_home import TARGETS, as_text, take_home
 from sandbox.level.reading.files import load_level
 
 

@@ -12,9 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.export.flat import flat, flat_text
-from sandbox.export.flat_model import FlatLevel, flat_schema
-from sandbox.export.pymunk_program import pymunk_program
+from sandbox.export.flat import FlatLevel, flat, flat_schema, flat_text, pymunk_program
 from sandbox.export.svg import svg
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.files import load_level, shipped_levels

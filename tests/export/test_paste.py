@@ -5,10 +5,8 @@ from importlib.util import find_spec
 
 import pytest
 
-from sandbox.export.chosen_body import body_names
-from sandbox.export.paste import MOST_MASSES, pasted
-from sandbox.export.take_home import take_home
-from sandbox.export.take_home_text import ENGINES
+from sandbox.export.engines import body_names
+from sandbox.export.take_home import ENGINES, PASTED_MASSES, pasted, take_home
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.files import load_level
 from tests.support.wants import needs
@@ -36,7 +34,7 @@ def test_springs_between_different_masses_have_a_line_each_with_a_remark():
         take for take in takes if len(take.engines["pymunk"].masses) > 1 and not take.engines["pymunk"].rigid
     )
     lines = pasted(several, "pymunk").splitlines()
-    count = min(len(several.engines["pymunk"].masses), MOST_MASSES)
+    count = min(len(several.engines["pymunk"].masses), PASTED_MASSES)
     assert len(lines) == 2 * count and all(line.startswith("# the ") for line in lines[::2])
 
 

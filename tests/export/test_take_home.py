@@ -9,12 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.export.chosen_body import LOOSE, NoSuchBody, body_names, choose_body
-from sandbox.export.loops import LISTINGS, TICKS, expected, listing
+from sandbox.export.engines import LOOSE, NoSuchBody, body_names, choose_body
+from sandbox.export.loops import LISTINGS, TICKS, expected, largest_pair, listing
 from sandbox.export.numbers import floored, short
-from sandbox.export.proven import largest_pair
-from sandbox.export.take_home import take_home
-from sandbox.export.take_home_text import ENGINES, TARGETS, as_text, take_home_text
+from sandbox.export.take_home import ENGINES, TARGETS, as_text, take_home, take_home_text
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.files import load_level, shipped_levels
 from sandbox.level.reading.parse import parse_level

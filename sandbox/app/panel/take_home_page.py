@@ -13,10 +13,8 @@ from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.texts import TextBlock, text_height
 from sandbox.app.widgets.ui import Ui
-from sandbox.export.chosen_body import NoSuchBody, body_names
-from sandbox.export.paste import pasted
-from sandbox.export.take_home import TakeHome, take_home
-from sandbox.export.take_home_text import as_text
+from sandbox.export.engines import NoSuchBody, body_names
+from sandbox.export.take_home import TakeHome, as_text, pasted, take_home
 from sandbox.level.assembly.level_world import LevelWorld
 
 # What it can be for, by what a person calls it.
