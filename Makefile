@@ -103,7 +103,6 @@ node: $(VENV)/installed-node
 
 bundle: $(VENV)/installed-node
 	$(BIN)/python -m sandbox.app.site.shared_values
-	$(BIN)/python -m sandbox.page.table_types
 	$(BIN)/python -m sandbox.page.bundle
 
 pictures: $(VENV)/installed-dev

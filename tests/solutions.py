@@ -16,7 +16,7 @@ from sandbox.session.commands.records import from_record
 from sandbox.session.outcome import outcome, outcome_text
 from sandbox.session.session import Session
 from sandbox.session.solution import solution_of
-from sandbox.tools.parts import PARTS
+from sandbox.tools.dropping import PARTS
 
 # Records of commands, each with its time [s], that are one gesture.
 Gesture = list[tuple[float, dict[str, Any]]]

@@ -120,7 +120,7 @@ LIFT = '''
 
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Command, Push
-from sandbox.tools.play_tool import PlayTool
+from sandbox.tools.tool import PlayTool
 from sandbox.tools.tool import NOTHING, PlacedTool, PointerEvent, Response, Submission
 
 
@@ -402,7 +402,7 @@ def test_a_tool_in_play_is_one_file_and_its_line_in_the_table(package):
     with_assets(package)
     put(package / "tools/lifting.py", LIFT)
     table = package / "tools/play_tools.py"
-    put(table, "from sandbox.tools.lifting import LIFT\n", before="import PIN")
+    put(table, "from sandbox.tools.lifting import LIFT\n", before="from sandbox.tools.pulling")
     table.write_text(table.read_text(encoding="utf-8").replace("WIND, DELETE", "WIND, LIFT, DELETE"))
     script = """
 driver.key(pygame.K_b)

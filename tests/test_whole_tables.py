@@ -38,7 +38,7 @@ from sandbox.level.plan import rules
 from sandbox.level.rules.action import DOES, Sound
 from sandbox.level.rules.hands import DEEDS
 from sandbox.level.rules.question import ASKS, GROUPS, UNASKED
-from sandbox.page import about
+from sandbox.page import start
 from sandbox.page.bundle import WEB
 from sandbox.physics import constraints, marks, settings
 from sandbox.physics.analysis.query import row_names, slot_name
@@ -113,7 +113,7 @@ REST = {
     "sandbox.physics.commands.command._carry_out: kind": {"ADD_BODY", "ADD_PARTICLE", "ADD_SPRING", "REMOVE"},
     "sandbox.level.plan.rules._of_metric: kind": RULES - {"SETTLED", "DISTANCE", "INSIDE"},
     # No rim of a solid.
-    "sandbox.export.flat.outlines_of: edges": {"LINE", "NO_EDGE"},
+    "sandbox.export.flat._outlines_of: edges": {"LINE", "NO_EDGE"},
     "sandbox.level.kinds.expansion.outline_of: edges": {"LINE", "NO_EDGE"},
     "sandbox.physics.collision.pieces._find_soft: state.edge[s]": {"LINE", "NO_EDGE"},
     # Those that run from their first end to their second.
@@ -293,8 +293,8 @@ def keys_in_page(module, name):
         (bank.MAKERS, bank.LEVELS.keys() | bank.SIGNAL_LEVELS),
         (bank.SIGNAL_LEVELS, {*get_args(Sound), "won", "lost", "star"}),
         (waves.STUFFS, {*timbre._SKINS.values(), *timbre._LINES.values(), *timbre._BALLS.values(), "cloth"}),
-        (about.CODES, CODES["codes of a tick"]),
-        (about.PROGRESS, code_names(block, "TICK") - {"PROGRESS"}),
+        (start.CODES, CODES["codes of a tick"]),
+        (start.PROGRESS, code_names(block, "TICK") - {"PROGRESS"}),
         (constraints.CONSTRAINT_NAMES, range(len(CODES["kinds of constraints"]))),
         (settings.NUMBER_NAMES, [name.lower().replace("_", " ") for name in code_names(settings, "DRAG")]),
         (command_table.CODES.values(), range(len(CODES["codes of commands"]))),
@@ -362,7 +362,7 @@ def test_every_action_and_question_of_rules_is_told_and_given_to_pages(world):
     assert {action.done[0] for action in actions} == set(DOES)
     assert set(ASKS) <= {name for rule in level.rules for name in asked_in(rule.when)}
     assert all(map(rule_text, level.rules)) and all(map(story._told, actions))
-    assert len(about.about(world, 1)["rules"]) == len(level.rules)
+    assert len(start.about(world, 1)["rules"]) == len(level.rules)
 
 
 def asked_in(question):

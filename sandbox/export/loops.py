@@ -17,13 +17,14 @@ from sandbox.physics.analysis.stability import BOUND
 from sandbox.physics.equation import direction, frequency_from_coefficients, reduced_mass, spring_impulse
 from sandbox.physics.softness.body_motion import BodyMotion
 
+Pair = tuple[float, float]
+
 # Ticks of the trial.
 TICKS = 10
 # How the trial begins: stretched by a tenth, the second particle moving sideways [m/s].
 STRETCHED = 1.1
 SIDEWAYS = 1.0
 # Substeps of a tick that are told of.
-Pair = tuple[float, float]
 SUBSTEPS = (1, 2, 4, 8)
 
 

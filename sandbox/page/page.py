@@ -12,7 +12,7 @@ from typing import Any
 from sandbox.export.policy import policy
 from sandbox.level.hints import worded
 from sandbox.page.bundle import BUNDLE, WEB
-from sandbox.page.image import Image
+from sandbox.page.start import Image
 from sandbox.physics.jit.library import FOLDER
 
 KERNELS = FOLDER / "kernels.wasm"

@@ -9,8 +9,7 @@ from sandbox.physics.arrays import Slots
 from sandbox.physics.geometry.segment import lengths
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import AddBody, AddSpring
-from sandbox.tools.play_tool import PlayTool
-from sandbox.tools.tool import NOTHING, Point, PointerEvent, Response, Submission, Tool
+from sandbox.tools.tool import NOTHING, PlayTool, Point, PointerEvent, Response, Submission, Tool
 
 # Spokes from the axle to each body, and the shortest one as a share of the pick radius.
 SPOKES, SHORTEST = 3, 0.2

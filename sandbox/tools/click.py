@@ -1,12 +1,17 @@
-"""ClickTool: what the tools share that do something to the particle that is clicked."""
+"""Tools that do something to the particle that is clicked: pin it, take it out, or freeze all of its body."""
 
 from collections.abc import Callable
 from typing import ClassVar
 
-from sandbox.physics.analysis.query import nearest_particle
+import numpy as np
+
+from sandbox.physics.analysis.query import nearest_particle, shown_particles
 from sandbox.physics.snapshot import Snapshot
-from sandbox.session.commands import Command
-from sandbox.tools.tool import NOTHING, PointerEvent, Response, Submission, Tool
+from sandbox.session.commands import Command, Pin, Remove, Unpin
+from sandbox.tools.tool import NOTHING, PlayTool, PointerEvent, Response, Submission, Tool
+
+# The middle of a coarse body has no particle that is nearer.
+REACH = 2.5
 
 
 class ClickTool(Tool):
@@ -35,3 +40,45 @@ class ClickTool(Tool):
     def cancel(self) -> Response:
         """Nothing is ever under way."""
         return NOTHING
+
+
+class PinTool(ClickTool):
+    """Toggle the pin of the particle that is clicked."""
+
+    def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
+        """Pin or unpin it."""
+        return [Pin(particle) if snapshot.inverse_mass[particle] > 0.0 else Unpin(particle)]
+
+
+class DeleteTool(ClickTool):
+    """Take out what is clicked, with all that hangs on it."""
+
+    reach = REACH
+
+    def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
+        """Remove it."""
+        return [Remove(particle=particle)]
+
+
+class FreezeTool(ClickTool):
+    """Pin every particle of the body that is clicked, or let a body go of which every one is pinned."""
+
+    reach = REACH
+
+    def commands(self, particle: int, snapshot: Snapshot) -> list[Command]:
+        """Freeze or thaw all of its body."""
+        return freezing(particle, snapshot)
+
+
+def freezing(particle: int, snapshot: Snapshot) -> list[Command]:
+    """The commands that pin what is free of the body of a particle, or let it go where nothing of it is."""
+    body = np.flatnonzero(shown_particles(snapshot) & (snapshot.owner == snapshot.owner[particle]))
+    free = body[snapshot.inverse_mass[body] > 0.0].tolist()
+    return [Pin(slot) for slot in free] or [Unpin(slot) for slot in body.tolist()]
+
+
+PIN = PlayTool("pin", ("P", "2"), "Pin tool: pin or unpin a particle", "Tools", PinTool, "pin")
+
+DELETE = PlayTool("delete", ("X",), "Erase a thing, with what hangs on it", "Parts", DeleteTool, "remove")
+
+FREEZE = PlayTool("freeze", ("I",), "Freeze or thaw a body", "Parts", FreezeTool, "pin")

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from sandbox.physics.analysis.query import nearest_spring, springs_crossing
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import CutSprings
-from sandbox.tools.play_tool import PlayTool
-from sandbox.tools.tool import NOTHING, PlacedTool, Point, PointerEvent, Response, Submission
+from sandbox.tools.tool import NOTHING, PlacedTool, PlayTool, Point, PointerEvent, Response, Submission
 
 # Points of the stroke kept for drawing it.
 TRAIL_LENGTH = 24

@@ -9,8 +9,7 @@ from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.world import HAND_STRENGTH
 from sandbox.session.commands import Grab, MoveBody, MoveGrab, Release
-from sandbox.tools.play_tool import PlayTool
-from sandbox.tools.tool import CLICK_SHARE, NOTHING, Point, PointerEvent, Response, Submission, Tool
+from sandbox.tools.tool import CLICK_SHARE, NOTHING, PlayTool, Point, PointerEvent, Response, Submission, Tool
 
 # How strong a hand can be: its largest force over the mass of the body that it holds [m/s^2]. Gentle carries three
 # times a body's weight and spares what tears, strong moves what stands under a load.

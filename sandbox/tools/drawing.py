@@ -13,9 +13,8 @@ from sandbox.physics.meshing import fitting
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import AddBody
 from sandbox.tools.clearance import lift
-from sandbox.tools.parts import COLOURS, DENSITY, in_pace
-from sandbox.tools.play_tool import PlayTool
-from sandbox.tools.tool import NOTHING, Loop, PlacedTool, PointerEvent, Response, Submission
+from sandbox.tools.dropping import COLOURS, DENSITY, in_pace
+from sandbox.tools.tool import NOTHING, Loop, PlacedTool, PlayTool, PointerEvent, Response, Submission
 
 # An outline drawn by hand is simplified by up to this part of the pick radius.
 HAND_TOLERANCE = 0.12

@@ -10,8 +10,7 @@ import numpy as np
 from sandbox.physics.analysis.query import particle_at
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import AddBody, AddParticle, AddSpring, Command
-from sandbox.tools.play_tool import PlayTool
-from sandbox.tools.tool import NOTHING, Loop, PlacedTool, Point, PointerEvent, Response, Submission
+from sandbox.tools.tool import NOTHING, Loop, PlacedTool, PlayTool, Point, PointerEvent, Response, Submission
 
 # Lengths of a rope between two particles, its mass for each metre [kg/m], and their radius [m] at most and as a share
 # of such a length.

@@ -6,10 +6,19 @@ from collections.abc import Callable
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.commands import Push, SetAir
-from sandbox.tools.parts import ROUND
-from sandbox.tools.play_tool import PlayTool
-from sandbox.tools.sizing import Sized
-from sandbox.tools.tool import CLICK_SHARE, NOTHING, Loop, PlacedTool, Point, PointerEvent, Response, Submission
+from sandbox.tools.dropping import ROUND
+from sandbox.tools.tool import (
+    CLICK_SHARE,
+    NOTHING,
+    Loop,
+    PlacedTool,
+    PlayTool,
+    Point,
+    PointerEvent,
+    Response,
+    Sized,
+    Submission,
+)
 
 # Speed [m/s] that a click gives what is near, on the average, and a push for each radius that its arrow is long.
 BURST_SPEED, ARROW_SPEED = 4.0, 4.0

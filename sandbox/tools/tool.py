@@ -1,6 +1,7 @@
-"""What tools share: pointer events in, commands out. No window, no pixels."""
+"""What tools share: pointer events in, commands out. No window, no pixels. PlayTool: what the window knows of one."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple
 
@@ -11,9 +12,14 @@ from sandbox.session.commands import Command
 
 Point = tuple[float, float]
 Loop = list[Point]
-
 # A press that moves less than this share of the pick radius is a click.
 CLICK_SHARE = 0.35
+# A step of the wheel makes it this many times larger; sizes [m] that it may have.
+SIZE_STEP, SMALLEST, LARGEST = 1.1, 0.02, 100.0
+# The part of the view's height that it is at first.
+SIZE_SHARE = 0.12
+# Where the page of all shortcuts has a tool; those of "Parts" are buttons of the strip at the left, too.
+Group = Literal["Tools", "Parts"]
 
 
 @dataclass(frozen=True)
@@ -145,3 +151,55 @@ class PlacedTool(Tool):
     def target(self, place: Point, within: float, snapshot: Snapshot) -> int | None:
         """None."""
         return None
+
+
+class Sized:
+    """A tool that works at a size [m], which it hands on to the next such tool."""
+
+    size: float
+
+    def take_up(self, size: float, height: float) -> None:
+        """Begin at a size that the view has room for."""
+        self.size = size
+
+    @property
+    def size_to_share(self) -> float | None:
+        """The size [m]."""
+        return self.size
+
+    def resize(self, steps: float) -> bool:
+        """Make it larger, by steps of the wheel."""
+        self.size = resized(self.size, steps)
+        return True
+
+
+def resized(size: float, steps: float) -> float:
+    """A size made larger by this many steps of the wheel."""
+    return min(max(size * SIZE_STEP**steps, SMALLEST), LARGEST)
+
+
+def usual_size(height: float) -> float:
+    """How large [m] things are at first in a view of a height [m]."""
+    return float(f"{SIZE_SHARE * height:.2g}")
+
+
+@dataclass(frozen=True)
+class PlayTool:
+    """A tool: its name, the keys that take it up, its line on the help page and in its tip, and its group.
+
+    make: the tool, for a function that gives the number of a new gesture. Its icon is the file of its name in
+    assets/icons, unless the strip has a picture of its own for it.
+    deed: what hands do with it, which a level may keep away.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    label: str
+    group: Group
+    make: Callable[[Callable[[], int]], Tool]
+    deed: str = ""
+
+    @property
+    def action(self) -> str:
+        """The action that takes it up."""
+        return f"tool_{self.name}"

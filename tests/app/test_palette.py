@@ -12,7 +12,7 @@ from sandbox.app.play.stage import CATALOGUE
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.session.commands import AddBody, AddParticle, Push, Remove, SetAir
-from sandbox.tools.parts import PARTS
+from sandbox.tools.dropping import PARTS
 from sandbox.tools.tool import DropPicture
 from tests.app.conftest import small_level
 from tests.support.parts import furnished

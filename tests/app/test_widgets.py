@@ -15,7 +15,7 @@ from sandbox.app.widgets.styles import BoxLook
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.level.format.shipped import shipped_folder
-from sandbox.tools.parts import PARTS
+from sandbox.tools.dropping import PARTS
 from sandbox.tools.play_tools import PLAY_TOOLS
 
 PLACE = pygame.Rect(10, 10, 120, 34)

@@ -21,7 +21,7 @@ from sandbox.app.window.app import App
 from sandbox.level.reading.files import load_level
 from sandbox.session.commands import AddParticle
 from sandbox.session.session import Session
-from sandbox.tools.parts import PARTS
+from sandbox.tools.dropping import PARTS
 
 FRAME = 1 / 60
 DROPS, SETTLING, BETWEEN = 12, 120, 20

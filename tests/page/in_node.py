@@ -8,9 +8,8 @@ from typing import Any
 
 from sandbox.app.draw.scene import made_looks
 from sandbox.app.share.stuffs import stuffs_for
-from sandbox.page.adding import adding
 from sandbox.page.page import KERNELS, WEB
-from sandbox.page.start import start_of
+from sandbox.page.start import adding, start_of
 from sandbox.physics.world import World
 
 NODE = shutil.which("node")

@@ -18,9 +18,8 @@ from typing import Any
 from sandbox.app.share.links import link_to
 from sandbox.app.share.runs_for_pages import all_at_once
 from sandbox.level.document.model import Level
-from sandbox.page.adding import adding
 from sandbox.page.page import KERNELS, WEB
-from sandbox.page.start import start_of
+from sandbox.page.start import adding, start_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.session.commands import (

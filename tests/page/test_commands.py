@@ -19,7 +19,7 @@ from sandbox.level.format.quantities import replaced
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.level.rules.hands import HandsDef
 from sandbox.level.rules.rule import RuleDef
-from sandbox.page.about import is_done_by_pages
+from sandbox.page.start import is_done_by_pages
 from sandbox.physics.commands.command_table import KINDS
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sandbox.page.image import ArrayPlace, image_of
+from sandbox.page.start import ArrayPlace, image_of
 
 
 class _Inner(NamedTuple):

@@ -28,7 +28,7 @@ from sandbox.level.kinds.jelly import Jelly, JellyDef
 from sandbox.replay import Replay, read_replay
 from sandbox.session.link.scene_link import fragment_of, replay_of
 from sandbox.session.replay.verify import verify
-from sandbox.tools.parts import PARTS
+from sandbox.tools.dropping import PARTS
 from tests.page.browser import Browser, Tab
 from tests.page.opened import FRAMES, VERDICT
 from tests.page.site_server import served

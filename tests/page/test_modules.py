@@ -13,8 +13,8 @@ import pytest
 
 from sandbox import load_level
 from sandbox.app.share.playing import playable
-from sandbox.page.about import array_path
 from sandbox.page.page import KERNELS
+from sandbox.page.start import array_path
 from sandbox.physics.arena import answer_of
 from sandbox.physics.meshing import fitting
 from sandbox.physics.snapshot import state_hash

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from sandbox.app.site.shared_values import MODULE, as_module, shared_values
+from sandbox.page.bundle import TYPES, table_types
 from sandbox.page.page import WEB
-from sandbox.page.table_types import FILE, table_types
 from tests.page.levels import level_page
 from tests.page.packed import data_of
 
@@ -28,7 +28,7 @@ def test_pages_go_by_every_value_that_is_shared() -> None:
 
 
 def test_types_of_tables_are_those_of_the_tables() -> None:
-    assert FILE.read_text(encoding="utf-8") == table_types(), "tables were changed: run `make bundle`"
+    assert TYPES.read_text(encoding="utf-8") == table_types(), "tables were changed: run `make bundle`"
 
 
 def declared(name: str) -> dict[str, bool]:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from sandbox.level.reading.files import load_level, shipped_levels
-from sandbox.page.about import is_done_by_pages
+from sandbox.page.start import is_done_by_pages
 from sandbox.replay import read_replay, verify
 from sandbox.session.solution import solution_of
 from tests.page.browser import Browser

@@ -5,8 +5,7 @@ import pytest
 from sandbox.editor.document import new_level
 from sandbox.session.session import Session
 from sandbox.tools.clearance import lift
-from sandbox.tools.dropping import NO_ROOM, DropTool
-from sandbox.tools.parts import PARTS
+from sandbox.tools.dropping import NO_ROOM, PARTS, DropTool
 from sandbox.tools.tool import PointerEvent
 
 SOLID = [name for name, part in PARTS.items() if part.solid]

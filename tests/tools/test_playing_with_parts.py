@@ -7,9 +7,8 @@ from sandbox.level.format.quantities import replaced
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.session.commands import AddBody, AddParticle, Pin, Push, Remove, SetAir, Unpin
 from sandbox.session.session import Session
-from sandbox.tools.delete_freeze import DeleteTool, FreezeTool
-from sandbox.tools.dropping import FASTEST_THROW, DropTool
-from sandbox.tools.parts import PARTS
+from sandbox.tools.click import DeleteTool, FreezeTool
+from sandbox.tools.dropping import FASTEST_THROW, PARTS, DropTool
 from sandbox.tools.push_wind import PushTool, WindTool
 from sandbox.tools.tool import PointerEvent
 from tests.support.parts import furnished, room

@@ -7,9 +7,9 @@ import pytest
 from sandbox.level.document.model import Level
 from sandbox.session.commands import CutSprings, Grab, MoveGrab, Pin, Release, Unpin
 from sandbox.session.session import Session
+from sandbox.tools.click import PinTool
 from sandbox.tools.cut import CutTool
 from sandbox.tools.drag import DragTool
-from sandbox.tools.pin import PinTool
 from sandbox.tools.tool import PointerEvent, Response
 
 REACH = 0.1

@@ -15,7 +15,7 @@ from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.snapshot import Snapshot
 from sandbox.session.session import Session
-from sandbox.tools.parts import COLOURS, PARTS
+from sandbox.tools.dropping import COLOURS, PARTS
 from sandbox.tools.tool import DropPicture
 
 # Half of what a part's picture shows [m], of a part of 1 m.

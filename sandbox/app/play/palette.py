@@ -10,7 +10,7 @@ from sandbox.app.play.stage import CATALOGUE
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.ui import Ui
 from sandbox.level.document.model import Level
-from sandbox.tools.parts import PARTS
+from sandbox.tools.dropping import PARTS
 from sandbox.tools.play_tools import PLAY_TOOLS
 
 # Sizes in layout units.

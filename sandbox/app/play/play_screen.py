@@ -47,8 +47,8 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.editor.storage.preferences import preference, set_preference
 from sandbox.level.document.model import Level
 from sandbox.session.scene import RunScene
-from sandbox.tools.play_tool import PlayTool
 from sandbox.tools.play_tools import PLAY_TOOLS
+from sandbox.tools.tool import PlayTool
 
 # Where buttons are for what went wrong, below the bar [layout units].
 REMEDIES_PLACE = (16.0, 12.0)

@@ -30,8 +30,7 @@ from sandbox.session.session import Session
 from sandbox.tools.drag import DRAG, DragTool
 from sandbox.tools.dropping import CatalogueTool
 from sandbox.tools.play_tools import PLAY_TOOLS
-from sandbox.tools.sizing import usual_size
-from sandbox.tools.tool import PointerEvent, Tool
+from sandbox.tools.tool import PointerEvent, Tool, usual_size
 
 # How far off a particle a press still hits it, and a step of the keyboard cursor [layout units].
 PICK_RADIUS = 14.0

@@ -19,7 +19,7 @@ from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange
 from sandbox.physics.world import World
 from sandbox.session.commands import Command, Remove, ScaleMass, SetFirmness
 from sandbox.tools.clearance import lift
-from sandbox.tools.delete_freeze import freezing
+from sandbox.tools.click import freezing
 from sandbox.tools.tool import Loop
 
 WIDTH = 190.0

@@ -20,9 +20,8 @@ from sandbox.level.format.limits import GRAVITY_LIMIT
 from sandbox.level.plan.actuators import driving_keys
 from sandbox.level.rules.hands import left_of
 from sandbox.level.rules.rule import has_clock
-from sandbox.page.adding import adding
 from sandbox.page.page import page_text, toy_content
-from sandbox.page.start import start_of
+from sandbox.page.start import adding, start_of
 from sandbox.physics.snapshot import take
 from sandbox.physics.step import PHYSICS_VERSION
 from sandbox.physics.world import World

@@ -22,10 +22,9 @@ from sandbox.session.commands import Command
 from sandbox.session.commands.records import to_record
 from sandbox.session.session import Session
 from sandbox.tools.drawing import STUFFS
-from sandbox.tools.parts import COLOURS, DIGITS, PARTS, USUAL_RATE, at_rate, in_pace
+from sandbox.tools.dropping import COLOURS, DIGITS, PARTS, USUAL_RATE, at_rate, in_pace
 from sandbox.tools.pulling import FIRM
-from sandbox.tools.sizing import usual_size
-from sandbox.tools.tool import Loop
+from sandbox.tools.tool import Loop, usual_size
 
 # Cs and Cd of a spring that a page adds: it does not weigh what hangs on it.
 SPRINGY = {"stiffness": 0.02, "damping": 0.02}

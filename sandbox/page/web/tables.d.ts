@@ -1,4 +1,4 @@
-// Types of the tables of Python. Made by `python -m sandbox.page.table_types`.
+// Types of the tables of Python. Made by `python -m sandbox.page.bundle`.
 import type { Kit } from './types.js';
 export interface StateArrays {
   position: Float64Array;

@@ -11,8 +11,8 @@ sum of Cs + 2 Cd over the springs on an end.
 A constraint counts as one more spring at each of its corners, and has the most of them for its n_eff.
 A Hooke spring counts as the Cs and Cd that it amounts to: k h^2 / m_r and c h / m_r.
 
-`report` says it of a world, `spring_loads` of each spring, `coefficient_limits` and `coefficient_zones` of what Cs and Cd
-a person may choose.
+`report` says it of a world, `spring_loads` of each spring, `coefficient_limits` and `coefficient_zones` of what Cs and
+Cd a person may choose.
 """
 
 from collections.abc import Callable
