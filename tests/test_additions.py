@@ -332,12 +332,12 @@ def test_a_level_setting_is_three_files(package):
     numbers = "        return (*self.gravity, *self.wind, self.drag, self.warm_start, self.lift)\n"
     put(package / "physics/settings.py", numbers, before="        return (*self.gravity, *self.wind")
     put(
-        package / "physics/forces.py",
+        package / "physics/integrate.py",
         "from sandbox.physics.settings import LIFT\n",
         before="from sandbox.physics.state",
     )
     lifted = "            velocity[p, 1] += numbers[LIFT] * h\n"
-    put(package / "physics/forces.py", lifted, before="            velocity[p, 0] += gravity_x")
+    put(package / "physics/integrate.py", lifted, before="            velocity[p, 0] += gravity_x")
     script = """
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import state_hash
@@ -351,7 +351,7 @@ except ValueError as error:
     print(error)
 """
     assert "settings.lift" in play(package, script)
-    assert changed(package) == ["level/document/model.py", "physics/forces.py", "physics/settings.py"]
+    assert changed(package) == ["level/document/model.py", "physics/integrate.py", "physics/settings.py"]
 
 
 def test_a_state_array_is_one_line(package):

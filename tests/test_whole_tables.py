@@ -41,11 +41,10 @@ from sandbox.level.rules.question import ASKS, GROUPS, UNASKED
 from sandbox.page import start
 from sandbox.page.bundle import WEB
 from sandbox.physics import constraints, marks, settings
+from sandbox.physics import rules as rule_codes
 from sandbox.physics.analysis.query import row_names, slot_name
-from sandbox.physics.collision import filter as edges
 from sandbox.physics.commands import command, command_table
 from sandbox.physics.pipeline import block, tick
-from sandbox.physics.rules import table, zones
 from sandbox.physics.settings import SOLVER_NAMES
 from sandbox.physics.snapshot import hash_by_array, leave, restore, take
 from sandbox.physics.softness.settling import Support
@@ -87,11 +86,11 @@ CODES = {
     "codes of a tick": code_names(tick, "FINISHED"),
     "kinds of constraints": code_names(constraints, "AREA", "BEND"),
     "laws": code_names(marks, "LAW_NISSEN"),
-    "edges": code_names(edges, "NO_EDGE"),
+    "edges": code_names(marks, "NO_EDGE"),
     "codes of solvers": code_names(settings, "SINGLE_PASS"),
-    "kinds of zones": code_names(zones, "BOX"),
+    "kinds of zones": code_names(rule_codes, "BOX"),
     "codes of commands": code_names(command, "GRAB", "SET_GRAVITY", "SET_SOLVER"),
-    "kinds of terms": code_names(table, "TOUCHES", "SETTLED"),
+    "kinds of terms": code_names(rule_codes, "TOUCHES", "SETTLED"),
 }
 RULES = CODES["kinds of terms"]
 OF_CENTRE = {"CENTRE_X", "CENTRE_Y", "SPEED"}
@@ -104,10 +103,10 @@ REST = {
     "sandbox.physics.pipeline.derive.derive_hands: solver": {"ITERATIVE"},
     "sandbox.physics.pipeline.derive._lay_out_solver: solver": {"SINGLE_PASS"},
     "sandbox.physics.pipeline.tick._solve: solver": {"DIRECT"},
-    "sandbox.physics.rules.zones.depth_inside: kind": {"POLYGON"},
-    "sandbox.physics.rules.zones.meets_zone: kind": {"POLYGON"},
-    "sandbox.physics.rules.measuring.measure: kind": OF_CENTRE | OF_TERMS | {"TOUCHES"},
-    "sandbox.physics.rules.measuring._of_centre: kind": RULES - OF_CENTRE,
+    "sandbox.physics.rules.depth_inside: kind": {"POLYGON"},
+    "sandbox.physics.rules.meets_zone: kind": {"POLYGON"},
+    "sandbox.physics.rules.measure: kind": OF_CENTRE | OF_TERMS | {"TOUCHES"},
+    "sandbox.physics.rules._of_centre: kind": RULES - OF_CENTRE,
     "sandbox.physics.pipeline.judge._holds_of_members: terms.kind[t]": RULES - {"ALL", "ANY"},
     # They have kernels of their own.
     "sandbox.physics.commands.command._carry_out: kind": {"ADD_BODY", "ADD_PARTICLE", "ADD_SPRING", "REMOVE"},

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from sandbox.level.format.quantities import Coordinate, Description, Key, Name, Seconds, empty, unit
-from sandbox.physics.rules.measuring import STILL as STILL
+from sandbox.physics.rules import STILL as STILL
 
 Metric = Literal[
     "max_strain",

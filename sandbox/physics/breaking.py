@@ -4,11 +4,41 @@ Both only take energy out: a spring that yields is less strained than before, a 
 """
 
 import math
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
+
+import numpy as np
 
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import GoodValues, State
+
+NEVER = np.inf
+
+
+@dataclass(frozen=True, eq=False)
+class StrainLimits:
+    """Strains at which springs break or yield, one row for each material (k,); infinite = never.
+
+    tension, compression: a spring breaks beyond; yielding: beyond it the rest length follows, by at most the share
+    yield_share of the natural length either way.
+    """
+
+    tension: Floats
+    compression: Floats
+    yielding: Floats
+    yield_share: Floats
+
+    @cached_property
+    def exist(self) -> bool:
+        """Whether any spring can break or yield."""
+        return bool(np.isfinite(self.tension).any() or np.isfinite(self.compression).any() or self.yields)
+
+    @cached_property
+    def yields(self) -> bool:
+        """Whether any spring can yield."""
+        return bool(np.isfinite(self.yielding).any())
 
 
 class MaterialLimits(NamedTuple):
@@ -23,6 +53,12 @@ class MaterialLimits(NamedTuple):
     yield_share: Floats
     driven: Flags
     broken: Slots
+
+
+def unlimited(materials: int) -> StrainLimits:
+    """Limits of a number of materials that neither break nor yield."""
+    never = np.full(materials, NEVER)
+    return StrainLimits(never, never, never, np.zeros(materials))
 
 
 @inner_kernel

@@ -16,8 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Int8s, Int32s
-from sandbox.physics.geometry.polygon import polygon_area
-from sandbox.physics.geometry.segment import SHORTEST, lengths
+from sandbox.physics.geometry.segment import SHORTEST, lengths, polygon_area
 from sandbox.physics.jit import inlined_kernel, inner_kernel, kernel
 from sandbox.physics.state import State, StateArrays
 

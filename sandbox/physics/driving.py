@@ -1,25 +1,94 @@
-"""Springs whose rest length is driven: muscles by the number of the tick, hydraulics by the value of their part.
+"""Actuators of a world, constant while it runs, and the springs among them, whose rest length is driven in each tick.
 
+Muscles are driven by the number of the tick, hydraulics by the value of their part; motors: see joints/motors.py.
 One of limited force does not wind up: where it is held back its rest length stays as near to its length as its force
 asks for, so that it does not leap when it is let go.
 """
 
 import math
+from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sandbox.physics.actuators import Actuators
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, reduced_mass
-from sandbox.physics.jit import Bundle, bundle, inner_kernel, kernel, scalar_kernel, unpack
+from sandbox.physics.jit import Bundle, inner_kernel, kernel, scalar_kernel, unpack
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import DIRECT
-from sandbox.physics.state import GoodValues, State, good_of, state_of
-from sandbox.physics.world import World
+from sandbox.physics.state import GoodValues, State
 
 # How far a wave goes in a part of its period, at its steepest: the slope of its parabolas where they meet.
 STEEPEST = 8.0
+
+_slots, _flags, _floats = (partial(np.zeros, 0, dtype) for dtype in (np.int64, np.bool_, np.float64))
+
+
+@dataclass(frozen=True, eq=False)
+class Muscles:
+    """Springs whose rest length follows a wave: slot, amplitude as a share of the natural length, period [ticks] of 2
+    or more, phase 0..1, force [N] at most; each (k,), force also (0,): without limits."""
+
+    spring: Slots = field(default_factory=_slots)
+    amplitude: Floats = field(default_factory=_floats)
+    period: Slots = field(default_factory=_slots)
+    phase: Floats = field(default_factory=_floats)
+    force: Floats = field(default_factory=_floats)
+
+
+@dataclass(frozen=True, eq=False)
+class Hydraulics:
+    """Springs whose rest length goes from shortest to longest [m] at rate [m/s] times their part's value.
+
+    force [N] at most; returns: whether it goes back to its natural length at that rate while the value is 0. Each (k,);
+    force also (0,): without limits; returns not given: none does.
+    """
+
+    spring: Slots = field(default_factory=_slots)
+    shortest: Floats = field(default_factory=_floats)
+    longest: Floats = field(default_factory=_floats)
+    rate: Floats = field(default_factory=_floats)
+    part: Slots = field(default_factory=_slots)
+    force: Floats = field(default_factory=_floats)
+    returns: NDArray[np.bool_] = field(default_factory=_flags)
+
+    def __post_init__(self) -> None:
+        if len(self.returns) != len(self.spring):
+            object.__setattr__(self, "returns", np.zeros(len(self.spring), dtype=np.bool_))
+
+
+@dataclass(frozen=True, eq=False)
+class Motors:
+    """Wheels that are turned about their hubs: hub slot, speed [rad/s], largest torque [N m], part; each (k,).
+
+    rim[rim_start[k]:rim_start[k + 1]] are the particles of wheel k without its hub.
+    """
+
+    hub: Slots = field(default_factory=_slots)
+    speed: Floats = field(default_factory=_floats)
+    torque: Floats = field(default_factory=_floats)
+    part: Slots = field(default_factory=_slots)
+    rim_start: Slots = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
+    rim: Slots = field(default_factory=_slots)
+
+
+@dataclass(frozen=True, eq=False)
+class Actuators:
+    """Everything that is driven; names: of the motors and hydraulics that a command can drive."""
+
+    names: tuple[str, ...] = ()
+    muscles: Muscles = field(default_factory=Muscles)
+    hydraulics: Hydraulics = field(default_factory=Hydraulics)
+    motors: Motors = field(default_factory=Motors)
+
+    def springs(self, count: int) -> NDArray[np.bool_]:
+        """Which of the first `count` springs have a rest length that is driven."""
+        driven = np.zeros(count, dtype=np.bool_)
+        driven[self.muscles.spring] = True
+        driven[self.hydraulics.spring] = True
+        return driven
 
 
 class Drives(NamedTuple):
@@ -137,13 +206,7 @@ def drive_springs(state: State, good: GoodValues, drives: Drives, tick: int, sol
 
 
 @kernel
-def _drive_muscles(pointer: Bundle[tuple[State, GoodValues, Drives]], tick: int, solver: int, tick_rate: int) -> None:
+def drive_muscles(pointer: Bundle[tuple[State, GoodValues, Drives]], tick: int, solver: int, tick_rate: int) -> None:
+    """Give every muscle the rest length that it has at a tick."""
     state, good, drives = unpack(pointer)
     contract(state, good, drives, 0, tick, solver, tick_rate)
-
-
-def drive_muscles(world: World, tick: int) -> None:
-    """Give every muscle the rest length that it has at a tick."""
-    if len(world.actuators.muscles.spring):
-        solver, tick_rate, *_ = world.settings.choices
-        _drive_muscles(bundle((state_of(world), good_of(world), drives_of(world.actuators))), tick, solver, tick_rate)

@@ -23,3 +23,10 @@ LONGEST_RAMP = 1_000_000
 # spring's length needs.
 FARTHEST_PLACE = 1e6
 LEAST_MASS, MOST_MASS = 1e-9, 1e9
+
+
+# The group of terrain, and the bits of every group.
+TERRAIN_GROUP = 1
+ALL_GROUPS = (1 << 62) - 1
+# Kinds of edge of a spring: none, a line with two sides, an outline with what is solid on its left, or right.
+NO_EDGE, LINE, SOLID_LEFT, SOLID_RIGHT = 0, 1, 2, 3

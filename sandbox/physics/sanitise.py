@@ -8,13 +8,62 @@ What is found is listed, where there is a list: for each the number of its colum
 changed.
 """
 
+from dataclasses import dataclass
+
 from sandbox.physics.arrays import FloatRows, Floats, Slots
-from sandbox.physics.commands.command import pin
+from sandbox.physics.commands.changes import pin
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.state import GoodValues, Ranges, State
 
 # Of a range: the lowest and the highest good value, and the number of the column.
 LOWEST, HIGHEST, COLUMN = range(3)
+
+
+@dataclass(frozen=True)
+class Containment:
+    """An impossible value that was taken back: at a tick, in the array `array` of the particle, spring or constraint
+    `name`.
+    """
+
+    tick: int
+    array: str
+    name: str
+    frozen: bool
+
+    def __str__(self) -> str:
+        text = f"tick {self.tick}: {self.name}: an impossible {self.array.replace('_', ' ')} was taken back"
+        return text + ("; it is frozen where it last was, unpin it to let it go" if self.frozen else "")
+
+
+@inner_kernel
+def contain(state: State, good: GoodValues, ranges: Ranges, impulse: FloatRows, impact: Floats, found: Slots) -> int:
+    """Look for impossible values among all that a tick begins with, impulses of contacts too; how many are found."""
+    count = _find(impact, ranges.contact_impact, found, _find_rows(impulse, ranges.contact_impulse, found, 0))
+    for k in range(min(count, found.shape[0] // 2)):
+        contact = found[2 * k + 1]
+        impulse[contact, 0] = impulse[contact, 1] = impact[contact] = 0.0
+    count = _contain_particles(state, good, ranges, found, count)
+    return _contain_constants(state, good, ranges, found, count)
+
+
+@inner_kernel
+def contain_motion(state: State, good: GoodValues, ranges: Ranges, found: Slots, count: int) -> int:
+    """Look for impossible values among all that a tick moves; how many are found, with `count` before."""
+    n = _freeze(state, good, found, count, _find_rows(state.position, ranges.position, found, count))
+    n = _freeze(state, good, found, n, _find_rows(state.velocity, ranges.velocity, found, n))
+    n = _freeze(state, good, found, n, _find(state.angle, ranges.angle, found, n))
+    return _freeze(state, good, found, n, _find(state.spin, ranges.spin, found, n))
+
+
+@inner_kernel
+def keep_motion(state: State, good: GoodValues) -> None:
+    """Keep what a tick has moved as good."""
+    for p in range(state.position.shape[0]):
+        for axis in range(2):
+            good.position[p, axis] = state.position[p, axis]
+            good.velocity[p, axis] = state.velocity[p, axis]
+        good.angle[p] = state.angle[p]
+        good.spin[p] = state.spin[p]
 
 
 @inner_kernel
@@ -85,15 +134,6 @@ def _take_back_rows(values: FloatRows, good: FloatRows, within: Floats, found: S
 
 
 @inner_kernel
-def contain_motion(state: State, good: GoodValues, ranges: Ranges, found: Slots, count: int) -> int:
-    """Look for impossible values among all that a tick moves; how many are found, with `count` before."""
-    n = _freeze(state, good, found, count, _find_rows(state.position, ranges.position, found, count))
-    n = _freeze(state, good, found, n, _find_rows(state.velocity, ranges.velocity, found, n))
-    n = _freeze(state, good, found, n, _find(state.angle, ranges.angle, found, n))
-    return _freeze(state, good, found, n, _find(state.spin, ranges.spin, found, n))
-
-
-@inner_kernel
 def _contain_particles(state: State, good: GoodValues, ranges: Ranges, found: Slots, count: int) -> int:
     n = _freeze(state, good, found, count, _find(state.mass, ranges.mass, found, count))
     n = contain_motion(state, good, ranges, found, n)
@@ -120,25 +160,3 @@ def _contain_constants(state: State, good: GoodValues, ranges: Ranges, found: Sl
     n = _take_back(state.constraint_lowest_mode, good.constraint_lowest_mode, ranges.constraint_lowest_mode, found, n)
     n = _take_back(state.corner_weight, good.corner_weight, ranges.corner_weight, found, n)
     return _take_back_rows(state.corner_form, good.corner_form, ranges.corner_form, found, n)
-
-
-@inner_kernel
-def contain(state: State, good: GoodValues, ranges: Ranges, impulse: FloatRows, impact: Floats, found: Slots) -> int:
-    """Look for impossible values among all that a tick begins with, impulses of contacts too; how many are found."""
-    count = _find(impact, ranges.contact_impact, found, _find_rows(impulse, ranges.contact_impulse, found, 0))
-    for k in range(min(count, found.shape[0] // 2)):
-        contact = found[2 * k + 1]
-        impulse[contact, 0] = impulse[contact, 1] = impact[contact] = 0.0
-    count = _contain_particles(state, good, ranges, found, count)
-    return _contain_constants(state, good, ranges, found, count)
-
-
-@inner_kernel
-def keep_motion(state: State, good: GoodValues) -> None:
-    """Keep what a tick has moved as good."""
-    for p in range(state.position.shape[0]):
-        for axis in range(2):
-            good.position[p, axis] = state.position[p, axis]
-            good.velocity[p, axis] = state.velocity[p, axis]
-        good.angle[p] = state.angle[p]
-        good.spin[p] = state.spin[p]

@@ -52,14 +52,10 @@ def _topology(world: World) -> dict[str, NDArray[Any]]:
 def take(world: World) -> Snapshot:
     """Copy a world's state."""
     return Snapshot(
-        {**world.derived(_topology), **_copied(world, MOVING)},
-        settings=world.settings,
-        tick=world.tick,
-        grab_particle=world.grab_particle,
-        grab_spring=world.grab_spring,
-        terrain=world.terrain,
+        {**world.derived(_topology), **_copied(world, MOVING)}, settings=world.settings, tick=world.tick,
+        grab_particle=world.grab_particle, grab_spring=world.grab_spring, terrain=world.terrain,
         equipment=world.equipment,
-    )
+    )  # fmt: skip
 
 
 def restore(world: World, snapshot: Snapshot) -> None:

@@ -110,19 +110,9 @@ class Column:
 
 
 def _array(
-    stored: str,
-    family: Family,
-    dtype: type[Scalar],
-    unit: str,
-    meaning: str,
-    *,
-    width: int = 1,
-    within: Range | None = None,
-    guarded: bool = False,
-    topology: bool = False,
-    sparse: bool = False,
-    usual: float = 0,
-) -> NDArray[Scalar]:
+    stored: str, family: Family, dtype: type[Scalar], unit: str, meaning: str, *, width: int = 1,
+    within: Range | None = None, guarded: bool = False, topology: bool = False, sparse: bool = False, usual: float = 0,
+) -> NDArray[Scalar]:  # fmt: skip
     """A line of the table, which a type checker takes for the array that an instance holds under that name."""
     return cast(Any, Column(stored, family, dtype, unit, meaning, width, within, guarded, topology, sparse, usual))
 

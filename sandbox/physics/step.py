@@ -1,10 +1,17 @@
-"""step(world): one tick. A kernel does it (pipeline/tick.py); what is rare is answered here."""
+"""step(world): one tick. A kernel does it (pipeline/tick.py); what is rare is answered here: growth, containment."""
 
-from sandbox.physics.containment import contain
+from typing import Any
+
+import numpy as np
+
+from sandbox.physics.analysis.query import slot_name
+from sandbox.physics.arena import FIRST_ARENA
 from sandbox.physics.pipeline.block import BROKEN, CHECKED
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.judge import judge
-from sandbox.physics.pipeline.tick import BROKE, LOST, NO_ROOM, UNSOUND, find_broken, tick
+from sandbox.physics.pipeline.tick import BROKE, LOST, NO_ROOM, UNSOUND, find_broken, take_back, tick
+from sandbox.physics.sanitise import Containment
+from sandbox.physics.state import COLUMNS, Family
 from sandbox.physics.world import World
 
 # Changes only when the arithmetic of a tick changes; replays of another version are refused.
@@ -43,3 +50,17 @@ def step(world: World) -> None:
         world.break_springs(block.given.limits.broken[: block.given.progress[BROKEN]].copy())
     if world.rule_due.size:
         judge(block.pointer)
+
+
+def contain(world: World, pointer: Any, code: int) -> None:
+    """Take back what a tick has said UNSOUND or LOST of; pointer: to the world's block."""
+    arena = np.zeros(FIRST_ARENA, np.int64)
+    count = take_back(pointer, arena, code)
+    while arena[0] > len(arena):
+        arena = np.zeros(int(arena[0]), np.int64)
+        count = take_back(pointer, arena, code)
+    for number, slot in arena[1 : 1 + 2 * count].reshape(-1, 2).tolist():
+        column = COLUMNS[number]
+        owner, is_frozen = slot_name(world, column.stored, slot), column.family is Family.PARTICLE
+        world.contained.append(Containment(world.tick, column.stored, owner, is_frozen))
+    world.topology_version += 1

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sandbox.physics.arrays import FloatRows, Floats, Slots
-from sandbox.physics.geometry.polygon import signed_area, winding_number
-from sandbox.physics.geometry.segment import lengths
+from sandbox.physics.geometry.segment import lengths, signed_area, winding_number
 from sandbox.physics.jit import inner_kernel, kernel
 from sandbox.physics.topology.sorting import sort_by_value
 

@@ -6,32 +6,24 @@ from typing import Any, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sandbox.physics.actuators import Actuators, StrainLimits, Surface, unlimited
 from sandbox.physics.arrays import Floats, SlotRows, Slots, empty
-from sandbox.physics.commands.command import solve
-from sandbox.physics.commands.command_table import KINDS, OF_HANDS, OF_SOLVER, OF_TOPOLOGY, carry_out, lend, numbers_of
-from sandbox.physics.commands.permission import PROGRAM
-from sandbox.physics.constraints import (
-    AREA,
-    BEND,
-    ConstraintArrays,
-    constraints_of,
-    rests_of,
-)
-from sandbox.physics.events import Containment
+from sandbox.physics.breaking import StrainLimits, unlimited
+from sandbox.physics.commands.command import PROGRAM, Commanded, solve
+from sandbox.physics.commands.command_table import KINDS, OF_HANDS, OF_SOLVER, OF_TOPOLOGY, carry_out, numbers_of
+from sandbox.physics.constraints import AREA, BEND, ConstraintArrays, constraints_of, rests_of
+from sandbox.physics.driving import Actuators, drive_muscles, drives_of
+from sandbox.physics.jit import bundle
 from sandbox.physics.keeping import arguments
 from sandbox.physics.keeping.arguments import CONSTRAINTS, HANDS, PARTICLES
-from sandbox.physics.keeping.capacity import Capacity
-from sandbox.physics.keeping.equipment import Equipment, Joined
-from sandbox.physics.keeping.forms import FirmBody
-from sandbox.physics.keeping.names import Names
+from sandbox.physics.keeping.equipment import Capacity, Equipment, FirmBody, Joined, Names, Surface
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS, LAW_NISSEN
-from sandbox.physics.rules.table import Rules
+from sandbox.physics.rules import Rules
+from sandbox.physics.sanitise import Containment
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.softness.kernels.firm import FormTable
 from sandbox.physics.state import BY_NAME, COLUMNS, FAMILIES, GUARDED, OF_RULES, Family, StateArrays, good_of, state_of
 from sandbox.physics.terrain import NO_TERRAIN
-from sandbox.physics.water.pools import NO_HULLS, NO_POOLS
+from sandbox.physics.water.displacers import NO_HULLS, NO_POOLS
 
 Derived = TypeVar("Derived")
 Point = tuple[float, float]
@@ -197,6 +189,15 @@ class World(StateArrays):
         self.contact_impulse[:] = self.contact_impulse * factor if factor != 0.0 else 0.0
 
     @property
+    def commanded(self) -> Commanded:
+        """What commands change."""
+        self._numbers[:], self._choices[:] = self._settings.numbers, self._settings.choices
+        table, areas = self.form_table, areas_of(self)
+        return Commanded(
+            state_of(self), good_of(self), self._numbers, self._choices, areas, table.forms, table.modes
+        )  # fmt: skip
+
+    @property
     def lent(self) -> Any:
         """What commands change, as kernels take it."""
         return self.derived(_lend, of_hands=False)
@@ -335,21 +336,11 @@ class World(StateArrays):
         return first
 
     def add_springs(
-        self,
-        names: Sequence[str],
-        particle_a: ArrayLike,
-        particle_b: ArrayLike,
-        *,
-        rest_length: ArrayLike | None = None,
-        stiffness: ArrayLike = 0.5,
-        damping: ArrayLike = 0.9,
-        law: ArrayLike = LAW_NISSEN,
-        hooke_stiffness: ArrayLike = 0.0,
-        hooke_damping: ArrayLike = 0.0,
-        material: ArrayLike = 0,
-        edge: ArrayLike = 0,
-        belt: ArrayLike = 0.0,
-    ) -> int:
+        self, names: Sequence[str], particle_a: ArrayLike, particle_b: ArrayLike, *,
+        rest_length: ArrayLike | None = None, stiffness: ArrayLike = 0.5, damping: ArrayLike = 0.9,
+        law: ArrayLike = LAW_NISSEN, hooke_stiffness: ArrayLike = 0.0, hooke_damping: ArrayLike = 0.0,
+        material: ArrayLike = 0, edge: ArrayLike = 0, belt: ArrayLike = 0.0,
+    ) -> int:  # fmt: skip
         """Append springs, one per name, and return the first slot.
 
         particle_a, particle_b: slots (k,); the others (k,) or one for all. rest_length [m]: None or NaN = as placed.
@@ -382,16 +373,9 @@ class World(StateArrays):
         return first
 
     def add_constraints(
-        self,
-        kind: int,
-        corners: ArrayLike,
-        *,
-        form: ArrayLike | None = None,
-        inflation: ArrayLike = 1.0,
-        stiffness: ArrayLike = 0.5,
-        damping: ArrayLike = 0.9,
-        material: ArrayLike = 0,
-    ) -> int:
+        self, kind: int, corners: ArrayLike, *, form: ArrayLike | None = None, inflation: ArrayLike = 1.0,
+        stiffness: ArrayLike = 0.5, damping: ArrayLike = 0.9, material: ArrayLike = 0,
+    ) -> int:  # fmt: skip
         """Append constraints of one kind, AREA or BEND, with k corners each, and return the first slot.
 
         corners: particle slots (t, k), of an area in the order of its outline. form [m] (t, k, 2): their places at
@@ -465,7 +449,7 @@ class World(StateArrays):
         self.change("spring_active", False, slice(self.grab_spring, None))
 
     def command(self, name: str, giver: int = PROGRAM, /, **given: Any) -> None:
-        """Carry out a command of KINDS (command.py) that a hand, a rule or a program gives (permission.py).
+        """Carry out a command of KINDS (command.py) that a hand, a rule or a program gives.
 
         given: its fields, by name. Raises IndexError, ValueError and RefusedCommand; nothing is changed then.
         """
@@ -522,13 +506,19 @@ class World(StateArrays):
         self.command("shake", acceleration=acceleration)
 
     def fit(self, driven: Actuators, values: ArrayLike) -> None:
-        """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built."""
+        """Give the world its driven parts, with the value (k,) of each, -1..1; done once, when the world is built.
+
+        Muscles get the rest lengths that they have at the present tick.
+        """
         checked = [arguments.number("values", value, -1.0, 1.0) for value in arguments.listed("values", values)]
         if len(checked) != len(driven.names):
             raise ValueError(f"values of {len(checked)} parts: {len(driven.names)} are driven")
         self.actuators = driven
         self.actuator_value = np.array(checked, dtype=np.float64)
         self.actuator_impulse = np.zeros_like(self.actuator_value)
+        if len(driven.muscles.spring):
+            pointer = bundle((state_of(self), good_of(self), drives_of(driven)))
+            drive_muscles(pointer, self.tick, *self._settings.choices[:2])
 
     def drive(self, part: int, value: float) -> None:
         """Drive a part, -1..1: a motor at that share of its speed, a hydraulic at that share of its rate."""
@@ -583,10 +573,7 @@ class World(StateArrays):
 
 
 def _lend(world: World) -> Any:
-    return lend(
-        state_of(world), good_of(world), world._numbers, world._choices, areas_of(world), world.form_table.forms,
-        world.form_table.modes,
-    )  # fmt: skip
+    return bundle(world.commanded)
 
 
 def areas_of(world: World) -> SlotRows:

@@ -11,7 +11,7 @@ import numpy as np
 from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.document.model import Level
 from sandbox.level.rules.action import ActionDef
-from sandbox.physics.commands.permission import RULE
+from sandbox.physics.commands.command import RULE
 from sandbox.physics.softness.kernels.reach import BY_SAG
 from sandbox.session.commands import CommandError, act
 from sandbox.session.commands.records import from_record

@@ -12,7 +12,7 @@ from sandbox.level.checks import STILL, CheckDef, CheckResult, HoldDef, excess, 
 from sandbox.level.document.model import Level
 from sandbox.physics.analysis.energy import gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.analysis.query import load_bearing, shown_particles, shown_springs, strain
-from sandbox.physics.geometry.sums import sum_in_order
+from sandbox.physics.geometry.elementary import sum_in_order
 from sandbox.physics.world import World
 from sandbox.session.held_keys import HeldKeys
 from sandbox.session.session import Session

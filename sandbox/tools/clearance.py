@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.analysis.query import shown_particles
 from sandbox.physics.arrays import FloatRows
-from sandbox.physics.geometry.polygon import signed_area, winding_number
+from sandbox.physics.geometry.segment import signed_area, winding_number
 from sandbox.physics.snapshot import Snapshot
 from sandbox.tools.tool import Loop
 

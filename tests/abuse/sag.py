@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.firmness import FirmnessRange
 from sandbox.physics.step import step
 from tests.support.wobbles import firm_world, height, measured_wobble, standing_box

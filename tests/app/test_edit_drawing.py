@@ -14,7 +14,7 @@ from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.kinds.rope import RopeDef
 from sandbox.level.kinds.web import WebDef
 from sandbox.level.kinds.wheel import WheelDef
-from sandbox.physics.collision.filter import NO_EDGE
+from sandbox.physics.marks import NO_EDGE
 
 CTRL = pygame.KMOD_CTRL
 

@@ -18,7 +18,7 @@ from sandbox.app.draw.things.soft import FLAT
 from sandbox.app.sound.sound_events import SoundEvents
 from sandbox.app.sound.timbre import timbres_of
 from sandbox.physics.analysis.query import shown_particles, shown_springs
-from sandbox.physics.geometry.polygon import winding_number
+from sandbox.physics.geometry.segment import winding_number
 from sandbox.session.commands import CutSprings
 from tests.support.cutting import SOFT_LEVELS, STROKES, actor_of, advance, begun, crossed, cut, level_with
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sandbox.physics.actuators import Actuators, Muscles
+from sandbox.physics.driving import Actuators, Muscles
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.bench import scenes

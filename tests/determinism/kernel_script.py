@@ -19,8 +19,9 @@ def busy_world(solver: str, substeps: int):
     """
     import numpy as np
 
-    from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles, StrainLimits
+    from sandbox.physics.breaking import StrainLimits
     from sandbox.physics.constraints import AREA, BEND
+    from sandbox.physics.driving import Actuators, Hydraulics, Motors, Muscles
     from sandbox.physics.marks import LAW_HOOKE
     from sandbox.physics.settings import WorldSettings
     from sandbox.physics.world import World
@@ -73,7 +74,7 @@ def touching_world(solver: str, substeps: int):
 
     The discs turn, but for one; two of them are shot at each other. Some of the edges and of the terrain are belts.
     """
-    from sandbox.physics.collision.filter import ALL_GROUPS, LINE
+    from sandbox.physics.marks import ALL_GROUPS, LINE
     from sandbox.physics.terrain import Chain, make_terrain
     from tests.support.contact_scenes import add_jelly
 
@@ -165,7 +166,7 @@ def modes():
     """The lowest modes of some forms, and Cs and Cd or what is nearest to them, as text that shows every bit."""
     import numpy as np
 
-    from sandbox.physics.keeping.forms import Firmness, StiffForm
+    from sandbox.physics.keeping.equipment import Firmness, StiffForm
     from sandbox.physics.softness.firmness import FirmnessRange, lowest_mode_of
 
     generator = np.random.default_rng(1)

@@ -21,10 +21,10 @@ from typing import Any
 import numpy as np
 
 from sandbox.physics.jit import KERNELS, Kernel, interpreted
-from sandbox.physics.jit.library import Library, file_digest
-from sandbox.physics.jit.making.compiling import compiled
-from sandbox.physics.jit.making.gathering import all_entries
+from sandbox.physics.jit.library import Library
+from sandbox.physics.jit.making.compiling import all_entries, compiled
 from sandbox.physics.jit.making.platforms import this_machine
+from sandbox.physics.jit.sources import file_digest
 from sandbox.physics.jit.translate.cpp_types import Array, BundleType, Scalar, Several, Struct, Type
 from sandbox.physics.jit.translate.program import Signature, Translation, words_of
 

@@ -12,7 +12,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import NissenMaterial, ParticleDef
 from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.firmness import FirmnessRange, set_firmness
 from sandbox.physics.step import step
 from tests.support.wobbles import firm_level

@@ -17,7 +17,7 @@ from sandbox.level.kinds.fitting import TooCoarse, disc_counts, fitted_mesh
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.level.kinds.polygon import is_simple
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.collision.filter import NO_EDGE
+from sandbox.physics.marks import NO_EDGE
 from sandbox.physics.step import step
 
 L_SHAPE = ((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0))

@@ -7,7 +7,7 @@ from sandbox import Session, outlines
 from sandbox.commands import CutSprings
 from sandbox.export.flat import flat
 from sandbox.level.reading.files import load_level
-from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import signed_area
 from tests.level.test_contacts_by_name import BALL, GROUND, JELLY, level_of
 
 

@@ -12,7 +12,7 @@ from sandbox.level.kinds.bodies import expansion
 from sandbox.level.reading.files import read_level, shipped_levels
 from sandbox.level.reading.parse import parse_level
 from sandbox.level.reading.salvage import salvage
-from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
+from sandbox.physics.marks import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.step import step
 
 SQUARE = [[0, 0], [4, 0], [4, -1], [0, -1]]

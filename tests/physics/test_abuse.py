@@ -6,8 +6,8 @@ import pytest
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.physics.analysis.energy import total_energy
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.marks import ALL_GROUPS, LINE
 from sandbox.physics.settings import AUTO
 from sandbox.physics.step import step
 from tests.support.contact_scenes import BODIES, add_discs, add_jelly, world

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Actuators, Hydraulics, Muscles
 from sandbox.physics.analysis.energy import kinetic_energy, reduced_masses, spring_energy, spring_lengths, total_energy
-from sandbox.physics.driving import drive_muscles, wave
+from sandbox.physics.driving import Actuators, Hydraulics, Muscles, wave
 from sandbox.physics.equation import implicit_spring_constant
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
@@ -19,7 +18,6 @@ def driven(world, *, amplitude=0.3, period=20, phase=0.0):
     muscles = Muscles(np.array([0]), np.array([amplitude]), np.array([period]), np.array([phase]))
     hydraulics = Hydraulics(np.array([last]), np.array([0.5]), np.array([2.0]), np.array([3.0]), np.array([0]))
     world.fit(Actuators(("jack",), muscles, hydraulics), [0.0])
-    drive_muscles(world, 0)
     return world
 
 

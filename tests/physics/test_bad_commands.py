@@ -10,14 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Actuators
-from sandbox.physics.commands.command import BAD, REASONS, command
-from sandbox.physics.commands.command_table import KINDS, lend
-from sandbox.physics.commands.permission import PROGRAM
+from sandbox.physics.commands.command import BAD, PROGRAM, REASONS, command
+from sandbox.physics.commands.command_table import KINDS
 from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.driving import Actuators
 from sandbox.physics.kits.removing import remove_particles
 from sandbox.physics.softness.firmness import set_firmness
-from sandbox.physics.state import Family, good_of, state_of
+from sandbox.physics.state import Family
 from sandbox.physics.step import step
 from tests.support import bad_commands
 from tests.support.bad_commands import CALLS, INF, NAN, call, made, outcome, wrong_calls
@@ -145,12 +144,8 @@ def test_interpreted_kernels_say_the_same_of_each():
 
 def test_a_number_that_is_not_finite_is_refused_by_the_kernel_itself():
     world, arena = made(), np.zeros(1, np.int64)
-    forms = world.form_table.forms, world.form_table.modes
-    pointer = lend(
-        state_of(world), good_of(world), np.zeros(6), np.zeros(5, np.int64), np.zeros((0, 2), np.int64), *forms
-    )
     slots, before = np.array([4]), bad_commands.memory_of(world)
-    result = command(pointer, arena, PROGRAM, KINDS["shake"].code, slots, np.array([NAN, 0.0, 60.0]))
+    result = command(world.lent, arena, PROGRAM, KINDS["shake"].code, slots, np.array([NAN, 0.0, 60.0]))
     assert result == -(BAD + REASONS * len(slots)) and bad_commands.memory_of(world) == before
 
 

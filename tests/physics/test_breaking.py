@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import NEVER, Actuators, Muscles, StrainLimits
 from sandbox.physics.analysis.energy import kinetic_energy, reduced_masses, spring_lengths
+from sandbox.physics.breaking import NEVER, StrainLimits
+from sandbox.physics.driving import Actuators, Muscles
 from sandbox.physics.equation import implicit_spring_constant
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS

@@ -33,7 +33,7 @@ import numpy as np
 import tried
 from sandbox.physics.jit.library import Library
 from sandbox.physics.jit.making.compiling import compiled
-from sandbox.physics.jit.making.gathering import entry_of
+from sandbox.physics.jit.making.compiling import entry_of
 from sandbox.physics.jit.making.platforms import this_machine
 from sandbox.physics.jit.translate.program import Translation, symbol_of
 

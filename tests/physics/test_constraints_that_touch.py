@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import StrainLimits
 from sandbox.physics.analysis.energy import total_energy
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE
+from sandbox.physics.breaking import StrainLimits
 from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.marks import ALL_GROUPS, LINE
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.pipeline.tick import find_broken
 from sandbox.physics.settings import AUTO

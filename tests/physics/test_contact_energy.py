@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.energy import kinetic_energy, total_energy
-from sandbox.physics.collision.filter import LINE
+from sandbox.physics.marks import LINE
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from tests.support.closed_boxes import allowed, energy, outside, random_box

@@ -7,7 +7,7 @@ import pytest
 
 from sandbox.physics.analysis.energy import kinetic_energy, total_energy
 from sandbox.physics.collision.contacts import PENETRATION_TICKS
-from sandbox.physics.collision.filter import ALL_GROUPS
+from sandbox.physics.marks import ALL_GROUPS
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS

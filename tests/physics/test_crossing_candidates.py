@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.filter import LINE
+from sandbox.physics.marks import LINE
 from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.pipeline.collide import CROSSED
 from sandbox.physics.step import step

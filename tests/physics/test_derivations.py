@@ -6,13 +6,11 @@ from collections import Counter, defaultdict
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Actuators, Motors
-from sandbox.physics.collision import close_edges as close
-from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_RIGHT
-from sandbox.physics.collision.outline import new_colliders
-from sandbox.physics.collision.pinned_edges import pinned_edges
+from sandbox.physics.collision import outline as close
+from sandbox.physics.collision.outline import new_colliders, pinned_edges
 from sandbox.physics.components import find_joined
-from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.driving import Actuators, Motors
+from sandbox.physics.marks import GRAB_MATERIAL, LINE, NO_EDGE, SOLID_RIGHT
 from sandbox.physics.pipeline.block_owner import block_of, outline_of
 from sandbox.physics.state import state_of
 from sandbox.physics.terrain import Chain, make_terrain

@@ -8,7 +8,7 @@ import pytest
 from filelock import FileLock
 
 from sandbox.physics.jit import edited
-from sandbox.physics.jit.library import NoLibrary, file_digest
+from sandbox.physics.jit.sources import NoLibrary, file_digest
 from tests.support.wants import needs
 
 pytestmark = needs("zig", importlib.util.find_spec("ziglang"))

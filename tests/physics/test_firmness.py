@@ -10,7 +10,7 @@ import pytest
 from sandbox.physics.equation import of_body, of_springs
 from sandbox.physics.geometry.elementary import cosine, exponential, rounded, to_three_digits
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.keeping.forms import Firmness, StiffForm
+from sandbox.physics.keeping.equipment import Firmness, StiffForm
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.softness.firmness import WORDS, FirmnessRange, OutOfReach, lowest_mode_of

@@ -9,13 +9,18 @@ import pytest
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.arena import NO_ARENA
-from sandbox.physics.changing.freeing import CLEAR, FREED, free_body
-from sandbox.physics.commands.command import BODY_PINNED, FREE, NO_FREE_PLACE, NOTHING_TO_FREE, REASONS, command
-from sandbox.physics.commands.command_table import lend
-from sandbox.physics.commands.permission import PROGRAM
+from sandbox.physics.commands.command import (
+    BODY_PINNED,
+    FREE,
+    NO_FREE_PLACE,
+    NOTHING_TO_FREE,
+    PROGRAM,
+    REASONS,
+    command,
+)
+from sandbox.physics.commands.freeing import CLEAR, FREED, free_body
 from sandbox.physics.components import body_of, list_body
-from sandbox.physics.geometry.polygon import winding_number
-from sandbox.physics.geometry.segment import distances_from_segments
+from sandbox.physics.geometry.segment import distances_from_segments, winding_number
 from sandbox.physics.state import good_of, state_of
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World
@@ -34,9 +39,7 @@ def freed(world, particle, words=WORDS):
 
 
 def given_to_kernel(world, particle, arena):
-    lent = lend(state_of(world), good_of(world), np.zeros(6), np.zeros(5, np.int64), np.zeros((0, 2), np.int64),
-                world.form_table.forms, world.form_table.modes)  # fmt: skip
-    result = command(lent, arena, PROGRAM, FREE, np.array([-1, particle]), np.zeros(0))
+    result = command(world.lent, arena, PROGRAM, FREE, np.array([-1, particle]), np.zeros(0))
     return result if result == NO_ARENA else -result % REASONS
 
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.physics.collision.filter import LINE
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.marks import LINE
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.step import step

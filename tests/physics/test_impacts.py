@@ -7,7 +7,7 @@ import pytest
 
 from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.arrays import Floats
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE, TERRAIN_GROUP
+from sandbox.physics.marks import ALL_GROUPS, LINE, TERRAIN_GROUP
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.step import step
 from sandbox.physics.world import World

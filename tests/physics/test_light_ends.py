@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Actuators, Hydraulics
 from sandbox.physics.analysis.energy import kinetic_energy
+from sandbox.physics.driving import Actuators, Hydraulics
 from sandbox.physics.step import step
 from tests.support.hands import world_of
 from tests.support.physics_scenes import network, run, scaled

@@ -9,7 +9,7 @@ import pytest
 
 from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.jit.making import libraries
-from sandbox.physics.jit.making.gathering import Gathered, all_entries, gathered
+from sandbox.physics.jit.making.compiling import Gathered, all_entries, gathered
 from tests.support.wants import needs
 
 

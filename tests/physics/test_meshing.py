@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from sandbox.physics.arena import answer_of
 from sandbox.physics.jit import kernel_of
-from sandbox.physics.meshing import exact, fitting
+from sandbox.physics.meshing import fitting, triangulation
 from tests.support.strokes import rough_stroke
 
 # Coordinates with the frame's.
-FAR = 64 * int(exact.FARTHEST)
+FAR = 64 * int(triangulation.FARTHEST)
 far = st.integers(-FAR, FAR)
 near = st.integers(-3, 3)
 STROKES = 40
@@ -42,7 +42,7 @@ def sign(value):
 
 
 def scratch():
-    return memoryview(np.zeros(exact.SCRATCH, np.int64))
+    return memoryview(np.zeros(triangulation.SCRATCH, np.int64))
 
 
 @given(st.tuples(far, far), st.tuples(far, far), st.integers(-(2**20), 2**20), near, near)
@@ -50,7 +50,7 @@ def test_three_places_turn_as_whole_numbers_without_bounds_say(a, b, times, x, y
     # Almost on the line, as far away as may be.
     c = max(-FAR, min(FAR, a[0] + (b[0] - a[0]) * times // 2**20 + x)), max(-FAR, min(FAR, a[1] + y))
     for places in itertools.permutations((a, b, c)):
-        assert exact.turn_of(0, 1, 2, sites(*places)) == sign(turn(*places))
+        assert triangulation.turn_of(0, 1, 2, sites(*places)) == sign(turn(*places))
 
 
 @given(st.tuples(far, far), st.integers(0, FAR // 2), st.integers(0, FAR // 2), near, near)
@@ -58,12 +58,12 @@ def test_a_circle_holds_what_whole_numbers_without_bounds_say(centre, across, up
     # Corners of a box lie on one circle; the last one is moved a little, or not at all.
     cx, cy = centre[0] // 2, centre[1] // 2
     a, b, c, d = (cx - across, cy - up), (cx + across, cy - up), (cx + across, cy + up), (cx - across + x, cy + up + y)
-    assert exact.circle_holds(0, 1, 2, 3, sites(a, b, c, d), scratch()) == (circle(a, b, c, d) > 0)
+    assert triangulation.circle_holds(0, 1, 2, 3, sites(a, b, c, d), scratch()) == (circle(a, b, c, d) > 0)
 
 
 @given(*(st.tuples(far, far) for _ in range(4)))
 def test_a_circle_of_any_places_holds_what_whole_numbers_without_bounds_say(a, b, c, d):
-    assert exact.circle_holds(0, 1, 2, 3, sites(a, b, c, d), scratch()) == (circle(a, b, c, d) > 0)
+    assert triangulation.circle_holds(0, 1, 2, 3, sites(a, b, c, d), scratch()) == (circle(a, b, c, d) > 0)
 
 
 @pytest.mark.parametrize("spacing", [0.3, 1.2345, 0.00012345, 77.77, 4321.0])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sandbox.physics.actuators import Actuators, Motors
 from sandbox.physics.analysis.energy import total_energy
+from sandbox.physics.driving import Actuators, Motors
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import hash_by_array, restore, take
 from sandbox.physics.solvers import SOLVERS

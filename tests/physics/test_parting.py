@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.energy import kinetic_energy, total_energy
-from sandbox.physics.collision.filter import LINE
+from sandbox.physics.marks import LINE
 from sandbox.physics.step import step
 from tests.support.contact_scenes import FLOOR, add_discs, add_jelly, world
 from tests.support.contacts import last_contacts

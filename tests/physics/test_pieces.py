@@ -12,11 +12,11 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.analysis.query import shown_springs
-from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import of_body
-from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import signed_area
+from sandbox.physics.marks import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.softness.firmness import FirmnessRange, firm_bodies, lowest_mode_of

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.energy import of_last_tick, spring_energy, total_energy
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.ramps import CONSTRAINTS, SPRINGS, in_force, next_pair
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER_NAMES, WorldSettings
 from sandbox.physics.snapshot import hash_by_array, restore, state_hash, take

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sandbox.physics.analysis.energy import total_energy
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE, SOLID_LEFT
+from sandbox.physics.marks import ALL_GROUPS, LINE, SOLID_LEFT
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World

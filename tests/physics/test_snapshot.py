@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sandbox.physics import snapshot as snapshot_module
-from sandbox.physics.actuators import Actuators
 from sandbox.physics.constraints import AREA, BEND
+from sandbox.physics.driving import Actuators
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import canonical_bytes, hash_by_array, restore, state_hash, take

@@ -11,7 +11,7 @@ from sandbox.level.assembly.build_world import build_world
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.reading.files import load_level, parse_level, shipped_levels
-from sandbox.physics.actuators import unlimited
+from sandbox.physics.breaking import unlimited
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.softness.body_motion import common_pair, critical_height, read_body, word_edges, word_for
 from sandbox.physics.softness.firmness import WORDS, lowest_mode_of

@@ -9,8 +9,8 @@ from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.physics.analysis.energy import energy_tests, gravity_energy, kinetic_energy, spring_energy
 from sandbox.physics.arrays import Floats
-from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.marks import ALL_GROUPS
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, FLOOR, world

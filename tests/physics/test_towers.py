@@ -6,8 +6,8 @@ import pytest
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
 from sandbox.physics.arrays import Floats
-from sandbox.physics.collision.filter import ALL_GROUPS
 from sandbox.physics.jit import COMPILED
+from sandbox.physics.marks import ALL_GROUPS
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, FLOOR, world
 from tests.support.physics_scenes import run

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.physics.jit.translate.definitions import Untranslatable
+from sandbox.physics.jit.translate.cpp_types import Untranslatable
 from sandbox.physics.jit.translate.program import Translation
 
 HEAD = """

@@ -10,7 +10,7 @@ from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.step import step
 from sandbox.physics.water.displacers import FX, FY
-from sandbox.physics.water.wet_parts import arc_cosine, disc_area_below, disc_depth, mean_depth, wet_shares
+from sandbox.physics.water.push import arc_cosine, disc_area_below, disc_depth, mean_depth, wet_shares
 from tests.support.pools import (
     CALM,
     DENSITY,

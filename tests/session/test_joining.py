@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sandbox.cli import main
-from sandbox.physics.collision.filter import ALL_GROUPS
+from sandbox.physics.marks import ALL_GROUPS
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import (

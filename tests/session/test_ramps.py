@@ -5,7 +5,7 @@ import pytest
 from sandbox.level.reading.files import load_level
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.keeping.forms import height_of
+from sandbox.physics.keeping.equipment import height_of
 from sandbox.physics.snapshot import state_hash
 from sandbox.replay import read_replay, verify
 from sandbox.session.commands import (

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.physics.actuators import Actuators
 from sandbox.physics.commands.command_table import KINDS, RefusedCommand
 from sandbox.physics.constraints import AREA
+from sandbox.physics.driving import Actuators
 from sandbox.physics.jit import way
-from sandbox.physics.keeping.forms import FirmBody, StiffForm
+from sandbox.physics.keeping.equipment import FirmBody, StiffForm
 from sandbox.physics.kits.removing import remove_particles
 from sandbox.physics.snapshot import state_hash
 from sandbox.physics.state import COLUMNS, Family

@@ -8,8 +8,8 @@ import numpy as np
 
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.actuators import Actuators, Motors
-from sandbox.physics.collision.filter import TERRAIN_GROUP
+from sandbox.physics.driving import Actuators, Motors
+from sandbox.physics.marks import TERRAIN_GROUP
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain, make_terrain
 from tests.support.physics_scenes import network

@@ -12,8 +12,8 @@ from sandbox.physics.analysis.energy import (
     kinetic_energy,
     spring_energy,
 )
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE
 from sandbox.physics.constraints import AREA
+from sandbox.physics.marks import ALL_GROUPS, LINE
 from sandbox.physics.settings import AUTO
 from sandbox.physics.solvers.direct.energy_bank import UNDERDAMPED_BANK_SHARE
 from sandbox.physics.terrain import Chain

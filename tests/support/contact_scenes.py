@@ -6,7 +6,7 @@ import numpy as np
 
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE
+from sandbox.physics.marks import ALL_GROUPS, LINE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.terrain import Chain, make_terrain
 from sandbox.physics.world import World

@@ -16,7 +16,7 @@ from sandbox.app.draw.textures import EARTH, GROUND, TILE, TIMBER, Tiles, grains
 from sandbox.app.draw.themes import Theme
 from sandbox.app.draw.things.borders import starts_of
 from sandbox.level.document.model import Level
-from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import signed_area
 from sandbox.physics.terrain import Terrain
 
 Floats = NDArray[np.float64]

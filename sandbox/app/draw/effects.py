@@ -10,7 +10,7 @@ from sandbox.app.draw.colours import packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import SPARK, SPARK_GLOW, Theme
 from sandbox.physics.analysis.query import shown_springs
-from sandbox.physics.collision.filter import NO_EDGE
+from sandbox.physics.marks import NO_EDGE
 from sandbox.physics.snapshot import Snapshot
 
 Floats = NDArray[np.float64]

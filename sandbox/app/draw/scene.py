@@ -27,7 +27,7 @@ from sandbox.app.draw.things.wheels import DrawnWheel
 from sandbox.app.draw.water import DrawnPool, Pools
 from sandbox.level.document.model import Level
 from sandbox.level.format.look import PALETTE
-from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import signed_area
 from sandbox.physics.marks import GRAB_COUNT
 from sandbox.physics.snapshot import Snapshot, take
 from sandbox.physics.world import World

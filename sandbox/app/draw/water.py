@@ -14,7 +14,7 @@ from sandbox.app.draw.themes import Theme, rgb_of
 from sandbox.app.draw.things.frame import Frame
 from sandbox.level.document.model import Level, ZoneDef
 from sandbox.level.format.look import colour_of
-from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import signed_area
 from sandbox.physics.terrain import Terrain
 
 Floats = NDArray[np.float64]

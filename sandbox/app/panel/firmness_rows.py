@@ -21,7 +21,7 @@ from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
 from sandbox.physics import jit
 from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.arrays import Floats
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.body_motion import (
     BodyMotion,
     SagCurve,

@@ -14,7 +14,7 @@ from sandbox.app.widgets.ui import Ui
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.joining import copying_commands
 from sandbox.physics.analysis.query import particle_at
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach, firm_bodies
 from sandbox.physics.world import World
 from sandbox.session.commands import Command, Remove, ScaleMass, SetFirmness

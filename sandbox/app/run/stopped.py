@@ -1,7 +1,7 @@
 """What went out of bounds in a run and was stopped: in plain words, and with ticks and slots for who asks."""
 
 from sandbox.app.base.sentences import sentence
-from sandbox.physics.events import Containment
+from sandbox.physics.sanitise import Containment
 from sandbox.physics.world import World
 
 # Things that the line names.

@@ -22,7 +22,7 @@ from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.geometry import Points
 from sandbox.level.kinds.mesh import MeshDef
 from sandbox.physics.equation import of_body, of_springs
-from sandbox.physics.keeping.forms import FirmBody, Firmness
+from sandbox.physics.keeping.equipment import FirmBody, Firmness
 from sandbox.physics.softness.firmness import FirmnessRange
 from sandbox.physics.world import World
 

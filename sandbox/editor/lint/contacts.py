@@ -12,8 +12,8 @@ from sandbox.editor.lint.finding import Finding, Remedy, Rule, called, place_of
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
 from sandbox.level.format.limits import BODY_RADIUS
-from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.geometry.segment import lengths, nearest_on_segments
+from sandbox.physics.marks import TERRAIN_GROUP
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.int64]

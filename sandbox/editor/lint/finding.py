@@ -11,7 +11,7 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item, Selection
 from sandbox.editor.scene import Scene
 from sandbox.level.document.model import Level
-from sandbox.physics.collision.filter import TERRAIN_GROUP
+from sandbox.physics.marks import TERRAIN_GROUP
 
 Severity = Literal["error", "warning", "hint"]
 # The gravest first.

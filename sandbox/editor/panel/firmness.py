@@ -17,7 +17,7 @@ from sandbox.level.format.quantities import replaced, significant
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.body_def import BodyDef, FirmnessDef
 from sandbox.physics.equation import of_body
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.firmness import LARGEST_READ, WORDS, FirmnessRange, OutOfReach
 
 # What the menu of words says of a body that is as its material is, and of one whose firmness has no word.

@@ -18,7 +18,7 @@ from sandbox.level.format.limits import DEFAULT_MATERIAL
 from sandbox.level.format.quantities import replaced
 from sandbox.level.kinds.bodies import KINDS, AnyBody, expansion
 from sandbox.level.kinds.body_def import FirmnessDef
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.firmness import FirmnessRange, OutOfReach
 
 AnyBodyOptions = TypeVar("AnyBodyOptions", bound=BodyOptions)

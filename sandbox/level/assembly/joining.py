@@ -20,10 +20,9 @@ from sandbox.level.plan.actuators import actuators
 from sandbox.level.plan.axles import free_wheels
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
 from sandbox.level.reading.parse import parse_level
-from sandbox.physics.collision.filter import ALL_GROUPS
-from sandbox.physics.commands.command import ADD_BODY
-from sandbox.physics.commands.permission import PROGRAM
+from sandbox.physics.commands.command import ADD_BODY, PROGRAM
 from sandbox.physics.kits.joining import KitError, check_kit
+from sandbox.physics.marks import ALL_GROUPS
 
 SOURCE = "add_body"
 # Definitions that are kept once checked: undoing and redoing add the same ones again.

@@ -14,7 +14,7 @@ from sandbox.level.format.level_error import LevelError
 from sandbox.level.format.limits import BODY_RADIUS, FORMAT, VERSION
 from sandbox.level.reading.parse import parse_level
 from sandbox.physics.constraints import TRIANGLE
-from sandbox.physics.keeping.forms import FirmBody, StiffForm
+from sandbox.physics.keeping.equipment import FirmBody, StiffForm
 from sandbox.physics.kits.joining import DOES_NOT_FIT, NOT_A_TABLE, UNKNOWN, KitError, rows_of
 from sandbox.physics.kits.kit import NUMBER_TABLE, PART_NAMES, SLOT_TABLE, SlotColumn
 

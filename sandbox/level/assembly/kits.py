@@ -16,10 +16,10 @@ from sandbox.level.format.limits import (
     most_limited,
 )
 from sandbox.level.plan.surfaces import group_bits
-from sandbox.physics.commands.command import ADD_BODY
-from sandbox.physics.commands.permission import PROGRAM
+from sandbox.physics.commands.command import ADD_BODY, PROGRAM
 from sandbox.physics.constraints import AREA
 from sandbox.physics.driving import drives_of
+from sandbox.physics.keeping.equipment import FirmBody
 from sandbox.physics.keeping.forms import FirmBody
 from sandbox.physics.kits.joining import Packed, join_kit, pack, rows_of
 from sandbox.physics.kits.kit import COUNTED

@@ -28,7 +28,7 @@ from sandbox.level.format.quantities import (
     empty,
     unit,
 )
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 
 End = Literal["start", "end"]
 

@@ -13,8 +13,8 @@ from sandbox.level.format.limits import COORDINATE_LIMIT
 from sandbox.level.format.quantities import Description
 from sandbox.level.kinds.body_def import BendingDef, BodyDef
 from sandbox.level.kinds.geometry import Pairs, Points, distances
-from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
-from sandbox.physics.keeping.forms import StiffForm
+from sandbox.physics.keeping.equipment import StiffForm
+from sandbox.physics.marks import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 
 Body = TypeVar("Body", bound=BodyDef)
 Floats = NDArray[np.float64]

@@ -12,8 +12,7 @@ from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.level.plan.plan import Plan
 from sandbox.level.plan.welds import Slots
-from sandbox.physics.actuators import Actuators, Hydraulics, Motors, Muscles
-from sandbox.physics.driving import drive_muscles
+from sandbox.physics.driving import Actuators, Hydraulics, Motors, Muscles
 from sandbox.physics.world import World
 
 
@@ -86,7 +85,6 @@ def add_actuators(world: World, level: Level, plan: Plan, slots: Slots) -> None:
     names = tuple(each.name for each in found)
     equipment = Actuators(names, _muscles(level, plan.bodies), lifting, turning)
     world.fit(equipment, [each.start_value for each in found])
-    drive_muscles(world, 0)
 
 
 def _muscles(level: Level, bodies: list[Expansion[Any]]) -> Muscles:

@@ -8,7 +8,7 @@ import numpy as np
 from sandbox.level.document.model import HookeMaterial, Level, Material
 from sandbox.level.kinds.expansion import Expansion
 from sandbox.physics.constraints import TRIANGLE
-from sandbox.physics.keeping.forms import FirmBody, Firmness
+from sandbox.physics.keeping.equipment import FirmBody, Firmness
 from sandbox.physics.softness.firmness import give_firmness, lowest_mode_of
 from sandbox.physics.world import World
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sandbox.level.document.model import HookeMaterial, Material
-from sandbox.physics.actuators import NEVER, StrainLimits
+from sandbox.physics.breaking import NEVER, StrainLimits
 from sandbox.physics.marks import LAW_HOOKE, LAW_NISSEN
 
 

@@ -16,18 +16,17 @@ from sandbox.level.plan.welds import Slots
 from sandbox.level.rules.hands import MEANINGS, HandsDef
 from sandbox.level.rules.question import WALLS, QuestionDef
 from sandbox.level.rules.rule import RuleDef
+from sandbox.physics import rules
 from sandbox.physics.commands.command_table import CODES
-from sandbox.physics.rules import table
-from sandbox.physics.rules.table import NOBODY, Rules, Terms, Things
-from sandbox.physics.rules.zones import BOX, CIRCLE, POLYGON, Zones
+from sandbox.physics.rules import BOX, CIRCLE, NOBODY, POLYGON, Rules, Terms, Things, Zones
 from sandbox.physics.state import Family
 from sandbox.physics.world import World
 
 _KINDS = {
-    "x": table.CENTRE_X, "y": table.CENTRE_Y, "speed": table.SPEED, "distance": table.DISTANCE,
-    "inside": table.INSIDE, "max_speed": table.FASTEST, "strain": table.STRAIN, "kinetic_energy": table.MOTION,
-    "broken_springs": table.BROKEN, "non_finite": table.UNSOUND, "settled": table.SETTLED,
-    "all": table.ALL, "any": table.ANY, "none": table.NOT,
+    "x": rules.CENTRE_X, "y": rules.CENTRE_Y, "speed": rules.SPEED, "distance": rules.DISTANCE,
+    "inside": rules.INSIDE, "max_speed": rules.FASTEST, "strain": rules.STRAIN, "kinetic_energy": rules.MOTION,
+    "broken_springs": rules.BROKEN, "non_finite": rules.UNSOUND, "settled": rules.SETTLED,
+    "all": rules.ALL, "any": rules.ANY, "none": rules.NOT,
 }  # fmt: skip
 _OF_SPRINGS = ("strain", "broken_springs")
 
@@ -133,21 +132,21 @@ class _Maker:
         match asks:
             case "touches":
                 one, *others = (self._things[name] for name in value)
-                return _Term(table.TOUCHES, (), one, others[0] if others else NOBODY)
+                return _Term(rules.TOUCHES, (), one, others[0] if others else NOBODY)
             case "crosses":
                 about = self._particles(asked)
                 first = len(self.probes)
                 self.probes += about
                 self.probing += [self._asking] * len(about)
-                return _Term(table.CROSSES, about, self._zones.index(value), first, 1.0, 1.0)
+                return _Term(rules.CROSSES, about, self._zones.index(value), first, 1.0, 1.0)
             case "breaks":
-                return _Term(table.BROKEN, self._springs(value), low=1.0)
+                return _Term(rules.BROKEN, self._springs(value), low=1.0)
             case "counter":
-                return _Term(table.COUNTER, (), 0, self._counters.index(value), low, high)
+                return _Term(rules.COUNTER, (), 0, self._counters.index(value), low, high)
             case "key":
-                return _Term(table.KEY, (), 0, self.keys.index(value), 1.0, 1.0)
+                return _Term(rules.KEY, (), 0, self.keys.index(value), 1.0, 1.0)
             case "time":
-                return _Term(table.TIME, low=value)
+                return _Term(rules.TIME, low=value)
             case "metric":
                 return self._of_metric(asked, low, high)
             case "all" | "any" | "none":
@@ -163,12 +162,12 @@ class _Maker:
         if metric in _OF_SPRINGS:
             return _Term(kind, self._springs(asked.body), low=low, high=high)
         other = 0
-        if kind == table.SETTLED:
+        if kind == rules.SETTLED:
             other = len(self.settling)
             self.settling.append(self._asking)
-        elif kind == table.DISTANCE:
+        elif kind == rules.DISTANCE:
             other = self._slot(str(asked.other))
-        zone = self._zones.index(str(asked.zone)) if kind == table.INSIDE else 0
+        zone = self._zones.index(str(asked.zone)) if kind == rules.INSIDE else 0
         return _Term(kind, self._particles(asked), zone, other, low, high)
 
     def _slot(self, name: str) -> int:
@@ -192,10 +191,10 @@ class _Maker:
     def rules(self, roots: Sequence[int], delays: Sequence[int], once: Sequence[bool]) -> Rules:
         """The whole table; roots: the terms of the rules."""
         # Those of TOUCHES come first, all others stay behind what they ask.
-        order = sorted(range(len(self._terms)), key=lambda t: self._terms[t].kind != table.TOUCHES)
+        order = sorted(range(len(self._terms)), key=lambda t: self._terms[t].kind != rules.TOUCHES)
         place = {t: at for at, t in enumerate(order)}
         terms = [self._terms[t] for t in order]
-        is_group = [term.kind in (table.ALL, table.ANY, table.NOT) for term in terms]
+        is_group = [term.kind in (rules.ALL, rules.ANY, rules.NOT) for term in terms]
         slots: list[int] = []
         members: list[int] = []
         spans = []

@@ -10,8 +10,8 @@ from sandbox.level.document.model import ContactsDef, Level, ParticleDef
 from sandbox.level.format.limits import BODY_RADIUS
 from sandbox.level.kinds.body_def import BodyDef
 from sandbox.level.plan.axles import free_wheels
-from sandbox.physics.actuators import Surface
-from sandbox.physics.collision.filter import ALL_GROUPS, TERRAIN_GROUP
+from sandbox.physics.keeping.equipment import Surface
+from sandbox.physics.marks import ALL_GROUPS, TERRAIN_GROUP
 from sandbox.physics.terrain import NO_TERRAIN, Chain, Terrain, make_terrain
 
 # Groups that exist in every level: of terrain and walls, and of bodies that name none.

@@ -9,7 +9,7 @@ from sandbox.level.document.model import Level, Material, NissenMaterial
 from sandbox.level.kinds.expansion import NO_HULL, Expansion
 from sandbox.physics.arrays import FloatRows, SlotRows
 from sandbox.physics.constraints import TRIANGLE
-from sandbox.physics.water.pools import NO_HULLS, NO_POOLS, Pool, pools_of
+from sandbox.physics.water.displacers import NO_HULLS, NO_POOLS, Pool, pools_of
 
 
 def water_of(level: Level) -> FloatRows:

@@ -12,6 +12,8 @@ from sandbox.level.things.names import ThingNames
 from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.geometry.polygon import signed_area
+from sandbox.physics.geometry.segment import signed_area
+from sandbox.physics.marks import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 
 # The colour of terrain and walls.
 GROUND_COLOUR = 0x5B6477

@@ -7,19 +7,22 @@ is pushed out there. What moves fast is followed along its way, and meets what s
 import math
 
 from sandbox.physics.arrays import FloatRows, SlotRows
-from sandbox.physics.collision.edge_geometry import (
+from sandbox.physics.collision.ghost_vertices import (
     CORNER,
     corner_normal,
     edge_normal,
     end_of,
     is_behind,
+    is_ghost_vertex,
     is_in,
+    is_loose,
     owns_corner,
+    passes_beside,
     place_on,
+    put_ahead_in_order,
+    rises_ahead,
     time_to_circle,
 )
-from sandbox.physics.collision.hollows import go_on_ahead, is_loose, rises_ahead
-from sandbox.physics.collision.seams import is_seam, passes_beside
 from sandbox.physics.collision.types import MOST_NEAR, Colliders, Contacts, Near
 from sandbox.physics.geometry.segment import SHORTEST, closest_on_segment, difference, segment_of, unit
 from sandbox.physics.jit import inlined_kernel, inner_kernel
@@ -76,19 +79,9 @@ def are_joined(p: int, v: int, colliders: Colliders) -> bool:
 
 @inlined_kernel
 def add_contact(
-    count: int,
-    contacts: Contacts,
-    p: int,
-    feature: int,
-    a: int,
-    b: int,
-    share: float,
-    nx: float,
-    ny: float,
-    gap: float,
-    surface: int,
-    colliders: Colliders,
-) -> int:
+    count: int, contacts: Contacts, p: int, feature: int, a: int, b: int, share: float, nx: float, ny: float,
+    gap: float, surface: int, colliders: Colliders,
+) -> int:  # fmt: skip
     """Append a contact of particle p if there is room; the number of contacts then, counted on where there is none."""
     if count < contacts.particle.shape[0]:
         contacts.particle[count] = p
@@ -196,17 +189,9 @@ def find_near(p: int, e: int, colliders: Colliders, near: Near, count: int) -> i
 
 @inner_kernel
 def collide_edges(
-    p: int,
-    h: float,
-    colliders: Colliders,
-    near: Near,
-    edges: int,
-    solid: SlotRows,
-    bounds: FloatRows,
-    dynamic: int,
-    contacts: Contacts,
-    count: int,
-) -> int:
+    p: int, h: float, colliders: Colliders, near: Near, edges: int, solid: SlotRows, bounds: FloatRows, dynamic: int,
+    contacts: Contacts, count: int,
+) -> int:  # fmt: skip
     """Contacts of a particle with the edges noted, owner by owner; the number of contacts then."""
     begun = count
     way_x, way_y = _allowed_way(p, h, colliders, near, edges)
@@ -366,16 +351,9 @@ def _is_behind(p: int, i: int, colliders: Colliders, near: Near) -> bool:
 
 @inner_kernel
 def push_out(
-    p: int,
-    e: int,
-    share: float,
-    distance: float,
-    region: int,
-    colliders: Colliders,
-    dynamic: int,
-    contacts: Contacts,
+    p: int, e: int, share: float, distance: float, region: int, colliders: Colliders, dynamic: int, contacts: Contacts,
     count: int,
-) -> int:
+) -> int:  # fmt: skip
     """Contact of a particle inside a solid body with the edge that is nearest; the number of contacts then."""
     nx, ny = edge_normal(e, colliders)
     if region != 0:
@@ -386,33 +364,15 @@ def push_out(
 
 @inner_kernel
 def _add_edge(
-    p: int,
-    e: int,
-    share: float,
-    nx: float,
-    ny: float,
-    gap: float,
-    colliders: Colliders,
-    dynamic: int,
-    contacts: Contacts,
-    count: int,
-) -> int:
+    p: int, e: int, share: float, nx: float, ny: float, gap: float, colliders: Colliders, dynamic: int,
+    contacts: Contacts, count: int,
+) -> int:  # fmt: skip
     a = colliders.edge_a[e]
     if e < dynamic:
         return add_contact(
-            count,
-            contacts,
-            p,
-            KINDS * colliders.number[e] + EDGE,
-            a,
-            colliders.edge_b[e],
-            share,
-            nx,
-            ny,
-            gap,
-            a,
+            count, contacts, p, KINDS * colliders.number[e] + EDGE, a, colliders.edge_b[e], share, nx, ny, gap, a,
             colliders,
-        )
+        )  # fmt: skip
     return add_contact(
         count, contacts, p, KINDS * colliders.number[e] + TERRAIN, -1, -1, share, nx, ny, gap, a, colliders
     )
@@ -420,19 +380,9 @@ def _add_edge(
 
 @inner_kernel
 def _collide_outside(
-    p: int,
-    h: float,
-    way_x: float,
-    way_y: float,
-    first: int,
-    edges: int,
-    owner: int,
-    colliders: Colliders,
-    near: Near,
-    dynamic: int,
-    contacts: Contacts,
-    count: int,
-) -> int:
+    p: int, h: float, way_x: float, way_y: float, first: int, edges: int, owner: int, colliders: Colliders, near: Near,
+    dynamic: int, contacts: Contacts, count: int,
+) -> int:  # fmt: skip
     # Every edge of the owner that is close, and the first one in the way of a fast particle.
     soonest = 2.0
     met = -1
@@ -473,7 +423,7 @@ def _collide_outside(
         if not touches and near.region[j] != 0 and is_loose(p, colliders):
             count = _collide_ahead(p, j, wx, wy, colliders, near, edges, dynamic, contacts, count)
     if count > begun and is_loose(p, colliders):
-        go_on_ahead(way_x, way_y, begun, min(count, contacts.particle.shape[0]), contacts)
+        put_ahead_in_order(way_x, way_y, begun, min(count, contacts.particle.shape[0]), contacts)
     if met >= 0:
         count = _add_edge(p, met, met_share, met_x, met_y, met_gap, colliders, dynamic, contacts, count)
     return count
@@ -511,7 +461,7 @@ def _touch_edge(
             return False, 0.0, 0.0, gap
     else:
         v = end_of(e, near.region[j], colliders)
-        if not owns_corner(e, v, x, y, colliders) or is_seam(p, e, v, x, y, colliders, near, edges):
+        if not owns_corner(e, v, x, y, colliders) or is_ghost_vertex(p, e, v, x, y, colliders, near, edges):
             return False, 0.0, 0.0, gap
     if near.distance[j] > SHORTEST:
         nx = (x - place_on(e, near.share[j], 0, colliders)) / near.distance[j]
@@ -534,18 +484,9 @@ def _touch_edge(
 
 @inner_kernel
 def _sweep_edge(
-    p: int,
-    x: float,
-    y: float,
-    e: int,
-    wx: float,
-    wy: float,
-    reach: float,
-    signed: float,
-    colliders: Colliders,
-    near: Near,
-    edges: int,
-) -> tuple[float, float, float, float, float]:
+    p: int, x: float, y: float, e: int, wx: float, wy: float, reach: float, signed: float, colliders: Colliders,
+    near: Near, edges: int,
+) -> tuple[float, float, float, float, float]:  # fmt: skip
     # Where the way w of a particle first comes within reach of an edge: when (2: never), share, normal, gap.
     nx, ny = edge_normal(e, colliders)
     if colliders.side[e] == 0 and signed < 0.0:
@@ -571,7 +512,7 @@ def _sweep_edge(
             if not (when <= 1.0 and when < soonest):
                 continue
             ox, oy = x + when * wx, y + when * wy
-            if owns_corner(e, v, ox, oy, colliders) and not is_seam(p, e, v, ox, oy, colliders, near, edges):
+            if owns_corner(e, v, ox, oy, colliders) and not is_ghost_vertex(p, e, v, ox, oy, colliders, near, edges):
                 soonest = when
                 found = float(end)
                 nx = (vx + when * wx) / reach

@@ -1,5 +1,10 @@
-"""Outlines: the edges that springs make, and terrain, as topology alone decides; kept until topology changes."""
+"""Outlines: the edges that springs make, and terrain, as topology alone decides; kept until topology changes.
 
+With them are kept which edges of a form lie close to each other without meeting, as those may cross first when the form
+is bent, and the edges of which both ends are pinned: terrain of their own, as they stand.
+"""
+
+import math
 from typing import NamedTuple
 
 from sandbox.physics.arena import (
@@ -13,21 +18,61 @@ from sandbox.physics.arena import (
     new_slot_rows,
     new_slots,
 )
-from sandbox.physics.arrays import Flags, SlotRows, Slots
-from sandbox.physics.collision.close_edges import CloseEdges, close_edges, no_close_edges
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
-from sandbox.physics.collision.pinned_edges import no_pins, pinned_edges
+from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.types import Colliders
+from sandbox.physics.geometry.segment import SHORTEST
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.marks import ALL_GROUPS, GRAB_MATERIAL, LINE, NO_EDGE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.state import State
-from sandbox.physics.terrain import Terrain
+from sandbox.physics.terrain import Chain, GridScratch, Terrain, fill_cells, size_grid
 from sandbox.physics.topology.sorting import list_by_key, list_ends, list_neighbours, sort_by_key, sort_by_value
 
 # Owner of the first chain of terrain, the others below it; particles and bodies are above.
 TERRAIN_OWNER = -2_000_000_000
 # Places in `counts`: edges of bodies, of those and terrain, springs that join, rows of solid, shapes, their members.
 EDGES, ALL_EDGES, JOINED, SPANS, SHAPES, MEMBERS, COUNTS = range(7)
+# Forms of more edges are not looked at, their pairs are too many; of the others so many pairs for each edge are kept.
+MOST_EDGES = 160
+KEPT = 8
+# Classes of distance by which pairs are sorted out before they are sorted.
+CLASSES = 64
+FRICTION, RESTITUTION = Chain.friction, Chain.restitution
+
+
+class CloseEdges(NamedTuple):
+    """Pairs of edges of some forms that have no common end and do not cross, the closest first.
+
+    Those of form s: edge[start[s]:start[s + 1]] (k, 2), as far apart as distance [m] (k,). beyond [m] (s,): all others
+    of the form are farther apart than this; 0: not known.
+    """
+
+    start: Slots
+    edge: SlotRows
+    distance: Floats
+    beyond: Floats
+
+
+class FormEdges(NamedTuple):
+    """Edges a to b (e,) between places of a form [m] (n, 2); shape (n,) of each place; solid_of: see Outline."""
+
+    form: FloatRows
+    a: Slots
+    b: Slots
+    shape: Slots
+    solid_of: Slots
+
+
+class PairScratch(NamedTuple):
+    """Scratch. Of edges (e,): key, listed; start (s+1,). Of pairs of one form: one, other, order, spare, distance."""
+
+    key: Slots
+    listed: Slots
+    start: Slots
+    one: Slots
+    other: Slots
+    order: Slots
+    spare: Slots
+    distance: Floats
 
 
 class Outline(NamedTuple):
@@ -69,6 +114,68 @@ class OutlineScratch(NamedTuple):
     one: Slots
     other: Slots
     third: Slots
+
+
+@inner_kernel
+def new_outline(state: State, arena: Arena) -> Outline:
+    """The outline of a world's bodies, as its topology is now; nothing of it may be read where the arena is full."""
+    particles, springs = state.owner.shape[0], state.spring_active.shape[0]
+    vertices = particles + state.terrain.vertex.shape[0]
+    room, counts = _room(particles, springs, vertices, state.terrain.edge_a.shape[0], arena), new_slots(arena, COUNTS)
+    start, longest = mark(arena), max(vertices, 2 * springs)
+    work = OutlineScratch(
+        new_slots(arena, vertices + 1), new_slots(arena, vertices + 1), new_slots(arena, vertices + 1),
+        new_flags(arena, vertices), new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest),
+    )  # fmt: skip
+    if is_full(arena):
+        return room
+    derive_edges(state, room, counts, work)
+    give_back(arena, start)
+    every, shapes = counts[ALL_EDGES], counts[SHAPES]
+    a, b, side = room.edge_a[: counts[EDGES]], room.edge_b[: counts[EDGES]], room.side[:every]
+    solid_of = room.solid_of[:shapes]
+    return Outline(
+        room.edge_a[:every], room.edge_b[:every], side, room.number[:every], room.edge_start, room.edge_of[: 2 * every],
+        room.near_start, room.near_of[: 2 * counts[JOINED]], room.solid[: counts[SPANS]], room.owner, room.shielded,
+        room.attached, room.dynamic, room.shape, solid_of, room.member_start[: shapes + 1],
+        room.member[: counts[MEMBERS]], close_edges(state.origin, a, b, room.shape, solid_of, arena), room.spring_end,
+        pinned_edges(state, a, b, side, arena),
+    )  # fmt: skip
+
+
+@inner_kernel
+def _room(particles: int, springs: int, vertices: int, edges: int, arena: Arena) -> Outline:
+    # With room for edges of all springs; edges: of terrain.
+    every = springs + edges
+    return Outline(
+        new_slots(arena, every), new_slots(arena, every), new_slots(arena, every), new_slots(arena, every),
+        new_slots(arena, vertices + 1), new_slots(arena, 2 * every), new_slots(arena, particles + 1),
+        new_slots(arena, 2 * springs), new_slot_rows(arena, every, 2), new_slots(arena, vertices),
+        new_flags(arena, particles), new_flags(arena, particles), new_slots(arena, 2), new_slots(arena, vertices),
+        new_slots(arena, springs), new_slots(arena, springs + 1), new_slots(arena, particles), no_close_edges(arena),
+        new_slots(arena, springs), no_pins(arena),
+    )  # fmt: skip
+
+
+@inner_kernel
+def derive_edges(state: State, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
+    """Fill in an outline, all but its close edges and pins, and say in counts (COUNTS,) how much of it."""
+    owners = _rank_owners(state, outline.owner, work)
+    chosen = _choose_edges(state, owners, outline, work)
+    count = chosen + state.terrain.edge_a.shape[0]
+    _find_sides(state, chosen, outline, work)
+    list_ends(outline.edge_a, outline.edge_b, count, outline.owner.shape[0], outline.edge_start, outline.edge_of)
+    counts[JOINED] = _find_neighbours(state, outline, work)
+    outline.dynamic[0] = chosen
+    outline.dynamic[1] = 0
+    counts[EDGES] = chosen
+    counts[ALL_EDGES] = count
+    counts[SPANS] = _find_spans(count, outline)
+    counts[SHAPES] = _find_shapes(state, chosen, counts[SPANS], outline, work)
+    counts[MEMBERS] = outline.member_start[counts[SHAPES]]
+    _find_shielded(state, chosen, outline, work)
+    for s in range(outline.spring_end.shape[0]):
+        outline.spring_end[s] = state.particle_a[s]
 
 
 @inner_kernel
@@ -223,85 +330,231 @@ def _find_shielded(state: State, chosen: int, outline: Outline, work: OutlineScr
 
 
 @inner_kernel
-def derive_edges(state: State, outline: Outline, counts: Slots, work: OutlineScratch) -> None:
-    """Fill in an outline, all but its close edges and pins, and say in counts (COUNTS,) how much of it."""
-    owners = _rank_owners(state, outline.owner, work)
-    chosen = _choose_edges(state, owners, outline, work)
-    count = chosen + state.terrain.edge_a.shape[0]
-    _find_sides(state, chosen, outline, work)
-    list_ends(outline.edge_a, outline.edge_b, count, outline.owner.shape[0], outline.edge_start, outline.edge_of)
-    counts[JOINED] = _find_neighbours(state, outline, work)
-    outline.dynamic[0] = chosen
-    outline.dynamic[1] = 0
-    counts[EDGES] = chosen
-    counts[ALL_EDGES] = count
-    counts[SPANS] = _find_spans(count, outline)
-    counts[SHAPES] = _find_shapes(state, chosen, counts[SPANS], outline, work)
-    counts[MEMBERS] = outline.member_start[counts[SHAPES]]
-    _find_shielded(state, chosen, outline, work)
-    for s in range(outline.spring_end.shape[0]):
-        outline.spring_end[s] = state.particle_a[s]
-
-
-@inner_kernel
-def new_outline(state: State, arena: Arena) -> Outline:
-    """The outline of a world's bodies, as its topology is now; nothing of it may be read where the arena is full."""
-    particles, springs = state.owner.shape[0], state.spring_active.shape[0]
-    vertices = particles + state.terrain.vertex.shape[0]
-    room, counts = _room(particles, springs, vertices, state.terrain.edge_a.shape[0], arena), new_slots(arena, COUNTS)
-    start, longest = mark(arena), max(vertices, 2 * springs)
-    work = OutlineScratch(
-        new_slots(arena, vertices + 1), new_slots(arena, vertices + 1), new_slots(arena, vertices + 1),
-        new_flags(arena, vertices), new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest),
+def close_edges(form: FloatRows, a: Slots, b: Slots, shape: Slots, solid_of: Slots, arena: Arena) -> CloseEdges:
+    """The close edges, a[k] to b[k], of forms [m] (n, 2); shape (n,): of each place; solid_of (s,): -1: looked at."""
+    edges, shapes = a.shape[0], solid_of.shape[0]
+    if edges == 0:
+        return no_close_edges(arena)
+    longest, room = min(edges, MOST_EDGES), KEPT * edges
+    pairs = max(longest * longest // 2, CLASSES)
+    found = CloseEdges(
+        new_slots(arena, shapes + 1), new_slot_rows(arena, room, 2), new_floats(arena, room), new_floats(arena, shapes)
+    )
+    start = mark(arena)
+    work = PairScratch(
+        new_slots(arena, edges), new_slots(arena, edges), new_slots(arena, shapes + 1), new_slots(arena, pairs),
+        new_slots(arena, pairs), new_slots(arena, pairs), new_slots(arena, pairs), new_floats(arena, pairs),
     )  # fmt: skip
     if is_full(arena):
-        return room
-    derive_edges(state, room, counts, work)
+        return found
+    count = find_close_edges(FormEdges(form, a, b, shape, solid_of), found, work)
     give_back(arena, start)
-    every, shapes = counts[ALL_EDGES], counts[SHAPES]
-    a, b, side = room.edge_a[: counts[EDGES]], room.edge_b[: counts[EDGES]], room.side[:every]
-    solid_of = room.solid_of[:shapes]
-    return Outline(
-        room.edge_a[:every], room.edge_b[:every], side, room.number[:every], room.edge_start, room.edge_of[: 2 * every],
-        room.near_start, room.near_of[: 2 * counts[JOINED]], room.solid[: counts[SPANS]], room.owner, room.shielded,
-        room.attached, room.dynamic, room.shape, solid_of, room.member_start[: shapes + 1],
-        room.member[: counts[MEMBERS]], close_edges(state.origin, a, b, room.shape, solid_of, arena), room.spring_end,
-        pinned_edges(state, a, b, side, arena),
+    return CloseEdges(found.start, found.edge[:count], found.distance[:count], found.beyond)
+
+
+@inner_kernel
+def no_close_edges(arena: Arena) -> CloseEdges:
+    """Lay out an empty list of close edges."""
+    return CloseEdges(new_slots(arena, 1), new_slot_rows(arena, 0, 2), new_floats(arena, 0), new_floats(arena, 0))
+
+
+@inner_kernel
+def find_close_edges(given: FormEdges, found: CloseEdges, work: PairScratch) -> int:
+    """Find the close edges of the forms that are lines alone, solid_of below 0; how many pairs there are."""
+    shapes = given.solid_of.shape[0]
+    for e in range(given.a.shape[0]):
+        work.key[e] = given.shape[given.a[e]]
+    list_by_key(work.key, given.a.shape[0], shapes, work.start, work.listed)
+    top = 0
+    found.start[0] = 0
+    for s in range(shapes):
+        edges = work.start[s + 1] - work.start[s]
+        found.beyond[s] = 0.0
+        if given.solid_of[s] < 0 and edges <= MOST_EDGES:
+            pairs = _find_pairs(work.start[s], work.start[s + 1], given, work)
+            kept = KEPT * edges
+            sorted_out = _sort_closest(pairs, kept + 1, work)
+            found.beyond[s] = work.distance[work.order[kept]] if kept < pairs else math.inf
+            for k in range(min(kept, sorted_out)):
+                pair = work.order[k]
+                found.edge[top, 0] = work.one[pair]
+                found.edge[top, 1] = work.other[pair]
+                found.distance[top] = work.distance[pair]
+                top += 1
+        found.start[s + 1] = top
+    return top
+
+
+@inner_kernel
+def _find_pairs(first: int, last: int, given: FormEdges, work: PairScratch) -> int:
+    # The pairs of edges that may come to cross, of one form, whose edges are listed[first:last]; how many there are.
+    count = 0
+    for i in range(first, last):
+        for j in range(i + 1, last):
+            distance = _apart(work.listed[i], work.listed[j], given)
+            if distance >= 0.0:
+                work.one[count] = work.listed[i]
+                work.other[count] = work.listed[j]
+                work.distance[count] = distance
+                count += 1
+    return count
+
+
+@inner_kernel
+def _apart(one: int, other: int, given: FormEdges) -> float:
+    # How far apart two edges are that have no common end and do not cross; -1: they have, or do.
+    a = given.a[one]
+    b = given.b[one]
+    c = given.a[other]
+    d = given.b[other]
+    if a in (c, d) or b in (c, d):
+        return -1.0
+    c_left, of_c = _end_from(one, c, given)
+    d_left, of_d = _end_from(one, d, given)
+    a_left, of_a = _end_from(other, a, given)
+    b_left, of_b = _end_from(other, b, given)
+    if c_left != d_left and a_left != b_left:
+        return -1.0
+    return math.sqrt(min(min(of_c, of_d), min(of_a, of_b)))
+
+
+@inner_kernel
+def _end_from(edge: int, p: int, given: FormEdges) -> tuple[bool, float]:
+    # On which side of the line along an edge a place is, and the square of how far it is from the edge.
+    a = given.a[edge]
+    form = given.form
+    wx = form[given.b[edge], 0] - form[a, 0]
+    wy = form[given.b[edge], 1] - form[a, 1]
+    x = form[p, 0] - form[a, 0]
+    y = form[p, 1] - form[a, 1]
+    share = (wx * x + wy * y) * (1.0 / max(wx * wx + wy * wy, SHORTEST))
+    is_left = wx * y - wy * x > 0.0
+    share = min(max(share, 0.0), 1.0)
+    x -= share * wx
+    y -= share * wy
+    return is_left, x * x + y * y
+
+
+@inner_kernel
+def _sort_closest(count: int, wanted: int, work: PairScratch) -> int:
+    # The order of so many of `count` pairs, the closest first, or of more; how many. Only those are sorted that lie in
+    # the classes of distance, all alike, that hold the wanted ones.
+    farthest = 0.0
+    for k in range(count):
+        farthest = max(farthest, work.distance[k])
+    per_class = (CLASSES - 1.0) / farthest if farthest > 0.0 else 0.0
+    for c in range(CLASSES):
+        work.spare[c] = 0
+    for k in range(count):
+        work.spare[math.floor(work.distance[k] * per_class)] += 1
+    last = 0
+    found = work.spare[0]
+    while found < wanted and last + 1 < CLASSES:
+        last += 1
+        found += work.spare[last]
+    found = 0
+    for k in range(count):
+        if math.floor(work.distance[k] * per_class) <= last:
+            work.order[found] = k
+            found += 1
+    sort_by_value(work.distance, work.order, 0, found, work.spare)
+    return found
+
+
+@inner_kernel
+def pinned_edges(state: State, edge_a: Slots, edge_b: Slots, side: Slots, arena: Arena) -> Terrain:
+    """Those of the edges a to b of bodies that pins hold at both ends, as terrain; chain = the edge."""
+    edges = edge_a.shape[0]
+    found = _new_pins(edges, arena)
+    start = mark(arena)
+    work = GridScratch(new_floats(arena, edges), new_slots(arena, edges), new_slots(arena, edges))
+    if is_full(arena):
+        return found
+    count = find_pinned(state, edge_a, edge_b, side, found, work)
+    give_back(arena, start)
+    if count == 0:
+        return no_pins(arena)
+    cells, entries = found.size[0] * found.size[1], 4 * count
+    cell_start, tip_start = new_slots(arena, cells + 1), new_slots(arena, cells + 1)
+    found = _with_cells(found, count, cell_start, new_slots(arena, entries), tip_start)
+    if is_full(arena):
+        return found
+    needed = fill_cells(count, found)
+    if needed > entries:
+        found = _with_cells(found, count, cell_start, new_slots(arena, needed), tip_start)
+        if is_full(arena):
+            return found
+        fill_cells(count, found)
+    return _with_cells(found, count, cell_start, found.cell_edge[:needed], tip_start)
+
+
+@inner_kernel
+def no_pins(arena: Arena) -> Terrain:
+    """Lay out pinned edges for a world that has none."""
+    none, nothing = new_slots(arena, 0), new_float_rows(arena, 0, 2)
+    pins = Terrain(
+        nothing, none, none, none, none, new_floats(arena, 0), new_floats(arena, 0), new_floats(arena, 0),
+        new_floats(arena, 2), new_floats(arena, 1), new_slots(arena, 2), new_slots(arena, 1), none, none,
+        new_slots(arena, 1), nothing, new_slots(arena, 1), none,
+    )  # fmt: skip
+    if not is_full(arena):
+        pins.cell[0] = 1.0
+    return pins
+
+
+@inner_kernel
+def _new_pins(edges: int, arena: Arena) -> Terrain:
+    none = no_pins(arena)
+    return Terrain(
+        new_float_rows(arena, 2 * edges, 2), new_slots(arena, edges), new_slots(arena, edges), new_slots(arena, edges),
+        new_slots(arena, edges), new_floats(arena, edges), new_floats(arena, edges), new_floats(arena, edges),
+        none.corner, none.cell, none.size, none.cell_start, none.cell_edge, none.tip, none.way_start, none.way,
+        none.tip_start, none.cell_tip,
     )  # fmt: skip
 
 
 @inner_kernel
-def _room(particles: int, springs: int, vertices: int, edges: int, arena: Arena) -> Outline:
-    # With room for edges of all springs; edges: of terrain.
-    every = springs + edges
-    return Outline(
-        new_slots(arena, every), new_slots(arena, every), new_slots(arena, every), new_slots(arena, every),
-        new_slots(arena, vertices + 1), new_slots(arena, 2 * every), new_slots(arena, particles + 1),
-        new_slots(arena, 2 * springs), new_slot_rows(arena, every, 2), new_slots(arena, vertices),
-        new_flags(arena, particles), new_flags(arena, particles), new_slots(arena, 2), new_slots(arena, vertices),
-        new_slots(arena, springs), new_slots(arena, springs + 1), new_slots(arena, particles), no_close_edges(arena),
-        new_slots(arena, springs), no_pins(arena),
+def _with_cells(pins: Terrain, count: int, cell_start: Slots, cell_edge: Slots, tip_start: Slots) -> Terrain:
+    # The first `count` edges, with these lists of cells.
+    return Terrain(
+        pins.vertex[: 2 * count], pins.edge_a[:count], pins.edge_b[:count], pins.solid[:count], pins.chain[:count],
+        pins.friction[:count], pins.restitution[:count], pins.belt[:count], pins.corner, pins.cell, pins.size,
+        cell_start, cell_edge, pins.tip, pins.way_start, pins.way, tip_start, pins.cell_tip,
     )  # fmt: skip
 
 
 @inner_kernel
-def fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
-    """Fill in the vertices of terrain, and the groups of all vertices as those are."""
-    particles = colliders.owner.shape[0] - terrain.vertex.shape[0]
-    for v in range(colliders.owner.shape[0]):
-        colliders.group[v] = TERRAIN_GROUP
-        colliders.collides[v] = ALL_GROUPS
-    for v in range(terrain.vertex.shape[0]):
+def find_pinned(state: State, edge_a: Slots, edge_b: Slots, side: Slots, pins: Terrain, work: GridScratch) -> int:
+    """Fill in the edges that are pinned, and corner, cell and size of their grid; how many there are."""
+    count = 0
+    for e in range(edge_a.shape[0]):
+        a = edge_a[e]
+        b = edge_b[e]
+        if not (_is_still(a, state) and _is_still(b, state)):
+            continue
+        dx = state.position[b, 0] - state.position[a, 0]
+        dy = state.position[b, 1] - state.position[a, 1]
+        if dx == 0.0 and dy == 0.0:
+            continue
         for axis in range(2):
-            colliders.position[particles + v, axis] = terrain.vertex[v, axis]
-            colliders.origin[particles + v, axis] = terrain.vertex[v, axis]
-    # A vertex between two edges is like the one that it ends.
-    for e in range(terrain.edge_a.shape[0]):
-        colliders.friction[particles + terrain.edge_a[e]] = terrain.friction[e]
-        colliders.restitution[particles + terrain.edge_a[e]] = terrain.restitution[e]
-    for e in range(terrain.edge_b.shape[0]):
-        colliders.friction[particles + terrain.edge_b[e]] = terrain.friction[e]
-        colliders.restitution[particles + terrain.edge_b[e]] = terrain.restitution[e]
+            # -0.0 becomes 0.0
+            pins.vertex[2 * count, axis] = state.position[a, axis] + 0.0
+            pins.vertex[2 * count + 1, axis] = state.position[b, axis] + 0.0
+        pins.edge_a[count] = 2 * count
+        pins.edge_b[count] = 2 * count + 1
+        pins.solid[count] = side[e]
+        pins.chain[count] = e
+        pins.friction[count] = FRICTION
+        pins.restitution[count] = RESTITUTION
+        count += 1
+    if count > 0:
+        size_grid(count, pins, work)
+    return count
+
+
+@inner_kernel
+def _is_still(p: int, state: State) -> bool:
+    return state.inverse_mass[p] == 0.0 and state.velocity[p, 0] == 0.0 and state.velocity[p, 1] == 0.0
 
 
 @inner_kernel
@@ -322,3 +575,23 @@ def new_colliders(terrain: Terrain, outline: Outline, pairs: int, arena: Arena) 
     if not is_full(arena):
         fill_in_terrain(terrain, colliders)
     return colliders
+
+
+@inner_kernel
+def fill_in_terrain(terrain: Terrain, colliders: Colliders) -> None:
+    """Fill in the vertices of terrain, and the groups of all vertices as those are."""
+    particles = colliders.owner.shape[0] - terrain.vertex.shape[0]
+    for v in range(colliders.owner.shape[0]):
+        colliders.group[v] = TERRAIN_GROUP
+        colliders.collides[v] = ALL_GROUPS
+    for v in range(terrain.vertex.shape[0]):
+        for axis in range(2):
+            colliders.position[particles + v, axis] = terrain.vertex[v, axis]
+            colliders.origin[particles + v, axis] = terrain.vertex[v, axis]
+    # A vertex between two edges is like the one that it ends.
+    for e in range(terrain.edge_a.shape[0]):
+        colliders.friction[particles + terrain.edge_a[e]] = terrain.friction[e]
+        colliders.restitution[particles + terrain.edge_a[e]] = terrain.restitution[e]
+    for e in range(terrain.edge_b.shape[0]):
+        colliders.friction[particles + terrain.edge_b[e]] = terrain.friction[e]
+        colliders.restitution[particles + terrain.edge_b[e]] = terrain.restitution[e]

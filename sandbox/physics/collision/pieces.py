@@ -5,28 +5,41 @@ body's number as owner; any other has -1 - p, p = its own first particle. Where 
 piece runs along the springs that have a whole triangle on one side alone; an edge without one is a line. Of a cell of a
 grid that lost a corner, the triangle of its other corners keeps its area from then on, though it was halved the other
 way. All of this is state, and nothing is kept beside it: what restores that joins the pieces again.
+
+At an articulation point (a cut vertex) the outline of a body passes twice, and what holds it together without that
+particle are several parts. They would swing about it into each other, so the smaller ones let go of it: the springs
+that tie it to them are cut with those that were cut. What would keep no whole triangle then is no such part, and stays.
+
+The sides of a constraint are springs that act between two corners. What loses one ends; triangles lie at the others.
 """
 
 from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, Slots
-from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
-from sandbox.physics.collision.lobes import LobeScratch, let_go
-from sandbox.physics.collision.sides import (
-    AT_LEFT,
-    AT_RIGHT,
-    TRIANGLE_CORNERS,
-    acts_between,
-    end_constraints,
-    find_sides,
-    is_triangle,
-)
 from sandbox.physics.components import join, root_of
 from sandbox.physics.constraints import AREA, measure_rest
 from sandbox.physics.geometry.segment import doubled_area_of
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.marks import GRAB_MATERIAL, LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.state import GoodValues, State
+
+# Sides with a triangle on one side alone that a fan of triangles around a particle has.
+RIMS_OF_FAN = 2
+TRIANGLE_CORNERS = 3
+# A whole triangle of solid form lies to the left of a spring, to its right.
+AT_LEFT, AT_RIGHT = 1, 2
+
+
+class ArticulationScratch(NamedTuple):
+    """Scratch: rims (n,) = sides at a particle with a triangle on one side alone; label (n,): see components.py.
+
+    size, tied (n,): whole triangles of a part, and those of them with the point as a corner, by the part's label.
+    """
+
+    rims: Annotated[Slots, "particles"]
+    label: Annotated[Slots, "particles"]
+    size: Annotated[Slots, "particles"]
+    tied: Annotated[Slots, "particles"]
 
 
 class PieceScratch(NamedTuple):
@@ -40,7 +53,7 @@ class PieceScratch(NamedTuple):
     has_triangles: Annotated[Flags, "particles"]
     has_solids: Annotated[Flags, "particles"]
     beside: Annotated[Slots, "springs"]
-    lobes: LobeScratch
+    articulation: ArticulationScratch
 
 
 @inner_kernel
@@ -50,7 +63,7 @@ def part(
     """Make bodies of the pieces of soft bodies that have lost springs: those at which these springs (k,) are or were.
 
     Springs of particle p, inactive ones too: listed[start[p]:start[p + 1]]. gone (m,): what was taken out, to which the
-    springs are added that hold a lobe.
+    springs are added that hold the smaller parts at an articulation point.
     """
     for p in range(work.torn.shape[0]):
         work.torn[p] = -1
@@ -59,7 +72,7 @@ def part(
         _mark_torn(state, state.particle_b[springs[k]], work.torn)
     _find_soft(state, work)
     _find_whole(state, good, start, listed, work)
-    while let_go(state, work.torn, work.beside, gone, work.lobes):
+    while cut_articulation(state, work.torn, work.beside, gone, work.articulation):
         end_constraints(state, start, listed, gone)
         _find_whole(state, good, start, listed, work)
     _outline_pieces(state, work)
@@ -207,3 +220,155 @@ def _number_pieces(state: State, work: PieceScratch) -> None:
             root = root_of(label, p)
             if root != root_of(label, first):
                 state.owner[p] = -1 - root
+
+
+@inner_kernel
+def cut_articulation(state: State, torn: Slots, beside: Slots, gone: Flags, work: ArticulationScratch) -> bool:
+    """Take out the springs by which the first articulation point of torn bodies holds its smaller parts; whether any.
+
+    torn (n,), beside (m,): see `find_sides`; gone (m,): what was taken out is added.
+    """
+    for p in range(work.rims.shape[0]):
+        work.rims[p] = 0
+    for s in range(beside.shape[0]):
+        if beside[s] in (AT_LEFT, AT_RIGHT) and _holds(state, s, torn):
+            work.rims[state.particle_a[s]] += 1
+            work.rims[state.particle_b[s]] += 1
+    for p in range(work.rims.shape[0]):
+        if work.rims[p] > RIMS_OF_FAN:
+            _find_parts(state, p, torn, work)
+            if _part_at(state, p, torn, gone, work):
+                return True
+    return False
+
+
+@inner_kernel
+def _holds(state: State, s: int, torn: Slots) -> bool:
+    # Whether a spring acts inside of a torn body.
+    first = torn[state.particle_a[s]]
+    return (
+        state.spring_active[s]
+        and state.material[s] != GRAB_MATERIAL
+        and first >= 0
+        and torn[state.particle_b[s]] == first
+    )
+
+
+@inner_kernel
+def _find_parts(state: State, point: int, torn: Slots, work: ArticulationScratch) -> None:
+    # What is joined without a particle.
+    label, size, tied = work.label, work.size, work.tied
+    for p in range(label.shape[0]):
+        label[p] = p
+        size[p] = tied[p] = 0
+    for s in range(state.spring_active.shape[0]):
+        if point not in (state.particle_a[s], state.particle_b[s]) and _holds(state, s, torn):
+            join(label, state.particle_a[s], state.particle_b[s])
+    for k in range(state.constraint_kind.shape[0]):
+        if is_whole_triangle(state, k):
+            first, has_point, other = state.constraint_first[k], False, -1
+            for c in range(first, first + TRIANGLE_CORNERS):
+                has_point = has_point or state.corner_particle[c] == point
+                other = other if state.corner_particle[c] == point else state.corner_particle[c]
+            if torn[other] == torn[point]:
+                size[root_of(label, other)] += 1
+                tied[root_of(label, other)] += 1 if has_point else 0
+
+
+@inner_kernel
+def _part_at(state: State, point: int, torn: Slots, gone: Flags, work: ArticulationScratch) -> bool:
+    # Take out the springs that tie a point to parts other than the largest, of equal ones the first; whether there are.
+    size, tied, largest = work.size, work.tied, -1
+    for part in range(size.shape[0]):
+        if tied[part] > 0 and (largest < 0 or size[part] > size[largest]):
+            largest = part
+    found = False
+    for s in range(state.spring_active.shape[0]):
+        a, b = state.particle_a[s], state.particle_b[s]
+        if point in (a, b) and _holds(state, s, torn):
+            part = root_of(work.label, b if a == point else a)
+            if part != largest and size[part] > tied[part] > 0:
+                gone[s] = True
+                state.spring_active[s] = False
+                found = True
+    return found
+
+
+@inner_kernel
+def is_triangle(state: State, k: int) -> bool:
+    """Whether a constraint is the area of a triangle, whole or ended."""
+    return state.constraint_kind[k] == AREA and state.constraint_corners[k] == TRIANGLE_CORNERS
+
+
+@inner_kernel
+def is_whole_triangle(state: State, k: int) -> bool:
+    """Whether a constraint is the area of a triangle, and acts."""
+    return state.constraint_active[k] and is_triangle(state, k)
+
+
+@inner_kernel
+def acts_between(state: State, p: int, q: int, start: Slots, listed: Slots) -> bool:
+    """Whether a spring acts between two particles; those of p: listed[start[p]:start[p + 1]]."""
+    for at in range(start[p], start[p + 1]):
+        s = listed[at]
+        if state.spring_active[s] and q in (state.particle_a[s], state.particle_b[s]):
+            return True
+    return False
+
+
+@inner_kernel
+def end_constraints(state: State, start: Slots, listed: Slots, gone: Flags) -> None:
+    """Deactivate the constraints that have lost a side: a spring of it is gone (m,), and no other acts there."""
+    for k in range(state.constraint_kind.shape[0]):
+        first, last = state.constraint_first[k], state.constraint_first[k] + state.constraint_corners[k]
+        # A bend's two outer corners are no side of it.
+        begins = last - 1 if state.constraint_kind[k] == AREA else first
+        for corner in range(first if state.constraint_kind[k] == AREA else first + 1, last):
+            p, q = state.corner_particle[begins], state.corner_particle[corner]
+            if _side_is_lost(p, q, state, start, listed, gone):
+                state.constraint_active[k] = False
+            begins = corner
+
+
+@inner_kernel
+def _side_is_lost(p: int, q: int, state: State, start: Slots, listed: Slots, gone: Flags) -> bool:
+    # Whether a spring that is taken out joined two particles, and none that acts does.
+    lost = False
+    for at in range(start[p], start[p + 1]):
+        s = listed[at]
+        if (state.particle_a[s] == p and state.particle_b[s] == q) or (
+            state.particle_a[s] == q and state.particle_b[s] == p
+        ):
+            if state.spring_active[s]:
+                return False
+            lost = lost or gone[s]
+    return lost
+
+
+@inner_kernel
+def find_sides(state: State, torn: Slots, start: Slots, listed: Slots, beside: Slots) -> None:
+    """Find on which sides of springs (m,) whole triangles lie: AT_LEFT, AT_RIGHT, added up, of torn bodies (n,)."""
+    for s in range(beside.shape[0]):
+        beside[s] = 0
+    for k in range(state.constraint_kind.shape[0]):
+        corner = state.constraint_first[k]
+        if is_whole_triangle(state, k) and torn[state.corner_particle[corner]] >= 0:
+            is_left = state.constraint_rest[k, 1] > 0.0
+            for c in range(TRIANGLE_CORNERS):
+                p = state.corner_particle[corner + c]
+                q = state.corner_particle[corner + (c + 1) % TRIANGLE_CORNERS]
+                _add_side(p if is_left else q, q if is_left else p, state, start, listed, beside)
+
+
+@inner_kernel
+def _add_side(p: int, q: int, state: State, start: Slots, listed: Slots, beside: Slots) -> None:
+    # A triangle lies to the left of the way from p to q: tell the first spring that acts along it.
+    for at in range(start[p], start[p + 1]):
+        s = listed[at]
+        if state.spring_active[s]:
+            if state.particle_a[s] == p and state.particle_b[s] == q:
+                beside[s] |= AT_LEFT
+                return
+            if state.particle_a[s] == q and state.particle_b[s] == p:
+                beside[s] |= AT_RIGHT
+                return

@@ -26,7 +26,7 @@ class Colliders(NamedTuple):
     group: Slots
     collides: Slots
     inverse_mass: Floats  # [1/kg]
-    turning: Floats  # [1/kg]: the weight of its surface (turning.py), 0: it does not turn
+    turning: Floats  # [1/kg]: the weight of its surface (surfaces.py), 0: it does not turn
     rolling: Floats
     edge_a: Slots  # by edge, as the three below
     edge_b: Slots
@@ -59,7 +59,7 @@ class Contacts(NamedTuple):
     """Contacts of a step: found in ascending order of the particle that touches, then sorted by who solves them.
 
     An impulse across acts at the surface of what does not roll as well, and turns it by a couple with its partner: see
-    rims.py.
+    surfaces.py.
     """
 
     particle: Slots
@@ -81,7 +81,7 @@ class Contacts(NamedTuple):
     couple: FloatRows  # (k, 4): of the particle and of end_a, by a unit impulse
     impact: Floats  # [N s]: what impacts of this tick gave along the normal; not in impulse, and starts no sweep
     belt: Floats  # [m/s]: of both surfaces together, each to the right of who stands on it
-    ahead: Flags  # with an edge of a hollow that a disc comes to from others, on which it lies (seams.py)
+    ahead: Flags  # with an edge of a hollow that a disc comes to from others, on which it lies (ghost_vertices.py)
 
 
 class KeptContacts(NamedTuple):

@@ -1,8 +1,10 @@
 """Commands: what people do to a world between ticks, on its arrays, as one kernel. None of it is part of a tick.
 
 Whoever gives a command, by mouse, script, page, link or rule: the kernel asks whether what it names is there and in
-range, whether the level lets hands do it (permission.py) and whether its budget is left, in this order; then it does it
-and takes it from the budget. A command that is refused changes nothing.
+range, whether the level lets hands do it and whether its budget is left, in this order; then it does it and takes it
+from the budget. A command that is refused changes nothing. Whether a level lets hands give a kind of command, touch a
+thing, and how often, lies in state: one that says nothing of hands has no rows of the family DEED. Rules of a level and
+programs may do everything.
 """
 
 import math
@@ -10,25 +12,26 @@ from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_flags, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, Floats, SlotRows, Slots
-from sandbox.physics.changing.freeing import IS_PINNED, NO_PLACE, NOTHING_TOUCHES, free_body
-from sandbox.physics.changing.moving import move_listed, scale_mass
-from sandbox.physics.changing.ramping import firm_up, inflate, set_warm_start, solve_by
-from sandbox.physics.collision.pieces import PieceScratch, part
-from sandbox.physics.collision.sides import end_constraints
-from sandbox.physics.commands.permission import GRANTED, HAND, NOT_ALLOWED, refusal, spend
+from sandbox.physics.collision.pieces import PieceScratch, end_constraints, part
+from sandbox.physics.commands.changes import (
+    grab,
+    is_body,
+    move_listed,
+    pin,
+    push,
+    release,
+    scale_mass,
+    set_air,
+    set_coefficients,
+    shake,
+    unpin,
+)
+from sandbox.physics.commands.freeing import IS_PINNED, NO_PLACE, NOTHING_TOUCHES, free_body
 from sandbox.physics.components import list_body
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
-from sandbox.physics.marks import (
-    BANK_EMPTIED,
-    BANK_UNOPENED,
-    GRAB_COUNT,
-    LAW_HAND,
-    LAW_NISSEN,
-    LONGEST_RAMP,
-)
-from sandbox.physics.ramps import set_constraint, set_number, set_spring
+from sandbox.physics.marks import BANK_UNOPENED, LONGEST_RAMP
+from sandbox.physics.ramps import firm_up, inflate, set_number, set_warm_start, solve_by
 from sandbox.physics.settings import (
-    DRAG,
     GRAVITY_X,
     IS_AUTO,
     ITERATIONS,
@@ -37,7 +40,6 @@ from sandbox.physics.settings import (
     SUBSTEP_COUNT,
     SUBSTEPS,
     TICK_RATE,
-    WIND_X,
 )
 from sandbox.physics.softness.kernels.firm import (
     SPRINGS,
@@ -75,6 +77,13 @@ REASONS = 64
 ) = range(2, 22)  # fmt: skip
 MOST_ITERATIONS = 1000
 _SOLVER_COUNT, _MOST_SUBSTEPS = len(SOLVER_NAMES), SUBSTEPS[-1]
+# Who gives a command.
+HAND, RULE, PROGRAM = range(3)
+# Why a kind of command is refused: hands may not give it, its budget is spent, or it is about something that they may
+# not touch.
+GRANTED, NOT_ALLOWED, SPENT, UNTOUCHED = range(4)
+# Kernels beside `command` that ask answer -(reason DENIED + k); k: the place of what it is about.
+DENIED = 2**40
 
 
 class Commanded(NamedTuple):
@@ -91,6 +100,15 @@ class Commanded(NamedTuple):
     areas: SlotRows
     forms: Forms
     modes: FormModes
+
+
+class CutScratch(NamedTuple):
+    """Scratch of a cut, of zeros: what is taken out; the pieces; the springs of each particle."""
+
+    gone: Annotated[Flags, "springs"]
+    pieces: PieceScratch
+    start: Annotated[Slots, "particles + 1"]
+    listed: Annotated[Slots, "2 * springs"]
 
 
 @kernel
@@ -112,83 +130,6 @@ def command(pointer: Bundle[Commanded], arena: Arena, giver: int, kind: int, slo
     if result == 0:
         spend(state, giver, kind, needs)
     return result
-
-
-@kernel
-def count_pieces(arena: Arena, pointer: Bundle[Commanded], count: Slots) -> int:
-    """How many pieces each body (b,) is that may be stiff by its form; NO_ARENA: the arena is too small."""
-    world = unpack(pointer)
-    return count_pieces_of(world.state, world.forms, arena, count)
-
-
-@kernel
-def form_of_spring(arena: Arena, pointer: Bundle[Commanded], spring: int) -> int:
-    """The number of the body, or of the piece of one, that may be stiff by its form and has a spring; -1: none has."""
-    world = unpack(pointer)
-    return number_of_spring(world.state, world.forms, arena, spring)
-
-
-@kernel
-def solve(pointer: Bundle[Commanded], wanted: Slots) -> float:
-    """Solve by other choices from now on, see `solve_by`."""
-    world = unpack(pointer)
-    return solve_by(world.state, world.choices, wanted)
-
-
-@inner_kernel
-def _refused(reason: int, place: int) -> int:
-    return -(reason + REASONS * place)
-
-
-@inner_kernel
-def _carry_out(world: Commanded, arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
-    state, good = world.state, world.good
-    if kind == GRAB:
-        _grab(state, slots, numbers)
-    elif kind == MOVE_GRAB:
-        cursor = slots[0] + slots[2]
-        for axis in range(2):
-            state.velocity[cursor, axis] = (numbers[axis] - state.position[cursor, axis]) * numbers[2]
-    elif kind == RELEASE:
-        release(state, slots)
-    elif kind == PIN:
-        pin(state, slots[1])
-    elif kind == UNPIN:
-        _unpin(state, slots[1])
-    elif kind in (CUT, BREAK, PART):
-        begin(arena)
-        work = new_tuple(CutScratch, arena, particles=state.owner.shape[0], springs=state.law.shape[0])
-        if is_full(arena):
-            return NO_ARENA
-        cut(state, good, slots, kind, work)
-    elif kind == SET_COEFFICIENTS:
-        _set_coefficients(state, good, slots, numbers)
-    elif kind == SET_GRAVITY:
-        for axis in range(2):
-            set_number(state, world.numbers, GRAVITY_X + axis, numbers[axis], slots[0])
-    elif kind == SET_AIR:
-        _set_air(state, world.numbers, slots, numbers)
-    elif kind == DRIVE:
-        state.actuator_value[slots[0]] = numbers[0]
-    elif kind in (SET_FIRMNESS, SOFTEN):
-        return _soften(world, kind, slots, numbers, arena)
-    elif kind == HOLD_KEY:
-        state.key_down[slots[0]] = slots[1] != 0
-    elif kind == PUSH:
-        return 0 if _push(state, good, slots[0], numbers) > 0 else _refused(NOTHING_THERE, 0)
-    elif kind == SHAKE:
-        return 0 if _shake(state, good, slots[0], numbers) > 0 else _refused(NOTHING_MOVES, 0)
-    elif kind == SET_INFLATION:
-        inflate(state, good, world.areas, slots[0], numbers[0], slots[1])
-    elif kind == SCALE_MASS:
-        return 0 if scale_mass(state, good, slots[1], numbers[0]) else _refused(TOO_HEAVY, 1)
-    elif kind == MOVE_BODY:
-        return _move(state, good, slots, numbers, arena)
-    elif kind == FREE:
-        return _free(state, good, slots[1], arena)
-    elif kind == SET_SOLVER:
-        return _set_solver(world, slots, numbers, arena)
-    return 0
 
 
 @inner_kernel
@@ -324,78 +265,85 @@ def _not_for_hands(world: Commanded, arena: Arena, kind: int, slots: Slots, need
 
 
 @inner_kernel
-def is_body(state: State, first_cursor: int, p: int) -> bool:
-    """Whether a particle is there and in use, and no cursor of a hand."""
-    return 0 <= p < state.owner.shape[0] and state.particle_active[p] and not _is_cursor(first_cursor, p)
+def refusal(state: State, giver: int, kind: int, needs: int) -> int:
+    """GRANTED, or why a kind of command, which takes so many of its budget, is refused."""
+    if giver != HAND or state.deed_refused.shape[0] == 0:
+        return GRANTED
+    if state.deed_refused[kind]:
+        return NOT_ALLOWED
+    row = state.deed_budget[kind]
+    return SPENT if row >= 0 and state.counter[row] < needs else GRANTED
 
 
 @inner_kernel
-def _is_cursor(first_cursor: int, p: int) -> bool:
-    return 0 <= first_cursor <= p < first_cursor + GRAB_COUNT
+def _refused(reason: int, place: int) -> int:
+    return -(reason + REASONS * place)
 
 
 @inner_kernel
-def _set_hand(state: State, first_cursor: int, first_spring: int, hand: int, particle: int, holds: bool) -> int:
-    # Let a hand hold a particle, or nothing; its cursor.
-    cursor, spring = first_cursor + hand, first_spring + hand
-    state.particle_active[cursor] = state.spring_active[spring] = holds
-    state.particle_b[spring] = particle
-    state.law[spring] = LAW_HAND if holds else LAW_NISSEN
-    for axis in range(2):
-        state.velocity[cursor, axis] = state.slow_velocity[cursor, axis] = state.hand_force[hand, axis] = 0.0
-    return cursor
+def spend(state: State, giver: int, kind: int, needs: int) -> None:
+    """Take from its budget what a command has needed that was carried out."""
+    if giver == HAND and state.deed_refused.shape[0] > 0:
+        row = state.deed_budget[kind]
+        if row >= 0:
+            state.counter[row] -= needs
 
 
 @inner_kernel
-def _grab(state: State, slots: Slots, numbers: Floats) -> None:
-    hand, particle = slots[2], slots[3]
-    cursor = _set_hand(state, slots[0], slots[1], hand, particle, True)
-    state.position[cursor, 0], state.position[cursor, 1] = numbers[0], numbers[1]
-    state.hand_strength[hand], state.hand_radius[hand] = numbers[2], numbers[3]
-    state.spin[particle] = 0.0
-    state.energy_bank[particle] = BANK_UNOPENED
+def denied(why: int, place: int) -> int:
+    """The answer of a kernel that refuses."""
+    return -(why * DENIED + place)
 
 
 @inner_kernel
-def release(state: State, slots: Slots) -> None:
-    """Let a hand go: slots = first cursor, first spring, hand."""
-    # No bank keeps energy that the hand's work put into it. Not begun again: what overlaps where a hand lets go is no
-    # start, at which parting costs nothing.
-    hand, bank = slots[2], state.energy_bank
-    held = state.particle_b[slots[1] + hand]
-    for p in range(bank.shape[0]):
-        if bank[p] > 0.0 or (p == held and bank[p] == 0.0):
-            bank[p] = BANK_EMPTIED
-    cursor = _set_hand(state, slots[0], slots[1], hand, 0, False)
-    state.position[cursor, 0] = state.position[cursor, 1] = 0.0
-    state.hand_strength[hand] = state.hand_radius[hand] = 0.0
-
-
-@inner_kernel
-def pin(state: State, particle: int) -> None:
-    """Hold a particle where it is."""
-    state.inverse_mass[particle] = 0.0
-    for axis in range(2):
-        state.velocity[particle, axis] = state.slow_velocity[particle, axis] = 0.0
-    state.spin[particle] = 0.0
-    state.energy_bank[particle] = BANK_UNOPENED
-
-
-@inner_kernel
-def _unpin(state: State, particle: int) -> None:
-    state.inverse_mass[particle] = 1.0 / state.mass[particle]
-    for axis in range(2):
-        state.slow_velocity[particle, axis] = state.velocity[particle, axis]
-    state.energy_bank[particle] = BANK_UNOPENED
-
-
-class CutScratch(NamedTuple):
-    """Scratch of a cut, of zeros: what is taken out; the pieces; the springs of each particle."""
-
-    gone: Annotated[Flags, "springs"]
-    pieces: PieceScratch
-    start: Annotated[Slots, "particles + 1"]
-    listed: Annotated[Slots, "2 * springs"]
+def _carry_out(world: Commanded, arena: Arena, kind: int, slots: Slots, numbers: Floats) -> int:
+    state, good = world.state, world.good
+    if kind == GRAB:
+        grab(state, slots, numbers)
+    elif kind == MOVE_GRAB:
+        cursor = slots[0] + slots[2]
+        for axis in range(2):
+            state.velocity[cursor, axis] = (numbers[axis] - state.position[cursor, axis]) * numbers[2]
+    elif kind == RELEASE:
+        release(state, slots)
+    elif kind == PIN:
+        pin(state, slots[1])
+    elif kind == UNPIN:
+        unpin(state, slots[1])
+    elif kind in (CUT, BREAK, PART):
+        begin(arena)
+        work = new_tuple(CutScratch, arena, particles=state.owner.shape[0], springs=state.law.shape[0])
+        if is_full(arena):
+            return NO_ARENA
+        cut(state, good, slots, kind, work)
+    elif kind == SET_COEFFICIENTS:
+        set_coefficients(state, good, slots, numbers)
+    elif kind == SET_GRAVITY:
+        for axis in range(2):
+            set_number(state, world.numbers, GRAVITY_X + axis, numbers[axis], slots[0])
+    elif kind == SET_AIR:
+        set_air(state, world.numbers, slots, numbers)
+    elif kind == DRIVE:
+        state.actuator_value[slots[0]] = numbers[0]
+    elif kind in (SET_FIRMNESS, SOFTEN):
+        return _soften(world, kind, slots, numbers, arena)
+    elif kind == HOLD_KEY:
+        state.key_down[slots[0]] = slots[1] != 0
+    elif kind == PUSH:
+        return 0 if push(state, good, slots[0], numbers) > 0 else _refused(NOTHING_THERE, 0)
+    elif kind == SHAKE:
+        return 0 if shake(state, good, slots[0], numbers) > 0 else _refused(NOTHING_MOVES, 0)
+    elif kind == SET_INFLATION:
+        inflate(state, good, world.areas, slots[0], numbers[0], slots[1])
+    elif kind == SCALE_MASS:
+        return 0 if scale_mass(state, good, slots[1], numbers[0]) else _refused(TOO_HEAVY, 1)
+    elif kind == MOVE_BODY:
+        return _move(state, good, slots, numbers, arena)
+    elif kind == FREE:
+        return _free(state, good, slots[1], arena)
+    elif kind == SET_SOLVER:
+        return _set_solver(world, slots, numbers, arena)
+    return 0
 
 
 @inner_kernel
@@ -417,112 +365,6 @@ def cut(state: State, good: GoodValues, springs: Slots, kind: int, work: CutScra
             state.impulse[s, 0] = state.impulse[s, 1] = state.tension[s] = 0.0
             if kind == CUT:
                 state.energy_bank[state.particle_a[s]] = state.energy_bank[state.particle_b[s]] = BANK_UNOPENED
-
-
-@inner_kernel
-def _is_of(material: int, slots: Slots) -> bool:
-    return material == slots[1] if slots[0] != 0 else material >= 0
-
-
-@inner_kernel
-def _set_air(state: State, settings: Floats, slots: Slots, numbers: Floats) -> None:
-    if slots[0] != 0:
-        for axis in range(2):
-            set_number(state, settings, WIND_X + axis, numbers[1 + axis], slots[2])
-    if slots[1] != 0:
-        set_number(state, settings, DRAG, numbers[0], slots[2])
-
-
-@inner_kernel
-def _set_coefficients(state: State, good: GoodValues, slots: Slots, numbers: Floats) -> None:
-    # Of springs and areas; grabs, Hooke springs and constraints with Cs and Cd of their own keep theirs.
-    for s in range(state.material.shape[0]):
-        if _is_of(state.material[s], slots):
-            stiffness = numbers[0] if slots[2] != 0 else state.stiffness[s]
-            damping = numbers[1] if slots[3] != 0 else state.damping[s]
-            set_spring(state, good, s, stiffness, damping, 0.0, slots[4])
-    for k in range(state.constraint_material.shape[0]):
-        if _is_of(state.constraint_material[k], slots):
-            stiffness = numbers[0] if slots[2] != 0 else state.constraint_stiffness[k]
-            damping = numbers[1] if slots[3] != 0 else state.constraint_damping[k]
-            set_constraint(state, good, k, stiffness, damping, 0.0, slots[4])
-
-
-@inner_kernel
-def _can_move(state: State, first_cursor: int, p: int) -> bool:
-    return state.particle_active[p] and not _is_cursor(first_cursor, p) and state.inverse_mass[p] > 0.0
-
-
-@inner_kernel
-def _weight_of_push(state: State, first_cursor: int, p: int, numbers: Floats) -> float:
-    # 1 - (d / radius)^2 of what is near and can move; -1 of all else.
-    dx, dy = state.position[p, 0] - numbers[0], state.position[p, 1] - numbers[1]
-    square, reach = dx * dx + dy * dy, numbers[5] * numbers[5]
-    if not _can_move(state, first_cursor, p) or not square < reach:
-        return -1.0
-    return 1.0 - square / reach
-
-
-@inner_kernel
-def _push(state: State, good: GoodValues, first_cursor: int, numbers: Floats) -> int:
-    # dv_i = (J + outward n_i) w_i / sum m w: what is near moves more, whatever its mass, and the momentum grows by J.
-    total, count = 0.0, 0
-    for p in range(state.owner.shape[0]):
-        weight = _weight_of_push(state, first_cursor, p, numbers)
-        if weight >= 0.0:
-            total += state.mass[p] * weight
-            count += 1
-    for p in range(state.owner.shape[0]):
-        weight = _weight_of_push(state, first_cursor, p, numbers)
-        if weight >= 0.0:
-            dx, dy = state.position[p, 0] - numbers[0], state.position[p, 1] - numbers[1]
-            distance = math.sqrt(dx * dx + dy * dy)
-            share = numbers[4] / distance if distance > 0.0 else 0.0
-            for axis in range(2):
-                away = dx if axis == 0 else dy
-                dv = (numbers[2 + axis] + share * away) * (weight / total)
-                state.velocity[p, axis] += dv
-                good.velocity[p, axis] = state.velocity[p, axis]
-                state.slow_velocity[p, axis] += dv
-            state.energy_bank[p] = BANK_UNOPENED
-    return count
-
-
-@inner_kernel
-def _shake(state: State, good: GoodValues, first_cursor: int, numbers: Floats) -> int:
-    # Seen from the frame, every free particle gets the opposite velocity: dv_i = -a / tick_rate, for any gravity scale.
-    count = 0
-    for p in range(state.owner.shape[0]):
-        if _can_move(state, first_cursor, p):
-            for axis in range(2):
-                dv = numbers[axis] / numbers[2]
-                state.velocity[p, axis] -= dv
-                good.velocity[p, axis] = state.velocity[p, axis]
-                state.slow_velocity[p, axis] -= dv
-            state.energy_bank[p] = BANK_UNOPENED
-            count += 1
-    return count
-
-
-@inner_kernel
-def _move(state: State, good: GoodValues, slots: Slots, numbers: Floats, arena: Arena) -> int:
-    begin(arena)
-    label, body = new_slots(arena, state.owner.shape[0]), new_slots(arena, state.owner.shape[0])
-    if is_full(arena):
-        return NO_ARENA
-    count = list_body(state, slots[1], label, body)
-    is_moved = move_listed(state, good, body[:count], numbers[0], numbers[1], slots[2] != 0)
-    return 0 if is_moved else _refused(TOO_FAR, 1)
-
-
-@inner_kernel
-def _free(state: State, good: GoodValues, particle: int, arena: Arena) -> int:
-    why = free_body(state, good, arena, particle)
-    if why == NOTHING_TOUCHES:
-        return _refused(NOTHING_TO_FREE, 1)
-    if why == IS_PINNED:
-        return _refused(BODY_PINNED, 1)
-    return _refused(NO_FREE_PLACE, 1) if why == NO_PLACE else why
 
 
 @inner_kernel
@@ -569,3 +411,45 @@ def _set_solver(world: Commanded, slots: Slots, numbers: Floats, arena: Arena) -
     if slots[7] > 0 and is_other:
         firm_up(world.state, slots[7])
     return 0
+
+
+@inner_kernel
+def _move(state: State, good: GoodValues, slots: Slots, numbers: Floats, arena: Arena) -> int:
+    begin(arena)
+    label, body = new_slots(arena, state.owner.shape[0]), new_slots(arena, state.owner.shape[0])
+    if is_full(arena):
+        return NO_ARENA
+    count = list_body(state, slots[1], label, body)
+    is_moved = move_listed(state, good, body[:count], numbers[0], numbers[1], slots[2] != 0)
+    return 0 if is_moved else _refused(TOO_FAR, 1)
+
+
+@inner_kernel
+def _free(state: State, good: GoodValues, particle: int, arena: Arena) -> int:
+    why = free_body(state, good, arena, particle)
+    if why == NOTHING_TOUCHES:
+        return _refused(NOTHING_TO_FREE, 1)
+    if why == IS_PINNED:
+        return _refused(BODY_PINNED, 1)
+    return _refused(NO_FREE_PLACE, 1) if why == NO_PLACE else why
+
+
+@kernel
+def count_pieces(arena: Arena, pointer: Bundle[Commanded], count: Slots) -> int:
+    """How many pieces each body (b,) is that may be stiff by its form; NO_ARENA: the arena is too small."""
+    world = unpack(pointer)
+    return count_pieces_of(world.state, world.forms, arena, count)
+
+
+@kernel
+def form_of_spring(arena: Arena, pointer: Bundle[Commanded], spring: int) -> int:
+    """The number of the body, or of the piece of one, that may be stiff by its form and has a spring; -1: none has."""
+    world = unpack(pointer)
+    return number_of_spring(world.state, world.forms, arena, spring)
+
+
+@kernel
+def solve(pointer: Bundle[Commanded], wanted: Slots) -> float:
+    """Solve by other choices from now on, see `solve_by`."""
+    world = unpack(pointer)
+    return solve_by(world.state, world.choices, wanted)

@@ -8,8 +8,7 @@ import numpy as np
 from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.arrays import Floats
 from sandbox.physics.commands import command
-from sandbox.physics.commands.permission import DENIED, NOT_ALLOWED, SPENT, UNTOUCHED
-from sandbox.physics.jit import Bundle, bundle
+from sandbox.physics.commands.command import DENIED, NOT_ALLOWED, SPENT, UNTOUCHED
 from sandbox.physics.keeping.arguments import (
     CONSTRAINTS,
     FARTHEST,
@@ -162,19 +161,14 @@ class RefusedCommand(ValueError):
 
     @classmethod
     def of_denied(cls, answer: int, field: str, value: Any) -> "RefusedCommand":
-        """That of an answer of another kernel that asks, see permission.py."""
+        """That of an answer of another kernel that asks, see DENIED."""
         return cls(_OF_DENIED[-answer // DENIED], field, value, ())
-
-
-def lend(*arrays: Any) -> Bundle[command.Commanded]:
-    """What commands change, as kernels take it: the fields of Commanded."""
-    return bundle(command.Commanded(*arrays))
 
 
 def carry_out(pointer: Any, giver: int, name: str, given: Mapping[str, Any], world: StateArrays) -> Floats:
     """Carry out a command of KINDS with what it is given, by name; the numbers that the kernel was given, or answers.
 
-    pointer: what `lend` made of the arrays of `world`. Raises IndexError for a slot that is not there or not in use,
+    pointer: `world.lent`. Raises IndexError for a slot that is not there or not in use,
     ValueError for a number that is not finite or out of range, and RefusedCommand; nothing is changed then.
     """
     kind = KINDS[name]

@@ -1,12 +1,16 @@
-"""Exponential, cosine and decimals in + - * / alone: the same bits everywhere, where libraries differ.
+"""Exponential, cosine, decimals and sums in + - * / alone: the same bits everywhere, where libraries differ.
 
 Within, a number is a pair: the nearest one, and what that lacks, some 32 digits together. So results are the nearest
 numbers there are, but for one in many millions, and those of a good library.
+Sums are made in an order of ours.
 Sources: Dekker 1971, of pairs; Taylor, after halving the argument.
 """
 
 import math
 
+import numpy as np
+
+from sandbox.physics.arrays import Floats
 from sandbox.physics.jit import scalar_kernel
 
 # Numbers times this, and what is left, are the upper and the lower half of their digits.
@@ -151,3 +155,9 @@ def to_three_digits(value: float, is_up: bool) -> float:
     if is_up and (digits * units < scaled or rest > 0.0):
         digits += 1
     return digits * units / parts
+
+
+def sum_in_order(values: Floats) -> float:
+    """The sum of values (n,), added one after another from the first; 0 of none."""
+    # Partial sums can only be made in order, other than by numpy.sum.
+    return float(np.add.accumulate(values)[-1]) if len(values) else 0.0

@@ -20,8 +20,7 @@ import platformdirs
 from filelock import FileLock
 
 from sandbox.physics.jit import say
-from sandbox.physics.jit.library import NoLibrary, file_digest
-from sandbox.physics.jit.sources import source_files, text_of
+from sandbox.physics.jit.sources import NoLibrary, file_digest, source_files, text_of
 
 # Versions that are kept: branches of a checkout take turns.
 _KEPT = 8

@@ -5,7 +5,6 @@ their entries take. A library is called by one C function, `making/calling.c`, w
 """
 
 import ctypes
-import hashlib
 import importlib
 import json
 import os
@@ -17,15 +16,14 @@ from typing import Any
 import numpy as np
 
 from sandbox.physics.jit import bundles, interpreted
-from sandbox.physics.jit.sources import edited
+from sandbox.physics.jit.sources import NoLibrary, edited, file_digest
 
 COMPILED = True
 FOLDER = Path(__file__).with_name("libraries")
 MANIFEST = FOLDER / "manifest.json"
 # What is added to the name of a platform whose library needs a processor of level v3: AVX2, of 2013 on.
 WIDE = "-v3"
-# Of file digests [bytes].
-DIGEST_SIZE = 16
+
 
 # As in calling.c.
 _FORMS = {"integer": 0, "float": 1, "flag": 2, "array": 3, "bundle": 3, "tuple": 4}
@@ -46,10 +44,6 @@ class _Method(ctypes.Structure):
     _fields_ = [("name", ctypes.c_char_p), ("call", ctypes.c_void_p), ("flags", ctypes.c_int), ("doc", ctypes.c_char_p)]
 
 
-class NoLibrary(Exception):
-    """There is none here that can be used; says in one line why."""
-
-
 def library_name() -> str:
     """The file name of the library for this platform, whether there is one or not."""
     suffix = {"darwin": "dylib", "win32": "dll"}.get(sys.platform, "so")
@@ -57,11 +51,6 @@ def library_name() -> str:
     machine = sysconfig.get_platform().rpartition("-")[2] if sys.platform == "win32" else os.uname().machine
     usual = {"amd64": "x86_64", "aarch64": "arm64"}
     return f"{system}-{usual.get(machine.lower(), machine.lower())}.{suffix}"
-
-
-def file_digest(content: bytes) -> str:
-    """The digest of a library's file, as the manifest has it."""
-    return hashlib.blake2b(content, digest_size=DIGEST_SIZE).hexdigest()
 
 
 def _has_known_layout() -> bool:

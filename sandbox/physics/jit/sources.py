@@ -15,15 +15,17 @@ PACKAGE = Path(__file__).parents[2]
 _FOLDERS = ("physics", "app/draw/raster")
 # What makes machine code of kernels: every statement of these counts.
 _MAKERS = (
-    "bundles.py", "making/calling.c", "making/compiling.py", "making/gathering.py", "making/platforms.py",
-    *(f"translate/{name}" for name in (
-        "cpp_types.py", "definitions.py", "expressions.py", "local_names.py", "program.py", "runtime.h", "statements.py"
-    )),
+    "bundles.py", "making/calling.c", "making/compiling.py", "making/platforms.py",
+    *(f"translate/{name}" for name in ("cpp_types.py", "expressions.py", "program.py", "runtime.h", "statements.py")),
 )  # fmt: skip
 _ROLES = {"kernel", "inner_kernel", "inlined_kernel", "scalar_kernel"}
 _DIGEST_SIZE = 8
 # Fields of a syntax tree that say nothing of what is computed.
 _SILENT = {"type_comment", "type_params", "ctx", "kind"}
+
+
+class NoLibrary(Exception):
+    """There is none here that can be used; says in one line why."""
 
 
 def source_files() -> Iterator[tuple[str, Path]]:
@@ -192,3 +194,8 @@ def edited(known: dict[str, dict[str, Any]]) -> list[str]:
         if now != entry["kernels"]:
             found.append(name)
     return found
+
+
+def file_digest(content: bytes) -> str:
+    """The digest of a library's file, as the manifest has it."""
+    return hashlib.blake2b(content, digest_size=2 * _DIGEST_SIZE).hexdigest()

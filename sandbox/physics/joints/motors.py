@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from sandbox.physics.actuators import Actuators
 from sandbox.physics.arena import Arena, is_full, new_flags, new_slots
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.components import join, root_of
+from sandbox.physics.driving import Actuators
 from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.rows import JointRows, clamped

@@ -7,13 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sandbox.physics.actuators import Actuators, StrainLimits, unlimited
 from sandbox.physics.arena import NO_ARENA
 from sandbox.physics.arrays import Floats, Slots, empty
-from sandbox.physics.breaking import MaterialLimits
+from sandbox.physics.breaking import MaterialLimits, StrainLimits, unlimited
+from sandbox.physics.commands.command import DENIED
 from sandbox.physics.commands.command_table import RefusedCommand
-from sandbox.physics.commands.permission import DENIED
-from sandbox.physics.driving import drives_of
+from sandbox.physics.driving import Actuators, drives_of
 from sandbox.physics.jit import bundle
 from sandbox.physics.joints.motors import wheels_of
 from sandbox.physics.keeping.arguments import FARTHEST
@@ -34,10 +33,9 @@ from sandbox.physics.kits.kit import (
     SlotColumn,
 )
 from sandbox.physics.kits.kit_kernels import Joinable, join
-from sandbox.physics.state import Family, Range, good_of, state_of
-from sandbox.physics.water.displacers import Water
-from sandbox.physics.water.pools import HULL_NUMBERS
-from sandbox.physics.world import World, areas_of
+from sandbox.physics.state import Family, Range
+from sandbox.physics.water.displacers import HULL_NUMBERS, Water
+from sandbox.physics.world import World
 
 # Why a kit cannot join; {} = what of it, and what is wrong.
 NOT_A_TABLE, NOT_ROWS = "{}: a table of columns is needed", "{}: a list of {} rows is needed"
@@ -226,9 +224,8 @@ def _call(
     )  # fmt: skip
     pointer = bundle(
         Joinable(
-            state_of(world), good_of(world), np.array(world.settings.numbers), np.array(world.settings.choices),
-            areas_of(world), world.form_table.forms, world.form_table.modes, drives_of(actuators),
-            wheels_of(actuators), of_materials, empty(Water)._replace(pool=world.water, hull=world.hulls),
+            world.commanded, drives_of(actuators), wheels_of(actuators), of_materials,
+            empty(Water)._replace(pool=world.water, hull=world.hulls),
         )
     )  # fmt: skip
     arena = np.zeros(1, np.int64)

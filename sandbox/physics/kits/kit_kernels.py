@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple
 
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_tuple
-from sandbox.physics.arrays import Floats, SlotRows, Slots
+from sandbox.physics.arrays import Floats, Slots
 from sandbox.physics.breaking import MaterialLimits
-from sandbox.physics.commands.permission import HAND, NOT_ALLOWED, SPENT, UNTOUCHED, denied, refusal, spend
+from sandbox.physics.commands.command import HAND, NOT_ALLOWED, SPENT, UNTOUCHED, Commanded, denied, refusal, spend
 from sandbox.physics.constraints import AREA, measure_rest
 from sandbox.physics.driving import Drives, contract
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
@@ -97,10 +97,8 @@ from sandbox.physics.kits.kit import (
     WHEEL,
     YIELD_SHARE,
     YIELDING,
-    X,
-)
-from sandbox.physics.kits.kit_checks import (
     KitScratch,
+    X,
     find_columns,
     first_free_bit,
     first_out_of_range,
@@ -108,29 +106,20 @@ from sandbox.physics.kits.kit_checks import (
     first_wrong,
     first_wrong_drive,
     form_of,
-    has_driven_rows,
     has_limit_rows,
     has_limits,
     has_rows,
     is_first_of_wheel,
 )
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, GRAB_DAMPING, GRAB_MATERIAL, GRAB_STIFFNESS
-from sandbox.physics.softness.kernels.firm import FormModes, Forms
 from sandbox.physics.state import GoodValues, State
-from sandbox.physics.water.displacers import Water
-from sandbox.physics.water.pools import HULL, SPRING, TURNED
+from sandbox.physics.water.displacers import HULL, SPRING, TURNED, Water
 
 
 class Joinable(NamedTuple):
-    """What a kit changes; a world block begins with it. numbers, choices: the settings, see settings.py."""
+    """What a kit changes; a world block begins with it."""
 
-    state: State
-    good: GoodValues
-    numbers: Floats
-    choices: Slots
-    areas: SlotRows
-    forms: Forms
-    modes: FormModes
+    commanded: Commanded
     drives: Drives
     wheels: DrivenWheels
     limits: MaterialLimits
@@ -142,12 +131,12 @@ def join(
     pointer: Bundle[Joinable], arena: Arena, giver: int, kind: int, table: Slots, ranges: Floats, slots: Slots,
     numbers: Floats,
 ) -> int:  # fmt: skip
-    """Let a packed kit join a world that has rows for it; 0, or see NO_ROWS and permission.py.
+    """Let a packed kit join a world that has rows for it; 0, or see NO_ROWS and DENIED.
 
     kind: the number of the command that adds it. table, ranges: TABLE, RANGES.
     """
     world = unpack(pointer)
-    state = world.state
+    state, good = world.commanded.state, world.commanded.good
     begin(arena)
     work = new_tuple(
         KitScratch, arena, columns=NUMBER_COLUMNS, springs=max(slots[SPRINGS], 0), particles=max(slots[PARTICLES], 0)
@@ -173,14 +162,14 @@ def join(
     many = first_too_many(state, world.drives, slots, numbers, work.at)
     if many >= 0:
         return TOO_MANY - many
-    if not has_rows(state, slots) or not has_driven_rows(world.drives, world.wheels, world.water, slots):
+    if not has_rows(state, world.drives, world.wheels, world.water, slots):
         return NO_LIMIT_ROWS if has_limits(world.limits, slots, numbers, work.at) else NO_ROWS
     if has_limits(world.limits, slots, numbers, work.at) and not has_limit_rows(world.limits, state, slots, work.at):
         return NO_LIMIT_ROWS
-    _add_particles(state, world.good, slots, numbers, work.at)
-    _add_springs(state, world.good, slots, numbers, work)
-    _add_constraints(state, world.good, slots, numbers, work.at)
-    _add_drives(state, world.good, world.drives, world.choices, slots, numbers, work.at)
+    _add_particles(state, good, slots, numbers, work.at)
+    _add_springs(state, good, slots, numbers, work)
+    _add_constraints(state, good, slots, numbers, work.at)
+    _add_drives(state, good, world.drives, world.commanded.choices, slots, numbers, work.at)
     _add_motors(state, world.wheels, slots, numbers, work.at)
     _add_hulls(world.water, slots, work.at)
     _add_limits(world.limits, world.drives, slots, numbers, work.at)
@@ -203,7 +192,7 @@ def _first_untouched(state: State, giver: int, slots: Slots, at: Slots) -> int:
 def reserve(pointer: Bundle[Joinable], particle: int, spring: int) -> None:
     """Make new rows, from these on, those of hands that hold nothing, as World.reserve_grabs does."""
     world = unpack(pointer)
-    state, good = world.state, world.good
+    state, good = world.commanded.state, world.commanded.good
     for hand in range(GRAB_COUNT):
         p, s = particle + hand, spring + hand
         state.mass[p] = good.mass[p] = state.gravity_scale[p] = good.gravity_scale[p] = 1.0

@@ -6,19 +6,23 @@ import numpy as np
 
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_tuple
 from sandbox.physics.arrays import Flags, Slots
-from sandbox.physics.commands.command import CUT, REMOVE, CutScratch, cut, is_body, release
-from sandbox.physics.commands.command_table import RefusedCommand
-from sandbox.physics.commands.permission import (
+from sandbox.physics.commands.changes import is_body, release
+from sandbox.physics.commands.command import (
+    CUT,
     DENIED,
     HAND,
     NOT_ALLOWED,
     PROGRAM,
+    REMOVE,
     SPENT,
     UNTOUCHED,
+    CutScratch,
+    cut,
     denied,
     refusal,
     spend,
 )
+from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.keeping.arguments import PARTICLES, SPRINGS, whole_numbers
 from sandbox.physics.marks import BANK_UNOPENED, GRAB_COUNT, LAW_HAND
@@ -51,7 +55,7 @@ def remove(
     """Take out particles in use, every spring and constraint at them, and springs in use; hands that hold one let go.
 
     way: see THESE; springs only of a BODY. Returns 0, or NO_ARENA, or BAD_SLOT - the place of one that is not there or
-    not in use, counted through both; or see permission.py.
+    not in use, counted through both; or see DENIED.
     """
     block = unpack(pointer)
     state, count = block.state, block.state.owner.shape[0]

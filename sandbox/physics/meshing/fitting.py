@@ -22,19 +22,23 @@ from sandbox.physics.arena import (
     new_tuple,
 )
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
-from sandbox.physics.geometry.polygon import polygon_area
-from sandbox.physics.geometry.segment import difference
+from sandbox.physics.geometry.segment import difference, polygon_area
 from sandbox.physics.jit import float_rows_in, floats_in, inner_kernel, kernel, scalar_kernel, slot_rows_in
-from sandbox.physics.meshing.exact import FARTHEST
 from sandbox.physics.meshing.loops import (
+    ROW,
     is_simple_part,
+    kept_corners,
+    lattice,
     loops_touch_each_other,
     next_of,
+    rounded,
+    sample_way,
     simplify,
+    way_along,
     without_overshoot,
 )
-from sandbox.physics.meshing.sampling import ROW, kept_corners, lattice, rounded, sample_way, way_along
 from sandbox.physics.meshing.triangulation import (
+    FARTHEST,
     Net,
     Stars,
     apex_of,

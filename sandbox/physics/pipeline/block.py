@@ -5,12 +5,12 @@ from typing import Annotated, NamedTuple
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.driving import Drives
-from sandbox.physics.flight import Flight
+from sandbox.physics.integrate import Flight
 from sandbox.physics.joints.joint_set import JointSet
 from sandbox.physics.joints.limited_springs import SpringForces
 from sandbox.physics.joints.motors import DrivenWheels, MotorSides
 from sandbox.physics.pipeline.collide import Collisions
-from sandbox.physics.rules.table import Rules
+from sandbox.physics.rules import Rules
 from sandbox.physics.softness.kernels.firm import FormModes, Forms
 from sandbox.physics.solvers.direct.islands import IslandWorkspace
 from sandbox.physics.solvers.direct.system import System

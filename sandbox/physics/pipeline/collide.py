@@ -9,12 +9,9 @@ from typing import NamedTuple
 from sandbox.physics.arrays import Flags, FloatRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Candidates, Grid, cell_size, fill_grid, find_pairs
 from sandbox.physics.collision.contacts import carry_over, fill_boxes, find_contacts, find_terrain, update_aabbs
-from sandbox.physics.collision.disc_stop import stop_discs
 from sandbox.physics.collision.outline import Outline
-from sandbox.physics.collision.restitution import find_bounces
-from sandbox.physics.collision.rims import choose_partners
-from sandbox.physics.collision.terrain_clamp import clamp_at_pins, clamp_at_terrain, clamp_at_tips
-from sandbox.physics.collision.turning import SURFACE_WEIGHT, load_arms
+from sandbox.physics.collision.surfaces import SURFACE_WEIGHT, choose_partners, find_bounces, load_arms
+from sandbox.physics.collision.tunnelling import clamp_at_pins, clamp_at_terrain, clamp_at_tips, stop_discs
 from sandbox.physics.collision.types import (
     TOUCHING,
     Colliders,

@@ -16,12 +16,12 @@ from sandbox.physics.arena import (
     new_slots,
     new_tuple,
 )
-from sandbox.physics.collision.belts import has_belts
 from sandbox.physics.collision.broad_phase import Boxes, Candidates, Pairs, new_grid
 from sandbox.physics.collision.outline import new_colliders, new_outline
+from sandbox.physics.collision.surfaces import has_belts
 from sandbox.physics.collision.types import new_contacts, new_kept_contacts, new_near
 from sandbox.physics.constraints import TRIANGLE
-from sandbox.physics.flight import Flight
+from sandbox.physics.integrate import Flight
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, set_field, unpack
 from sandbox.physics.joints.hands import label_bodies, new_grips
 from sandbox.physics.joints.joint_answers import joints_by_mass, new_joints

@@ -6,8 +6,7 @@ from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, TI
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.pipeline.block import TICK, WorldBlock
 from sandbox.physics.pipeline.collide import KEPT
-from sandbox.physics.rules.measuring import measure
-from sandbox.physics.rules.table import ALL, ANY, NOBODY, NOT, TOUCHES, Rules, Terms, Things
+from sandbox.physics.rules import ALL, ANY, NOBODY, NOT, TOUCHES, Rules, Terms, Things, measure
 from sandbox.physics.settings import TICK_RATE
 from sandbox.physics.state import State
 

@@ -3,11 +3,9 @@
 from sandbox.physics.arena import Arena, begin, is_full, new_slots
 from sandbox.physics.arrays import Slots
 from sandbox.physics.breaking import yield_and_break
-from sandbox.physics.collision.belts import load_belts
+from sandbox.physics.collision.surfaces import load_belts
 from sandbox.physics.driving import drive_springs
-from sandbox.physics.flight import begin_flight, label_all_joined
-from sandbox.physics.forces import integrate_velocities
-from sandbox.physics.integrate import integrate_positions
+from sandbox.physics.integrate import begin_flight, integrate_positions, integrate_velocities, label_all_joined
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.joints.joint_set import prepare_joints, store_joint_impulses
 from sandbox.physics.marks import GRAB_COUNT

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, frequency_from_coefficients
-from sandbox.physics.keeping.forms import FirmBody, StiffForm, design_gravity, height_of
+from sandbox.physics.keeping.equipment import FirmBody, StiffForm, design_gravity, height_of
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.softness.firmness import WORDS, lowest_mode_of
 from sandbox.physics.softness.kernels.lowest_mode import rows_of

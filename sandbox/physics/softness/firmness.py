@@ -16,7 +16,7 @@ from sandbox.physics.commands.command import BEYOND_REACH, FLAT, NO_FIRMNESS, co
 from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.physics.keeping import arguments
-from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, design_gravity, height_of
+from sandbox.physics.keeping.equipment import FirmBody, Firmness, StiffForm, design_gravity, height_of
 from sandbox.physics.softness.kernels.lowest_mode import NO_MODE, find_lowest_mode
 from sandbox.physics.softness.kernels.reach import (
     BY_FREQUENCY,

@@ -14,7 +14,7 @@ import numpy as np
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import of_springs
 from sandbox.physics.jit import COMPILED
-from sandbox.physics.keeping.forms import FirmBody, Firmness, StiffForm, design_gravity
+from sandbox.physics.keeping.equipment import FirmBody, Firmness, StiffForm, design_gravity
 from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.softness.body_motion import Pair, SagCurve, present_coefficients, softness_of

@@ -11,11 +11,10 @@ from enum import Enum
 import numpy as np
 
 from sandbox.physics.arrays import Flags, Floats, Slots
-from sandbox.physics.collision.filter import TERRAIN_GROUP
 from sandbox.physics.components import label_bodies
 from sandbox.physics.constraints import AREA, BEND
-from sandbox.physics.keeping.forms import FirmBody, design_gravity
-from sandbox.physics.marks import BANK_UNOPENED
+from sandbox.physics.keeping.equipment import FirmBody, design_gravity
+from sandbox.physics.marks import BANK_UNOPENED, TERRAIN_GROUP
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain, Terrain, make_terrain

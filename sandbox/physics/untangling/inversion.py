@@ -13,8 +13,7 @@ from typing import NamedTuple
 from sandbox.physics.arena import Arena, is_full, new_flags, new_slot_rows, new_slots
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.constraints import AREA
-from sandbox.physics.geometry.polygon import winding_of_side
-from sandbox.physics.geometry.segment import doubled_area, doubled_area_of
+from sandbox.physics.geometry.segment import doubled_area, doubled_area_of, winding_of_side
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import State
 from sandbox.physics.untangling.jellies import Jellies, group_triangles

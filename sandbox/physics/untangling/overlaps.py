@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.collision.broad_phase import Boxes, Grid, bucket_of, cell_number, overlap
-from sandbox.physics.collision.edge_geometry import winds
+from sandbox.physics.collision.ghost_vertices import winds
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, may_collide
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders, KeptContacts

@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats
-from sandbox.physics.collision.edge_geometry import edge_normal, place_on, winds
+from sandbox.physics.collision.ghost_vertices import edge_normal, place_on, winds
 from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import Colliders
 from sandbox.physics.geometry.rigid import RigidMotion, WeightedSums, centre_of, with_point

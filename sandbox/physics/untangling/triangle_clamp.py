@@ -22,8 +22,7 @@ from sandbox.physics.arena import (
     new_slots,
 )
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
-from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.terrain_clamp import stop_at_terrain, stopped
+from sandbox.physics.collision.tunnelling import stop_at_terrain, stopped
 from sandbox.physics.components import root_of, united
 from sandbox.physics.geometry.rigid import (
     RigidMotion,
@@ -35,6 +34,7 @@ from sandbox.physics.geometry.rigid import (
 )
 from sandbox.physics.geometry.segment import doubled_area_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel, set_field
+from sandbox.physics.marks import TERRAIN_GROUP
 from sandbox.physics.state import State
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.topology.sorting import list_by_key

@@ -1,11 +1,14 @@
-"""Displacers: what of a world water cannot enter, as its topology decides it.
+"""Pools, and displacers: what of a world water cannot enter, as its topology decides it.
 
 Bodies with triangles displace those. A hull, the outline of a wheel or of a ring that keeps its area, displaces what it
 encloses while none of its springs is cut. All other particles, those of ropes and loose ones, are discs. What was cut
 goes on displacing: the corners of a triangle that is no more are discs, each with a third of its area.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
+
+import numpy as np
 
 from sandbox.physics.arena import (
     Arena,
@@ -19,13 +22,19 @@ from sandbox.physics.arena import (
     new_slots,
 )
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
-from sandbox.physics.collision.filter import LINE, NO_EDGE
 from sandbox.physics.constraints import AREA, TRIANGLE
 from sandbox.physics.jit import inner_kernel, set_field
-from sandbox.physics.marks import GRAB_MATERIAL
+from sandbox.physics.marks import GRAB_MATERIAL, LINE, NO_EDGE
 from sandbox.physics.state import State
-from sandbox.physics.water.pools import HULL, SPRING, TURNED
 
+# Columns of a pool: left, bottom, right, top [m]; density [kg/m^2]; fast drag, of the square of the speed; slow drag
+# [m/s], of the speed; flow [m/s] (2).
+LEFT, BOTTOM, RIGHT, TOP, DENSITY, FAST, SLOW, FLOW_X, FLOW_Y, POOL_NUMBERS = range(10)
+# Columns of a hull's spring: number of the hull, the spring, and whether what the hull encloses lies on the left of
+# its way from the second end to the first.
+HULL, SPRING, TURNED, HULL_NUMBERS = range(4)
+NO_POOLS: FloatRows = np.zeros((0, POOL_NUMBERS))
+NO_HULLS: SlotRows = np.zeros((0, HULL_NUMBERS), np.int64)
 # Columns of `load` of a particle: force [N] (2), resistance [kg/s] xx, xy, yy, and that times the flow [N] (2).
 FX, FY, RXX, RXY, RYY, DX, DY, LOADS = range(8)
 # Columns of `body`, at the label of a body: mass [kg], momentum [kg m/s] (2), force and weight [N] (2); resistance
@@ -34,6 +43,19 @@ FX, FY, RXX, RXY, RYY, DX, DY, LOADS = range(8)
 # contact holds it. And what follows: its turning acceleration [rad/s^2], and the change of its velocity [m/s] (2).
 MASS, PX, PY, NET_X, NET_Y, BXX, BXY, BYY, MX, MY, MRR, TORQUE, DRAG_X, DRAG_Y, TOOK_X, TOOK_Y = range(16)
 HELD, TURN, CX, CY, SUMS = range(16, 21)
+
+
+class Pool(NamedTuple):
+    """Water in a box: left, bottom, right, top [m], of a density [kg/m^2], whose surface is the top.
+
+    fast_drag: a coefficient C; slow_drag [m/s]; flow [m/s]. See push.py.
+    """
+
+    box: tuple[float, float, float, float]
+    density: float
+    fast_drag: float
+    slow_drag: float
+    flow: tuple[float, float]
 
 
 class Water(NamedTuple):
@@ -72,6 +94,49 @@ class WaterScratch(NamedTuple):
     enclosed: Flags
     is_whole: Flags
     is_hull: Flags
+
+
+def pools_of(pools: Sequence[Pool]) -> FloatRows:
+    """Pools as kernels read them (w, POOL_NUMBERS)."""
+    rows = [(*pool.box, pool.density, pool.fast_drag, pool.slow_drag, *pool.flow) for pool in pools]
+    # Adding 0.0 turns -0.0 into 0.0.
+    return np.array(rows, np.float64).reshape(-1, POOL_NUMBERS) + 0.0
+
+
+@inner_kernel
+def lay_out_water(state: State, arena: Arena, water: Water) -> None:
+    """Lay out what a world with these pools and hulls displaces, as its topology is now; nothing without a pool."""
+    if water.pool.shape[0] == 0:
+        return
+    particles, springs, constraints = state.owner.shape[0], state.spring_active.shape[0], state.constraint_kind.shape[0]
+    set_field(water, "triangle", new_slot_rows(arena, constraints, 3))
+    set_field(water, "constraint", new_slots(arena, constraints))
+    set_field(water, "shell_start", new_slots(arena, water.hull.shape[0] + 1))
+    set_field(water, "shell_a", new_slots(arena, water.hull.shape[0]))
+    set_field(water, "shell_b", new_slots(arena, water.hull.shape[0]))
+    set_field(water, "shell_share", new_floats(arena, water.hull.shape[0]))
+    set_field(water, "shell_area", new_floats(arena, water.hull.shape[0]))
+    set_field(water, "shell_constraint", new_slots(arena, water.hull.shape[0]))
+    set_field(water, "edge", new_slots(arena, springs))
+    set_field(water, "sides", new_floats(arena, springs))
+    set_field(water, "disc", new_slots(arena, particles))
+    set_field(water, "disc_area", new_floats(arena, particles))
+    set_field(water, "is_bare", new_flags(arena, particles))
+    set_field(water, "is_loose", new_flags(arena, particles))
+    set_field(water, "load", new_float_rows(arena, particles, LOADS))
+    set_field(water, "body", new_float_rows(arena, particles, SUMS))
+    set_field(water, "wet", new_flags(arena, particles))
+    scratch = mark(arena)
+    work = _new_scratch(state, water.hull, arena)
+    if is_full(arena):
+        return
+    triangles = _list_triangles(state, water, work)
+    _find_whole_hulls(state, water.hull, work)
+    hulls, edges = _list_shells(state, water, work)
+    dragged = _list_edges(state, water, work)
+    discs = _list_discs(state, water, work)
+    _make_lists_as_long_as(triangles, hulls, edges, dragged, discs, water)
+    give_back(arena, scratch)
 
 
 @inner_kernel
@@ -230,39 +295,3 @@ def _make_lists_as_long_as(triangles: int, hulls: int, edges: int, springs: int,
     set_field(water, "disc_area", water.disc_area[:discs])
     set_field(water, "is_bare", water.is_bare[:discs])
     set_field(water, "is_loose", water.is_loose[:discs])
-
-
-@inner_kernel
-def lay_out_water(state: State, arena: Arena, water: Water) -> None:
-    """Lay out what a world with these pools and hulls displaces, as its topology is now; nothing without a pool."""
-    if water.pool.shape[0] == 0:
-        return
-    particles, springs, constraints = state.owner.shape[0], state.spring_active.shape[0], state.constraint_kind.shape[0]
-    set_field(water, "triangle", new_slot_rows(arena, constraints, 3))
-    set_field(water, "constraint", new_slots(arena, constraints))
-    set_field(water, "shell_start", new_slots(arena, water.hull.shape[0] + 1))
-    set_field(water, "shell_a", new_slots(arena, water.hull.shape[0]))
-    set_field(water, "shell_b", new_slots(arena, water.hull.shape[0]))
-    set_field(water, "shell_share", new_floats(arena, water.hull.shape[0]))
-    set_field(water, "shell_area", new_floats(arena, water.hull.shape[0]))
-    set_field(water, "shell_constraint", new_slots(arena, water.hull.shape[0]))
-    set_field(water, "edge", new_slots(arena, springs))
-    set_field(water, "sides", new_floats(arena, springs))
-    set_field(water, "disc", new_slots(arena, particles))
-    set_field(water, "disc_area", new_floats(arena, particles))
-    set_field(water, "is_bare", new_flags(arena, particles))
-    set_field(water, "is_loose", new_flags(arena, particles))
-    set_field(water, "load", new_float_rows(arena, particles, LOADS))
-    set_field(water, "body", new_float_rows(arena, particles, SUMS))
-    set_field(water, "wet", new_flags(arena, particles))
-    scratch = mark(arena)
-    work = _new_scratch(state, water.hull, arena)
-    if is_full(arena):
-        return
-    triangles = _list_triangles(state, water, work)
-    _find_whole_hulls(state, water.hull, work)
-    hulls, edges = _list_shells(state, water, work)
-    dragged = _list_edges(state, water, work)
-    discs = _list_discs(state, water, work)
-    _make_lists_as_long_as(triangles, hulls, edges, dragged, discs, water)
-    give_back(arena, scratch)

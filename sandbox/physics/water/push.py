@@ -1,6 +1,6 @@
 """Push: what water does to velocities in a step, before the springs act: lift, and drag that cannot overshoot.
 
-Lift is the gradient of U of all that water cannot enter (wet_parts.py): calm water neither gives nor takes energy.
+Lift is the gradient of U of all that water cannot enter (below): calm water neither gives nor takes energy.
 
     triangle  density g A times the integral of each corner's shape function over what is wet; A = the area that its
               constraint wants, so that soft bodies are not crushed by the depth
@@ -25,23 +25,29 @@ import math
 from sandbox.physics.arrays import FloatRows, Floats, Slots
 from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP_SHIFT
 from sandbox.physics.collision.types import KeptContacts
-from sandbox.physics.jit import inner_kernel
+from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.settings import GRAVITY_X, GRAVITY_Y
 from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import State
 from sandbox.physics.water.displacers import (
+    BOTTOM,
     BXX,
     BXY,
     BYY,
     CX,
     CY,
+    DENSITY,
     DRAG_X,
     DRAG_Y,
     DX,
     DY,
+    FAST,
+    FLOW_X,
+    FLOW_Y,
     FX,
     FY,
     HELD,
+    LEFT,
     LOADS,
     MASS,
     MRR,
@@ -51,17 +57,18 @@ from sandbox.physics.water.displacers import (
     NET_Y,
     PX,
     PY,
+    RIGHT,
     RXX,
     RXY,
     RYY,
+    SLOW,
     TOOK_X,
     TOOK_Y,
+    TOP,
     TORQUE,
     TURN,
     Water,
 )
-from sandbox.physics.water.pools import BOTTOM, DENSITY, FAST, FLOW_X, FLOW_Y, LEFT, RIGHT, SLOW, TOP
-from sandbox.physics.water.wet_parts import PI, clipped, disc_area_below, wet_shares
 
 # Places at which what passes the surface is looked at, in the time of a step. With one, energy changes by up to
 # h^2 v^2 U'' / 12 whenever something passes; with n, by a part in n^2 of that.
@@ -71,6 +78,39 @@ PASSES = 4
 HARDEST_LIFT = 15.0
 # Below this share of its moment of inertia about its first particle, that about its centre is rounding.
 LEAST_INERTIA = 1e-9
+PI = 3.141592653589793
+THIRD = 1.0 / 3.0
+
+
+@inner_kernel
+def push_by_water(
+    water: Water, state: State, start: FloatRows, label: Slots, numbers: Floats, kept: KeptContacts, count: int,
+    touches: bool, h: float,
+) -> None:  # fmt: skip
+    """Change velocities as water does in a step of h [s].
+
+    start [m/s] (n, 2): velocities before anything acted; label (n,): of bodies, see joints/hands.py; kept: the contacts
+    of the last step, so many; touches: whether anything can touch.
+    """
+    # Gravity that points upwards makes no pressure. What nothing holds moves as in free_contacts.py.
+    g, early = max(0.0, -numbers[GRAVITY_Y]), 0.5 * (h - h / small_steps(h)) if touches else 0.0
+    _load(water, state, start, g, early)
+    _sum_bodies(water, state, start, label, numbers)
+    _find_held(water, state, label, kept, count)
+    for k in range(water.pool.shape[0]):
+        for i in range(water.triangle.shape[0]):
+            _lift_passing(water, k, i, state, start, label, g, h)
+    _sum_bodies(water, state, start, label, numbers)
+    _push(water, state, start, label, h)
+    _slow_bodies(water, state, label, h)
+
+
+@inner_kernel
+def slow_spins(water: Water, state: State, h: float) -> None:
+    """Slow the turning of discs in water down, in a step of h [s]; after push_by_water, which finds those."""
+    for k in range(water.pool.shape[0]):
+        for i in range(water.disc.shape[0]):
+            _slow_spin(water, k, i, state, h)
 
 
 @inner_kernel
@@ -395,32 +435,89 @@ def _slow_bodies(water: Water, state: State, label: Slots, h: float) -> None:
             state.velocity[p, 1] += body[label[p], CY]
 
 
-@inner_kernel
-def push_by_water(
-    water: Water, state: State, start: FloatRows, label: Slots, numbers: Floats, kept: KeptContacts, count: int,
-    touches: bool, h: float,
-) -> None:  # fmt: skip
-    """Change velocities as water does in a step of h [s].
+@scalar_kernel
+def arc_cosine(x: float) -> float:
+    """acos(x) to 2e-8, of sums, products and roots alone, so that it has the same bits everywhere."""
+    # Abramowitz and Stegun 4.4.46.
+    t = abs(x)
+    if t >= 1.0:
+        return 0.0 if x > 0.0 else PI
+    s = 0.0066700901 - 0.0012624911 * t
+    s = -0.0170881256 + s * t
+    s = 0.0308918810 + s * t
+    s = -0.0501743046 + s * t
+    s = 0.0889789874 + s * t
+    s = -0.2145988016 + s * t
+    s = 1.5707963050 + s * t
+    s *= math.sqrt(1.0 - t)
+    return s if x >= 0.0 else PI - s
 
-    start [m/s] (n, 2): velocities before anything acted; label (n,): of bodies, see joints/hands.py; kept: the contacts
-    of the last step, so many; touches: whether anything can touch.
+
+@scalar_kernel
+def disc_area_below(depth: float, radius: float) -> float:
+    """Area [m^2] of a disc below a surface that lies so far [m] above its centre."""
+    if depth <= -radius:
+        return 0.0
+    if depth >= radius:
+        return PI * radius * radius
+    return radius * radius * arc_cosine(-depth / radius) + depth * math.sqrt(radius * radius - depth * depth)
+
+
+@scalar_kernel
+def disc_depth(depth: float, radius: float) -> float:
+    """Integral of the depth over what is wet of a disc [m^3]; depth [m] of its centre."""
+    if depth <= -radius:
+        return 0.0
+    if depth >= radius:
+        return PI * radius * radius * depth
+    # d A(d) + 2/3 (r^2 - d^2)^(3/2)
+    inside = radius * radius - depth * depth
+    return depth * disc_area_below(depth, radius) + 2.0 * THIRD * inside * math.sqrt(inside)
+
+
+@inner_kernel
+def clipped(x: float, dx: float, low: float, high: float, s0: float, s1: float) -> tuple[float, float]:
+    """The part of s0..s1 in which low <= x + s dx <= high; empty where the second is not above the first."""
+    if dx == 0.0:
+        return (s0, s1) if low <= x and x <= high else (1.0, 0.0)
+    to_low, to_high = (low - x) / dx, (high - x) / dx
+    return max(s0, min(to_low, to_high)), min(s1, max(to_low, to_high))
+
+
+@scalar_kernel
+def wet_shares(a: float, b: float, c: float) -> tuple[float, float, float]:
+    """Of a triangle whose corners lie so deep [m]: the integral over what is wet of each corner's shape function, over
+    the area; 1/3 each where all is wet.
     """
-    # Gravity that points upwards makes no pressure. What nothing holds moves as in free_contacts.py.
-    g, early = max(0.0, -numbers[GRAVITY_Y]), 0.5 * (h - h / small_steps(h)) if touches else 0.0
-    _load(water, state, start, g, early)
-    _sum_bodies(water, state, start, label, numbers)
-    _find_held(water, state, label, kept, count)
-    for k in range(water.pool.shape[0]):
-        for i in range(water.triangle.shape[0]):
-            _lift_passing(water, k, i, state, start, label, g, h)
-    _sum_bodies(water, state, start, label, numbers)
-    _push(water, state, start, label, h)
-    _slow_bodies(water, state, label, h)
+    if a > 0.0 and b > 0.0 and c > 0.0:
+        return THIRD, THIRD, THIRD
+    if a <= 0.0 and b <= 0.0 and c <= 0.0:
+        return 0.0, 0.0, 0.0
+    # One corner is alone on its side of the surface.
+    if (a > 0.0) != (b > 0.0) and (a > 0.0) != (c > 0.0):
+        x, y, z = _beside_alone(a, b, c)
+        return x, y, z
+    if (b > 0.0) != (a > 0.0) and (b > 0.0) != (c > 0.0):
+        y, z, x = _beside_alone(b, c, a)
+        return x, y, z
+    z, x, y = _beside_alone(c, a, b)
+    return x, y, z
 
 
-@inner_kernel
-def slow_spins(water: Water, state: State, h: float) -> None:
-    """Slow the turning of discs in water down, in a step of h [s]; after push_by_water, which finds those."""
-    for k in range(water.pool.shape[0]):
-        for i in range(water.disc.shape[0]):
-            _slow_spin(water, k, i, state, h)
+@scalar_kernel
+def _beside_alone(alone: float, one: float, other: float) -> tuple[float, float, float]:
+    # It cuts off the part f = s t of the triangle, with shares (3 - s - t, s, t) f / 3.
+    s, t = alone / (alone - one), alone / (alone - other)
+    f = s * t * THIRD
+    x, y, z = (3.0 - s - t) * f, s * f, t * f
+    if alone > 0.0:
+        return x, y, z
+    return THIRD - x, THIRD - y, THIRD - z
+
+
+@scalar_kernel
+def mean_depth(a: float, b: float, c: float) -> float:
+    """Integral of the depth over what is wet of a triangle whose corners lie so deep [m], over the area."""
+    # The integral is homogeneous of degree 1 in the depths of the corners, whose shares are its gradient (Euler).
+    x, y, z = wet_shares(a, b, c)
+    return a * x + b * y + c * z

@@ -10,10 +10,9 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from sandbox.level.assembly.level_world import LevelWorld
 from sandbox.level.format.level_error import shown
 from sandbox.level.rules.hands import thing_of, words_of
-from sandbox.physics.commands.command import BEYOND_REACH, EXHAUSTED, FORBIDDEN, UNTOUCHABLE
+from sandbox.physics.commands.command import BEYOND_REACH, EXHAUSTED, FORBIDDEN, HAND, RULE, UNTOUCHABLE
 from sandbox.physics.commands.command_table import WORDS, RefusedCommand
-from sandbox.physics.commands.permission import HAND, RULE
-from sandbox.physics.keeping.forms import Firmness
+from sandbox.physics.keeping.equipment import Firmness
 from sandbox.physics.softness.firmness import words_of_reach
 from sandbox.physics.world import World
 from sandbox.session.commands.faults import CommandError as CommandError

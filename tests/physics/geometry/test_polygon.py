@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.physics.geometry.polygon import polygon_area, signed_area, winding_number, winding_of_side
-from sandbox.physics.geometry.segment import doubled_area
+from sandbox.physics.geometry.segment import doubled_area, polygon_area, signed_area, winding_number, winding_of_side
 
 # A ring that is gone round twice, with a bulge, and one that runs clockwise.
 TWICE = np.array([[(1.0 + 0.3 * (k % 3)) * f(0.7 * k * math.pi) for f in (math.cos, math.sin)] for k in range(20)])

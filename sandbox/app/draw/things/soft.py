@@ -16,8 +16,7 @@ from sandbox.app.draw.things.faces import room_in, spot_of
 from sandbox.app.draw.things.frame import FLUSH_FROM, FLUSH_RANGE, Frame
 from sandbox.app.draw.things.level_slots import Actor, Piece
 from sandbox.level.kinds.jelly import CircleShape
-from sandbox.physics.geometry.polygon import signed_area
-from sandbox.physics.geometry.segment import lengths
+from sandbox.physics.geometry.segment import lengths, signed_area
 
 Slots = NDArray[np.int64]
 Floats = NDArray[np.float64]

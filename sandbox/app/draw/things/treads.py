@@ -11,7 +11,7 @@ from sandbox.app.draw.camera import Camera
 from sandbox.app.draw.colours import packed
 from sandbox.app.draw.raster.painter import MarkList
 from sandbox.app.draw.themes import Theme
-from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_RIGHT
+from sandbox.physics.marks import LINE, NO_EDGE, SOLID_RIGHT
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.terrain import Terrain
 

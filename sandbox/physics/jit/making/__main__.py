@@ -7,11 +7,10 @@ import json
 import sys
 from pathlib import Path
 
-from sandbox.physics.jit.library import file_digest
-from sandbox.physics.jit.making.compiling import NotCompiled, compiled
-from sandbox.physics.jit.making.gathering import all_entries, gathered
+from sandbox.physics.jit.making.compiling import NotCompiled, all_entries, compiled, gathered
 from sandbox.physics.jit.making.platforms import this_machine
-from sandbox.physics.jit.translate.definitions import Untranslatable
+from sandbox.physics.jit.sources import file_digest
+from sandbox.physics.jit.translate.cpp_types import Untranslatable
 
 
 def _main(folder: Path, *checked: str) -> int:

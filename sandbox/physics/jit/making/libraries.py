@@ -14,11 +14,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from sandbox.physics.jit.library import FOLDER, MANIFEST, NoLibrary, file_digest, library_name, read_manifest
-from sandbox.physics.jit.making.compiling import compiled
-from sandbox.physics.jit.making.gathering import Gathered, all_entries, gathered
+from sandbox.physics.jit.library import FOLDER, MANIFEST, library_name, read_manifest
+from sandbox.physics.jit.making.compiling import Gathered, all_entries, compiled, gathered
 from sandbox.physics.jit.making.platforms import LIBRARIES, WEB, Platform
-from sandbox.physics.jit.sources import edited, sources_now
+from sandbox.physics.jit.sources import NoLibrary, edited, file_digest, sources_now
 
 # What a library is tried out with: it is to come to the state that the interpreter comes to.
 _TRIAL = ("run", "balloons", "--seconds", "1", "--json")

@@ -15,14 +15,16 @@ from sandbox.physics.jit.translate.cpp_types import (
     ITEMS,
     Array,
     BundleType,
+    Constant,
     Scalar,
     Several,
     Struct,
     Type,
+    Untranslatable,
     fits,
     joined,
+    meaning,
 )
-from sandbox.physics.jit.translate.definitions import Constant, Untranslatable, meaning
 
 # How closely parts of an expression hang together in C++, the looser the lower.
 PRIMARY, UNARY, PRODUCT, SUM, SHIFT, ORDER, EQUALITY, BITS_AND, BITS_XOR, BITS_OR, AND, OR, CHOICE = range(12, -1, -1)

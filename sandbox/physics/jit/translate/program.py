@@ -17,14 +17,16 @@ from sandbox.physics.jit.translate.cpp_types import (
     NOTHING,
     Array,
     BundleType,
+    Constant,
     NoType,
     Several,
     Struct,
     Type,
     Types,
+    Untranslatable,
+    definition,
     fits,
 )
-from sandbox.physics.jit.translate.definitions import Constant, Untranslatable, definition
 from sandbox.physics.jit.translate.expressions import spelled, written
 from sandbox.physics.jit.translate.statements import Body
 

@@ -27,7 +27,7 @@ from sandbox.physics.arrays import Floats, SlotRows, Slots, empty, with_empty
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import of_springs
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
-from sandbox.physics.keeping.forms import FirmBody, StiffForm, design_gravity, height_along
+from sandbox.physics.keeping.equipment import FirmBody, StiffForm, design_gravity, height_along
 from sandbox.physics.ramps import set_constraint, set_spring
 from sandbox.physics.softness.kernels.lowest_mode import CORNERS, NO_MODE, lowest_mode_in
 from sandbox.physics.softness.kernels.reach import FIRMED, NO_BODY, NO_ROOM, NOT_STIFF, Asked, Reach, share_out

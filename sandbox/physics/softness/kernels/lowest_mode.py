@@ -27,7 +27,7 @@ from sandbox.physics.arrays import FloatRows, Floats, FloatTables, Int32s, SlotR
 from sandbox.physics.constraints import AREA, BEND, evaluate, measure_rest, rest_mass
 from sandbox.physics.equation import reduced_mass
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
-from sandbox.physics.keeping.forms import StiffForm
+from sandbox.physics.keeping.equipment import StiffForm
 from sandbox.physics.solvers.linear.matrix_layout import block_below, new_matrix
 from sandbox.physics.solvers.linear.minimum_degree import order_by_degree
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix, back_substitute, factorise

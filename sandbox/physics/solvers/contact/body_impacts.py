@@ -10,7 +10,7 @@ and all that rests have their say in the sweeps.
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.collision.restitution import SLOWEST_PASSED
+from sandbox.physics.collision.surfaces import SLOWEST_PASSED
 from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.contact_order import ContactOrder

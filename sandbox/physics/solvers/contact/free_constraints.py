@@ -6,7 +6,7 @@ Islands that take as many small steps are solved side by side: what does not tou
 from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
-from sandbox.physics.collision.turning import rolling_ratios
+from sandbox.physics.collision.surfaces import rolling_ratios
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inlined_kernel, inner_kernel

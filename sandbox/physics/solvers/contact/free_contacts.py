@@ -10,8 +10,7 @@ in small steps: where their number changed with what is near, a disc's energy wo
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.collision.restitution import SLOWEST_BOUNCE
-from sandbox.physics.collision.turning import SURFACE_WEIGHT, spin_of
+from sandbox.physics.collision.surfaces import SLOWEST_BOUNCE, SURFACE_WEIGHT, spin_of
 from sandbox.physics.collision.types import Colliders, Contacts
 from sandbox.physics.geometry.rigid import (
     RigidMotion,

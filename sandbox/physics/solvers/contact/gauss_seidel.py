@@ -9,7 +9,7 @@ start with the impulses of the last step, so a body at rest is at rest from the 
 from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
-from sandbox.physics.collision.turning import spin_of
+from sandbox.physics.collision.surfaces import spin_of
 from sandbox.physics.collision.types import ENDS, TOUCHING, Contacts, couple_of, weight_of
 from sandbox.physics.equation import implicit_update
 from sandbox.physics.jit import inner_kernel

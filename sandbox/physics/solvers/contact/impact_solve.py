@@ -7,7 +7,7 @@ sum of J (u + u')/2, and where J > 0 there is u < 0 and u' = b <= -u: never upwa
 that are cut short, and friction at several places, may not end there; they are scaled back along J.
 """
 
-from sandbox.physics.collision.restitution import SLOWEST_PASSED
+from sandbox.physics.collision.surfaces import SLOWEST_PASSED
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.free_constraints import (
     ARM,

@@ -7,7 +7,7 @@ an impulse on (generalised reflections, Smith and others 2012).
 
 import math
 
-from sandbox.physics.collision.restitution import SLOWEST_PASSED, bounce_of
+from sandbox.physics.collision.surfaces import SLOWEST_PASSED, bounce_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.solvers.contact.free_constraints import (
     COMING,

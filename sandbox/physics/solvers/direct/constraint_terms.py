@@ -20,7 +20,7 @@ from sandbox.physics.constraints import (
     evaluate,
 )
 from sandbox.physics.equation import capped, implicit_impulse, implicit_masses
-from sandbox.physics.geometry.polygon import polygon_area
+from sandbox.physics.geometry.segment import polygon_area
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.direct.system import Constraints, Span, System
 from sandbox.physics.solvers.inputs import Inputs

@@ -14,12 +14,11 @@ nothing.
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats, Slots
-from sandbox.physics.collision.filter import TERRAIN_GROUP
-from sandbox.physics.collision.terrain_clamp import STOPS, stop_at_terrain, stopped
-from sandbox.physics.collision.turning import SURFACE_WEIGHT
+from sandbox.physics.collision.surfaces import SURFACE_WEIGHT
+from sandbox.physics.collision.tunnelling import STOPS, stop_at_terrain, stopped
 from sandbox.physics.collision.types import Contacts, weight_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.marks import BANK_UNOPENED
+from sandbox.physics.marks import BANK_UNOPENED, TERRAIN_GROUP
 from sandbox.physics.solvers.contact.gauss_seidel import (
     CONTACT_SOFTNESS,
     FASTEST_PUSH,

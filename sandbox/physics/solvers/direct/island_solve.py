@@ -9,7 +9,7 @@ together that touch each other, so that one may take what another gives.
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.collision.turning import spin_of
+from sandbox.physics.collision.surfaces import spin_of
 from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_answers import Joints, couple_joints

@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import NO_ARENA, Arena, begin, is_full, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, FloatRows, Slots
-from sandbox.physics.collision.edge_geometry import winds
+from sandbox.physics.collision.ghost_vertices import winds
 from sandbox.physics.collision.outline import Outline, new_colliders, new_outline
 from sandbox.physics.collision.types import Colliders
 from sandbox.physics.components import list_body

@@ -1,36 +1,71 @@
-"""Measuring: the value of a term at the end of a tick."""
+"""Rules: what a level asks at the end of each tick, its zones, and how the value of what is asked is measured.
+
+What a run makes of the rules is state (state.py).
+"""
 
 import math
+from typing import NamedTuple
 
-from sandbox.physics.arrays import FloatRows
-from sandbox.physics.geometry.segment import difference
+from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
+from sandbox.physics.geometry.segment import difference, segments_cross, squared_distance
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.rules.table import (
-    BROKEN,
-    CENTRE_X,
-    CENTRE_Y,
-    COUNTER,
-    CROSSES,
-    DISTANCE,
-    FASTEST,
-    INSIDE,
-    KEY,
-    MOTION,
-    SETTLED,
-    SPEED,
-    STRAIN,
-    TIME,
-    UNSOUND,
-    Rules,
-    Terms,
-)
-from sandbox.physics.rules.zones import depth_inside, may_be_inside, meets_zone
 from sandbox.physics.state import State
 
+BOX, CIRCLE, POLYGON = range(3)
+# What a term asks. Of those from CENTRE_X on a value lies between bounds; of the last, terms are asked.
+TOUCHES, CROSSES, CENTRE_X, CENTRE_Y, SPEED, DISTANCE, INSIDE, FASTEST, STRAIN, MOTION, BROKEN, UNSOUND = range(12)
+SETTLED, COUNTER, TIME, KEY, ALL, ANY, NOT = range(12, 19)
+# Of things, what no rule names.
+NOBODY = -1
 # A body that is no faster [m/s] has settled.
 STILL = 0.05
 # What is at rest for so long is as still as one for longer [ticks].
 _LONGEST_STILL = 1_000_000_000
+
+
+class Zones(NamedTuple):
+    """The zones of a level, by their order in the file."""
+
+    kind: Slots
+    shape: FloatRows  # [m] (z, 4): left, bottom, right, top; of a circle x, y, radius, 0
+    first: Slots  # (z + 1,): the first corner of each
+    corner: FloatRows  # [m] of all polygons
+
+
+class Terms(NamedTuple):
+    """What rules ask, each below what asks it in turn; those of TOUCHES come first."""
+
+    kind: Slots
+    first: Slots  # first, last: the slots of what it is about; of ALL, ANY and NOT the members
+    last: Slots
+    zone: Slots  # of INSIDE and CROSSES; of TOUCHES the first thing
+    other: Slots  # the second thing or NOBODY, slot, counter, key, first probe or first of `still_ticks`
+    low: Floats  # low, high: the bounds, both included
+    high: Floats
+    slot: Slots  # particles, or springs of STRAIN and BROKEN
+    member: Slots  # terms
+    value: Floats  # value, holds: as they were found last
+    holds: Flags
+
+
+class Things(NamedTuple):
+    """The number of the body, loose particle or piece of terrain that each belongs to, or NOBODY."""
+
+    of_particle: Slots
+    of_spring: Slots
+    of_terrain: Slots
+
+
+class Rules(NamedTuple):
+    """The rules of a level, in the order of the file."""
+
+    zones: Zones
+    terms: Terms
+    things: Things
+    term: Slots  # what each asks
+    delay: Slots  # [ticks] that it must have held before
+    once: Flags
+    probe: Slots  # particles whose way is followed
 
 
 @inner_kernel
@@ -64,6 +99,55 @@ def measure(rules: Rules, t: int, state: State, tick: int, rate: int) -> float:
     if kind == MOTION:
         return _motion(terms, t, state)
     return _of_centre(terms, t, state)
+
+
+@inner_kernel
+def depth_inside(zones: Zones, z: int, x: float, y: float) -> float:
+    """How far inside a zone a place is [m]; below 0: how far outside, of a box at least."""
+    kind, shape = zones.kind[z], zones.shape
+    if kind == BOX:
+        return min(min(x - shape[z, 0], shape[z, 2] - x), min(y - shape[z, 1], shape[z, 3] - y))
+    if kind == CIRCLE:
+        dx, dy = x - shape[z, 0], y - shape[z, 1]
+        return shape[z, 2] - math.sqrt(dx * dx + dy * dy)
+    corner, first, last = zones.corner, zones.first[z], zones.first[z + 1]
+    is_inside, nearest, before = False, math.inf, last - 1
+    for c in range(first, last):
+        ax, ay, bx, by = corner[before, 0], corner[before, 1], corner[c, 0], corner[c, 1]
+        if (ay > y) != (by > y) and x - ax < (bx - ax) * (y - ay) / (by - ay):
+            is_inside = not is_inside
+        nearest = min(nearest, squared_distance(x, y, ax, ay, bx, by))
+        before = c
+    return math.sqrt(nearest) if is_inside else -math.sqrt(nearest)
+
+
+@inner_kernel
+def may_be_inside(zones: Zones, z: int, x: float, y: float) -> bool:
+    """Whether a place lies in the box around a zone that is no circle."""
+    shape = zones.shape
+    return zones.kind[z] == CIRCLE or (shape[z, 0] <= x <= shape[z, 2] and shape[z, 1] <= y <= shape[z, 3])
+
+
+@inner_kernel
+def meets_zone(zones: Zones, z: int, ax: float, ay: float, bx: float, by: float) -> bool:
+    """Whether the way from a to b begins in a zone, ends in it, or passes through."""
+    if depth_inside(zones, z, ax, ay) >= 0.0 or depth_inside(zones, z, bx, by) >= 0.0:
+        return True
+    kind, shape, corner = zones.kind[z], zones.shape, zones.corner
+    if kind == CIRCLE:
+        return squared_distance(shape[z, 0], shape[z, 1], ax, ay, bx, by) <= shape[z, 2] * shape[z, 2]
+    if kind == BOX:
+        left, bottom, right, top = shape[z, 0], shape[z, 1], shape[z, 2], shape[z, 3]
+        # What crosses a box crosses one of its diagonals.
+        rises = segments_cross(ax, ay, bx, by, left, bottom, right, top)
+        return rises or segments_cross(ax, ay, bx, by, left, top, right, bottom)
+    first, last = zones.first[z], zones.first[z + 1]
+    before = last - 1
+    for c in range(first, last):
+        if segments_cross(ax, ay, bx, by, corner[before, 0], corner[before, 1], corner[c, 0], corner[c, 1]):
+            return True
+        before = c
+    return False
 
 
 @inner_kernel
