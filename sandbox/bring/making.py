@@ -33,7 +33,7 @@ from sandbox.level.kinds.body_def import FirmnessDef
 from sandbox.level.kinds.fitting import fitting_spacing
 from sandbox.level.kinds.jelly import JellyDef, PolygonShape
 from sandbox.level.kinds.polygon import is_simple, loops_touch
-from sandbox.physics.meshing.sampling import ROW
+from sandbox.physics.meshing.loops import ROW
 
 if TYPE_CHECKING:
     from shapely import Polygon

@@ -21,7 +21,7 @@ from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.analysis.stability import BOUND, constraint_count, effective_count
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import HIGHEST_COEFFICIENT, capped, of_body
-from sandbox.physics.keeping.forms import design_gravity, height_of
+from sandbox.physics.keeping.equipment import design_gravity, height_of
 from sandbox.physics.marks import LAW_HAND, LAW_HOOKE
 from sandbox.physics.softness.firmness import lowest_mode_of
 from sandbox.physics.solvers import SOLVERS

@@ -25,10 +25,9 @@ from sandbox.level.things.outlines import directed_loops, plain_lines
 from sandbox.physics.analysis.energy import reduced_masses
 from sandbox.physics.analysis.stability import BOUND, effective_count
 from sandbox.physics.arrays import Floats
-from sandbox.physics.collision.filter import NO_EDGE, SOLID_LEFT, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.constraints import AREA
 from sandbox.physics.equation import HIGHEST_COEFFICIENT
-from sandbox.physics.marks import LAW_HOOKE, TERRAIN_GROUP
+from sandbox.physics.marks import LAW_HOOKE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.softness.firmness import LARGEST_READ, lowest_mode_of
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World

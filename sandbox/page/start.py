@@ -24,19 +24,17 @@ from sandbox.level.format.limits import (
 from sandbox.level.plan.surfaces import DEFAULT_GROUP, TERRAIN_NAME, group_bits
 from sandbox.level.rules.action import ActionDef
 from sandbox.level.rules.hands import words_of
-from sandbox.physics.actuators import Actuators
 from sandbox.physics.arena import NO_ARENA
-from sandbox.physics.collision.filter import ALL_GROUPS, LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
-from sandbox.physics.commands import command, command_table, permission
+from sandbox.physics.commands import command, command_table
 from sandbox.physics.constraints import AREA
-from sandbox.physics.driving import Drives
+from sandbox.physics.driving import Actuators, Drives
 from sandbox.physics.jit.bundles import HEAD_WORDS, WORD
 from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.jit.making.platforms import WEB
 from sandbox.physics.joints.motors import DrivenWheels
 from sandbox.physics.keeping.arguments import FARTHEST
 from sandbox.physics.kits import joining, kit, removing
-from sandbox.physics.marks import GRAB_COUNT
+from sandbox.physics.marks import ALL_GROUPS, GRAB_COUNT, LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 from sandbox.physics.pipeline import block, collide, tick
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.settings import SOLVER_NAMES
@@ -160,7 +158,7 @@ def about(world: LevelWorld, words: int) -> dict[str, Any]:
         "kinds": {name: kind._asdict() for name, kind in command_table.KINDS.items()},
         "choices": command_table.CHOICES,
         "answers": command_table.ANSWERS,
-        "givers": {name: getattr(permission, name) for name in ("HAND", "RULE", "PROGRAM")},
+        "givers": {name: getattr(command, name) for name in ("HAND", "RULE", "PROGRAM")},
         "refusals": {"reasons": command.REASONS, "words": command_table.WORDS, "bad": command.BAD},
         "filled": {
             "doing": command.FORBIDDEN,
@@ -169,11 +167,11 @@ def about(world: LevelWorld, words: int) -> dict[str, Any]:
             "reach": command.BEYOND_REACH,
         },
         "denied": {
-            "size": permission.DENIED,
+            "size": command.DENIED,
             "reasons": {
-                permission.NOT_ALLOWED: command.FORBIDDEN,
-                permission.SPENT: command.EXHAUSTED,
-                permission.UNTOUCHED: command.UNTOUCHABLE,
+                command.NOT_ALLOWED: command.FORBIDDEN,
+                command.SPENT: command.EXHAUSTED,
+                command.UNTOUCHED: command.UNTOUCHABLE,
             },
         },
         "deeds": {name: words_of(name) for name in command_table.CODES},

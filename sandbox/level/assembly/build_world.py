@@ -18,7 +18,6 @@ from sandbox.level.plan.rules import add_rules
 from sandbox.level.plan.surfaces import surface_of, surfaces_of, terrain_of
 from sandbox.level.plan.water import hulls_of, water_of
 from sandbox.level.plan.welds import Slots
-from sandbox.physics.collision.filter import NO_EDGE
 from sandbox.physics.marks import NO_EDGE
 from sandbox.physics.state import ROLLING_RESISTANCE
 from sandbox.physics.world import World

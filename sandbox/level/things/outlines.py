@@ -10,8 +10,6 @@ from sandbox.level.format.look import PALETTE, BodyLook, ParticleLook, colour_of
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.things.names import ThingNames
 from sandbox.physics.arrays import Floats, Slots
-from sandbox.physics.collision.filter import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
-from sandbox.physics.geometry.polygon import signed_area
 from sandbox.physics.geometry.segment import signed_area
 from sandbox.physics.marks import LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
 

@@ -24,10 +24,8 @@ from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.direct.energy_bank import BY_MASS
 from sandbox.physics.state import State, state_of
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
-from sandbox.physics.water.displacers import FLOW_X, FLOW_Y, Water, lay_out_water
-from sandbox.physics.water.pools import BOTTOM, DENSITY, FLOW_X, FLOW_Y, LEFT, RIGHT, TOP
-from sandbox.physics.water.push import area_of, middle_of
-from sandbox.physics.water.wet_parts import PI, disc_depth, mean_depth
+from sandbox.physics.water.displacers import BOTTOM, DENSITY, FLOW_X, FLOW_Y, LEFT, RIGHT, TOP, Water, lay_out_water
+from sandbox.physics.water.push import PI, area_of, disc_depth, mean_depth, middle_of
 from sandbox.physics.world import World
 
 AnyState = TypeVar("AnyState", World, Snapshot, World | Snapshot)
