@@ -3,8 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.widgets.fonts import FONTS_HELD, SafeFont, font_file, plain_font
-from sandbox.app.widgets.text_runs import runs
+from sandbox.app.widgets.fonts import FONTS_HELD, SafeFont, font_file, plain_font, runs
 
 
 @pytest.fixture(autouse=True)

@@ -7,7 +7,7 @@ import pytest
 
 from sandbox.app.widgets.button import Button
 from sandbox.app.widgets.picker import WordPicker
-from sandbox.app.widgets.plate import Plate
+from sandbox.app.widgets.styles import Plate
 from sandbox.app.widgets.texts import Label, TextBlock, wrapped
 from sandbox.editor.items import items_of
 from tests.app.conftest import small_level

@@ -3,8 +3,7 @@
 import pygame
 import pytest
 
-from sandbox.app.panel.take_home_page import ALL, ENGINES, LANGUAGES, QUESTION, TARGETS
-from sandbox.app.widgets.code_block import CodeBlock, _broken
+from sandbox.app.panel.take_home_page import ALL, ENGINES, LANGUAGES, QUESTION, TARGETS, CodeBlock, _broken
 from sandbox.app.widgets.fonts import code_font
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.rows import RowList

@@ -7,11 +7,10 @@ from sandbox.app.base.display import Display
 from sandbox.app.draw.colours import TEXT, Tone
 from sandbox.app.edit.bar import LEFT, RIGHT
 from sandbox.app.play import time_bar
-from sandbox.app.widgets import plate as plates
-from sandbox.app.widgets.icons import painted_icon
-from sandbox.app.widgets.plate import box
+from sandbox.app.widgets import styles as plates
+from sandbox.app.widgets.button import painted_icon
 from sandbox.app.widgets.scroll import ScrollArea
-from sandbox.app.widgets.styles import BoxLook
+from sandbox.app.widgets.styles import BoxLook, box
 from sandbox.app.widgets.ui import Ui
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.level.format.shipped import shipped_folder

@@ -8,8 +8,7 @@ import pygame
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.contracts.application import Editing
 from sandbox.app.play.toolbar import BAR_HEIGHT, BUTTON, GAP, ICON, ROOM_FOR_NAME
-from sandbox.app.widgets.bar_title import BarTitle
-from sandbox.app.widgets.button import Button
+from sandbox.app.widgets.button import BarTitle, Button
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget
 from sandbox.editor.tools.palette import TOOL_GROUPS, TOOLS

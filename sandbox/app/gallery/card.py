@@ -6,7 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, BACKGROUND, DANGER, LINE, MUTED, SURFACE, TEXT, Colour
-from sandbox.app.widgets.icons import painted_stars
+from sandbox.app.widgets.button import painted_stars
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Pressable

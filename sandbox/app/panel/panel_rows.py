@@ -5,8 +5,8 @@ from typing import Any
 
 import pygame
 
+from sandbox.app.widgets.boxes import HEADING_SIZE, FoldHeading
 from sandbox.app.widgets.field import Field
-from sandbox.app.widgets.fold import TEXT_SIZE, FoldHeading
 from sandbox.app.widgets.ui import Ui
 
 # Sizes in layout units.
@@ -60,7 +60,7 @@ class PanelRows:
 
     def section(self, title: str, is_open: bool, toggle: Callable[[], None], build: Callable[[], None]) -> None:
         """A heading, and what `build` makes under it, which is seen where the section is open."""
-        width = self.ui.font(TEXT_SIZE, True).size(title.upper())[0] / self.ui.scale + HEADING_ROOM
+        width = self.ui.font(HEADING_SIZE, True).size(title.upper())[0] / self.ui.scale + HEADING_ROOM
         FoldHeading(self.ui, self.row(18, 8, width=width), title, not is_open, toggle, self.back)
         before, y = len(self.back.children), self.y
         build()

@@ -8,7 +8,7 @@ from sandbox.app.draw.colours import TEXT
 from sandbox.app.panel.panel_rows import GAP, INSIDE, MARGIN, ROW, PanelRows
 from sandbox.app.panel.readings import number
 from sandbox.app.run.playback import Playback
-from sandbox.app.widgets.dial import Dial, Vector
+from sandbox.app.widgets.slider import Dial, Vector
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.session.commands import Command, SetAir, SetGravity
 from sandbox.tools.push_wind import LEAST_DRAG

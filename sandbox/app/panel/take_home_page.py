@@ -6,17 +6,21 @@ from typing import Any
 import pygame
 
 from sandbox.app.base.desktop import copy_text
-from sandbox.app.draw.colours import MUTED, TEXT
-from sandbox.app.widgets.code_block import CodeBlock, code_height
+from sandbox.app.draw.colours import FIELD, LINE, MUTED, TEXT
 from sandbox.app.widgets.dialogs import AROUND, MARGIN, Dialog
+from sandbox.app.widgets.fonts import code_font
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
-from sandbox.app.widgets.texts import TextBlock, text_height
+from sandbox.app.widgets.styles import BoxLook, box
+from sandbox.app.widgets.texts import TextBlock, line_height, text_height
 from sandbox.app.widgets.ui import Ui
+from sandbox.app.widgets.widget import Widget
 from sandbox.export.engines import NoSuchBody, body_names
 from sandbox.export.take_home import TakeHome, as_text, pasted, take_home
 from sandbox.level.assembly.level_world import LevelWorld
 
+# Sizes in layout units, and how far what does not fit into a line is moved in on the next [letters].
+CODE_SIZE, INSET, MOVED_IN, TAB = 12.0, 12.0, 4, 4
 # What it can be for, by what a person calls it.
 ENGINES = {
     "Box2D": "box2d", "Unity 2D": "unity", "Godot": "godot", "Rapier": "rapier", "pymunk": "pymunk",
@@ -152,3 +156,43 @@ def _texts(take: TakeHome, to: str) -> tuple[str, str]:
     before, _, listed = about.partition("\n----")
     printed = listed.partition("\nWhat it prints")[2]
     return pasted(take, to), f"{before}\nWhat it prints{printed}" if printed else before
+
+
+class CodeBlock(Widget):
+    """The lines of a text on a sheet; a line that is too long goes on below, moved in."""
+
+    def __init__(self, ui: Ui, rect: pygame.Rect, text: str, container: Any = None) -> None:
+        super().__init__(ui, rect, container)
+        self.text = text
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """The sheet and the lines."""
+        ui, inset = self.ui, self.ui.px(INSET)
+        surface = box(size, BoxLook(FIELD, LINE, TEXT), ui.px(6), 1).copy()
+        font = code_font(ui.px(CODE_SIZE))
+        for number, line in enumerate(_lines(ui, self.text, size[0])):
+            surface.blit(font.render(line, True, TEXT), (inset, inset + number * line_height(font)))
+        return surface
+
+
+def code_height(ui: Ui, text: str, wide: int) -> int:
+    """How high a block of that text is whose sheet is so wide [pixels]."""
+    return len(_lines(ui, text, wide)) * line_height(code_font(ui.px(CODE_SIZE))) + 2 * ui.px(INSET)
+
+
+def _lines(ui: Any, text: str, wide: int) -> list[str]:
+    columns = max(int((wide - 2 * ui.px(INSET)) / code_font(ui.px(CODE_SIZE)).size("0")[0]), 2 * MOVED_IN)
+    return [line for whole in text.expandtabs(TAB).splitlines() for line in _broken(whole, columns)]
+
+
+def _broken(line: str, columns: int) -> list[str]:
+    """A line in lines of at most so many letters, broken between words where that goes."""
+    indent = len(line) - len(line.lstrip())
+    inner = min(indent + MOVED_IN, columns // 2)
+    made = []
+    while len(line) > columns:
+        end = line.rfind(" ", inner + 1, columns + 1)
+        end = columns if end < 0 else end
+        made.append(line[:end])
+        line = " " * inner + line[end:].lstrip()
+    return [*made, line]

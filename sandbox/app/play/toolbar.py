@@ -8,7 +8,7 @@ from typing import Any
 from sandbox.app.base.shortcuts import tip_of
 from sandbox.app.draw.colours import ACCENT, DANGER, DISABLED, Colour
 from sandbox.app.play.speeds import words_of
-from sandbox.app.widgets.bar_title import BarTitle
+from sandbox.app.widgets.button import BarTitle
 from sandbox.app.widgets.dialogs import choose
 from sandbox.app.widgets.ui import Ui
 

@@ -11,7 +11,7 @@ from sandbox.app.film.film import Film
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.share.sharing import LIVELY, SHORTEST_FILM, SIZES, Sharing
 from sandbox.app.widgets.dialogs import MARGIN, Dialog
-from sandbox.app.widgets.range_slider import RangeSlider
+from sandbox.app.widgets.slider import RangeSlider
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget

@@ -1,4 +1,4 @@
-"""Boxes: what a form has beside lines to type into: a box to tick, one that takes a key, labels that are dragged."""
+"""What a form has beside lines to type into: a box to tick, one that takes a key, labels that are dragged, headings."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,8 +6,7 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import ACCENT, FIELD, LINE, MUTED, TEXT, mixed
-from sandbox.app.widgets.plate import box
-from sandbox.app.widgets.styles import BoxLook
+from sandbox.app.widgets.styles import BoxLook, box
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Pixel, Pressable, Widget
@@ -20,6 +19,8 @@ KEYS = {ord(letter): letter for letter in "abcdefghijklmnopqrstuvwxyz0123456789"
 NO_KEY = "none"
 # A label is dragged so far for each step [layout units].
 SCRUB_STEP = 5.0
+# Sizes in layout units.
+HEADING_SIZE, MARK = 11.0, 3.5
 
 
 class CheckBox(Pressable):
@@ -172,3 +173,34 @@ class Scrub(Widget):
         """End the drag."""
         self.repaint()
         self._done()
+
+
+class FoldHeading(Pressable):
+    """A heading; toggle() is called by a click or key."""
+
+    is_lit = True
+
+    def __init__(
+        self, ui: Ui, rect: pygame.Rect, text: str, is_folded: bool, toggle: Callable[[], None], container: Any = None
+    ) -> None:
+        super().__init__(ui, rect, container)
+        self.text, self.is_folded, self._toggle = text, is_folded, toggle
+
+    def press(self) -> None:
+        """Fold the section, or unfold it."""
+        self._toggle()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """A mark that points down where it is open, to the right where it is folded, and the words."""
+        surface = pygame.Surface(size, pygame.SRCALPHA)
+        colour = TEXT if self.hovered else MUTED
+        k, middle = self.ui.px(MARK), size[1] / 2
+        x = self.ui.px(1) + k
+        if self.is_folded:
+            corners = [(x - k / 2, middle - k), (x + k / 2, middle), (x - k / 2, middle + k)]
+        else:
+            corners = [(x - k, middle - k / 2), (x, middle + k / 2), (x + k, middle - k / 2)]
+        pygame.draw.lines(surface, colour, False, corners, max(1, self.ui.px(1.5)))
+        words = self.ui.font(HEADING_SIZE, True).render(self.text.upper(), True, colour)
+        surface.blit(words, words.get_rect(midleft=(x + k + self.ui.px(6), middle)))
+        return surface

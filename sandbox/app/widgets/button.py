@@ -1,22 +1,31 @@
-"""Button: a button that shows words or a picture; and Choice: a row of them of which one is chosen."""
+"""Buttons that show words or a picture, rows of which one is chosen, the icons on them, and the title in a bar."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import pygame
 
-from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour
-from sandbox.app.widgets.icons import painted_icon
-from sandbox.app.widgets.layout import WindowLayout
-from sandbox.app.widgets.plate import box
-from sandbox.app.widgets.styles import BUTTONS, State
-from sandbox.app.widgets.texts import Written, shortened
-from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget
+from sandbox.app.draw.colours import ACCENT, DISABLED, TEXT, Colour, tone
+from sandbox.app.widgets.fonts import plain_font
+from sandbox.app.widgets.styles import BUTTONS, State, box
+from sandbox.app.widgets.texts import Written, line_height, shortened, wrapped
+from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget, WindowLayout
+from sandbox.level.format.shipped import shipped_folder
+from sandbox.session.outcome import MOST_STARS
 
 # The name of an icon, or a picture with straight alpha.
 Icon = str | pygame.Surface
 # Middle of an icon with a text behind it [layout units].
 ICON_MIDDLE = 16.0
+# Icons that are kept, in their sizes and colours; most have 2 kB.
+MOST_ICONS = 500
+# Stars that are won; from one star to the next, as a part of a star.
+GOLD = tone("ffc94d", "e09a00")
+STEP = 1.08
+# Size of letters on one line, and on two [layout units].
+LARGE, SMALL = 15.0, 12.0
 
 
 class Button(Written):
@@ -116,3 +125,73 @@ class Choice:
         self.chosen = chosen
         for value, button in self.buttons.items():
             button.is_selected = value == chosen
+
+
+class BarTitle(Widget):
+    """A name; lines: what is seen of it; what is not is in its tooltip."""
+
+    def __init__(self, ui: WindowLayout, rect: pygame.Rect, container: Any = None) -> None:
+        super().__init__(ui, rect, container)
+        self.text, self.lines = "", [""]
+        self._size = LARGE
+
+    def show_text(self, text: str) -> None:
+        """Show a name."""
+        if text == self.text:
+            return
+        self.text = text
+        widest = self.rect.width
+        self._size = LARGE if self.ui.font(LARGE, True).size(text)[0] <= widest else SMALL
+        font = self.ui.font(self._size, True)
+        self.lines = wrapped(text, font, widest, 1 if self._size == LARGE else 2)
+        fits = max(font.size(line)[0] for line in self.lines) <= widest
+        is_whole = fits and " ".join(self.lines) == " ".join(text.split())
+        self.tip = "" if is_whole else text
+        self.repaint()
+
+    def paint(self, size: tuple[int, int]) -> pygame.Surface:
+        """Paint the lines of the name, in the middle of the height."""
+        surface = pygame.Surface(size, pygame.SRCALPHA)
+        font = self.ui.font(self._size, True)
+        high = line_height(font)
+        y = (size[1] - high * len(self.lines)) // 2
+        for line in self.lines:
+            surface.blit(font.render(line, True, TEXT), (0, y))
+            y += high
+        return surface
+
+
+def painted_icon(name: str, size: int, colour: Colour) -> pygame.Surface:
+    """An icon of size [pixels] with straight alpha, by the name of its file; without a file, its first letter.
+
+    Who asks for the same one again gets the same picture.
+    """
+    return _painted(name, size, tuple(colour))
+
+
+@lru_cache(MOST_ICONS)
+def _painted(name: str, size: int, colour: tuple[int, ...]) -> pygame.Surface:
+    file = shipped_folder("assets") / "icons" / f"{name}.svg"
+    flat = pygame.Surface((size, size), pygame.SRCALPHA)
+    if not file.is_file():
+        letter = plain_font(round(0.8 * size), True).render(name[:1].upper(), True, colour)
+        flat.blit(letter, letter.get_rect(center=flat.get_rect().center))
+        return flat
+    # Of the file only its alpha counts.
+    shape = pygame.image.load_sized_svg(file, (size, size))
+    flat.fill((*colour, 0))
+    alpha = pygame.surfarray.pixels_alpha(flat)
+    alpha[:] = pygame.surfarray.array_alpha(shape)
+    del alpha
+    return flat
+
+
+def painted_stars(won: int, size: int, grown: float = 1.0) -> pygame.Surface:
+    """A row of stars of size [pixels] with straight alpha: those won in gold, the last of them so large (0..1)."""
+    row = pygame.Surface((round(size * (1 + STEP * (MOST_STARS - 1))), size), pygame.SRCALPHA)
+    for number in range(MOST_STARS):
+        shape = painted_icon("star", size, GOLD if number < won else DISABLED)
+        if number == won - 1 and grown != 1.0:
+            shape = pygame.transform.smoothscale_by(shape, grown)
+        row.blit(shape, shape.get_rect(center=(round(size * (0.5 + STEP * number)), size // 2)))
+    return row

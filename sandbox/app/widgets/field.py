@@ -7,10 +7,8 @@ import pygame
 
 from sandbox.app.base.desktop import copied_text, copy_text
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT
-from sandbox.app.widgets.layout import WindowLayout
-from sandbox.app.widgets.plate import box
-from sandbox.app.widgets.styles import BRIGHT, FIELD_LOOK, FOCUSED_FIELD, HOVERED_FIELD, SELECTION
-from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget
+from sandbox.app.widgets.styles import BRIGHT, FIELD_LOOK, FOCUSED_FIELD, HOVERED_FIELD, SELECTION, box
+from sandbox.app.widgets.widget import ENTER_KEYS, Pixel, Widget, WindowLayout
 
 # What stands in the place of a number where there is none, and where things differ in it.
 DASH, MIXED = "\u2013", "mixed"

@@ -1,15 +1,18 @@
-"""Fonts: the one that everything is written in, and others for letters that it does not have."""
+"""Fonts: the one that everything is written in, and others, of the system too, for letters that it does not have.
+
+Of Unicode Standard Annex 9, in a line that begins at the left: letters of right-to-left scripts with what lies between
+them are one stretch, whose pieces are seen last to first; numbers within it stay as they are.
+"""
 
 import functools
 import unicodedata
+from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pygame
 
-from sandbox.app.widgets.other_fonts import Face, face_with
-from sandbox.app.widgets.text_runs import runs
 from sandbox.level.format.shipped import shipped_folder
 
 # The font in assets/fonts with its licence.
@@ -24,11 +27,64 @@ FONTS_HELD = 24
 _TURNING = dict.fromkeys([0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A)])
 # Kinds of characters that are drawn with the letter before.
 _JOINED = ("Mn", "Mc", "Me", "Cf")
+_RIGHT_TO_LEFT = ("R", "AL")
+_NUMBERS = ("EN", "AN")
+_BROUGHT = {False: "NotoSans-Regular.ttf", True: "NotoSans-Bold.ttf"}
+# Families of the systems that have most letters of their scripts, plain ones first; then whatever there is.
+_PREFERRED = (
+    "notosans", "dejavusans", "segoeui", "arial", "helvetica", "hiragino", "yugothic", "meiryo", "microsoft",
+    "pingfang", "malgun", "applesdgothic", "nirmala", "leelawadee", "droidsans", "freesans", "sans", "gothic",
+)  # fmt: skip
+# Letters from here on are pictures, if they are symbols.
+_PICTURES = 0x1F000
+# Height of a line, in sizes of the font, to which pictures are scaled that a font has in one size alone.
+_LINE = 1.3
+_FACES_HELD = 32
+# Scripts whose letters change with their neighbours, by the first word of their letters' names: codes of ISO 15924.
+_SCRIPTS = {
+    "ARABIC": "Arab", "HEBREW": "Hebr", "SYRIAC": "Syrc", "THAANA": "Thaa", "NKO": "Nkoo", "DEVANAGARI": "Deva",
+    "BENGALI": "Beng", "GURMUKHI": "Guru", "GUJARATI": "Gujr", "ORIYA": "Orya", "TAMIL": "Taml", "TELUGU": "Telu",
+    "KANNADA": "Knda", "MALAYALAM": "Mlym", "SINHALA": "Sinh", "THAI": "Thai", "LAO": "Laoo", "TIBETAN": "Tibt",
+    "MYANMAR": "Mymr", "KHMER": "Khmr", "MONGOLIAN": "Mong",
+}  # fmt: skip
+_FOUND: list[str] = []
+_MISSED: set[tuple[int, bool]] = set()
 
 
 def font_file(bold: bool) -> Path:
     """The file of the font."""
     return shipped_folder("assets") / "fonts" / _FILES[bold]
+
+
+class Face(NamedTuple):
+    """A font and by how much what it draws is scaled."""
+
+    font: pygame.font.Font
+    share: float
+
+    @property
+    def ascent(self) -> int:
+        """Height above the base line [pixels]."""
+        return round(self.share * pygame.font.Font.get_ascent(self.font))
+
+    def render(self, text: str, antialias: bool, colour: Any) -> pygame.Surface:
+        """The picture of a text that the font has."""
+        picture = pygame.font.Font.render(self.font, text, antialias, colour)
+        if self.share == 1.0:
+            return picture
+        return pygame.transform.smoothscale(picture, self.size(text))
+
+    def size(self, text: str) -> tuple[int, int]:
+        """Width and height of such a text [pixels]."""
+        width, height = pygame.font.Font.size(self.font, text)
+        return round(self.share * width), round(self.share * height)
+
+    def metrics(self, text: str) -> list[Any]:
+        """Extents of each letter."""
+        found = pygame.font.Font.metrics(self.font, text)
+        if self.share == 1.0:
+            return found
+        return [each and tuple(round(self.share * part) for part in each) for each in found]
 
 
 class SafeFont(pygame.font.Font):
@@ -108,6 +164,25 @@ class SafeFont(pygame.font.Font):
         return faces
 
 
+@functools.lru_cache(FONTS_HELD)
+def plain_font(size: int, bold: bool) -> SafeFont:
+    """The font in a size of pixels, for what is painted."""
+    return SafeFont(str(font_file(bold)), size)
+
+
+@functools.lru_cache(FONTS_HELD)
+def code_font(size: int) -> SafeFont:
+    """The font for code in a size of pixels."""
+    return SafeFont(str(shipped_folder("assets") / "fonts" / _MONO), size)
+
+
+class TextRun(NamedTuple):
+    """A piece of a text; turned: its letters go from right to left."""
+
+    text: str
+    turned: bool
+
+
 def _side_by_side(
     pieces: list[tuple[str, Face]], antialias: bool = True, colour: Any = (255, 255, 255)
 ) -> pygame.Surface:
@@ -123,21 +198,111 @@ def _side_by_side(
     return whole
 
 
-@functools.lru_cache(FONTS_HELD)
-def plain_font(size: int, bold: bool) -> SafeFont:
-    """The font in a size of pixels, for what is painted."""
-    return SafeFont(str(font_file(bold)), size)
-
-
-@functools.lru_cache(FONTS_HELD)
-def code_font(size: int) -> SafeFont:
-    """The font for code in a size of pixels."""
-    return SafeFont(str(shipped_folder("assets") / "fonts" / _MONO), size)
-
-
 def _clean(text: Any) -> Any:
     """A text without halves of surrogate pairs, null characters, and marks that turn the order of what is shown."""
     if not isinstance(text, str) or text.isprintable():
         return text
     text = text.translate(_TURNING)
     return text.encode("utf-8", "replace").decode().replace("\0", "?")
+
+
+def runs(text: str) -> list[TextRun]:
+    """The runs of a text without line breaks."""
+    kinds = [unicodedata.bidirectional(char) for char in text]
+    turned = [k for k, kind in enumerate(kinds) if kind in _RIGHT_TO_LEFT]
+    if not turned:
+        return [TextRun(text, False)]
+    result: list[TextRun] = []
+    done = 0
+    for first, last in _stretches(kinds, turned):
+        if first > done:
+            result.append(TextRun(text[done:first], False))
+        pieces = groupby(range(first, last), lambda k: kinds[k] not in _NUMBERS)
+        found = [TextRun("".join(text[k] for k in places), is_turned) for is_turned, places in pieces]
+        result += reversed(found)
+        done = last
+    if done < len(text):
+        result.append(TextRun(text[done:], False))
+    return result
+
+
+def _stretches(kinds: list[str], turned: list[int]) -> list[tuple[int, int]]:
+    # From a right-to-left letter to the last before one that goes from left to right, with the marks upon that.
+    found = [(turned[0], turned[0] + 1)]
+    for k in turned[1:]:
+        first, last = found[-1]
+        if "L" in kinds[last:k]:
+            found.append((k, k + 1))
+        else:
+            found[-1] = first, k + 1
+    return [(first, _with_marks(kinds, last)) for first, last in found]
+
+
+def _with_marks(kinds: list[str], last: int) -> int:
+    while last < len(kinds) and kinds[last] == "NSM":
+        last += 1
+    return last
+
+
+def face_with(letter: str, size: int, bold: bool, turned: bool) -> Face:
+    """A font of a size [pixels] that has a letter; where none has, one that draws a box in its place.
+
+    turned: it draws from right to left.
+    """
+    script = _SCRIPTS.get(unicodedata.name(letter, "").partition(" ")[0], "")
+    return _face(_file_with(letter, bold), size, bold, turned, script)
+
+
+@functools.lru_cache(_FACES_HELD)
+def _face(file: str, size: int, bold: bool, turned: bool, script: str) -> Face:
+    font = _open(file, size, bold)
+    if script:
+        font.set_script(script)
+    if turned:
+        font.set_direction(pygame.DIRECTION_RTL)
+    height = font.get_height()
+    is_scaled = bool(file) and pygame.font.Font(file, 2 * size).get_height() == height
+    return Face(font, _LINE * size / height if is_scaled else 1.0)
+
+
+def _open(file: str, size: int, bold: bool) -> pygame.font.Font:
+    return pygame.font.Font(file or str(shipped_folder("assets") / "fonts" / _BROUGHT[bold]), size)
+
+
+@functools.lru_cache(4_096)
+def _file_with(letter: str, bold: bool) -> str:
+    # "": the font that lies beside ours. Of what no font has, its neighbours are not looked for.
+    if _has(_open("", 16, bold), letter):
+        return ""
+    block = ord(letter) >> 7
+    if (block, bold) in _MISSED:
+        return ""
+    for file in _files_for(letter, bold):
+        try:
+            has = _has(pygame.font.Font(file, 16), letter)
+        except (OSError, pygame.error):
+            continue
+        if has:
+            _FOUND.insert(0, file)
+            return file
+    _MISSED.add((block, bold))
+    return ""
+
+
+def _has(font: pygame.font.Font, letter: str) -> bool:
+    return font.metrics(letter) != font.metrics(_NONE)
+
+
+def _files_for(letter: str, bold: bool) -> Iterator[str]:
+    # Those that had other letters first, but for pictures.
+    pictured = ord(letter) >= _PICTURES and unicodedata.category(letter) == "So"
+    if not pictured:
+        yield from dict.fromkeys(_FOUND)
+    for name in sorted(pygame.font.get_fonts(), key=lambda name: (("emoji" in name) != pictured, _rank(name), name)):
+        file = pygame.font.match_font(name, bold)
+        if file:
+            yield str(file)
+
+
+def _rank(name: str) -> int:
+    return next((k for k, family in enumerate(_PREFERRED) if name.startswith(family)), len(_PREFERRED))

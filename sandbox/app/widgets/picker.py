@@ -6,9 +6,8 @@ from typing import Any
 import pygame
 
 from sandbox.app.draw.colours import FIELD, LINE, MENU, MUTED, TEXT, mixed
-from sandbox.app.widgets.plate import box
 from sandbox.app.widgets.rows import LINE_HEIGHT, PADDING, SWATCH, TEXT_SIZE, Row, RowList
-from sandbox.app.widgets.styles import BoxLook
+from sandbox.app.widgets.styles import BoxLook, box
 from sandbox.app.widgets.texts import wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Pressable

@@ -3,9 +3,8 @@
 import pygame
 
 from sandbox.app.draw.colours import MUTED, Colour
-from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.styles import LABELS
-from sandbox.app.widgets.widget import Widget
+from sandbox.app.widgets.widget import Widget, WindowLayout
 
 
 def wrapped(text: str, font: pygame.font.Font, widest: int, most_lines: int) -> list[str]:

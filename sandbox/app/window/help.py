@@ -10,10 +10,9 @@ import pygame
 from sandbox.app.base.shortcuts import Mode, Shortcut, shortcuts
 from sandbox.app.draw.colours import ACCENT, MUTED, TEXT
 from sandbox.app.widgets.dialogs import AROUND, MARGIN, Dialog
-from sandbox.app.widgets.layout import WindowLayout
 from sandbox.app.widgets.scroll import BAR_WIDTH, ScrollArea
 from sandbox.app.widgets.ui import Ui
-from sandbox.app.widgets.widget import Widget
+from sandbox.app.widgets.widget import Widget, WindowLayout
 
 # Sizes in layout units.
 COLUMN_WIDTH = 500.0

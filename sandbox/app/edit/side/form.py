@@ -15,10 +15,9 @@ from sandbox.app.draw.colours import MUTED
 from sandbox.app.draw.material_colours import material_colours
 from sandbox.app.draw.themes import rgb_of
 from sandbox.app.play.drive_keys import code_of
-from sandbox.app.widgets.boxes import CheckBox, KeyBox, Scrub
+from sandbox.app.widgets.boxes import CheckBox, FoldHeading, KeyBox, Scrub
 from sandbox.app.widgets.dialogs import ask, choose
 from sandbox.app.widgets.field import Field
-from sandbox.app.widgets.fold import FoldHeading
 from sandbox.app.widgets.picker import Picker
 from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.scroll import ScrollArea

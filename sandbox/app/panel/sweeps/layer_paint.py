@@ -8,7 +8,7 @@ import pygame
 from sandbox.app.base.coefficient_scale import CoefficientScale
 from sandbox.app.draw.colours import DECADE, MUTED, TEXT
 from sandbox.app.panel.sweeps.sweep_layer import BLOWN, SweepLayer
-from sandbox.app.widgets.layout import WindowLayout
+from sandbox.app.widgets.widget import WindowLayout
 from sandbox.physics.analysis.stability import CoefficientZones
 
 # Limits are seen on every colour: a light line in a dark one.

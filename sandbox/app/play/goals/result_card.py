@@ -7,10 +7,9 @@ import pygame
 
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, TEXT, Colour, mixed
 from sandbox.app.play.goals.score import told_time
+from sandbox.app.widgets.button import painted_icon, painted_stars
 from sandbox.app.widgets.dialogs import Choice
-from sandbox.app.widgets.icons import painted_icon, painted_stars
-from sandbox.app.widgets.plate import box
-from sandbox.app.widgets.styles import PANELS, BoxLook
+from sandbox.app.widgets.styles import PANELS, BoxLook, box
 from sandbox.app.widgets.texts import line_height, wrapped
 from sandbox.app.widgets.ui import Ui
 from sandbox.app.widgets.widget import Widget

@@ -7,7 +7,7 @@ import pygame
 from sandbox.app.base.recent_pictures import RecentPictures
 from sandbox.app.draw.colours import LINE, MUTED, NOTICE, TEXT, shown_theme
 from sandbox.app.play.goals.score import Chip
-from sandbox.app.widgets.icons import painted_icon, painted_stars
+from sandbox.app.widgets.button import painted_icon, painted_stars
 from sandbox.app.widgets.texts import line_height, shortened, wrapped
 from sandbox.app.widgets.ui import Ui
 
