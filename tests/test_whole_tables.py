@@ -143,8 +143,9 @@ EXCEPTIONS = {
     "sandbox.app.draw.things.members._PLAIN", "sandbox.app.draw.things.soft.shape_of: look.skin",
     "sandbox.app.draw.things.strands.PERIOD", "sandbox.app.draw.things.strands._LINES",
     # A field of text, or with a value in it.
-    "sandbox.app.edit.side.form._add: about.kind", "sandbox.app.edit.side.form._show_value: each.about.kind",
-    "sandbox.app.edit.side.form._rows: about.kind", "sandbox.editor.panel.properties._made: about.kind",
+    "sandbox.app.widgets.property_widgets._make: about.kind",
+    "sandbox.app.widgets.property_widgets._show_value: each.about.kind",
+    "sandbox.app.widgets.property_widgets._rows: about.kind", "sandbox.editor.panel.properties._made: about.kind",
     "sandbox.editor.panel.property._text: about.kind", "sandbox.editor.range_trial._numbers: about.kind",
     # Places of what commands have, -1 where they have none; what may be amiss with some alone.
     *(f"sandbox.physics.commands.command.{name}: kind" for name in (

@@ -4,7 +4,7 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.app.edit.side.form import OTHER_COLOUR
+from sandbox.app.widgets.property_widgets import OTHER_COLOUR
 from sandbox.editor.items import Item
 from sandbox.level.format.look import BALLS, LINES, PALETTE, SKINS
 from tests.app.conftest import small_level

@@ -52,11 +52,11 @@ def test_materials_are_chosen_from_a_menu_and_their_fields_have_the_whole_page(d
     driver.key(pygame.K_DOWN)
     driver.key(pygame.K_RETURN)
     assert page.chosen == page.list.shown.text == "rubber"
-    scroll_to(driver, page.area, page.fields["damping"])
-    assert sum(in_sight(page.area, field) for field in page.fields.values()) >= 2
-    driver.fill(page.fields["damping"], "0.6")
+    scroll_to(driver, page.area, page.form.fields["damping"][0])
+    assert sum(in_sight(page.area, field) for (field, *_) in page.form.fields.values()) >= 2
+    driver.fill(page.form.fields["damping"][0], "0.6")
     assert driver.editor.document.level.materials["rubber"].damping == 0.6
-    scroll_to(driver, page.area, list(page.fields.values())[-1])
+    scroll_to(driver, page.area, list(page.form.fields.values())[-1][0])
 
 
 def test_checks_show_the_chosen_one_and_what_came_of_it(driver):

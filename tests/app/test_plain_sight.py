@@ -105,8 +105,8 @@ def test_looks_of_materials_and_of_the_level_are_set_by_menus(edit):
     page = driver.editor.side.page
     page._choose([row.text for row in page.list.rows].index("wood"))
     driver.frames(2)
-    assert page.look.properties["look.line"].value == "wood"
-    page.look._set("look.skin", "rubber")
+    assert page.form.properties["look.line"].value == "wood"
+    page.form._set("look.skin", "rubber")
     driver.frames(2)
     assert driver.editor.document.level.materials["wood"].look.skin == "rubber"
     driver.editor.side.choose("level")

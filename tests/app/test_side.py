@@ -436,7 +436,7 @@ def test_the_page_stays_when_the_window_is_laid_out_anew(driver):
 def test_a_drag_of_a_slider_is_one_step(driver):
     page = open_tab(driver, "materials")
     assert page.chosen == "steel"
-    slider = page.sliders["stiffness"]
+    slider = page.form.sliders["stiffness"]
     driver.press((slider.pixel_of(0.3), slider.rect.centery))
     for value in (0.1, 0.03, 0.01):
         driver.move((slider.pixel_of(value), slider.rect.centery))
@@ -449,19 +449,19 @@ def test_a_drag_of_a_slider_is_one_step(driver):
     driver.key(pygame.K_z, pygame.KMOD_CTRL)
     driver.key(pygame.K_z, pygame.KMOD_CTRL)
     assert level(driver).materials["steel"].stiffness == 0.3
-    assert page.fields["stiffness"].text == "0.3"
+    assert page.form.fields["stiffness"][0].text == "0.3"
 
 
 def test_frequency_and_damping_ratio_can_be_typed(driver):
     page = open_tab(driver, "materials")
-    driver.fill(page.fields["ratio"], "1")
-    driver.fill(page.fields["frequency"], "2")
-    assert page.fields["frequency"].typed == "2"
-    assert float(page.fields["ratio"].typed) == pytest.approx(1.0, abs=1e-3)
+    driver.fill(page.form.fields["ratio"][0], "1")
+    driver.fill(page.form.fields["frequency"][0], "2")
+    assert page.form.fields["frequency"][0].typed == "2"
+    assert float(page.form.fields["ratio"][0].typed) == pytest.approx(1.0, abs=1e-3)
     before = level(driver).materials["steel"]
     for wrong in ("-1", "fast"):
-        driver.fill(page.fields["frequency"], wrong)
-        assert page.fields["frequency"].typed == "2"
+        driver.fill(page.form.fields["frequency"][0], wrong)
+        assert page.form.fields["frequency"][0].typed == "2"
     assert level(driver).materials["steel"] == before and len(driver.notices) >= 2
 
 
@@ -471,8 +471,8 @@ def test_a_material_is_added_named_given_another_law_assigned_and_kept_while_use
     driver.type("cord")
     driver.key(pygame.K_RETURN)
     assert list(level(driver).materials) == ["steel", "rubber", "cord"] and page.chosen == "cord"
-    press(driver, page.law.buttons["hooke"])
-    driver.fill(page.fields["k"], "750")
+    press(driver, page.form.choices["law"].buttons["hooke"])
+    driver.fill(page.form.fields["k"][0], "750")
     assert level(driver).materials["cord"].k == 750.0
     choose(driver, ROPE)
     press(driver, page.buttons["Assign to selection"])
@@ -492,8 +492,8 @@ def test_a_material_is_added_named_given_another_law_assigned_and_kept_while_use
 def test_the_material_that_needs_no_definition_can_be_changed_and_not_deleted(driver):
     page = open_tab(driver, "materials")
     click_row(driver, page.list, 0)
-    assert page.chosen == "default" and "name" not in page.fields
-    driver.fill(page.fields["damping"], "0.4")
+    assert page.chosen == "default" and "name" not in page.form.fields
+    driver.fill(page.form.fields["damping"][0], "0.4")
     assert level(driver).materials["default"].damping == 0.4
     assert not page.buttons["Delete"].is_enabled
 
@@ -646,10 +646,8 @@ def test_many_tags_are_not_lost_by_leaving_their_field(edit):
 @given(st.sampled_from(["properties", "materials", "level", "checks"]), st.integers(0, 40), TYPED)
 def test_no_text_whatever_breaks_a_field(driver, tab, number, text):
     choose(driver, ROPE)
-    page = open_tab(driver, tab)
-    fields = (
-        page.fields.values() if tab == "materials" else [each for pair in form(driver).fields.values() for each in pair]
-    )
+    open_tab(driver, tab)
+    fields = [each for pair in form(driver).fields.values() for each in pair]
     field = [*fields][number % len(fields)]
     field.typed = text
     field.finish()

@@ -11,7 +11,8 @@ from sandbox.editor.document import Document, EditError
 from sandbox.editor.items import Item, definitions, items_of
 from sandbox.editor.panel.check_form import add_check, check_properties, delete_check
 from sandbox.editor.panel.field_info import fields_of
-from sandbox.editor.panel.level_properties import level_properties, look_properties
+from sandbox.editor.panel.level_properties import level_properties
+from sandbox.editor.panel.material_properties import look_properties
 from sandbox.editor.panel.properties import properties
 from sandbox.editor.panel.property import MIXED, Property
 from sandbox.editor.panel.typed import line_text, list_text, number_text, read_line, read_pairs, read_words

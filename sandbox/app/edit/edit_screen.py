@@ -28,7 +28,7 @@ from sandbox.app.edit.context_menu import open_context_menu
 from sandbox.app.edit.side.options import OPTIONS_HEIGHT, OptionsRow
 from sandbox.app.edit.side.side import Side
 from sandbox.app.edit.watch import Watch
-from sandbox.app.panel.side_panel import ROOM_FOR_PANEL
+from sandbox.app.panel.panel_rows import ROOM_FOR_PANEL
 from sandbox.app.play.stage import PICK_RADIUS
 from sandbox.app.play.status import STATUS_HEIGHT, counted_parts
 from sandbox.app.play.toolbar import BAR_HEIGHT
@@ -190,6 +190,10 @@ class EditScreen:
         """Select items; the history has no step for it, but what is nudged next is a step of its own."""
         self.history.end_merge()
         self.history.select(selection)
+
+    def end_merge(self) -> None:
+        """Let the next edit be a step of its own."""
+        self.history.end_merge()
 
     def say(self, text: str) -> None:
         """Show a line about the sheet, which ends with it."""

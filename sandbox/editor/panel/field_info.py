@@ -76,7 +76,8 @@ class FieldInfo:
 
     empty: what null means, in words for an empty text field. A `point` is of two numbers; `flags` are any number of the
     choices, `pairs` lists of numbers in a list, `outlines` lists of corners in one; a `form` has a table of its own; a
-    `part` is an object, of that model, or null. labels: words for the choices; pick: what is clicked on the sheet for
+    `part` is an object, of that model, or null. labels: words for the choices; tips: what is
+    said of each, where they stand side by side; pick: what is clicked on the sheet for
     it. What has the unit DEGREES is read and typed in them; its value and limits are in radians.
     """
 
@@ -92,6 +93,7 @@ class FieldInfo:
     empty: str = ""
     model: type[BaseModel] | None = None
     labels: tuple[str, ...] = ()
+    tips: tuple[str, ...] = ()
     pick: Pick = ""
 
 

@@ -5,18 +5,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from pydantic import ValidationError
-
-from sandbox.editor.document import Document, EditError, first_fault
+from sandbox.editor.document import Document
 from sandbox.editor.edits.fields import set_level_field, set_setting
-from sandbox.editor.edits.materials import set_material
 from sandbox.editor.panel.extra_values import extras_properties
 from sandbox.editor.panel.field_info import FieldInfo, fields_of
 from sandbox.editor.panel.property import Property, Section, part_properties, with_axes
 from sandbox.editor.scene import make_scene
-from sandbox.level.document.model import ContactsDef, Level, Material, MaterialDef, NissenMaterial, Settings
-from sandbox.level.format.look import BodyLook
-from sandbox.level.format.quantities import replaced
+from sandbox.level.document.model import ContactsDef, Level, Settings
 from sandbox.level.rules.hands import BudgetDef, HandsDef
 
 # Walls of a level in which nothing is yet [m]; around something they leave this share of its size, and of at least 1 m.
@@ -98,26 +93,6 @@ def _hands(document: Document) -> list[Property]:
         for deed, about in fields_of(BudgetDef).items()
     ]
     return [*lists, *budgets]
-
-
-def look_properties(name: str, material: Material) -> list[Property]:
-    """What can be changed of how things of a material look."""
-
-    def change(document: Document, new: Callable[[Any], Any]) -> Document:
-        now = document.level.materials.get(name, NissenMaterial())
-        look = new(now.look)
-        try:
-            wanted = None if look is None else BodyLook.model_validate(look)
-        except ValidationError as error:
-            raise EditError(first_fault(error, "look", 0)) from None
-        return set_material(document, name, replaced(now, look=wanted))
-
-    def add(document: Document) -> Document:
-        return change(document, lambda old: {} if old is None else old.__dict__)
-
-    found = part_properties("look", fields_of(MaterialDef)["look"], [material.look], change, add)
-    # Corners of a window are particles, of which a material has none.
-    return [each for each in found if each.field != "look.window"]
 
 
 def _first_walls(document: Document) -> dict[str, Any]:

@@ -46,18 +46,21 @@ _AXES = ("x", "y")
 class Property:
     """A field with the value that all items have, or MIXED; of a `point`, of each axis; of `flags`, of each by name.
 
-    write: makes a document with another value; None where it is only shown. axes: names of the numbers of a point.
-    remark: what to say of a value in a document that is taken otherwise than it was asked for; "" = nothing.
-    remove: makes a document without the field, where it can be taken away.
+    write: makes a document with another value, or of a run the command that sets it; None where it is only shown.
+    axes: names of the numbers of a point. remark: what to say of a value in a document that is taken otherwise than it
+    was asked for; "" = nothing. remove: makes a document without the field, where it can be taken away. slides: it has a
+    slider from 0 to 1. label: what a change is called in the history; "" = as the field.
     """
 
     field: str
     about: FieldInfo
     value: Any
-    write: Callable[[Document, Any], Document] | None = None
+    write: Callable[[Any, Any], Any] | None = None
     axes: tuple[str, str] = _AXES
-    remark: Callable[[Document, Any], str] | None = None
+    remark: Callable[[Any, Any], str] | None = None
     remove: Callable[[Document], Document] | None = None
+    slides: bool = False
+    label: str = ""
 
     @property
     def editable(self) -> bool:
@@ -71,7 +74,12 @@ class Property:
             return tuple(MIXED.value if part is MIXED else number_text(part) for part in self.value)
         return (MIXED.value if self.value is MIXED else _text(self.about, self.value),)
 
-    def set(self, document: Document, value: Any) -> Document:
+    @property
+    def step(self) -> str:
+        """What a change of it is called in the history."""
+        return self.label or self.about.title
+
+    def set(self, document: Any, value: Any) -> Any:
         """The document with another value; an axis that is None and a flag that is not given stay. Raises EditError."""
         if self.write is None:
             raise EditError(f"{self.about.title} cannot be changed here")
@@ -80,6 +88,7 @@ class Property:
     def typed(self, text: str, axis: int = 0) -> Any:
         """The value that a typed text stands for. Raises EditError with one line."""
         about = self.about
+        text = text.strip().removesuffix(about.unit) if about.kind in ("number", "integer", "point") else text
         if about.kind == "point":
             number = read_number(f"{about.title} {self.axes[axis]}", text)
             return (number, None) if axis == 0 else (None, number)
@@ -98,6 +107,8 @@ class Property:
         """The value some steps up or down, within its limits; None where it is no number, or not the same of all."""
         about = self.about
         if about.kind not in ("number", "integer") or self.value is None or self.value is MIXED:
+            return None
+        if not math.isfinite(self.value):
             return None
         if about.unit == DEGREES:
             return math.radians(stepped(_degrees(self.value), steps, None, None))
@@ -154,6 +165,15 @@ def same(values: Iterable[Any]) -> Any:
     """The value that all of them are, else MIXED."""
     found = list(values)
     return found[0] if found.count(found[0]) == len(found) else MIXED
+
+
+def in_range(about: FieldInfo, value: float) -> float:
+    """A number that is within the limits of a field, for what has no others. Raises EditError."""
+    low, high = (-math.inf if about.low is None else about.low), (math.inf if about.high is None else about.high)
+    if not low <= value <= high:
+        limits = f"outside {low:g} to {high:g}" if high < math.inf else f"below {low:g}"
+        raise EditError(f"{about.title}: {value:g} is {limits}; the old value stays")
+    return value
 
 
 def with_axes(value: Sequence[float | None], old: Sequence[float]) -> tuple[float, ...]:

@@ -21,9 +21,11 @@ EVERYTHING, NOTHING = "everything", "nothing"
 
 
 def number_text(value: float) -> str:
-    """A number as short as it can be without becoming another one, but for the dust of arithmetic: 0.3, 1e+100."""
+    """A number as short as it can be without becoming another one, but for the dust of arithmetic: 0.3, 1e+100, ∞."""
     if isinstance(value, int):
         return str(value)
+    if math.isinf(value):
+        return "\u221e" if value > 0.0 else "-\u221e"
     text = f"{value:.{DIGITS}g}"
     return text if math.isclose(float(text), value, rel_tol=DUST) else repr(value)
 

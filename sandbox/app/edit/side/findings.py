@@ -6,8 +6,8 @@ import pygame
 
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import ACCENT, DANGER, MUTED, WARNING, Colour
-from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.edit.side.side_page import SidePage
+from sandbox.app.widgets.property_widgets import GAP, ROW
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.items import items_of
 from sandbox.editor.lint.finding import SEVERITIES, Finding, Remedy

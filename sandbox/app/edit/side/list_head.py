@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import pygame
 
 from sandbox.app.draw.colours import MUTED
-from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.widgets.picker import Picker
+from sandbox.app.widgets.property_widgets import GAP, ROW
 from sandbox.app.widgets.rows import DETAIL_SIZE, INSET, LINE_HEIGHT, PADDING, SWATCH, TEXT_SIZE, Row, RowList
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.texts import wrapped

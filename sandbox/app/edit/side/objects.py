@@ -10,9 +10,9 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import DISABLED, TEXT
 from sandbox.app.draw.material_colours import material_colours
-from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import ask
+from sandbox.app.widgets.property_widgets import GAP, ROW
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.editor.document import EditError
 from sandbox.editor.edits.fields import rename, set_field

@@ -6,8 +6,9 @@ from typing import Any
 import pygame
 
 from sandbox.app.contracts.application import Editing
-from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.side_page import SidePage
+from sandbox.app.widgets.form import Form
+from sandbox.app.widgets.property_widgets import GAP, ROW
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document
 from sandbox.editor.panel.level_properties import level_properties

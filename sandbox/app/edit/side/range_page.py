@@ -9,8 +9,8 @@ from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
 from sandbox.app.draw.colours import DANGER, MUTED, TEXT
 from sandbox.app.edit.canvas.trails import MOST, attempt_colour
-from sandbox.app.edit.side.form import GAP, ROW
 from sandbox.app.edit.side.side_page import SidePage
+from sandbox.app.widgets.property_widgets import GAP, ROW
 from sandbox.app.widgets.rows import Row, RowList
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.editor.document import Document, EditError

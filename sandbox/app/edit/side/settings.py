@@ -6,10 +6,11 @@ import pygame
 
 from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
-from sandbox.app.edit.side.form import GAP, ROW, Form
 from sandbox.app.edit.side.list_head import ROOM_FOR_LIST
 from sandbox.app.edit.side.side_page import SidePage
 from sandbox.app.widgets.dialogs import ask
+from sandbox.app.widgets.form import Form
+from sandbox.app.widgets.property_widgets import GAP, ROW
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.fields import set_level_field
