@@ -223,7 +223,7 @@ CLOCK = '''
 """ClockRows: how far the run is, and a field that sets gravity upside down."""
 
 from sandbox.app.panel.panel_rows import ROW
-from sandbox.app.panel.panel_section import PanelSection
+from sandbox.app.panel.panel_rows import PanelSection
 from sandbox.session.commands import SetGravity
 
 
@@ -381,7 +381,7 @@ driver.frames(2)
 driver.click_widget(driver.editor.palette.tools["triangle"])
 tools = list(driver.editor.palette.tools)
 assert tools[tools.index("triangle") + 1] == "pin"
-driver.fill(driver.editor.options.fields["mass"], "3")
+driver.fill(driver.editor.options.fields["mass"][0], "3")
 driver.drag((0, 0), (1, 0), (2, 0))
 driver.key(pygame.K_v)
 driver.key(pygame.K_a, pygame.KMOD_SHIFT)

@@ -189,6 +189,11 @@ class Driver:
         self.frames(2)
         self.click_widget(widget)
 
+    def entry(self, name):
+        """The line of the panel that shows a number, by the name of its field."""
+        panel = self.panel
+        return next(form.fields[name] for form in (panel.engineers.form, panel.world.form) if name in form.fields)[0]
+
     def fill(self, field, text):
         """Focus a field that is there, replace its text and press Enter."""
         assert field.visible

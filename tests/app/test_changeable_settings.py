@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 
 import pytest
 
-from sandbox.app.panel.rate_choice import level_at_rate
+from sandbox.app.panel.contacts import level_at_rate
 from sandbox.app.panel.sweeps.pad_sweeps import _present
 from sandbox.level.assembly.build_world import build_world
 from sandbox.level.document.model import CHANGEABLE_SETTINGS, Settings

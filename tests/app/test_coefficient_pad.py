@@ -65,8 +65,8 @@ def test_arrow_keys_move_the_focused_pad_along_one_axis_alone(padded):
 
 def test_numbers_hz_and_pad_show_the_same_pair(padded):
     panel = padded.panel
-    padded.fill(panel.engineers.frequency, "3")
-    padded.fill(panel.engineers.ratio, "0.5")
+    padded.fill(padded.entry("frequency"), "3")
+    padded.fill(padded.entry("ratio"), "0.5")
     assert (panel.pad.state.stiffness, panel.pad.state.damping) == pair(padded)
     assert frequency_from_coefficients(*pair(padded), 1 / 60) == pytest.approx((3.0, 0.5))
     panel.choose_material(None)
@@ -91,13 +91,13 @@ def test_the_pad_is_whole_in_the_smallest_window_and_the_world_folds(padded):
         padded.app.act("panel")
         padded.frames(2)
     panel = padded.panel
-    assert panel.is_open("engineers") and panel.engineers.solving.solver.buttons["direct"].visible
+    assert panel.is_open("engineers") and panel.engineers.form.choices["solver"].buttons["direct"].visible
     padded.app.ui.focus_on(panel.pad)
     padded.frames(2)
     assert panel.area.view.rect.contains(panel.pad.rect)
     padded.app.play.fold("engineers")
     padded.frames(2)
-    assert not padded.panel.engineers.solving.solver.buttons["direct"].visible
+    assert not padded.panel.engineers.form.choices["solver"].buttons["direct"].visible
 
 
 def test_who_chose_the_pad_finds_it_in_the_next_run(padded):

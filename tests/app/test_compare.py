@@ -91,7 +91,7 @@ def test_the_panel_sets_one_side_and_undo_takes_back_what_was_done_last_in_both(
 def test_the_beginning_comes_back_with_the_settings_of_both(pair):
     pair.fill(pair.panel.stiffness_field, "0.05")
     pair.take_sliders()
-    pair.click_widget(pair.panel.engineers.solving.solver.buttons["direct"])
+    pair.click_widget(pair.panel.engineers.form.choices["solver"].buttons["direct"])
     pair.frames(20)
     pair.key(pygame.K_r)
     one, other = worlds(pair)

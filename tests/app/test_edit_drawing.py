@@ -179,12 +179,12 @@ def test_options_in_the_row_change_what_is_drawn_next_and_a_wrong_one_is_said(ed
     driver = edit()
     driver.key(pygame.K_r)
     fields = driver.editor.options.fields
-    driver.fill(fields["segments"], "7")
+    driver.fill(fields["segments"][0], "7")
     driver.drag((-2, 1), (0, 1), (2, 1))
     assert driver.editor.document.level.bodies[0].segments == 7
-    driver.fill(fields["slack"], "much")
+    driver.fill(fields["slack"][0], "much")
     assert any("not a number" in text for text in driver.notices)
-    driver.fill(fields["segments"], "0")
+    driver.fill(fields["segments"][0], "0")
     driver.drag((-2, 2), (0, 2), (2, 2))
     assert driver.editor.document.level.bodies[1].segments == 7
 
@@ -192,7 +192,7 @@ def test_options_in_the_row_change_what_is_drawn_next_and_a_wrong_one_is_said(ed
 def test_the_wheel_over_an_option_and_the_arrows_in_it_step_its_value(edit):
     driver = edit()
     driver.key(pygame.K_a)
-    mass = driver.editor.options.fields["mass"]
+    mass = driver.editor.options.fields["mass"][0]
     zoom = driver.editor.camera.zoom
     driver.move(mass.rect.center)
     for _ in range(4):
@@ -212,7 +212,7 @@ def test_the_wheel_turned_before_the_next_frame_steps_the_option_that_the_mouse_
     driver = edit()
     driver.key(pygame.K_a)
     fields = driver.editor.options.fields
-    mass, radius = fields["mass"], fields["radius"]
+    mass, radius = fields["mass"][0], fields["radius"][0]
     driver.move(mass.rect.center)
     before = mass.typed, radius.typed
     driver.post(pygame.MOUSEMOTION, pos=radius.rect.center, rel=(0, 0), buttons=(0, 0, 0))
@@ -224,7 +224,7 @@ def test_the_wheel_turned_before_the_next_frame_steps_the_option_that_the_mouse_
 def test_the_material_of_what_is_drawn_is_chosen_from_a_menu(edit):
     driver = edit()
     driver.key(pygame.K_r)
-    picker = driver.editor.options.menus["material"]
+    picker = driver.editor.options.pickers["material"]
     assert picker.shown.text == "steel"
     driver.click_widget(picker)
     driver.key(pygame.K_DOWN)
@@ -298,7 +298,7 @@ def test_all_options_can_be_reached_at_every_scale_and_none_lies_beyond_the_wind
     options, reached, pages = driver.editor.options, [], 0
     names = list(described(driver.editor.pointer_tool.drawing.options))
     while not set(names) <= set(reached):
-        shown = {name: field for name, field in options.fields.items()} | options.flags | options.menus
+        shown = {name: field for name, (field,) in options.fields.items()} | options.buttons | options.pickers
         assert all(options.back.rect.contains(widget.rect) for widget in shown.values())
         lefts = sorted(widget.rect.left for widget in shown.values())
         rights = sorted(widget.rect.right for widget in shown.values())

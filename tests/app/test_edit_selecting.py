@@ -182,13 +182,13 @@ def test_typed_numbers_place_size_and_turn_the_selection(driver):
     driver.click_at(1, 0)
     driver.frames(2)
     fields = driver.editor.options.fields
-    driver.fill(fields["x"], "10")
+    driver.fill(fields["x"][0], "10")
     assert body(driver).start == pytest.approx((8, 0))
-    driver.fill(fields["width"], "2")
+    driver.fill(fields["width"][0], "2")
     assert (body(driver).start, body(driver).end) == (pytest.approx((9, 0)), pytest.approx((11, 0)))
-    driver.fill(fields["turn"], "90")
+    driver.fill(fields["turn"][0], "90")
     assert body(driver).end == pytest.approx((10, 1))
-    driver.fill(fields["y"], "up")
+    driver.fill(fields["y"][0], "up")
     assert any("not a number" in text for text in driver.notices)
 
 
@@ -255,7 +255,7 @@ def test_what_cannot_be_done_is_said_and_changes_nothing(driver):
     before = driver.editor.document.level
     driver.click_at(1, 0)
     driver.frames(2)
-    driver.fill(driver.editor.options.fields["x"], "1e7")
+    driver.fill(driver.editor.options.fields["x"][0], "1e7")
     assert driver.editor.document.level is before
     assert driver.notices
 

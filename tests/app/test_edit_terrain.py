@@ -158,7 +158,7 @@ def test_the_whole_piece_is_dragged_scaled_and_deleted(driver):
     driver.key(pygame.K_ESCAPE)
     driver.editor.select(frozenset({PIECE}))
     driver.frames(2)
-    driver.fill(driver.editor.options.fields["width"], "3")
+    driver.fill(driver.editor.options.fields["width"][0], "3")
     assert terrain(driver)[0].polygon[1] == (2.5, -1)
     driver.key(pygame.K_DELETE)
     assert terrain(driver) == ()
@@ -236,8 +236,8 @@ def test_the_place_of_a_clicked_corner_is_typed(driver):
     assert set(driver.editor.options.fields) == {"x", "y", "width", "height", "turn"}
     driver.click_at(4, -1)
     driver.frames(2)
-    assert {name: field.text for name, field in driver.editor.options.fields.items()} == {"x": "4", "y": "-1"}
-    driver.fill(driver.editor.options.fields["x"], "3.75")
+    assert {name: field.text for name, (field,) in driver.editor.options.fields.items()} == {"x": "4", "y": "-1"}
+    driver.fill(driver.editor.options.fields["x"][0], "3.75")
     driver.frames(2)
     assert terrain(driver)[0].polygon[2] == (3.75, -1) and labels(driver) == ["Move a corner"]
-    assert driver.editor.options.fields["x"].text == "3.75"
+    assert driver.editor.options.fields["x"][0].text == "3.75"

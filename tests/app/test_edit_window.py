@@ -86,7 +86,7 @@ class Maker:
 
     def turn(self, option, notches):
         """Turn the wheel over an option of the tool."""
-        field = self.twin.editor.options.fields[option]
+        field = self.twin.editor.options.fields[option][0]
         self.person.move(field.rect.center)
         self.twin.move(field.rect.center)
         for _ in range(abs(notches)):
@@ -95,7 +95,7 @@ class Maker:
 
     def choose_material(self, name):
         """Open the menu of materials and take one."""
-        picker = self.twin.editor.options.menus["material"]
+        picker = self.twin.editor.options.pickers["material"]
         self.person.click(picker.rect.center)
         self.twin.click_widget(picker)
         menu = self.twin.app.ui.focus

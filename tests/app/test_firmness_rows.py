@@ -23,7 +23,7 @@ def jelly(open_app):
 
 def texts(driver):
     rows = driver.panel.firmness
-    return [field.text for field in (rows.sag, rows.frequency, rows.ratio)]
+    return [field.text for field in (rows.sag, driver.entry("wobble"), driver.entry("wobble_ratio"))]
 
 
 def test_the_rows_show_the_firmness_of_the_level_in_words_and_numbers(jelly):
@@ -68,10 +68,10 @@ def test_typed_numbers_are_taken_and_those_out_of_reach_become_the_nearest(jelly
     jelly.fill(rows.sag, "25 %")
     jelly.frames(2)
     assert texts(jelly)[0] == "25" and rows.words.chosen == "jelly"
-    jelly.fill(rows.frequency, "3")
+    jelly.fill(jelly.entry("wobble"), "3")
     jelly.frames(2)
     assert texts(jelly)[1:] == ["3", "0.156"]
-    jelly.fill(rows.ratio, "0.1")
+    jelly.fill(jelly.entry("wobble_ratio"), "0.1")
     jelly.frames(2)
     assert texts(jelly)[1:] == ["3", "0.156"]
     assert (

@@ -40,13 +40,13 @@ def test_a_key_makes_the_hand_gentle_normal_or_strong_and_the_next_hold_is_so(dr
 
 def test_the_panel_shows_and_sets_the_strength_which_later_runs_and_starts_keep(driver, open_app):
     driver.take_sliders()
-    driver.click_in_panel(driver.panel.world.hand.buttons["gentle"])
+    driver.click_in_panel(driver.panel.world.form.choices["hand"].buttons["gentle"])
     assert driver.stage.drag.strength == "gentle"
     driver.key(pygame.K_r)
     assert driver.stage.drag.strength == "gentle"
     again = open_app(small_level())
     assert again.stage.drag.strength == "gentle"
-    assert again.panel.world.hand.buttons["gentle"].is_selected
+    assert again.panel.world.form.choices["hand"].buttons["gentle"].is_selected
 
 
 def test_what_is_held_keeps_its_hand_when_another_strength_is_chosen(driver):

@@ -121,11 +121,12 @@ def test_typing_hz_and_damping_ratio_sets_cs_and_cd_and_reads_back(driver):
     panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
-    driver.fill(panel.engineers.frequency, "3")
-    driver.fill(panel.engineers.ratio, "0.2")
-    assert (float(panel.engineers.frequency.text), float(panel.engineers.ratio.text)) == pytest.approx(
-        (3.0, 0.2), rel=1e-3
-    )
+    driver.fill(driver.entry("frequency"), "3")
+    driver.fill(driver.entry("ratio"), "0.2")
+    assert (
+        float(driver.entry("frequency").text),
+        float(driver.entry("ratio").text),
+    ) == pytest.approx((3.0, 0.2), rel=1e-3)
     assert coefficients(driver)[2] == 0.02
 
 
@@ -133,9 +134,9 @@ def test_a_frequency_out_of_reach_is_refused_with_the_highest_one(driver):
     panel = driver.panel
     panel._choose_material("steel")
     driver.frames()
-    driver.fill(panel.engineers.ratio, "0.1")
+    driver.fill(driver.entry("ratio"), "0.1")
     before = coefficients(driver)
-    driver.fill(panel.engineers.frequency, "20")
+    driver.fill(driver.entry("frequency"), "20")
     assert coefficients(driver) == before
     assert any("highest frequency" in notice for notice in driver.notices)
 
@@ -144,11 +145,12 @@ def test_cd_1_has_no_frequency_and_a_typed_frequency_leads_out_of_it(driver):
     panel = driver.panel
     panel._choose_material("steel")
     driver.fill(panel.damping_field, "1")
-    assert panel.engineers.frequency.text == panel.engineers.ratio.text == "\u221e"
-    driver.fill(panel.engineers.frequency, "2")
-    assert (float(panel.engineers.frequency.text), float(panel.engineers.ratio.text)) == pytest.approx(
-        (2.0, 1.0), rel=1e-3
-    )
+    assert driver.entry("frequency").text == driver.entry("ratio").text == "\u221e"
+    driver.fill(driver.entry("frequency"), "2")
+    assert (
+        float(driver.entry("frequency").text),
+        float(driver.entry("ratio").text),
+    ) == pytest.approx((2.0, 1.0), rel=1e-3)
 
 
 def test_the_single_pass_marks_its_limit_and_the_iterative_solver_says_that_there_is_none(driver):
@@ -157,7 +159,7 @@ def test_the_single_pass_marks_its_limit_and_the_iterative_solver_says_that_ther
     driver.frames()
     assert 0.3 < panel.damping.state.limit < 1.0
     assert "proven for a single pass" in panel.note.text
-    driver.click_widget(panel.engineers.solving.solver.buttons["iterative"])
+    driver.click_widget(panel.engineers.form.choices["solver"].buttons["iterative"])
     assert driver.world.settings.solver == "iterative"
     assert panel.damping.state.limit is None
     assert "Nothing is proven" in panel.note.text
@@ -177,21 +179,21 @@ def test_a_hooke_material_cannot_be_tuned_by_cs_and_says_so(open_app):
 
 def test_substeps_iterations_warm_start_and_gravity_reach_the_world(driver):
     panel = driver.panel
-    driver.click_widget(panel.engineers.solving.substeps.buttons["8"])
-    driver.fill(panel.engineers.solving.iterations, "25")
-    driver.fill(panel.engineers.solving.warm_start, "0.75")
-    driver.fill(panel.world.gravity_y, "-3.7")
+    driver.click_widget(panel.engineers.form.choices["substeps"].buttons["8"])
+    driver.fill(driver.entry("iterations"), "25")
+    driver.fill(driver.entry("warm_start"), "0.75")
+    driver.fill(driver.entry("gravity_y"), "-3.7")
     settings = driver.world.settings
     assert (settings.substeps, settings.iterations, settings.warm_start) == (8, 25, 0.75)
     assert settings.gravity == (0.0, -3.7)
-    driver.click_widget(panel.engineers.solving.substeps.buttons["auto"])
+    driver.click_widget(panel.engineers.form.choices["substeps"].buttons["auto"])
     settings = driver.world.settings
     assert settings.substeps == "auto"
     for field, typed in (
-        (panel.engineers.solving.iterations, "2.5"),
-        (panel.engineers.solving.iterations, "0"),
-        (panel.engineers.solving.warm_start, "2"),
-        (panel.world.gravity_x, "1e9"),
+        (driver.entry("iterations"), "2.5"),
+        (driver.entry("iterations"), "0"),
+        (driver.entry("warm_start"), "2"),
+        (driver.entry("gravity_x"), "1e9"),
     ):
         driver.fill(field, typed)
     assert driver.world.settings == settings
@@ -217,8 +219,8 @@ def test_arrow_keys_move_the_focused_slider_and_tab_reaches_every_widget(driver)
         panel.stiffness,
         panel.damping,
         panel.menu,
-        panel.engineers.frequency,
-        *panel.engineers.solving.substeps.buttons.values(),
+        driver.entry("frequency"),
+        *panel.engineers.form.choices["substeps"].buttons.values(),
     ]
     assert all(widget in reached for widget in wanted)
     ui.focus_on(panel.damping)
@@ -248,7 +250,7 @@ def test_another_tick_rate_begins_the_run_anew_at_the_same_pace_or_with_the_same
     for label, keeps_pace in (("Keep the behaviour per second", True), ("Keep Cs and Cd as they are", False)):
         before, rate = coefficients(driver), driver.world.settings.tick_rate
         hertz = frequency_from_coefficients(*before[:2], 1.0 / rate)[0]
-        driver.fill(driver.panel.engineers.solving.rate, str(2 * rate))
+        driver.fill(driver.entry("tick_rate"), str(2 * rate))
         assert driver.world.settings.tick_rate == rate and driver.app.ui.has_sheet
         driver.choose(label)
         driver.frames(2)
@@ -261,8 +263,8 @@ def test_another_tick_rate_begins_the_run_anew_at_the_same_pace_or_with_the_same
 
 def test_a_run_at_another_tick_rate_has_the_solver_and_the_springs_that_were_set(driver):
     driver.fill(driver.panel.stiffness_field, "0.07")
-    driver.click_widget(driver.panel.engineers.solving.solver.buttons["iterative"])
-    driver.fill(driver.panel.engineers.solving.rate, "240")
+    driver.click_widget(driver.panel.engineers.form.choices["solver"].buttons["iterative"])
+    driver.fill(driver.entry("tick_rate"), "240")
     driver.choose("Keep Cs and Cd as they are")
     driver.frames(2)
     assert coefficients(driver)[0] == 0.07 and driver.world.settings.solver == "iterative"
@@ -270,8 +272,8 @@ def test_a_run_at_another_tick_rate_has_the_solver_and_the_springs_that_were_set
 
 @pytest.mark.parametrize("typed", ["fast", "0", "-60", "99999"])
 def test_a_tick_rate_that_no_level_has_is_refused_with_a_line(driver, typed):
-    driver.fill(driver.panel.engineers.solving.rate, typed)
+    driver.fill(driver.entry("tick_rate"), typed)
     if driver.app.ui.has_sheet:
         driver.choose("Keep the behaviour per second")
     assert driver.world.settings.tick_rate == 60 and driver.notices[-1].endswith(".")
-    assert driver.panel.engineers.solving.rate.text == "60"
+    assert driver.entry("tick_rate").text == "60"

@@ -24,13 +24,14 @@ def in_sight(driver, widget):
     return bool(widget.visible) and driver.panel.area.view.rect.contains(widget.rect)
 
 
-def asked_for(panel, name):
+def asked_for(driver, name):
     """Widgets of a section that a level's text can mean."""
-    solving = panel.engineers.solving
+    panel = driver.panel
+    solvers = panel.engineers.form.choices["solver"].buttons.values()
     return {
         "springs": [panel.menu, panel.stiffness_field, panel.damping_field],
-        "engineers": [*solving.solver.buttons.values(), solving.iterations, solving.rate],
-        "world": [panel.world.gravity_x],
+        "engineers": [*solvers, driver.entry("iterations"), driver.entry("tick_rate")],
+        "world": [driver.entry("gravity_x")],
     }[name]
 
 
@@ -41,11 +42,11 @@ def commands(driver, kind):
 def test_a_player_sees_what_play_needs_and_one_word_opens_the_rest_for_later_runs_too(player, open_app):
     panel = player.panel
     assert in_sight(player, panel.play.gravity) and in_sight(player, panel.play.melt)
-    rest = [widget for name in SECTIONS for widget in asked_for(panel, name)]
+    rest = [widget for name in SECTIONS for widget in asked_for(player, name)]
     assert not any(widget.visible for widget in rest)
     heading = next(each for each in panel.area.content.children if getattr(each, "text", "") == "More")
     player.click_widget(heading)
-    assert all(widget.visible for name in SECTIONS for widget in asked_for(player.panel, name))
+    assert all(widget.visible for name in SECTIONS for widget in asked_for(player, name))
     assert open_app(small_level(), more=False).panel.is_open(MORE)
 
 
@@ -58,7 +59,7 @@ def test_what_the_text_of_a_level_asks_for_is_in_sight_without_scrolling(name, o
     wanted = [panel.play.gravity, panel.play.wind, panel.play.melt]
     wanted += panel.firmness.words.buttons.values() if panel.firmness.shown else []
     for section in (name for name, each in SECTIONS.items() if each.is_asked_for(driver.playback.level.description)):
-        wanted += asked_for(panel, section)
+        wanted += asked_for(driver, section)
     hidden = [widget for widget in wanted if not in_sight(driver, widget)]
     assert not hidden
 

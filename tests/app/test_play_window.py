@@ -108,10 +108,10 @@ def test_what_the_panel_has_no_room_for_is_scrolled_to_by_the_keyboard(driver):
     driver.frames(2)
     area = driver.panel.area
     assert area.bar.needed
-    driver.app.ui.focus_on(driver.panel.world.hand.buttons["strong"])
+    driver.app.ui.focus_on(driver.panel.world.form.choices["hand"].buttons["strong"])
     driver.frames(2)
     view = area.view.rect
-    assert view.contains(driver.panel.world.hand.buttons["strong"].rect)
+    assert view.contains(driver.panel.world.form.choices["hand"].buttons["strong"].rect)
 
 
 def test_arrow_keys_of_a_level_win_are_shown_and_with_shift_move_the_cursor(open_app):

@@ -25,28 +25,28 @@ def height(driver):
 
 
 def test_off_falls_through_and_on_is_caught(driver):
-    rows = driver.panel.world
-    assert rows.contacts.chosen == "off" and rows.friction.text == "\u2013"
+    touch, friction = driver.panel.world.form.choices["contacts"], driver.entry("friction")
+    assert touch.chosen == "off" and friction.text == "" and friction.hint == "\u2013"
     driver.frames(120)
     assert height(driver) < -5.0
-    driver.click_in_panel(rows.contacts.buttons["on"])
+    driver.click_in_panel(touch.buttons["on"])
     driver.frames(2)
-    assert driver.world.tick < 10 and driver.panel.world.contacts.chosen == "on"
+    assert driver.world.tick < 10 and driver.panel.world.form.choices["contacts"].chosen == "on"
     driver.frames(100)
     assert height(driver) == pytest.approx(0.8, abs=0.01)
 
 
 def test_bounce_and_friction_are_typed(driver):
-    driver.fill(driver.panel.world.bounce, "0.9")
+    driver.fill(driver.entry("bounce"), "0.9")
     driver.frames(2)
-    assert driver.panel.world.contacts.chosen == "on" and driver.panel.world.bounce.text == "0.9"
+    assert driver.panel.world.form.choices["contacts"].chosen == "on" and driver.entry("bounce").text == "0.9"
     highest = 0.0
     for tick in range(110):
         driver.playback.session.advance()
         highest = max(highest, height(driver) if tick > 45 else 0.0)
     assert highest > 0.8 + 0.75 * 2.2
-    driver.fill(driver.panel.world.friction, "-1")
-    assert driver.panel.world.friction.text == "0.5" and any("Friction" in notice for notice in driver.notices)
+    driver.fill(driver.entry("friction"), "-1")
+    assert driver.entry("friction").text == "0.5" and any("Friction" in notice for notice in driver.notices)
 
 
 def test_a_key_does_it_and_springs_that_were_set_stay(open_app):

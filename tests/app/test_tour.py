@@ -32,7 +32,7 @@ def test_a_whole_tour_by_mouse_ends_with_the_makers_own_bridge_played(driver):
     titles = [title(driver)]
     driver.click_widget(editor().palette.tools["rope"])
     titles.append(title(driver))
-    driver.move(editor().options.fields["slack"].rect.center)
+    driver.move(editor().options.fields["slack"][0].rect.center)
     for _ in range(2):
         driver.post(pygame.MOUSEWHEEL, x=0, y=1, precise_x=0.0, precise_y=1.0)
     driver.frames()
@@ -43,7 +43,7 @@ def test_a_whole_tour_by_mouse_ends_with_the_makers_own_bridge_played(driver):
     driver.click_at(3, 1)
     titles.append(title(driver))
     driver.click_widget(editor().palette.tools["particle"])
-    driver.fill(editor().options.fields["mass"], "30")
+    driver.fill(editor().options.fields["mass"][0], "30")
     driver.click_at(*editor().scene.position[editor().scene.slot("rope.12")].tolist())
     titles.append(title(driver))
     driver.click_widget(editor().bar.buttons["play"])

@@ -30,7 +30,7 @@ def build_walker(driver):
     """A jelly on three feet of two springs each, which are muscles with a wave through them."""
     draw_ground(driver, (-7, -3.5), (7, -3.5), (7, -2), (-7, -2))
     driver.key(pygame.K_j)
-    driver.fill(driver.editor.options.fields["cells"], "2")
+    driver.fill(driver.editor.options.fields["cells"][0], "2")
     driver.drag((-5.5, -1), (-4, -0.8), (-2.5, -0.5))
     driver.key(pygame.K_s)
     for foot in (-5.0, -4.0, -3.0):
@@ -58,11 +58,11 @@ def build_chain(driver):
     driver.key(pygame.K_RETURN)
     driver.key(pygame.K_a)
     for radius, mass, place in (("0.3", "4", (-5, 2.5)), ("0.3", "0.5", (0.9, 0.3))):
-        driver.fill(driver.editor.options.fields["radius"], radius)
-        driver.fill(driver.editor.options.fields["mass"], mass)
+        driver.fill(driver.editor.options.fields["radius"][0], radius)
+        driver.fill(driver.editor.options.fields["mass"][0], mass)
         driver.click_at(*place)
     driver.key(pygame.K_j)
-    driver.fill(driver.editor.options.fields["cells"], "1")
+    driver.fill(driver.editor.options.fields["cells"][0], "1")
     driver.drag((-2, 0), (-1.9, 0.5), (-1.75, 1))
     driver.key(pygame.K_v)
     for x in (-1.875, -1.175, -0.475):

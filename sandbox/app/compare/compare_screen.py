@@ -16,9 +16,9 @@ from sandbox.app.draw.colours import LINE, TEXT
 from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.panel.contacts import ContactSettings
+from sandbox.app.panel.engineers_rows import SOLVER_LABELS
 from sandbox.app.panel.panel import Panel
-from sandbox.app.panel.side_panel import SidePanel
-from sandbox.app.panel.solver_rows import SOLVER_LABELS
+from sandbox.app.panel.panel_rows import SidePanel
 from sandbox.app.play.play_screen import PlayScreen
 from sandbox.app.play.stage import Stage
 from sandbox.app.play.toolbar import BAR_HEIGHT

@@ -13,7 +13,7 @@ from sandbox.app.compare.lesson_panel import LessonPanel
 from sandbox.app.compare.twin import TwinPlayback
 from sandbox.app.contracts.application import Application
 from sandbox.app.contracts.screen import Pixel
-from sandbox.app.panel.side_panel import SidePanel
+from sandbox.app.panel.panel_rows import SidePanel
 from sandbox.app.play.toolbar import BAR_HEIGHT
 from sandbox.app.widgets.ui import Ui
 from sandbox.physics.world import World

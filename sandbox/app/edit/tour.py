@@ -229,8 +229,7 @@ def _rect_of(target: Target, editor: EditScreen) -> pygame.Rect | None:
         x, y = editor.camera.to_pixels(target)
         size = editor.ui.px(SPOT)
         return pygame.Rect(round(x) - size // 2, round(y) - size // 2, size, size)
-    field = editor.options.fields.get(target)
-    if field is not None:
-        return field.rect.copy()
+    if target in editor.options.fields:
+        return editor.options.fields[target][0].rect.copy()
     button = editor.palette.tools.get(target.removeprefix("tool_")) or editor.bar.buttons.get(target)
     return button.rect.copy() if button is not None else None

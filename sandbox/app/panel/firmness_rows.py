@@ -11,13 +11,19 @@ from numpy.typing import NDArray
 from sandbox.app.base.sag_map import Pairs, word_pairs
 from sandbox.app.base.sag_sentences import subject_words
 from sandbox.app.base.sentences import capitalised
-from sandbox.app.panel.readings import motion_words, number, per_cent, sag_words
+from sandbox.app.panel.readings import motion_words, per_cent, sag_words
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.button import Choice
 from sandbox.app.widgets.field import DASH, MIXED, Field, typed_number
 from sandbox.app.widgets.picker import WordPicker
 from sandbox.app.widgets.texts import TextBlock
+from sandbox.editor.document import EditError
+from sandbox.editor.panel.field_info import FieldInfo
+from sandbox.editor.panel.material_properties import NO_FREQUENCY, Swing
+from sandbox.editor.panel.property import MIXED as MIXED_VALUE
+from sandbox.editor.panel.property import Property, in_range, same
 from sandbox.level.format.limits import FREQUENCY_RANGE, RATIO_LIMIT, SAG_LIMIT
+from sandbox.level.format.quantities import significant
 from sandbox.physics import jit
 from sandbox.physics.analysis.stability import BOUND, spring_loads
 from sandbox.physics.arrays import Floats
@@ -48,6 +54,16 @@ TOO_STIFF = "Too stiff for the single pass: it melts or explodes."
 DIGITS = 2
 
 
+# Of a wobble.
+SWING_DIGITS = 3
+_WOBBLE = FieldInfo(
+    "number", "Wobble", "Hz", *FREQUENCY_RANGE, tooltip="Swings a second of the body's slowest wobble, undamped."
+)
+_RATIO = FieldInfo(
+    "number", "Damping ratio", low=0.0, high=RATIO_LIMIT, tooltip="Below 1 the body swings, above 1 it creeps back."
+)
+
+
 class Reading(NamedTuple):
     """What is shown of a body: its sag, None: not measured yet, NaN: it cannot be; its wobble, None: it has none."""
 
@@ -67,8 +83,6 @@ class FirmnessRows:
     words: Choice
     text: TextBlock
     sag: Field
-    frequency: Field
-    ratio: Field
 
     def __init__(self, playback: Playback, say: Callable[[str], None]) -> None:
         self.playback, self._say = playback, say
@@ -83,6 +97,8 @@ class FirmnessRows:
         # Those of them that have about that by now.
         self._answered: set[str] = set()
         self._seen: dict[str, object] = {}
+        # Frequency [Hz] and damping ratio of the chosen bodies' slowest wobble.
+        self.swing: Swing = (None, None)
 
     @property
     def bodies(self) -> list[str]:
@@ -186,9 +202,13 @@ class FirmnessRows:
         whole = len(readings) == len(found) and len(sags) == len(readings) and bool(found)
         self.sag.show(self._one([per_cent(sag, DIGITS).removesuffix(" %") for sag in sags], whole))
         motions = [reading.motion for reading in readings if reading.motion is not None]
-        has_motions = len(motions) == len(found) and bool(found)
-        self.frequency.show(self._one([number(motion.hz) for motion in motions], has_motions))
-        self.ratio.show(self._one([number(motion.ratio) for motion in motions], has_motions))
+        whole_swing = len(motions) == len(found) and bool(found)
+        pairs = [[significant(value, SWING_DIGITS) for value in (each.hz, each.ratio)] for each in motions]
+        hz, ratio = (
+            None if not pairs else same([pair[place] for pair in pairs]) if whole_swing else MIXED_VALUE
+            for place in (0, 1)
+        )
+        self.swing = hz, ratio
         words = {word_for(each.sag, each.is_rigid) for each in readings if each.sag is not None}
         explodes = self._may_explode()
         self.words.show(words.pop() if whole and len(words) == 1 and not explodes else "")
@@ -331,20 +351,22 @@ class FirmnessRows:
         material = self.material_of(subject.name)
         self.playback.submit(SetCoefficients(stiffness=stiffness, damping=damping, material=material), gesture)
 
-    def type_frequency(self, text: str) -> bool:
-        """Set the frequency of the chosen bodies' slowest wobble to a typed one [Hz]; each keeps its damping ratio."""
-        hz = typed_number(self._say, text, "Wobble", *FREQUENCY_RANGE)
-        return hz is not None and self._set(lambda subject: Firmness(hz=hz, ratio=self._kept(subject)[1]))
+    def swing_properties(self) -> list[Property]:
+        """Frequency and damping ratio of the chosen bodies' slowest wobble; each body keeps its own other one."""
+        return [
+            Property("wobble", _WOBBLE, self.swing[0], self._set_wobble),
+            Property("wobble_ratio", _RATIO, self.swing[1], self._set_ratio),
+        ]
 
-    def type_ratio(self, text: str) -> bool:
-        """Set the damping ratio of the chosen bodies to a typed one, each at its own frequency; whether it could be."""
-        ratio = typed_number(self._say, text, "Ratio", 0.0, RATIO_LIMIT)
-        if ratio is None:
-            return False
+    def _set_wobble(self, playback: Playback, hz: float) -> None:
+        in_range(_WOBBLE, hz)
+        self._set(lambda subject: Firmness(hz=hz, ratio=self._kept(subject)[1]))
+
+    def _set_ratio(self, playback: Playback, ratio: float) -> None:
+        in_range(_RATIO, ratio)
         if any(self._kept(subject)[0] is None for subject in self._chosen()):
-            self._say("These bodies have no frequency to keep. Set the frequency first.")
-            return False
-        return self._set(lambda subject: Firmness(hz=self._kept(subject)[0], ratio=ratio))
+            raise EditError(NO_FREQUENCY)
+        self._set(lambda subject: Firmness(hz=self._kept(subject)[0], ratio=ratio))
 
     def _chosen(self) -> list[MeasuredBody]:
         return list(self._subjects.values()) if self.body == ALL_BODIES else [self._subjects[self.body]]

@@ -9,13 +9,13 @@ import numpy as np
 from sandbox.app.base.coefficient_scale import PLAIN, CoefficientScale
 from sandbox.app.base.sag_map import own_of, scale_of
 from sandbox.app.base.sag_sentences import SAG_TIP
+from sandbox.app.base.sentences import sentence
 from sandbox.app.draw.colours import TEXT, WARNING
 from sandbox.app.panel.coefficient_pad import STIFFNESSES, CoefficientPad, PadState
 from sandbox.app.panel.contacts import ContactSettings
 from sandbox.app.panel.engineers_rows import EngineersRows
 from sandbox.app.panel.firmness_rows import ALL_BODIES, FirmnessRows
-from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows
-from sandbox.app.panel.panel_section import PanelSection
+from sandbox.app.panel.panel_rows import ENTRY_WIDTH, INSIDE, MARGIN, PANEL_WIDTH, ROW, PanelRows, PanelSection
 from sandbox.app.panel.play_rows import PlayRows
 from sandbox.app.panel.readings import number, stability_words
 from sandbox.app.panel.sweeps.pad_maps import PadMaps
@@ -24,10 +24,12 @@ from sandbox.app.panel.world_rows import WorldRows
 from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.field import DASH, MIXED, typed_number
 from sandbox.app.widgets.picker import WordPicker
+from sandbox.app.widgets.property_widgets import PropertyOwner
 from sandbox.app.widgets.scroll import ScrollArea
 from sandbox.app.widgets.slider import Slider, SliderState
 from sandbox.app.widgets.texts import TextBlock
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.document import EditError
 from sandbox.physics.analysis.stability import (
     CoefficientLimits,
     CoefficientZones,
@@ -55,6 +57,9 @@ CS_TIP = "Cs: part of its error that a spring takes back in a tick; more is stif
 CD_TIP = "Cd: part of its speed that a spring takes away in a tick; more is calmer. 0 to 1"
 
 
+NO_SPRING = "there is no spring here that Cs and Cd apply to"
+
+
 @dataclass
 class PanelShape:
     """How a person has the panel: springs by "pad" or "sliders", None: as room allows; which sections are open.
@@ -70,7 +75,7 @@ class PanelShape:
     sweeps: PadSweeps = field(default_factory=PadSweeps)
 
 
-class Panel:
+class Panel(PropertyOwner):
     """The panel at the right of a window; `say` shows a line to the person.
 
     choose: what is done with a strength of the "hand", with a "view" that is shown or no longer, with how "springs" are
@@ -82,7 +87,8 @@ class Panel:
         self, ui: Ui, playback: Playback, say: Callable[[str], None], choose: Mapping[str, Callable[[str], None]],
         top: float, height: float, shape: PanelShape, set_contacts: Callable[[ContactSettings], None],
     ) -> None:  # fmt: skip
-        self._ui, self.playback, self.say, self.choose = ui, playback, say, choose
+        self.ui, self.playback, self.choose, self._say = ui, playback, choose, say
+        self.folds = {}
         self.pad: CoefficientPad | None = None
         self.maps: PadMaps | None = None
         self._sweeps = shape.sweeps
@@ -97,8 +103,8 @@ class Panel:
         self.firmness = FirmnessRows(playback, say)
         if playback.level.look is not None and playback.level.look.material is not None:
             self.firmness.speak_of(self.material)
-        self.engineers = EngineersRows(playback, say, choose["rate"], self.firmness, self._set_both)
-        self.world = WorldRows(playback, say, choose, set_contacts)
+        self.engineers = EngineersRows(playback, self, choose["rate"], self.firmness, self._both)
+        self.world = WorldRows(playback, self, choose, set_contacts)
         self.play = PlayRows(playback, lambda: choose["melt"](""), self._take_home)
         self.springs = _SpringsSection(self)
         self._offered = self._present()
@@ -141,7 +147,7 @@ class Panel:
         """Make the buttons that choose which of two runs the panel shows."""
         rows = self.rows
         options = [(name, name, f"Show and set the springs and the solver of {name}") for name in ("A", "B")]
-        self.sides = self._ui.choice(rows.row(SIDES_HEIGHT - 8, 8), options, self.choose["side"], rows.back)
+        self.sides = self.ui.choice(rows.row(SIDES_HEIGHT - 8, 8), options, self.choose["side"], rows.back)
         self.sides.show(side)
 
     def attach(self, playback: Playback) -> None:
@@ -151,7 +157,7 @@ class Panel:
             section.playback = playback
 
     def _build_firmness(self) -> None:
-        ui, rows, firmness = self._ui, self.rows, self.firmness
+        ui, rows, firmness = self.ui, self.rows, self.firmness
         ui.label(rows.place(MARGIN, 4, 90, 18), "FIRMNESS", rows.back, "heading")
         names = [ALL_BODIES, *firmness.bodies]
         place = rows.row(ROW, 6, MARGIN + 90, INSIDE - 90)
@@ -168,7 +174,7 @@ class Panel:
 
     def build_springs(self) -> None:
         """Make the rows that set Cs and Cd, by the pad where it is whole in sight."""
-        ui, rows = self._ui, self.rows
+        ui, rows = self.ui, self.rows
         self.by_pad = self.by_pad or self._height - rows.y >= PAD_ROOM
         ways = [("pad", "Pad", "Cs and Cd on a map of what they do"), ("sliders", "Sliders", "Cs and Cd one by one")]
         place = rows.place(MARGIN + INSIDE - SPRINGS_CHOICE, -HEADING - 2, SPRINGS_CHOICE, 22)
@@ -201,7 +207,7 @@ class Panel:
     def _build_pad(self) -> None:
         rows = self.rows
         place = rows.row(PAD_HEIGHT - 6, 6, MARGIN - 8, INSIDE + 12)
-        self.pad = CoefficientPad(self._ui, place, self._move, self._end_gesture, rows.back)
+        self.pad = CoefficientPad(self.ui, place, self._move, self.end_merge, rows.back)
         self.stiffness_field, self.damping_field = rows.beside(
             ("Cs  stiffness", CS_TIP, lambda text: self._type_coefficient(text, True)),
             ("Cd  damping", CD_TIP, lambda text: self._type_coefficient(text, False)),
@@ -211,11 +217,11 @@ class Panel:
         """Make the label for a coefficient's proven limit, on its row."""
         rows = self.rows
         place = rows.place(MARGIN + 96, 6, INSIDE - ENTRY_WIDTH - 104, ROW - 8)
-        return TextBlock(self._ui, place, "", rows.back, 11.0, WARNING)
+        return TextBlock(self.ui, place, "", rows.back, 11.0, WARNING)
 
     def _slider(self, tip: str, changed: Callable[[float], None]) -> Slider:
         rows = self.rows
-        made = Slider(self._ui, rows.row(28, 2, MARGIN - 8, INSIDE + 16), changed, self._end_gesture, rows.back)
+        made = Slider(self.ui, rows.row(28, 2, MARGIN - 8, INSIDE + 16), changed, self.end_merge, rows.back)
         made.tip = tip
         return made
 
@@ -239,12 +245,12 @@ class Panel:
         self._follow_what_joins()
         self.play.refresh()
         is_look = self._refreshes % LOOK_EVERY == 0 or self.playback.clock.paused
+        self._refreshes += 1
+        self.firmness.refresh(self._refreshes % LOOK_EVERY == 0)
         for section in self.sections.values():
             section.refresh(is_look)
-        self._refreshes += 1
         if self.maps is not None and self.pad is not None:
             self.maps.refresh(self.playback, self.material, self.pad)
-        self.firmness.refresh(self._refreshes % LOOK_EVERY == 0)
         fresh = (self.playback.revision, self.material)
         if fresh == self._refreshed_at and self._refreshes % LOOK_EVERY:
             return
@@ -352,12 +358,37 @@ class Panel:
 
     # Changing.
 
-    def _set_both(self, stiffness: float, damping: float) -> bool:
-        """Set Cs and Cd of the chosen springs; False: there are none, which is said."""
-        if not self._has_springs():
+    @property
+    def document(self) -> Playback:
+        """The run, of which properties of the panel are."""
+        return self.playback
+
+    def edit(self, label: str, change: Callable[[Playback], Command | None], merge: str | None = None) -> bool:
+        """Give the run the command that a change comes to; None: it was seen to."""
+        try:
+            command = change(self.playback)
+        except EditError as error:
+            self.say(sentence(error))
             return False
-        self._submit(SetCoefficients(stiffness=stiffness, damping=damping, material=self.material))
-        return True
+        if command is not None:
+            if merge is not None and self._gesture is None:
+                self._gesture = self.playback.session.new_gesture()
+            self._submit(command, None if merge is None else self._gesture)
+        return command is not None
+
+    def end_merge(self) -> None:
+        """Let the next change be a gesture of its own."""
+        self._gesture = None
+
+    def say(self, text: str) -> None:
+        """Show a line to the person."""
+        self._say(text)
+
+    def _both(self, stiffness: float, damping: float) -> Command:
+        """The command that sets Cs and Cd of the chosen springs. Raises EditError where there are none."""
+        if not len(self._chosen()):
+            raise EditError(NO_SPRING)
+        return SetCoefficients(stiffness=stiffness, damping=damping, material=self.material)
 
     def _submit(self, command: Command, gesture: int | None = None) -> None:
         self.playback.submit(command, gesture)
@@ -397,7 +428,7 @@ class Panel:
 
         world, name = self.playback.session.world, self.firmness.body_of(self.material)
         has_form = name in {body.name for body in world.forms}
-        show_take_home(self._ui, world, self.say, name if has_form else None)
+        show_take_home(self.ui, world, self.say, name if has_form else None)
 
     def choose_body(self, name: str) -> None:
         """Show and change a body, by its name, or all, and the springs that it is made of."""
@@ -461,9 +492,6 @@ class Panel:
         if self.material is None and count > 1:
             self.say(f"This changes the springs of all {count} materials; Ctrl+Z takes it back.")
 
-    def _end_gesture(self) -> None:
-        self._gesture = None
-
     def _type_coefficient(self, text: str, is_stiffness: bool) -> bool:
         value = typed_number(self.say, text, "Cs" if is_stiffness else "Cd", 0.0, 1.0)
         if value is None or not self._has_springs():
@@ -473,7 +501,7 @@ class Panel:
 
     def _has_springs(self) -> bool:
         if not len(self._chosen()):
-            self.say("There is no spring here that Cs and Cd apply to.")
+            self.say(sentence(NO_SPRING))
             return False
         return True
 

@@ -1,13 +1,22 @@
-"""PanelRows: where the next row of a panel goes, lines to type into with their titles, and sections that fold."""
+"""What the panel beside a run is made of: rows, properties in them, sections that fold, and what screens ask of it."""
 
-from collections.abc import Callable
-from typing import Any
+import re
+from collections.abc import Callable, Sequence, Set
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any, Protocol
 
 import pygame
 
+from sandbox.app.base.shortcuts import hint
+from sandbox.app.panel.coefficient_pad import CoefficientPad
+from sandbox.app.run.playback import Playback
 from sandbox.app.widgets.boxes import HEADING_SIZE, FoldHeading
 from sandbox.app.widgets.field import Field
+from sandbox.app.widgets.property_widgets import PropertyOwner, PropertyWidgets
+from sandbox.app.widgets.styles import LABELS
 from sandbox.app.widgets.ui import Ui
+from sandbox.editor.panel.property import Property, Section
 
 # Sizes in layout units.
 PANEL_WIDTH = 292.0
@@ -19,6 +28,10 @@ ENTRY_WIDTH = 82.0
 GAP = 12.0
 # Of a heading's row, what is beside its words; the rest is free for what belongs there.
 HEADING_ROOM = 34.0
+# Of a choice, what its title takes that is beside it, and a button beside its words.
+BESIDE, BUTTON_ROOM = 46.0, 14.0
+# Narrower windows begin without a panel at their side.
+ROOM_FOR_PANEL = 800.0
 
 
 class PanelRows:
@@ -37,6 +50,12 @@ class PanelRows:
     def place(self, x: float, below: float, width: float, height: float) -> pygame.Rect:
         """A place so far below the top of the next row."""
         return self.ui.rect(x, self.y + below, width, height)
+
+    def form(self, owner: PropertyOwner, sections: Sequence[Section]) -> "PanelForm":
+        """Properties in the next rows, which stay the same ones."""
+        made = PanelForm(owner, self)
+        made.show(sections)
+        return made
 
     def named_field(self, text: str, tip: str, commit: Callable[[str], bool]) -> Field:
         """A label at the left and a line to type into at the right, on a row of their own."""
@@ -68,3 +87,127 @@ class PanelRows:
             for element in self.back.children[before:]:
                 element.visible = False
             self.y = y
+
+
+class PanelForm(PropertyWidgets):
+    """Properties in rows of a panel: numbers side by side below their titles, choices beside theirs or below them."""
+
+    def __init__(self, owner: PropertyOwner, rows: PanelRows) -> None:
+        super().__init__(owner, rows.back)
+        self._rows = rows
+
+    def close(self) -> None:
+        """Do nothing: the rows go with the panel."""
+
+    def _lay_out(self, sections: Sequence[Section]) -> None:
+        self._y = self._rows.y
+        for section in sections:
+            if section.title:
+                self._ui.label(self._rect(MARGIN, INSIDE, 16), section.title, self._holder)
+                self._y += 18
+            for is_choice, group in groupby(section.properties, lambda each: each.about.kind == "choice"):
+                if is_choice:
+                    for each in group:
+                        self._add_row(each)
+                else:
+                    self._add_beside(list(group))
+        self._rows.y = self._y
+
+    def _add_row(self, each: Property) -> None:
+        """A choice, beside its title where there is room for that."""
+        about, font = each.about, self._ui.font(LABELS["muted"].size)
+        widest = max(font.size(label)[0] for label in about.labels or about.choices) / self._ui.scale
+        is_beside = len(about.choices) * (widest + BUTTON_ROOM) <= INSIDE - BESIDE
+        self._add_label(each, self._rect(MARGIN, INSIDE, ROW - 2 if is_beside else 18))
+        self._y += 0 if is_beside else 20
+        self._tall = ROW - 2
+        self._make(each, MARGIN + BESIDE if is_beside else MARGIN, INSIDE - BESIDE if is_beside else INSIDE)
+        self._y += ROW + 5
+
+    def _add_beside(self, group: Sequence[Property]) -> None:
+        width = (INSIDE - GAP * (len(group) - 1)) / len(group)
+        places = [MARGIN + number * (width + GAP) for number in range(len(group))]
+        for each, x in zip(group, places, strict=True):
+            self._add_label(each, self._rect(x, width, 18))
+        self._y += 19
+        self._tall = ROW
+        for each, x in zip(group, places, strict=True):
+            self._make(each, x, width)
+        self._y += ROW + 6
+
+
+class SectionRows(Protocol):
+    """The rows of a section; playback: the run that they show and change."""
+
+    playback: Playback
+
+    def build(self, rows: PanelRows) -> None:
+        """Make the widgets, one row below the other."""
+        ...
+
+    def refresh(self, is_look: bool) -> None:
+        """Show what the world has now, once a frame. is_look: what takes long is looked at, too."""
+        ...
+
+
+class SectionOwner(Protocol):
+    """What sections are made of: a panel, its run, and `say`, which shows a line to the person."""
+
+    playback: Playback
+    say: Callable[[str], None]
+
+    @property
+    def springs(self) -> SectionRows:
+        """Rows that the panel itself makes, for springs."""
+        ...
+
+    @property
+    def engineers(self) -> SectionRows:
+        """Rows that the panel itself needs, for engineers."""
+        ...
+
+    @property
+    def world(self) -> SectionRows:
+        """Rows that the panel itself needs, for the world."""
+        ...
+
+
+@dataclass(frozen=True)
+class PanelSection:
+    """A section: its heading, and what makes its rows for a panel.
+
+    words: what a level's hint asks for it by, beside its heading.
+    """
+
+    title: str
+    make: Callable[[SectionOwner], SectionRows]
+    words: tuple[str, ...] = ()
+
+    def is_asked_for(self, description: str) -> bool:
+        """Whether a level's description speaks of what is in it."""
+        said = hint(description)
+        return any(re.search(rf"\b{re.escape(word)}\b", said) for word in (self.title, *self.words))
+
+
+class SidePanel(Protocol):
+    """A panel beside a run."""
+
+    playback: Playback
+    material: int | None
+    pad: CoefficientPad | None
+
+    def refresh(self) -> None:
+        """Show what the world has now."""
+        ...
+
+    def show_choices(self, strength: str, views: Set[str]) -> None:
+        """Show the strength of the hand, and which overlays are seen."""
+        ...
+
+    def choose_material(self, material: int | None) -> None:
+        """Show and change the springs of a material (index); None = all."""
+        ...
+
+    def attach(self, playback: Playback) -> None:
+        """Show and change another run of the same level."""
+        ...

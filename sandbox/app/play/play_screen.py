@@ -19,11 +19,9 @@ from sandbox.app.draw.views.overlays import names_for
 from sandbox.app.film.film import Film, last_ticks
 from sandbox.app.film.film_pair import FilmPair
 from sandbox.app.graphs.graph_dock import GraphDock
-from sandbox.app.panel.contacts import ContactSettings, restart_with_contacts
+from sandbox.app.panel.contacts import ContactSettings, ask_for_pace, restart_with_contacts
 from sandbox.app.panel.panel import MORE, SECTIONS, Panel, PanelShape
-from sandbox.app.panel.panel_rows import PANEL_WIDTH
-from sandbox.app.panel.rate_choice import ask_for_pace
-from sandbox.app.panel.side_panel import ROOM_FOR_PANEL, SidePanel
+from sandbox.app.panel.panel_rows import PANEL_WIDTH, ROOM_FOR_PANEL, SidePanel
 from sandbox.app.parts.part_page import PartPage
 from sandbox.app.play.bake_choice import ask_to_keep
 from sandbox.app.play.drive_keys import DriveKeys

@@ -10,7 +10,7 @@ from typing import Any
 from sandbox.app.base import coefficient_scale, gamepads, loop
 from sandbox.app.draw import effects, looks, themes, water
 from sandbox.app.draw.things import drawables, faces, frame, members, sheets, soft, springs, strands, treads, wheels
-from sandbox.app.panel import readings, solver_rows
+from sandbox.app.panel import engineers_rows, readings
 from sandbox.app.play import hand_labels, stage
 from sandbox.app.run import playback
 from sandbox.app.sound import bank, sound_events, voices, waves
@@ -51,7 +51,7 @@ def shared_values() -> dict[str, dict[str, Any]]:
         "PAD": _of(coefficient_scale, "NUMBERED", "DIGITS", "END")
         | {"LOWEST": coefficient_scale.PLAIN.lowest, "REST": coefficient_scale.PLAIN.rest}
         | {"RIGID": body_motion.RIGID, "UNSEEN": readings.UNSEEN},
-        "SOLVING": {"LABELS": solver_rows.SOLVER_LABELS, "TIPS": solver_rows.SOLVER_TIPS},
+        "SOLVING": {"LABELS": engineers_rows.SOLVER_LABELS, "TIPS": engineers_rows.SOLVER_TIPS},
         "SOUND": _of(
             sound_events, "SOFTEST", "HARDEST", "NEWS", "MEMORY", "MOST", "JERK", "HARD_JERK", "TUNED",
             "HIGHEST_STRING", "SNAP_PITCH", "MOTOR_PITCH", "MOTOR_RISE", "SOFT_SPLASH", "HARD_SPLASH", "SPLASH_PITCH",

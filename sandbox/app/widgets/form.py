@@ -32,39 +32,13 @@ class Form(PropertyWidgets):
     ) -> None:
         super().__init__(owner, Widget(owner.ui, pygame.Rect(0, 0, 0, 0), area.content))
         self.area, self._above, self._below, self._empty = area, above, below, empty
-        self._structure: object = None
-        self._sections: Sequence[Section] = ()
-
-    def show(self, sections: Sequence[Section]) -> None:
-        """Show properties."""
-        self._sections = sections
-        shown = [section for section in sections if not self.is_folded(section)]
-        structure = [(s.title, [self._structure_of(p) for p in s.properties] if s in shown else None) for s in sections]
-        self.properties = {each.field: each for section in shown for each in section.properties}
-        if structure != self._structure:
-            self._structure = structure
-            self._remake(sections)
-        self._is_stale = False
-        for each in self.properties.values():
-            self._show_value(each)
-
-    def is_folded(self, section: Section) -> bool:
-        """Whether a section shows its heading alone."""
-        return self._owner.folds.get(section.title, section.is_rare)
 
     @property
     def end(self) -> float:
         """The lower end of the form [layout units]."""
         return self._y + 8.0
 
-    def _structure_of(self, each: Property) -> tuple[object, ...]:
-        about = each.about
-        shape = (about.kind, about.title, about.unit, about.choices, about.empty, each.axes, each.slides)
-        lines = 0 if each.editable else self._lines(each)
-        return each.field, each.remove is not None, lines, self._is_long(each), *shape
-
     def _lines(self, each: Property) -> int:
-        """How many lines a text takes that is only shown."""
         font = self._ui.font(11.0)
         return len(wrapped(each.texts[0], font, self._ui.px(self._inside - LABEL_WIDTH), NOTE_LINES))
 
@@ -72,25 +46,19 @@ class Form(PropertyWidgets):
     def _inside(self) -> float:
         return self.area.view.rect.width / self._ui.scale - 2.0
 
-    def _remake(self, sections: Sequence[Section]) -> None:
-        ui = self._ui
-        focused = next((name for name, widget in self._named.items() if widget is ui.focus), "")
-        self.close()
-        self._forget()
+    def _lay_out(self, sections: Sequence[Section]) -> None:
         self._y = self._above
         if not sections and self._empty:
-            place = ui.rect(0, self._y + 4, self._inside, 120)
-            TextBlock(ui, place, self._empty, self._holder, 12.5)
+            place = self._ui.rect(0, self._y + 4, self._inside, 120)
+            TextBlock(self._ui, place, self._empty, self._holder, 12.5)
         for number, section in enumerate(sections):
             self._y += SECTION_GAP if number else 0.0
             self._add_heading(section, is_first=number == 0)
             if not self.is_folded(section):
                 for each in section.properties:
                     self._add(each)
-        self._holder.resize((self.area.content.place.width, ui.px(self.end)))
-        self.area.set_height(ui.px(self.end + self._below))
-        if focused in self._named:
-            ui.focus_on(self._named[focused])
+        self._holder.resize((self.area.content.place.width, self._ui.px(self.end)))
+        self.area.set_height(self._ui.px(self.end + self._below))
 
     def _add_heading(self, section: Section, is_first: bool) -> None:
         """The name of what is shown, or a heading that folds what is below it."""

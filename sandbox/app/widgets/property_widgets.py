@@ -16,7 +16,7 @@ from sandbox.app.draw.themes import rgb_of
 from sandbox.app.widgets.boxes import KEYS, CheckBox, KeyBox, Scrub
 from sandbox.app.widgets.button import Choice
 from sandbox.app.widgets.dialogs import ask, choose
-from sandbox.app.widgets.field import Field
+from sandbox.app.widgets.field import DASH, Field
 from sandbox.app.widgets.picker import Picker
 from sandbox.app.widgets.rows import Row
 from sandbox.app.widgets.slider import Slider, SliderState
@@ -27,7 +27,7 @@ from sandbox.editor.document import EditError
 from sandbox.editor.edits.collision_groups import collision_groups
 from sandbox.editor.panel.extra_values import HOW_TO_ADD
 from sandbox.editor.panel.field_info import Pick
-from sandbox.editor.panel.property import MIXED, Property
+from sandbox.editor.panel.property import MIXED, Property, Section
 from sandbox.editor.panel.typed import EVERYTHING, NOTHING
 from sandbox.level.document.model import ParticleDef
 from sandbox.level.format.look import COLOUR_PATTERN, colour_of
@@ -122,6 +122,8 @@ class PropertyWidgets:
         self.properties: dict[str, Property] = {}
         self._slid: tuple[str, float] | None = None
         self._is_stale = False
+        self._structure: object = None
+        self._sections: Sequence[Section] = ()
         self._y = 0.0
         self._forget()
 
@@ -137,6 +139,23 @@ class PropertyWidgets:
         self.sliders: dict[str, Slider] = {}
         self._notes: dict[str, TextBlock] = {}
         self._named: dict[str, Any] = {}
+
+    def show(self, sections: Sequence[Section]) -> None:
+        """Show properties; their widgets are made again only where other fields are shown."""
+        self._sections = sections
+        shown = [section for section in sections if not self.is_folded(section)]
+        structure = [(s.title, [self._structure_of(p) for p in s.properties] if s in shown else None) for s in sections]
+        self.properties = {each.field: each for section in shown for each in section.properties}
+        if structure != self._structure:
+            self._structure = structure
+            self._remake(sections)
+        self._is_stale = False
+        for each in self.properties.values():
+            self._show_value(each)
+
+    def is_folded(self, section: Section) -> bool:
+        """Whether a section shows its heading alone."""
+        return self._owner.folds.get(section.title, section.is_rare)
 
     def refresh(self) -> None:
         """Take what was slid, and bring fields that were typed into to the values that they gave."""
@@ -154,6 +173,28 @@ class PropertyWidgets:
         self._named = {}
 
     # Making widgets.
+
+    def _structure_of(self, each: Property) -> tuple[object, ...]:
+        about = each.about
+        shape = (about.kind, about.title, about.unit, about.choices, about.empty, each.axes, each.slides)
+        lines = 0 if each.editable else self._lines(each)
+        return each.field, each.remove is not None, lines, self._is_long(each), *shape
+
+    def _lines(self, each: Property) -> int:
+        """How many lines a text takes that is only shown."""
+        return 1
+
+    def _remake(self, sections: Sequence[Section]) -> None:
+        focused = next((name for name, widget in self._named.items() if widget is self._ui.focus), "")
+        self.close()
+        self._forget()
+        self._lay_out(sections)
+        if focused in self._named:
+            self._ui.focus_on(self._named[focused])
+
+    def _lay_out(self, sections: Sequence[Section]) -> None:
+        """Make the widgets of all that is shown, each in its place."""
+        raise NotImplementedError
 
     def _keep(self, widget: Any, name: str) -> Any:
         self._named[name] = widget
@@ -204,9 +245,8 @@ class PropertyWidgets:
 
     def _add_label(self, each: Property, place: pygame.Rect) -> None:
         """Make a property's title, which is dragged where it is a number."""
-        about = each.about
-        text = about.title + (f" [{SQUARED.get(about.unit, about.unit)}]" if about.unit else "")
-        if each.editable and about.kind in ("number", "integer"):
+        about, text = each.about, title_of(each)
+        if each.editable and each.scrubs and about.kind in ("number", "integer"):
             scrub = Scrub(self._ui, place, text, partial(self._scrub, each.field), self._owner.end_merge, self._holder)
             scrub.tip = f"{about.tooltip} Drag to change it."
             self.scrubs[each.field] = scrub
@@ -217,7 +257,8 @@ class PropertyWidgets:
         commit = partial(self._type, each.field, axis)
         field = self._ui.field(self._rect(x, width), "", commit, self._holder, TEXT_LENGTH)
         if each.about.empty:
-            field.hint = f"({each.about.empty})"
+            # A dash says all by itself.
+            field.hint = each.about.empty if each.about.empty == DASH else f"({each.about.empty})"
             field.typed = ""
         axis_name = f"{each.axes[axis]}. " if each.about.kind == "point" else ""
         field.tip = axis_name + each.about.tooltip
@@ -433,6 +474,12 @@ class PropertyWidgets:
         title = self.properties[name].about.title
         choices = [("Copy as text", put), ("Paste in its place", take)]
         choose(self._ui, title, "This list is too long for one line.", choices)
+
+
+def title_of(each: Property) -> str:
+    """What is written beside the value, with its unit."""
+    unit = each.about.unit
+    return f"{each.about.title} [{SQUARED.get(unit, unit)}]" if unit else each.about.title
 
 
 def _choice_text(each: Property) -> str:

@@ -33,6 +33,7 @@ _RATIO = FieldInfo(
 )
 # Digits of readings.
 DIGITS = 3
+NO_FREQUENCY = "there is no one frequency to keep: type the frequency first"
 
 # Frequency [Hz] and damping ratio; MIXED where things differ in it, None where there is none.
 Swing = tuple[Any, Any]
@@ -46,7 +47,8 @@ def materials_of(level: Level) -> dict[str, Material]:
 def material_sections(level: Level, name: str) -> tuple[Section, ...]:
     """What can be changed of a material."""
     material = materials_of(level)[name]
-    coefficients, limits = [], []
+    coefficients: list[Property] = []
+    limits: list[Property] = []
     if name != DEFAULT_MATERIAL:
         rename = Property("name", _NAME, name, lambda document, new: rename_material(document, name, new))
         coefficients.append(replace(rename, label=f"{name}: rename"))
@@ -54,7 +56,8 @@ def material_sections(level: Level, name: str) -> tuple[Section, ...]:
     coefficients.append(Property("law", _LAW, law, partial(_set_law, name), label=f"{name}: law"))
     for field, about in fields_of(type(material)).items():
         if field in TITLES:
-            about = replace(about, title=TITLES[field])
+            # Of Cs and Cd, a part per tick, nobody misses the unit.
+            about = replace(about, title=TITLES[field], unit="" if field in ("stiffness", "damping") else about.unit)
         elif field not in MaterialDef.model_fields or field == "look":
             continue
         label = f"{name}: {TITLES[field].split()[0] if field in TITLES else about.title.lower()}"
@@ -92,7 +95,7 @@ def swing_properties(
 
     def with_ratio(target: Any, new: float) -> Any:
         if not _is_known(old_hz):
-            raise EditError("there is no one frequency to keep: type the frequency first")
+            raise EditError(NO_FREQUENCY)
         return put(target, old_hz, in_range(ratio, new))
 
     def remark(target: Any, hz: float) -> str:

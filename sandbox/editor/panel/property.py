@@ -48,8 +48,9 @@ class Property:
 
     write: makes a document with another value, or of a run the command that sets it; None where it is only shown.
     axes: names of the numbers of a point. remark: what to say of a value in a document that is taken otherwise than it
-    was asked for; "" = nothing. remove: makes a document without the field, where it can be taken away. slides: it has a
-    slider from 0 to 1. label: what a change is called in the history; "" = as the field.
+    was asked for; "" = nothing. remove: makes a document without the field, where it can be taken away.
+    slides: it has a slider from 0 to 1. scrubs: its title can be dragged, where it is a number. label: what a change is
+    called in the history; "" = as the field.
     """
 
     field: str
@@ -60,6 +61,7 @@ class Property:
     remark: Callable[[Any, Any], str] | None = None
     remove: Callable[[Document], Document] | None = None
     slides: bool = False
+    scrubs: bool = True
     label: str = ""
 
     @property

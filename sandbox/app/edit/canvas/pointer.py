@@ -134,19 +134,19 @@ class SelectTool:
             return None
         return corners_of(piece_of(self._screen.document.level, str(piece.key)))[corner]
 
-    def put_corner(self, place: Point, label: str, merge: str | None = None) -> bool:
-        """Move the clicked corner, which there is, to a place [m]; whether it can be there."""
-        piece, corner = self.piece, self.corner
-        assert piece is not None and corner is not None
-        key, at = str(piece.key), (round(place[0], PLACE_DECIMALS) + 0.0, round(place[1], PLACE_DECIMALS) + 0.0)
-        return self._screen.edit(label, lambda document: move_corner(document, key, corner, at), merge=merge)
+    def with_corner(self, document: Document, place: Point) -> Document:
+        """A document with the clicked corner, which there is, at a place [m]. Raises EditError."""
+        assert self.piece is not None and self.corner is not None
+        at = round(place[0], PLACE_DECIMALS) + 0.0, round(place[1], PLACE_DECIMALS) + 0.0
+        return move_corner(document, str(self.piece.key), self.corner, at)
 
     def nudge_corner(self, dx: float, dy: float) -> bool:
         """Move the clicked corner by dx, dy [m]; whether there is one."""
         place = self.corner_place
         if place is None:
             return False
-        self.put_corner((place[0] + dx, place[1] + dy), "Nudge a corner", "nudge a corner")
+        to = place[0] + dx, place[1] + dy
+        self._screen.edit("Nudge a corner", lambda document: self.with_corner(document, to), merge="nudge a corner")
         return True
 
     def handles(self) -> Handles | None:

@@ -1,73 +1,127 @@
 """The row below the bar: what the tool can be told, or place and size of the selection as numbers."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import pygame
 
-from sandbox.app.base.sentences import sentence
 from sandbox.app.contracts.application import Editing
-from sandbox.app.draw.camera import Point
-from sandbox.app.draw.material_colours import material_colours
+from sandbox.app.draw.camera import Box, Point
 from sandbox.app.edit.canvas.pointer import DrawTool, SelectTool
-from sandbox.app.widgets.field import Field
-from sandbox.app.widgets.picker import Picker
-from sandbox.app.widgets.rows import Row
-from sandbox.editor.document import EditError
+from sandbox.app.widgets.property_widgets import OwnValues, PropertyWidgets, title_of
+from sandbox.app.widgets.styles import LABELS
+from sandbox.editor.document import Document, EditError
 from sandbox.editor.edits.moving import move, rotate, scale
-from sandbox.editor.panel.typed import read_number
-from sandbox.editor.tools.drawing_options import OptionInfo, described, stepped
+from sandbox.editor.panel.field_info import FieldInfo, Kind
+from sandbox.editor.panel.property import Property, Section
+from sandbox.editor.panel.typed import number_text
+from sandbox.editor.tools.drawing_options import described, stepped
 from sandbox.editor.tools.palette import TOOLS
 from sandbox.editor.tools.snap import PLACE_DECIMALS, SHOWN_DECIMALS
 from sandbox.level.format.limits import DEFAULT_MATERIAL
+from sandbox.level.format.quantities import significant
 
 # Sizes in layout units.
 OPTIONS_HEIGHT = 38.0
-ENTRY_WIDTH = 62.0
-MENU_WIDTH = 108.0
+ENTRY_WIDTH, NUMBER_WIDTH, MENU_WIDTH = 62.0, 76.0, 108.0
 HEIGHT = 26.0
 GAP = 12.0
 LABEL_GAP = 6.0
-NUMBER_WIDTH = 76.0
 MORE_WIDTH = 64.0
+# What a flag's button has beside its words.
+FLAG_ROOM = 22.0
+# Digits of a place or size of the selection.
+DIGITS = 8
+NOTHING = "Nothing is selected. Draw with a tool at the left, or click something."
+KINDS: dict[str, Kind] = {"count": "integer", "number": "number", "flag": "yes_no", "material": "material"}
+CORNER = FieldInfo("number", "corner", tooltip="Of the corner [m]")
+# Of the selection, by what a change of it is called.
+NUMBERS = {
+    "Move": FieldInfo("number", "x", tooltip="Centre of the selection [m]"),
+    "Scale": FieldInfo("number", "width", tooltip="Size of the selection [m]"),
+    "Turn": FieldInfo(
+        "number", "turn by", tooltip="Angle to turn the selection by [degrees], counter-clockwise"
+    ),
+}  # fmt: skip
 
-# A label and what is beside it: the width that they take with the gaps after them, and what makes them.
-Item = tuple[float, Callable[[], None]]
 
-
-class OptionsRow:
-    """Fields of the tool in use, in a rectangle of pixels; made again when the tool or the materials change.
+class OptionsRow(PropertyWidgets):
+    """Fields of the tool in use, in a rectangle of pixels; made again when the tool or the selection change kind.
 
     Where they do not fit side by side, a button turns to those that come next.
     """
 
     def __init__(self, screen: Editing, place: pygame.Rect) -> None:
-        self._screen, self._ui = screen, screen.ui
-        self.back = self._ui.panel(place)
-        self._made_for: tuple[object, ...] = ()
-        self._x = 0.0
+        self._screen, self._own = screen, OwnValues(screen)
+        self.back = screen.ui.panel(place)
+        super().__init__(screen, self.back, HEIGHT)
+        self._x, self._y = GAP, (OPTIONS_HEIGHT - HEIGHT) / 2
         self._page = 0
         self.more: Any = None
-        self.fields: dict[str, Field] = {}
-        self.flags: dict[str, Any] = {}
-        self.menus: dict[str, Picker] = {}
+        self._shown: tuple[object, ...] = ()
 
     def refresh(self) -> None:
         """Show the options, or the selection's numbers, as they are now."""
-        screen = self._screen
-        chosen = bool(screen.document.selection)
-        materials = tuple(screen.scene.materials)
-        tool = screen.pointer_tool
-        made_for = (screen.tool, materials) if isinstance(tool, DrawTool) else ("select", chosen, self._corner is None)
-        if made_for != self._made_for:
-            self._made_for, self._page = made_for, 0
-            self._remake()
+        tool, screen = self._screen.pointer_tool, self._screen
         if isinstance(tool, DrawTool):
-            self._show_options(tool)
-        elif chosen:
-            self._show_selection()
+            fresh: tuple[object, ...] = (screen.tool, tool.drawing.options, screen.document.level.materials)
+        else:
+            fresh = (self._corner, screen.selection_box, bool(screen.document.selection))
+        if fresh != self._shown:
+            self._shown = fresh
+            if isinstance(tool, DrawTool):
+                self._owner = self._own
+                section = Section(TOOLS[screen.tool].title.capitalize(), tuple(self._options(tool)))
+            else:
+                self._owner = screen
+                section = Section("", tuple(self._numbers()))
+            if [each.field for each in section.properties] != list(self.properties):
+                self._page = 0
+            self.show([section])
+        super().refresh()
+
+    def _options(self, tool: DrawTool) -> list[Property]:
+        """What the tool can be told."""
+        found = []
+        for name, about in described(tool.drawing.options).items():
+            if about.kind == "material":
+                # It draws with a material that the level has.
+                materials = self._screen.scene.materials
+                if getattr(tool.drawing.options, name) not in materials:
+                    tool.drawing.set_option(name, materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL)
+            kind, limits = KINDS[about.kind], (about.least, about.most)
+            tip = f"{about.text} The wheel or Up and Down change it." if kind in ("number", "integer") else about.text
+            info = FieldInfo(
+                kind, about.label, about.unit, *limits, tooltip=tip, optional=about.optional,
+                empty=about.empty if about.optional else "",
+            )  # fmt: skip
+            value = getattr(tool.drawing.options, name)
+            found.append(Property(name, info, value, partial(_set_option, tool, name), scrubs=False))
+        return found
+
+    def _numbers(self) -> list[Property]:
+        """Place and size of the selection, or the place of a corner of it."""
+        corner, box = self._corner, self._screen.selection_box
+        if corner is not None:
+            return [
+                Property(name, replace(CORNER, title=f"corner {name}"), significant(value, DIGITS),
+                         partial(self._put_corner, axis), scrubs=False, label="Move a corner")
+                for axis, (name, value) in enumerate(zip("xy", corner, strict=True))
+            ]  # fmt: skip
+        if box is None or not self._screen.document.selection:
+            return []
+        left, bottom, right, top = box
+        shown = (left + right) / 2, (bottom + top) / 2, right - left, top - bottom
+        decimals = (SHOWN_DECIMALS, SHOWN_DECIMALS, PLACE_DECIMALS, PLACE_DECIMALS)
+        found = []
+        for name, value, digits in zip(("x", "y", "width", "height"), shown, decimals, strict=True):
+            write, label = (_move, "Move") if name in ("x", "y") else (self._scale, "Scale")
+            about, value = replace(NUMBERS[label], title=name), significant(round(value, digits) + 0.0, DIGITS)
+            found.append(Property(name, about, value, partial(write, name, box), scrubs=False, label=label))
+        return [*found, Property("turn", NUMBERS["Turn"], None, partial(_turn, box), scrubs=False, label="Turn")]
 
     @property
     def _corner(self) -> Point | None:
@@ -75,24 +129,65 @@ class OptionsRow:
         tool = self._screen.pointer_tool
         return tool.corner_place if isinstance(tool, SelectTool) else None
 
-    def _remake(self) -> None:
-        self.back.clear()
-        self.fields, self.flags, self.menus, self.more, self._x = {}, {}, {}, None, GAP
-        tool, chosen = self._screen.pointer_tool, bool(self._screen.document.selection)
-        items: list[Item] = []
-        if isinstance(tool, DrawTool):
-            self._add_label(TOOLS[self._screen.tool].title.capitalize(), "heading")
-            items = [self._option(tool, name, about) for name, about in described(tool.drawing.options).items()]
-        elif chosen:
-            items = self._numbers()
-        else:
-            self._add_label("Nothing is selected. Draw with a tool at the left, or click something.", "muted")
-        pages = self._pages([width for width, _ in items])
+    def focus(self) -> None:
+        """Give the keyboard to the first field."""
+        if self.fields:
+            self._ui.focus_on(next(iter(self.fields.values()))[0])
+
+    # Making widgets, from the left.
+
+    def _lay_out(self, sections: Sequence[Section]) -> None:
+        (section,), self.more, self._x = sections, None, GAP
+        if section.title:
+            self._add_words(section.title, "heading")
+        elif not section.properties:
+            self._add_words(NOTHING, "muted")
+        widths = [self._width_of(each) for each in section.properties]
+        pages = self._pages(widths)
         self._page %= len(pages)
         for index in pages[self._page]:
-            items[index][1]()
+            self._add(section.properties[index])
         if len(pages) > 1:
             self._add_more(len(pages))
+
+    def _text_width(self, text: str) -> float:
+        return self._ui.font(LABELS["muted"].size).size(text)[0] / self._ui.scale
+
+    def _width_of(self, each: Property) -> float:
+        """What a property takes, with its title and the gaps after them."""
+        if each.about.kind == "yes_no":
+            return self._text_width(each.about.title) + FLAG_ROOM + LABEL_GAP
+        return self._text_width(title_of(each)) + 4 + LABEL_GAP + self._entry_width(each) + self._gap_after(each)
+
+    def _entry_width(self, each: Property) -> float:
+        if each.about.kind == "material":
+            return MENU_WIDTH
+        return NUMBER_WIDTH if self._owner is self._screen else ENTRY_WIDTH
+
+    def _gap_after(self, each: Property) -> float:
+        return 2 * GAP if each.field in ("y", "height") else GAP
+
+    def _add(self, each: Property) -> None:
+        if each.about.kind == "yes_no":
+            width = self._text_width(each.about.title) + FLAG_ROOM
+            toggle, tip = partial(self._toggle, each.field), each.about.tooltip
+            place = self._rect(self._x, width)
+            button = self._ui.button(place, each.about.title, toggle, self._holder, style="segment", tip=tip)
+            self.buttons[each.field] = self._keep(button, each.field)
+            self._x += width + LABEL_GAP
+            return
+        label, entry = self._text_width(title_of(each)) + 4, self._entry_width(each)
+        self._add_label(each, self._rect(self._x, label))
+        self._make(each, self._x + label + LABEL_GAP, entry)
+        if self._owner is self._own and each.field in self.fields:
+            field = self.fields[each.field][0]
+            field.step_value, field.hint = partial(self._step, each.field), each.about.empty
+        self._x += label + LABEL_GAP + entry + self._gap_after(each)
+
+    def _add_words(self, text: str, style: str) -> None:
+        width = self._text_width(text) + 4
+        self._ui.label(self._rect(self._x, width), text, self._holder, style)
+        self._x += width + LABEL_GAP
 
     def _pages(self, widths: list[float]) -> list[list[int]]:
         """Which items stand side by side: all where they fit, else as many as fit beside the button for more."""
@@ -116,201 +211,60 @@ class OptionsRow:
     def _turn_page(self) -> None:
         has_keyboard = self._ui.focus is self.more
         self._page += 1
-        self._remake()
+        self._remake(self._sections)
+        for each in self.properties.values():
+            self._show_value(each)
         if has_keyboard:
             self._ui.focus_on(self.more)
 
-    def focus(self) -> None:
-        """Give the keyboard to the first field."""
-        if self.fields:
-            self._ui.focus_on(next(iter(self.fields.values())))
+    # Showing and changing values.
 
-    # Adding widgets from the left.
+    def _show_value(self, each: Property) -> None:
+        super()._show_value(each)
+        if each.about.kind == "yes_no" and each.field in self.buttons:
+            self.buttons[each.field].is_selected = each.value
 
-    def _rect(self, width: float) -> pygame.Rect:
-        place = self._ui.rect(self._x, (OPTIONS_HEIGHT - HEIGHT) / 2, width, HEIGHT)
-        self._x += width
-        return place
+    def _toggle(self, name: str) -> None:
+        self._set(name, not self.properties[name].value)
 
-    def _text_width(self, text: str) -> float:
-        return self._ui.font(12).size(text)[0] / self._ui.scale
-
-    def _add_label(self, text: str, style: str = "muted") -> None:
-        self._ui.label(self._rect(self._text_width(text) + 4), text, self.back, style)
-        self._x += LABEL_GAP
-
-    def _labelled(self, label: str, width: float, add: Callable[[], None], gap: float = GAP) -> Item:
-        def make() -> None:
-            self._add_label(label)
-            add()
-            self._x += gap
-
-        return self._text_width(label) + 4 + LABEL_GAP + width + gap, make
-
-    def _add_field(self, name: str, commit: Callable[[str], bool], width: float, tip: str, empty: str = "") -> None:
-        field = self._ui.field(self._rect(width), "", commit, self.back, 24, hint=empty)
-        field.tip = tip
-        self.fields[name] = field
-
-    def _numbers(self) -> list[Item]:
-        """Place and size of the selection, or the place of a corner of it."""
-        items = []
-        if self._corner is not None:
-            for name in ("x", "y"):
-                add = partial(
-                    self._add_field, name, partial(self._type_corner, name), NUMBER_WIDTH, "Of the corner [m]"
-                )
-                items.append(self._labelled(f"corner {name}", NUMBER_WIDTH, add))
-            return items
-        for name, label, tip in (
-            ("x", "x", "Centre of the selection [m]"),
-            ("y", "y", "Centre of the selection [m]"),
-            ("width", "width", "Width of the selection [m]"),
-            ("height", "height", "Height of the selection [m]"),
-            ("turn", "turn by", "Angle to turn the selection by [degrees], counter-clockwise"),
-        ):
-            add = partial(self._add_field, name, partial(self._type_number, name), NUMBER_WIDTH, tip)
-            items.append(self._labelled(label, NUMBER_WIDTH, add, 2 * GAP if name in ("y", "height") else GAP))
-        return items
-
-    def _option(self, tool: DrawTool, name: str, about: OptionInfo) -> Item:
-        if about.kind == "flag":
-            width = self._text_width(about.label) + 22
-            return width + LABEL_GAP, partial(self._add_flag, tool, name, about, width)
-        label = about.label + (f" [{about.unit}]" if about.unit else "")
-        if about.kind == "material":
-            self._settle_material(tool, name)
-            return self._labelled(label, MENU_WIDTH, partial(self._add_picker, tool, name, about))
-        return self._labelled(label, ENTRY_WIDTH, partial(self._add_value, tool, name, about))
-
-    def _add_flag(self, tool: DrawTool, name: str, about: OptionInfo, width: float) -> None:
-        toggle = partial(self._toggle, tool, name)
-        button = self._ui.button(self._rect(width), about.label, toggle, self.back, style="segment", tip=about.text)
-        self.flags[name] = button
-        self._x += LABEL_GAP
-
-    def _add_value(self, tool: DrawTool, name: str, about: OptionInfo) -> None:
-        tip = f"{about.text} The wheel or Up and Down change it."
-        self._add_field(
-            name, partial(self._type_option, tool, name, about), ENTRY_WIDTH, tip, about.empty if about.optional else ""
-        )
-        self.fields[name].step_value = partial(self._step_option, tool, name, about)
-
-    def _settle_material(self, tool: DrawTool, name: str) -> None:
-        """Draw with a material that the level has."""
-        materials = self._screen.scene.materials
-        if getattr(tool.drawing.options, name) not in materials:
-            self._set(tool, name, materials[-1] if len(materials) > 1 else DEFAULT_MATERIAL)
-
-    def _add_picker(self, tool: DrawTool, name: str, about: OptionInfo) -> None:
-        picker = Picker(self._ui, self._rect(MENU_WIDTH), partial(self._choose, tool, name), self.back)
-        picker.tip = about.text
-        self.menus[name] = picker
-
-    # Showing.
-
-    def _show_options(self, tool: DrawTool) -> None:
-        options = tool.drawing.options
-        for name, field in self.fields.items():
-            value = getattr(options, name)
-            field.show("" if value is None else f"{value:g}")
-        for name, button in self.flags.items():
-            button.is_selected = getattr(options, name)
-        for name, picker in self.menus.items():
-            colours = material_colours(self._screen.scene.level.materials)
-            rows = tuple(Row(material, swatch=colour) for material, colour in colours.items())
-            picker.show_value(rows, Row(getattr(options, name), swatch=colours[getattr(options, name)]))
-
-    def _show_selection(self) -> None:
-        box, corner = self._screen.selection_box, self._corner
-        if corner is not None:
-            for name, value in zip(("x", "y"), corner, strict=True):
-                self.fields[name].show(f"{value:.8g}")
-            return
-        if box is None:
-            return
-        left, bottom, right, top = box
-        values = {"x": (left + right) / 2, "y": (bottom + top) / 2, "width": right - left, "height": top - bottom}
-        for name, value in values.items():
-            if name in self.fields:
-                decimals = SHOWN_DECIMALS if name in ("x", "y") else PLACE_DECIMALS
-                self.fields[name].show(f"{round(value, decimals) + 0.0:.8g}")
-
-    # Changing.
-
-    def _set(self, tool: DrawTool, name: str, value: Any) -> bool:
-        try:
-            tool.drawing.set_option(name, value)
-        except EditError as error:
-            self._screen.say(sentence(error))
-            return False
-        return True
-
-    def _choose(self, tool: DrawTool, name: str, index: int) -> None:
-        self._set(tool, name, self.menus[name].rows[index].text)
-
-    def _toggle(self, tool: DrawTool, name: str) -> None:
-        self._set(tool, name, not getattr(tool.drawing.options, name))
-
-    def _type_option(self, tool: DrawTool, name: str, about: OptionInfo, text: str) -> bool:
-        if not text.strip():
-            return self._set(tool, name, None)
-        value = self._number(about.label, text)
-        if value is None:
-            return False
-        if about.kind == "count" and value == int(value):
-            return self._set(tool, name, int(value))
-        return self._set(tool, name, value)
-
-    def _step_option(self, tool: DrawTool, name: str, about: OptionInfo, by: int) -> None:
+    def _step(self, name: str, by: int) -> None:
         """Step an option's value up or down; a number of parts that is open begins at the one that fits."""
+        tool = self._screen.pointer_tool
+        assert isinstance(tool, DrawTool)
         if name == tool.drawing.counted:
             tool.adjust(by)
         else:
-            self._set(tool, name, stepped(about, getattr(tool.drawing.options, name), by))
-        self._show_option(name, getattr(tool.drawing.options, name))
+            options = tool.drawing.options
+            self._set(name, stepped(described(options)[name], getattr(options, name), by))
+        value, field = getattr(tool.drawing.options, name), self.fields[name][0]
+        field.text = field.typed = "" if value is None else number_text(value)
 
-    def _show_option(self, name: str, value: float | None) -> None:
-        text = "" if value is None else f"{value:g}"
-        self.fields[name].text = text
-        self.fields[name].typed = text
+    def _put_corner(self, axis: int, document: Document, value: float) -> Document:
+        """The document with the clicked corner where it is to be."""
+        tool, corner = self._screen.pointer_tool, self._corner
+        assert isinstance(tool, SelectTool) and corner is not None
+        return tool.with_corner(document, (value, corner[1]) if axis == 0 else (corner[0], value))
 
-    def _number(self, label: str, text: str) -> float | None:
-        try:
-            return read_number(label, text)
-        except EditError as error:
-            self._screen.say(sentence(error))
-            return None
-
-    def _type_corner(self, name: str, text: str) -> bool:
-        """Move the corner that was clicked to what was typed."""
-        value, tool = self._number(f"corner {name}", text), self._screen.pointer_tool
-        corner = self._corner
-        if value is None or corner is None or not isinstance(tool, SelectTool):
-            return False
-        return tool.put_corner((value, corner[1]) if name == "x" else (corner[0], value), "Move a corner")
-
-    def _type_number(self, name: str, text: str) -> bool:
-        """Move, scale or turn the selection to what was typed."""
-        screen, value = self._screen, self._number(name, text)
-        box = screen.selection_box
-        if value is None or box is None:
-            return False
+    def _scale(self, name: str, box: Box, document: Document, value: float) -> Document:
         left, bottom, right, top = box
-        x, y, width, height = (left + right) / 2, (bottom + top) / 2, right - left, top - bottom
-        if name == "turn":
-            done = screen.edit("Turn", lambda document: rotate(document, math.radians(value), (x, y)))
-            self.fields["turn"].text = ""
-            self.fields["turn"].typed = ""
-            return done
-        if name in ("x", "y"):
-            dx, dy = (value - x, 0.0) if name == "x" else (0.0, value - y)
-            return screen.edit("Move", lambda document: move(document, dx, dy))
-        extent = width if name == "width" else height
+        extent = right - left if name == "width" else top - bottom
         if extent <= 0.0 or value <= 0.0:
-            screen.say(f"The {name} is {extent:g} m and cannot be made {value:g} m.")
-            return False
-        factor = value / extent
-        apart = screen.scales_unevenly
-        sx, sy = (factor if name == "width" or not apart else 1.0), (factor if name == "height" or not apart else 1.0)
-        return screen.edit("Scale", lambda document: scale(document, sx, sy, (x, y)))
+            raise EditError(f"the {name} is {extent:g} m and cannot be made {value:g} m")
+        factor, alone = value / extent, self._screen.scales_unevenly
+        across, up = (1.0 if alone and name != each else factor for each in ("width", "height"))
+        return scale(document, across, up, ((left + right) / 2, (bottom + top) / 2))
+
+
+def _set_option(tool: DrawTool, name: str, document: Document, value: Any) -> None:
+    tool.drawing.set_option(name, value)
+
+
+def _move(name: str, box: Box, document: Document, value: float) -> Document:
+    left, bottom, right, top = box
+    by = value - ((left + right) / 2 if name == "x" else (bottom + top) / 2)
+    return move(document, by, 0.0) if name == "x" else move(document, 0.0, by)
+
+
+def _turn(box: Box, document: Document, value: float) -> Document:
+    left, bottom, right, top = box
+    return rotate(document, math.radians(value), ((left + right) / 2, (bottom + top) / 2))
