@@ -94,13 +94,13 @@ class PanelForm(PropertyWidgets):
 
     def __init__(self, owner: PropertyOwner, rows: PanelRows) -> None:
         super().__init__(owner, rows.back)
-        self._rows = rows
+        self._place = rows
 
     def close(self) -> None:
         """Do nothing: the rows go with the panel."""
 
     def _lay_out(self, sections: Sequence[Section]) -> None:
-        self._y = self._rows.y
+        self._y = self._place.y
         for section in sections:
             if section.title:
                 self._ui.label(self._rect(MARGIN, INSIDE, 16), section.title, self._holder)
@@ -111,7 +111,7 @@ class PanelForm(PropertyWidgets):
                         self._add_row(each)
                 else:
                     self._add_beside(list(group))
-        self._rows.y = self._y
+        self._place.y = self._y
 
     def _add_row(self, each: Property) -> None:
         """A choice, beside its title where there is room for that."""
@@ -151,10 +151,13 @@ class SectionRows(Protocol):
 
 
 class SectionOwner(Protocol):
-    """What sections are made of: a panel, its run, and `say`, which shows a line to the person."""
+    """What sections are made of: a panel and its run."""
 
     playback: Playback
-    say: Callable[[str], None]
+
+    def say(self, text: str) -> None:
+        """Show a line to the person."""
+        ...
 
     @property
     def springs(self) -> SectionRows:

@@ -79,8 +79,8 @@ class PropertyOwner(Protocol):
         ...
 
     def pick(self, kind: Pick, then: Callable[[Any], object]) -> None:
-        """Let something be picked on a sheet, and hand it on."""
-        raise NotImplementedError
+        """Let something be picked on a sheet, where there is one, and hand it on."""
+        self.say("There is no sheet here to pick it on.")
 
 
 class OwnValues(PropertyOwner):
