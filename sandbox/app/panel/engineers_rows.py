@@ -21,10 +21,10 @@ from sandbox.editor.panel.material_properties import Swing, coefficients_for, sw
 from sandbox.editor.panel.property import MIXED, Property, Section, in_range
 from sandbox.level.document.model import Settings
 from sandbox.level.format.limits import SUBSTEPS
-from sandbox.physics.analysis.spring_motion import SpringMotion, errors_of, motion_of
 from sandbox.physics.arrays import Floats
 from sandbox.physics.equation import frequency_from_coefficients
 from sandbox.physics.settings import AUTO
+from sandbox.physics.softness.body_motion import SpringMotion, errors_of, motion_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.session.commands import Command, SetSolver
 
