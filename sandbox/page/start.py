@@ -31,7 +31,7 @@ from sandbox.physics.driving import Actuators, Drives
 from sandbox.physics.jit.bundles import HEAD_WORDS, WORD
 from sandbox.physics.jit.library import read_manifest
 from sandbox.physics.jit.making.platforms import WEB
-from sandbox.physics.joints.motors import DrivenWheels
+from sandbox.physics.joints.joint_set import DrivenWheels
 from sandbox.physics.keeping.arguments import FARTHEST
 from sandbox.physics.kits import joining, kit, removing
 from sandbox.physics.marks import ALL_GROUPS, GRAB_COUNT, LINE, NO_EDGE, SOLID_LEFT, SOLID_RIGHT
@@ -135,7 +135,7 @@ def start_of(world: LevelWorld) -> Start:
     """The start of a world."""
     own = block_of(world)
     own.begin(world)
-    image = image_of(own.given)
+    image = image_of(own.inputs)
     # Words follow each other as the arrays do.
     table = {path: [place.dtype, place.dimensions] for path, place in image.table.items()}
     known = about(world, own.pointer.nbytes // 8)

@@ -38,7 +38,7 @@ def step(world: World) -> None:
             block = block_of(world)
             block.begin(world)
             # What was good is not always: nothing is looked at twice.
-            block.given.progress[CHECKED] = 1
+            block.inputs.progress[CHECKED] = 1
         code = tick(block.pointer)
     block.end(world)
     world.may_fly = False
@@ -47,7 +47,7 @@ def step(world: World) -> None:
         contain(world, block.pointer, LOST)
         code = BROKE if find_broken(block.pointer) else code
     if code == BROKE:
-        world.break_springs(block.given.limits.broken[: block.given.progress[BROKEN]].copy())
+        world.break_springs(block.inputs.limits.broken[: block.inputs.progress[BROKEN]].copy())
     if world.rule_due.size:
         judge(block.pointer)
 

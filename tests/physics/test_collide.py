@@ -47,11 +47,11 @@ def hashes(w, ticks):
 def test_a_run_whose_arrays_grow_on_the_way_has_the_bits_of_one_with_room_from_the_start(substeps, jelly):
     ticks = scaled(120, 30)
     ample = heap(jelly, substeps=substeps)
-    block_of(ample).given.wanted[:] = 5000
+    block_of(ample).inputs.demand[:] = 5000
     ample.pin(0)
     ample.unpin(0)
     expected = hashes(ample, ticks)
-    assert (block_of(ample).given.wanted == 5000).all()
+    assert (block_of(ample).inputs.demand == 5000).all()
     w = heap(jelly, substeps=substeps)
     w.pin(0)
     w.unpin(0)
@@ -59,7 +59,7 @@ def test_a_run_whose_arrays_grow_on_the_way_has_the_bits_of_one_with_room_from_t
     for one in expected:
         step(w)
         assert state_hash(w) == one
-        asked_for.add(tuple(block_of(w).given.wanted.tolist()))
+        asked_for.add(tuple(block_of(w).inputs.demand.tolist()))
     assert len(asked_for) > 1
 
 

@@ -15,7 +15,7 @@ from sandbox.physics.jit import COMPILED
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct import choosing
+from sandbox.physics.solvers.direct import layout
 from sandbox.physics.state import BY_STORED
 from sandbox.physics.step import step
 from sandbox.physics.world import World
@@ -164,7 +164,7 @@ def test_a_ring_takes_the_area_it_is_inflated_to_whatever_is_pinned(solver, pinn
 def test_elements_taken_in_after_the_factorisation_move_as_those_in_the_matrix_do(monkeypatch):
     worlds = []
     for narrow in (3, 2):
-        monkeypatch.setattr(choosing, "NARROW", narrow)
+        monkeypatch.setattr(layout, "NARROW", narrow)
         world = jelly_abuse.jelly(4, 3)
         world.add_constraints(BEND, [[0, 1, 2], [4, 5, 6]], stiffness=0.3, damping=0.5)
         world.pin(0)

@@ -12,7 +12,7 @@ from sandbox.physics.pipeline.tick import find_broken
 from sandbox.physics.settings import AUTO
 from sandbox.physics.snapshot import restore, state_hash, take
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct import choosing
+from sandbox.physics.solvers.direct import layout
 from sandbox.physics.step import step
 from tests.support.contact_scenes import BODIES, FLOOR, GROUND, add_discs, add_jelly, world
 from tests.support.physics_scenes import run, scaled
@@ -101,7 +101,7 @@ def test_energy_never_rises_where_bodies_with_areas_touch():
 def test_a_wide_area_answers_to_contacts_as_a_narrow_one_does(monkeypatch):
     places = []
     for narrow in (3, 2):
-        monkeypatch.setattr(choosing, "NARROW", narrow)
+        monkeypatch.setattr(layout, "NARROW", narrow)
         w = world(GROUND)
         ring = add_ring(w, (0.0, 0.6), segments=3)
         add_discs(w, [(0.1, 1.5)], mass=5.0)

@@ -14,7 +14,7 @@ from sandbox.physics.marks import LAW_HOOKE
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.settings import AUTO, WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers.linear import matrix_layout
+from sandbox.physics.solvers.linear import sparse_ldl
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
@@ -374,8 +374,8 @@ def test_the_stability_report_says_what_the_energy_test_proves():
 
 def test_a_matrix_too_large_for_its_table_of_updates_gives_the_same_bits(monkeypatch):
     ends = []
-    for largest in (matrix_layout.LARGEST_TABLE, 1):
-        monkeypatch.setattr(matrix_layout, "LARGEST_TABLE", largest)
+    for largest in (sparse_ldl.LARGEST_TABLE, 1):
+        monkeypatch.setattr(sparse_ldl, "LARGEST_TABLE", largest)
         ends.append(state_hash(run(scenes.lattice(6).world(), 10)))
     assert ends[0] == ends[1]
 

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from sandbox.physics.pipeline.block_owner import block_of
-from sandbox.physics.solvers.direct import choosing
-from sandbox.physics.solvers.direct.layout import cut_to
-from sandbox.physics.solvers.direct.tuning import tuning
-from sandbox.physics.solvers.linear import dissection, elimination
+from sandbox.physics.solvers.direct import layout
+from sandbox.physics.solvers.direct.layout import cut_to, tuning
+from sandbox.physics.solvers.linear import elimination
 from sandbox.physics.solvers.linear.elimination import (
     BODIES,
     BORDERS,
@@ -19,9 +18,8 @@ from sandbox.physics.solvers.linear.elimination import (
     Links,
     order_for_elimination,
 )
-from sandbox.physics.solvers.linear.front_layout import new_fronts
-from sandbox.physics.solvers.linear.matrix_layout import new_matrix
-from sandbox.physics.solvers.linear.minimum_degree import order_by_degree
+from sandbox.physics.solvers.linear.fronts import new_fronts
+from sandbox.physics.solvers.linear.sparse_ldl import new_matrix, order_by_degree
 from tests.support.laid_out import laid_out
 from tests.support.tangles import tangle
 
@@ -31,8 +29,8 @@ SEEDS = range(5)
 @pytest.fixture(params=["small", "large", "mixed"])
 def smallest_body(request, monkeypatch):
     smallest = {"small": 10**9, "large": 2, "mixed": 30}[request.param]
-    monkeypatch.setattr(dissection, "SMALLEST_BODY", smallest)
-    monkeypatch.setattr(dissection, "NARROWEST_BORDER", 0.0)
+    monkeypatch.setattr(elimination, "SMALLEST_BODY", smallest)
+    monkeypatch.setattr(elimination, "NARROWEST_BORDER", 0.0)
     return smallest
 
 
@@ -115,8 +113,8 @@ def test_every_block_of_the_factor_has_its_place(seed, smallest_body):
 
 def test_too_little_room_is_asked_for_again(monkeypatch):
     links = graph(1)
-    monkeypatch.setattr(dissection, "SMALLEST_BODY", 40)
-    monkeypatch.setattr(dissection, "NARROWEST_BORDER", 0.0)
+    monkeypatch.setattr(elimination, "SMALLEST_BODY", 40)
+    monkeypatch.setattr(elimination, "NARROWEST_BORDER", 0.0)
     wanted, counts = ordered(links)
     assert counts[FRONTS] > 1 and counts[SMALL] > 0
     monkeypatch.setattr(elimination, "FILL_GUESS", 0)
@@ -150,7 +148,7 @@ def test_a_graph_is_eliminated_with_little_fill(seed):
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("narrow", [3, 2])
 def test_everything_lies_where_its_rows_do(seed, narrow, smallest_body, monkeypatch):
-    monkeypatch.setattr(choosing, "NARROW", narrow)
+    monkeypatch.setattr(layout, "NARROW", narrow)
     world = tangle(seed)
     system = block_of(world).arrays.system
     rows, bodies, springs, constraints = system.rows, system.bodies, system.springs, system.constraints

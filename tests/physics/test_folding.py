@@ -13,7 +13,7 @@ from sandbox.physics.jit import COMPILED
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.step import step
-from sandbox.physics.untangling.inversion import find_inverted, new_inversions
+from sandbox.physics.untangling.jellies import find_inverted, new_inversions
 from tests.bench import jelly_abuse
 from tests.support import folding
 from tests.support.laid_out import laid_out

@@ -14,7 +14,7 @@ import pytest
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.snapshot import state_hash
-from sandbox.physics.solvers.linear import dissection, halves
+from sandbox.physics.solvers.linear import elimination, fronts
 from tests.bench import scenes
 from tests.physics.test_large import mesh, play, run
 from tests.support.laid_out import laid_out
@@ -22,7 +22,7 @@ from tests.support.laid_out import laid_out
 
 @pytest.fixture(autouse=True)
 def small_bodies_have_halves(monkeypatch):
-    monkeypatch.setattr(halves, "WORTH_HALVING", 1)
+    monkeypatch.setattr(fronts, "WORTH_HALVING", 1)
 
 
 def hash_after_play(seed):
@@ -31,12 +31,12 @@ def hash_after_play(seed):
 
 @pytest.mark.parametrize("build", [lambda: mesh(1), lambda: mesh(2), lambda: scenes.lattice(24).world()])
 def test_neither_half_of_a_body_is_joined_to_the_other(build):
-    fronts = block_of(build()).arrays.system.fronts
-    begin, end = fronts.fork[-1]
-    assert 0 < begin < end < len(fronts.first)
-    half = np.select([np.arange(len(fronts.first)) < begin, np.arange(len(fronts.first)) < end], [0, 1], 2)
-    of_border = half[fronts.of_row[fronts.border]]
-    of_owner = np.repeat(half, np.diff(fronts.border_start))
+    made = block_of(build()).arrays.system.fronts
+    begin, end = made.fork[-1]
+    assert 0 < begin < end < len(made.first)
+    half = np.select([np.arange(len(made.first)) < begin, np.arange(len(made.first)) < end], [0, 1], 2)
+    of_border = half[made.of_row[made.border]]
+    of_owner = np.repeat(half, np.diff(made.border_start))
     joined = set(zip(of_owner.tolist(), of_border.tolist(), strict=True))
     assert {(0, 2), (1, 2)} < joined
     assert not joined & {(0, 1), (1, 0)}
@@ -45,10 +45,10 @@ def test_neither_half_of_a_body_is_joined_to_the_other(build):
 def test_the_shorter_half_is_as_long_as_it_can_be():
     child = np.array([[-1, -1], [-1, -1], [0, 1], [-1, -1], [-1, -1], [3, 4], [2, 5]])
     before = np.zeros(8, dtype=np.int64)
-    fronts = laid_out(dissection.new_dissection, 7, 0)._replace(child=child)
+    made = laid_out(elimination.new_dissection, 7, 0)._replace(child=child)
     for last, fork in (np.arange(10, 80, 10), (3, 6)), (np.array([1, 2, 3, 13, 23, 33, 43]), (4, 5)):
-        fronts = fronts._replace(first=np.append(0, last[:-1]), last=last)
-        assert halves.find_fork(0, 7, fronts, before, 1) == fork
+        made = made._replace(first=np.append(0, last[:-1]), last=last)
+        assert fronts.find_fork(0, 7, made, before, 1) == fork
 
 
 def test_a_body_that_gains_too_little_has_one_half_only(monkeypatch):
@@ -60,14 +60,14 @@ def test_a_body_that_gains_too_little_has_one_half_only(monkeypatch):
 def test_halves_and_the_sparse_factorisation_agree(monkeypatch):
     world = play(mesh(4), 8)
     assert block_of(world).arrays.system.fronts.fork.any()
-    monkeypatch.setattr(dissection, "SMALLEST_BODY", 10**9)
+    monkeypatch.setattr(elimination, "SMALLEST_BODY", 10**9)
     assert np.abs(play(mesh(4), 8).position - world.position).max() < 1e-9
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("way", ["library", "interpreted"])
 def test_a_fresh_process_computes_the_same_bits_of_halves(way):
-    code = "from tests.physics.test_halves import *; halves.WORTH_HALVING = 1; print(hash_after_play(8))"
+    code = "from tests.physics.test_halves import *; fronts.WORTH_HALVING = 1; print(hash_after_play(8))"
     environment = {**os.environ, "SANDBOX_KERNELS": way, "PYTHONPATH": os.pathsep.join(sys.path)}
     fresh = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert fresh.stdout.strip() == hash_after_play(8)

@@ -207,8 +207,8 @@ def test_a_hand_reaches_into_soft_bodies_alone_and_all_through_them():
     assert grip_radius(stiff, 0) == grip_radius(rope(), 3) == 0.0
     soft.hold(0, corner, (-0.5, 0.5), radius=grip_radius(soft, corner))
     grips = block_of(soft).arrays.joints.hands.grips
-    assert len(grips.particle) == 81 and grips.share.sum() == pytest.approx(1.0)
-    assert grips.particle[np.argmax(grips.share)] == corner
+    assert len(grips.particle) == 81 and grips.ratio.sum() == pytest.approx(1.0)
+    assert grips.particle[np.argmax(grips.ratio)] == corner
 
 
 def test_the_force_on_a_soft_body_acts_at_the_point_that_is_held():

@@ -8,7 +8,7 @@ import pytest
 from sandbox.physics.jit import COMPILED
 from sandbox.physics.marks import LINE
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.solvers.contact.free_constraints import small_steps
 from sandbox.physics.step import step
 from sandbox.physics.terrain import Chain
 from tests.support.contact_scenes import ALL_GROUPS, BODIES, add_discs, world

@@ -8,7 +8,7 @@ import pytest
 from sandbox.physics.analysis.applied_forces import contact_points
 from sandbox.physics.arrays import Floats
 from sandbox.physics.marks import ALL_GROUPS, LINE, TERRAIN_GROUP
-from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.solvers.contact.free_constraints import small_steps
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, FLOOR, Chain, add_discs, world

@@ -11,7 +11,7 @@ from sandbox.physics.jit import COMPILED
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import restore, state_hash, take
-from sandbox.physics.solvers.linear import dissection, halves
+from sandbox.physics.solvers.linear import elimination, fronts
 from sandbox.physics.step import step
 from sandbox.physics.world import World
 from tests.bench import energy_gate, scenes
@@ -94,7 +94,7 @@ def test_the_order_follows_from_springs_pins_and_creation_alone():
 def test_fronts_and_the_sparse_factorisation_agree(seed, monkeypatch):
     ends = []
     for smallest in (400, 10**9):
-        monkeypatch.setattr(dissection, "SMALLEST_BODY", smallest)
+        monkeypatch.setattr(elimination, "SMALLEST_BODY", smallest)
         world = mesh(seed)
         assert by_fronts(world) == (smallest == 400)
         ends.append(play(world, 8).position)
@@ -105,7 +105,7 @@ def test_fronts_and_the_sparse_factorisation_agree(seed, monkeypatch):
 def test_particles_created_at_one_point_are_dissected_all_the_same(monkeypatch):
     ends = []
     for smallest in (400, 10**9):
-        monkeypatch.setattr(dissection, "SMALLEST_BODY", smallest)
+        monkeypatch.setattr(elimination, "SMALLEST_BODY", smallest)
         world = mesh(6)
         world.change("origin", 0.5)
         ends.append(run(world, 3).position)
@@ -183,9 +183,9 @@ def test_a_large_lattice_that_is_dragged_about_keeps_its_shape():
 @pytest.mark.parametrize("size", part_and_whole((5, 300), (10, 1000)), ids="{0[0]} graphs".format)
 @pytest.mark.parametrize("kind", energy_gate.BOUNDS)
 def test_energy_of_violent_random_graphs_stays_bounded_under_fronts(kind, size, monkeypatch):
-    monkeypatch.setattr(dissection, "SMALLEST_BODY", 1)
-    monkeypatch.setattr(dissection, "NARROWEST_BORDER", 0.0)
-    monkeypatch.setattr(halves, "WORTH_HALVING", 1)
+    monkeypatch.setattr(elimination, "SMALLEST_BODY", 1)
+    monkeypatch.setattr(elimination, "NARROWEST_BORDER", 0.0)
+    monkeypatch.setattr(fronts, "WORTH_HALVING", 1)
     count, steps = size if COMPILED else (2, 20)
     for span in energy_gate.MASS_SPANS:
         graphs = energy_gate.random_graphs(kind, span, count, seed=17)
@@ -199,7 +199,7 @@ def test_an_absurd_value_in_a_large_body_neither_hangs_nor_leaves_it(array, valu
     world = mesh(9)
     first = world.add_particles(["o.0", "o.1"], [(5.0, 0.0), (6.0, 0.0)])
     world.add_springs(["o:0"], [first], [first + 1], stiffness=0.5, damping=0.9)
-    monkeypatch.setattr(halves, "WORTH_HALVING", 1)
+    monkeypatch.setattr(fronts, "WORTH_HALVING", 1)
     with np.errstate(all="ignore"):
         getattr(world, array).flat[400] = value
         run(world, 3 if COMPILED else 1)

@@ -4,6 +4,7 @@ import math
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
+from sandbox.physics.solvers.direct.energy_budget import UNDERDAMPED_BUDGET_SHARE
 
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
@@ -15,7 +16,6 @@ from sandbox.physics.analysis.energy import (
 from sandbox.physics.constraints import AREA
 from sandbox.physics.marks import ALL_GROUPS, LINE
 from sandbox.physics.settings import AUTO
-from sandbox.physics.solvers.direct.energy_bank import UNDERDAMPED_BANK_SHARE
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, add_discs, world
@@ -109,7 +109,7 @@ def allowed(box: Box) -> float:
     of = box.world
     speed = np.sqrt(np.sum(of.velocity**2, axis=1))
     step_error = 0.5 / 60.0 * 9.81 * float(np.sum(of.mass * (speed + FASTEST)))
-    return box.energy * (1.0 + UNDERDAMPED_BANK_SHARE if box.bouncy else 1.0) + step_error
+    return box.energy * (1.0 + UNDERDAMPED_BUDGET_SHARE if box.bouncy else 1.0) + step_error
 
 
 def outside(of: World) -> int:

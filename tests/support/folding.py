@@ -11,7 +11,7 @@ from sandbox.physics.analysis.energy import total_energy
 from sandbox.physics.arrays import Floats
 from sandbox.physics.pipeline.block_owner import block_of
 from sandbox.physics.step import step
-from sandbox.physics.untangling.inversion import find_inverted, new_inversions
+from sandbox.physics.untangling.jellies import find_inverted, new_inversions
 from sandbox.physics.world import World
 from tests.support.laid_out import laid_out
 

@@ -14,7 +14,7 @@ from sandbox.physics.analysis.energy import kinetic_energy, total_energy
 from sandbox.physics.pipeline.block_owner import outline_of
 from sandbox.physics.settings import Substeps
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.solvers.contact.free_constraints import small_steps
 from sandbox.physics.step import step
 from sandbox.physics.substeps import substep_time
 from sandbox.physics.world import World

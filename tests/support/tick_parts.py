@@ -14,7 +14,7 @@ from sandbox.physics.world import World
 
 def parts_taken(world: World) -> int:
     """The parts that the last tick of a world took; no spring broke in it."""
-    return int(block_of(world).given.progress[COUNT])
+    return int(block_of(world).inputs.progress[COUNT])
 
 
 def parts_of_next_tick(world: World) -> int:
@@ -30,6 +30,6 @@ def set_parts(monkeypatch: pytest.MonkeyPatch, choose: Callable[[], int]) -> Non
 
     def begin_with_parts(block: BlockOwner, world: World) -> None:
         begin(block, world)
-        block.given.choices[SUBSTEP_COUNT] = choose()
+        block.inputs.choices[SUBSTEP_COUNT] = choose()
 
     monkeypatch.setattr(BlockOwner, "begin", begin_with_parts)

@@ -21,7 +21,7 @@ from sandbox.physics.ramps import COEFFICIENTS, CONSTRAINTS, SPRINGS, in_force
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct.energy_bank import BY_MASS
+from sandbox.physics.solvers.direct.energy_budget import BY_MASS
 from sandbox.physics.state import State, state_of
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
 from sandbox.physics.water.displacers import BOTTOM, DENSITY, FLOW_X, FLOW_Y, LEFT, RIGHT, TOP, Water, lay_out_water
@@ -311,14 +311,14 @@ class EnergyTests:
 
 def energy_tests(world: World) -> EnergyTests:
     """The counts of a world since they were forgotten; all 0 in solvers without the test."""
-    return EnergyTests(*block_of(world).given.workspace.ways[:BY_MASS].tolist())
+    return EnergyTests(*block_of(world).inputs.workspace.ways[:BY_MASS].tolist())
 
 
 def steps_by_mass(world: World) -> int:
     """How often a body had no time for its exact answer to contacts, and took that of its particles' masses."""
-    return int(block_of(world).given.workspace.ways[BY_MASS])
+    return int(block_of(world).inputs.workspace.ways[BY_MASS])
 
 
 def forget_energy_tests(world: World) -> None:
     """Set the counts of energy tests to 0."""
-    block_of(world).given.workspace.ways[:] = 0
+    block_of(world).inputs.workspace.ways[:] = 0

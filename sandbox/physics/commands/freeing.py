@@ -1,6 +1,6 @@
 """Freeing: puts a body that is stuck in others, or in itself, into the nearest free place.
 
-For bodies that do not come apart by themselves (untangling/parting.py). Not part of a tick: a person asks for it.
+For bodies that do not come apart by themselves (untangling/depenetration.py). Not part of a tick: a person asks for it.
 """
 
 import math

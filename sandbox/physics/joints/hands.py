@@ -28,7 +28,7 @@ from sandbox.physics.components import find_joined
 from sandbox.physics.geometry.rigid import best_turn, rotated, with_pair
 from sandbox.physics.geometry.segment import difference
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.rows import JointRows, shortened
+from sandbox.physics.joints.joint_rows import JointRows, shortened
 from sandbox.physics.marks import GRAB_COUNT, GRAB_MATERIAL
 from sandbox.physics.state import State
 
@@ -62,8 +62,15 @@ class Grips(NamedTuple):
     lead: Annotated[Floats, "hands"]  # [m]: how far that point may be off the held particle
     start: Annotated[Slots, "hands + 1"]  # particles of hand i: particle[start[i]:start[i + 1]]
     particle: Annotated[Slots, "particles"]
-    share: Annotated[Floats, "particles"]  # s of each
+    ratio: Annotated[Floats, "particles"]  # s of each
     form: Annotated[FloatRows, "particles, 2"]  # [m]: its place about the mean in that form
+
+
+class HandRows(NamedTuple):
+    """The rows of hands as kernels fill them in: row (g,) = the first of each one's two."""
+
+    row: Slots
+    grips: Grips
 
 
 @inner_kernel
@@ -77,74 +84,6 @@ def label_bodies(state: State, joins: Flags, free: Flags, label: Slots) -> None:
     for p in range(free.shape[0]):
         free[p] = state.inverse_mass[p] > 0.0
     find_joined(state, joins, free, label)
-
-
-@inner_kernel
-def _weight_in_grip(state: State, label: Slots, hand: int, held: int, p: int) -> float:
-    # Of the free particles of a body those that a hand grips which holds one of them; -1: of what it does not.
-    if label[p] != label[held] or not state.inverse_mass[p] > 0.0:
-        return -1.0
-    radius = state.hand_radius[hand]
-    if not radius > 0.0:
-        return state.mass[p] if p == held else -1.0
-    # What else is joined to the body, a rope or a weight, is not gripped with it.
-    if state.owner[p] != state.owner[held]:
-        return -1.0
-    dx = state.origin[p, 0] - state.origin[held, 0]
-    dy = state.origin[p, 1] - state.origin[held, 1]
-    near = 1.0 - math.sqrt(dx * dx + dy * dy) / radius
-    return near * state.mass[p] if near > 0.0 else -1.0
-
-
-@inner_kernel
-def _list_gripped(state: State, label: Slots, hand: int, spring: int, first: int, grips: Grips) -> int:
-    # List what a hand grips, from an entry on, where there is room, with its weight; where it ends.
-    last, held = first, state.particle_b[spring]
-    if not state.spring_active[spring]:
-        return last
-    for p in range(label.shape[0]):
-        weight = _weight_in_grip(state, label, hand, held, p)
-        if weight >= 0.0:
-            if last < grips.particle.shape[0]:
-                grips.particle[last] = p
-                grips.share[last] = weight
-            last += 1
-    return last
-
-
-@inner_kernel
-def _sum_in_order(values: Floats, first: int, last: int) -> float:
-    total = values[first]
-    for k in range(first + 1, last):
-        total += values[k]
-    return total
-
-
-@inner_kernel
-def _fill_in_grip(state: State, label: Slots, i: int, spring: int, work: Floats, grips: Grips) -> None:
-    # Shares by weight, and the frame of what is gripped. Of a body that is torn the hand keeps the part that it has its
-    # point in. work (k,): scratch.
-    first, last, held = grips.start[i], grips.start[i + 1], state.particle_b[spring]
-    grips.held[i] = held
-    begun = False
-    for p in range(label.shape[0]):
-        if label[p] == label[held] and state.inverse_mass[p] > 0.0:
-            grips.mass[i] = grips.mass[i] + state.mass[p] if begun else state.mass[p]
-            begun = True
-    whole = _sum_in_order(grips.share, first, last)
-    for k in range(first, last):
-        grips.share[k] /= whole
-    for axis in range(2):
-        for k in range(first, last):
-            work[k] = grips.share[k] * state.origin[grips.particle[k], axis]
-        middle = _sum_in_order(work, first, last)
-        for k in range(first, last):
-            grips.form[k, axis] = state.origin[grips.particle[k], axis] - middle
-        grips.arm[i, axis] = state.origin[held, axis] - middle
-    for k in range(first, last):
-        x, y = grips.form[k, 0], grips.form[k, 1]
-        work[k] = grips.share[k] * (x * x + y * y)
-    grips.lead[i] = LARGEST_LEAD * math.sqrt(_sum_in_order(work, first, last))
 
 
 @inner_kernel
@@ -175,11 +114,110 @@ def new_grips(state: State, label: Slots, grab_particle: int, grab_spring: int, 
     return grips
 
 
-class HandRows(NamedTuple):
-    """The rows of hands as kernels fill them in: row (g,) = the first of each one's two."""
+@inner_kernel
+def _list_gripped(state: State, label: Slots, hand: int, spring: int, first: int, grips: Grips) -> int:
+    # List what a hand grips, from an entry on, where there is room, with its weight; where it ends.
+    last, held = first, state.particle_b[spring]
+    if not state.spring_active[spring]:
+        return last
+    for p in range(label.shape[0]):
+        weight = _weight_in_grip(state, label, hand, held, p)
+        if weight >= 0.0:
+            if last < grips.particle.shape[0]:
+                grips.particle[last] = p
+                grips.ratio[last] = weight
+            last += 1
+    return last
 
-    row: Slots
-    grips: Grips
+
+@inner_kernel
+def _weight_in_grip(state: State, label: Slots, hand: int, held: int, p: int) -> float:
+    # Of the free particles of a body those that a hand grips which holds one of them; -1: of what it does not.
+    if label[p] != label[held] or not state.inverse_mass[p] > 0.0:
+        return -1.0
+    radius = state.hand_radius[hand]
+    if not radius > 0.0:
+        return state.mass[p] if p == held else -1.0
+    # What else is joined to the body, a rope or a weight, is not gripped with it.
+    if state.owner[p] != state.owner[held]:
+        return -1.0
+    dx = state.origin[p, 0] - state.origin[held, 0]
+    dy = state.origin[p, 1] - state.origin[held, 1]
+    near = 1.0 - math.sqrt(dx * dx + dy * dy) / radius
+    return near * state.mass[p] if near > 0.0 else -1.0
+
+
+@inner_kernel
+def _fill_in_grip(state: State, label: Slots, i: int, spring: int, work: Floats, grips: Grips) -> None:
+    # Shares by weight, and the frame of what is gripped. Of a body that is torn the hand keeps the part that it has its
+    # point in. work (k,): scratch.
+    first, last, held = grips.start[i], grips.start[i + 1], state.particle_b[spring]
+    grips.held[i] = held
+    begun = False
+    for p in range(label.shape[0]):
+        if label[p] == label[held] and state.inverse_mass[p] > 0.0:
+            grips.mass[i] = grips.mass[i] + state.mass[p] if begun else state.mass[p]
+            begun = True
+    whole = _sum_in_order(grips.ratio, first, last)
+    for k in range(first, last):
+        grips.ratio[k] /= whole
+    for axis in range(2):
+        for k in range(first, last):
+            work[k] = grips.ratio[k] * state.origin[grips.particle[k], axis]
+        middle = _sum_in_order(work, first, last)
+        for k in range(first, last):
+            grips.form[k, axis] = state.origin[grips.particle[k], axis] - middle
+        grips.arm[i, axis] = state.origin[held, axis] - middle
+    for k in range(first, last):
+        x, y = grips.form[k, 0], grips.form[k, 1]
+        work[k] = grips.ratio[k] * (x * x + y * y)
+    grips.lead[i] = LARGEST_LEAD * math.sqrt(_sum_in_order(work, first, last))
+
+
+@inner_kernel
+def _sum_in_order(values: Floats, first: int, last: int) -> float:
+    total = values[first]
+    for k in range(first + 1, last):
+        total += values[k]
+    return total
+
+
+@inner_kernel
+def load_hands(rows: JointRows, hands: HandRows, state: State, h: float) -> None:
+    """Fill in the rows of hands for a substep of h [s]."""
+    grips = hands.grips
+    for i in range(grips.hand.shape[0]):
+        x, y = _load_gradients(rows, hands, state.position, i)
+        hand, k = grips.hand[i], hands.row[i]
+        # w, where the point is at x, y in the frame.
+        cursor = hands.grips.cursor[i]
+        held = hands.grips.held[i]
+        wx = state.velocity[cursor, 0]
+        wy = state.velocity[cursor, 1]
+        dx, dy = difference(held, cursor, state.position)
+        bent_x = x - state.position[held, 0]
+        bent_y = y - state.position[held, 1]
+        beyond = 1.0 - shortened(bent_x, bent_y, hands.grips.lead[i])
+        dx -= beyond * bent_x
+        dy -= beyond * bent_y
+        away = math.sqrt(dx * dx + dy * dy)
+        if away > 0.0:
+            brake = min(BRAKE_SHARE * state.hand_strength[hands.grips.hand[i]], HARDEST_BRAKE)
+            speed = min(away / max(APPROACH, h), math.sqrt(2.0 * brake * away))
+            ratio = min(speed, FASTEST_HAND) / away
+            wx += ratio * dx
+            wy += ratio * dy
+        ratio = shortened(wx, wy, FASTEST_HAND)
+        rows.target[k], rows.target[k + 1] = wx * ratio, wy * ratio
+        limit = state.hand_strength[hand] * grips.mass[i] * h
+        jx = state.hand_force[hand, 0] * h
+        jy = state.hand_force[hand, 1] * h
+        ratio = shortened(jx, jy, limit)
+        rows.impulse[k] = jx * ratio
+        rows.impulse[k + 1] = jy * ratio
+        for row in range(k, k + 2):
+            rows.softness[row] = YIELDING / (grips.mass[i] * h)
+            rows.limit[row] = limit
 
 
 @inner_kernel
@@ -191,22 +229,22 @@ def _load_gradients(rows: JointRows, hands: HandRows, position: FloatRows, i: in
     y = 0.0
     for k in range(first, last):
         p = grips.particle[k]
-        x += grips.share[k] * position[p, 0]
-        y += grips.share[k] * position[p, 1]
+        x += grips.ratio[k] * position[p, 0]
+        y += grips.ratio[k] * position[p, 1]
     along = 0.0
     across = 0.0
     spread = 0.0
     for k in range(first, last):
         dx = position[grips.particle[k], 0] - x
         dy = position[grips.particle[k], 1] - y
-        along, across = with_pair(along, across, grips.share[k], grips.form[k, 0], grips.form[k, 1], dx, dy)
-        spread += grips.share[k] * (dx * dx + dy * dy)
+        along, across = with_pair(along, across, grips.ratio[k], grips.form[k, 0], grips.form[k, 1], dx, dy)
+        spread += grips.ratio[k] * (dx * dx + dy * dy)
     cosine, sine = best_turn(along, across)
     rx, ry = rotated(cosine, sine, grips.arm[i, 0], grips.arm[i, 1])
     along_x, along_y = rows.first[hands.row[i]], rows.first[hands.row[i] + 1]
     turns = 1.0 / spread if spread > LEAST_SPREAD else 0.0
     for k in range(first, last):
-        s = grips.share[k]
+        s = grips.ratio[k]
         dx = (position[grips.particle[k], 0] - x) * turns
         dy = (position[grips.particle[k], 1] - y) * turns
         e = k - first
@@ -215,49 +253,6 @@ def _load_gradients(rows: JointRows, hands: HandRows, position: FloatRows, i: in
         rows.gradient[along_y + e, 0] = -s * rx * dy
         rows.gradient[along_y + e, 1] = s * (1.0 + rx * dx)
     return x + rx, y + ry
-
-
-@inner_kernel
-def _wanted(hands: HandRows, state: State, i: int, x: float, y: float, h: float) -> tuple[float, float]:
-    # w, where the point is at x, y in the frame.
-    cursor = hands.grips.cursor[i]
-    held = hands.grips.held[i]
-    wx = state.velocity[cursor, 0]
-    wy = state.velocity[cursor, 1]
-    dx, dy = difference(held, cursor, state.position)
-    bent_x = x - state.position[held, 0]
-    bent_y = y - state.position[held, 1]
-    beyond = 1.0 - shortened(bent_x, bent_y, hands.grips.lead[i])
-    dx -= beyond * bent_x
-    dy -= beyond * bent_y
-    away = math.sqrt(dx * dx + dy * dy)
-    if away > 0.0:
-        brake = min(BRAKE_SHARE * state.hand_strength[hands.grips.hand[i]], HARDEST_BRAKE)
-        speed = min(away / max(APPROACH, h), math.sqrt(2.0 * brake * away))
-        share = min(speed, FASTEST_HAND) / away
-        wx += share * dx
-        wy += share * dy
-    share = shortened(wx, wy, FASTEST_HAND)
-    return wx * share, wy * share
-
-
-@inner_kernel
-def load_hands(rows: JointRows, hands: HandRows, state: State, h: float) -> None:
-    """Fill in the rows of hands for a substep of h [s]."""
-    grips = hands.grips
-    for i in range(grips.hand.shape[0]):
-        x, y = _load_gradients(rows, hands, state.position, i)
-        hand, k = grips.hand[i], hands.row[i]
-        rows.target[k], rows.target[k + 1] = _wanted(hands, state, i, x, y, h)
-        limit = state.hand_strength[hand] * grips.mass[i] * h
-        jx = state.hand_force[hand, 0] * h
-        jy = state.hand_force[hand, 1] * h
-        share = shortened(jx, jy, limit)
-        rows.impulse[k] = jx * share
-        rows.impulse[k + 1] = jy * share
-        for row in range(k, k + 2):
-            rows.softness[row] = YIELDING / (grips.mass[i] * h)
-            rows.limit[row] = limit
 
 
 @inner_kernel

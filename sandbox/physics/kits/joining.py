@@ -14,7 +14,7 @@ from sandbox.physics.commands.command import DENIED
 from sandbox.physics.commands.command_table import RefusedCommand
 from sandbox.physics.driving import Actuators, drives_of
 from sandbox.physics.jit import bundle
-from sandbox.physics.joints.motors import wheels_of
+from sandbox.physics.joints.joint_set import wheels_of
 from sandbox.physics.keeping.arguments import FARTHEST
 from sandbox.physics.kits.kit import (
     BAD_PLACE,

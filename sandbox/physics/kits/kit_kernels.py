@@ -12,7 +12,7 @@ from sandbox.physics.commands.command import HAND, NOT_ALLOWED, SPENT, UNTOUCHED
 from sandbox.physics.constraints import AREA, measure_rest
 from sandbox.physics.driving import Drives, contract
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
-from sandbox.physics.joints.motors import DrivenWheels
+from sandbox.physics.joints.joint_set import DrivenWheels
 from sandbox.physics.kits.kit import (
     AMPLITUDE,
     ANGLE,

@@ -6,9 +6,7 @@ from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.breaking import MaterialLimits
 from sandbox.physics.driving import Drives
 from sandbox.physics.integrate import Flight
-from sandbox.physics.joints.joint_set import JointSet
-from sandbox.physics.joints.limited_springs import SpringForces
-from sandbox.physics.joints.motors import DrivenWheels, MotorSides
+from sandbox.physics.joints.joint_set import DrivenWheels, JointSet, MotorSides, SpringForces
 from sandbox.physics.pipeline.collide import Collisions
 from sandbox.physics.rules import Rules
 from sandbox.physics.softness.kernels.firm import FormModes, Forms
@@ -59,7 +57,7 @@ class WorldBlock(NamedTuple):
     water: Water  # pools and hulls; the rest is derived
     plan: Slots  # plan, progress: see above
     progress: Slots
-    wanted: Slots  # the most of each that a step has asked for (derive.py)
+    demand: Slots  # the most of each that a step has asked for (derive.py)
     tuning: Tuning  # see elimination.py
     rules: Rules
     ranges: Ranges

@@ -12,7 +12,7 @@ from sandbox.physics.collision.outline import Outline
 from sandbox.physics.collision.types import KeptContacts
 from sandbox.physics.driving import drives_of
 from sandbox.physics.jit import bundle, items_of
-from sandbox.physics.joints.motors import wheels_of
+from sandbox.physics.joints.joint_set import wheels_of
 from sandbox.physics.pipeline.block import (
     CHECKED,
     COUNT,
@@ -25,11 +25,11 @@ from sandbox.physics.pipeline.block import (
     WorldBlock,
 )
 from sandbox.physics.pipeline.collide import COUNTED, KEPT, Collisions
-from sandbox.physics.pipeline.derive import WANTED, derive_hands, derive_topology, make_room
+from sandbox.physics.pipeline.derive import DEMANDS, derive_hands, derive_topology, make_room
 from sandbox.physics.settings import WorldSettings
-from sandbox.physics.solvers.direct.energy_bank import WAYS
 from sandbox.physics.solvers.direct.islands import IslandWorkspace
-from sandbox.physics.solvers.direct.tuning import tuning
+from sandbox.physics.solvers.direct.layout import tuning
+from sandbox.physics.solvers.direct.system import WAYS
 from sandbox.physics.state import RANGES, good_of, state_of
 from sandbox.physics.water.displacers import Water
 from sandbox.physics.world import World, areas_of
@@ -38,11 +38,11 @@ from sandbox.physics.world import World, areas_of
 class BlockOwner:
     """The block of a world, and the pointer that kernels take.
 
-    given: what it was given, all else is empty there. A world's contacts are the first of those that the block has room
-    for, so that it has them without a copy.
+    inputs: what Python gives, all else is empty there. A world's contacts are the first of those that the block has
+    room for, so that it has them without a copy.
     """
 
-    given: WorldBlock
+    inputs: WorldBlock
     pointer: Any = None
 
     def __init__(self, world: World) -> None:
@@ -50,7 +50,7 @@ class BlockOwner:
         self._arrays: WorldBlock | None = None
         self._topology = self._hands = -1
         self._kept = self._kept_room = empty(KeptContacts)
-        self.given = with_empty(
+        self.inputs = with_empty(
             WorldBlock,
             state=state_of(world),
             good=good_of(world),
@@ -58,7 +58,7 @@ class BlockOwner:
             choices=np.zeros(len(WorldSettings().choices), np.int64),
             plan=np.zeros(PLANNED, np.int64),
             progress=np.zeros(PROGRESS, np.int64),
-            wanted=np.zeros(WANTED, np.int64),
+            demand=np.zeros(DEMANDS, np.int64),
             ranges=RANGES,
             collisions=with_empty(Collisions, counts=np.zeros(COUNTED, np.int64)),
             workspace=with_empty(IslandWorkspace, ways=np.zeros(WAYS, np.int64)),
@@ -86,24 +86,24 @@ class BlockOwner:
         constant = world.actuators, world.limits, world.spring_count
         if constant != self._constant:
             self._constant = constant
-            self.given = self.given._replace(
+            self.inputs = self.inputs._replace(
                 drives=drives_of(world.actuators), wheels=wheels_of(world.actuators), limits=_limits_of(world)
             )
         water, table = with_empty(Water, pool=world.water, hull=world.hulls), world.form_table
-        self.given = self.given._replace(
+        self.inputs = self.inputs._replace(
             state=state_of(world), good=good_of(world), areas=areas_of(world), forms=table.forms, modes=table.modes,
             tuning=tuning(), rules=world.rules, water=water,
         )  # fmt: skip
-        self.given.plan[GRAB_PARTICLE], self.given.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
+        self.inputs.plan[GRAB_PARTICLE], self.inputs.plan[GRAB_SPRING] = world.grab_particle, world.grab_spring
         self._lay_out(world)
 
     def _lay_out(self, world: World) -> None:
         self._load(world.settings)
         kept = _contacts_of(world)
-        self.pointer = bundle(self.given, self.pointer)
+        self.pointer = bundle(self.inputs, self.pointer)
         self._arenas[0] = lay_out(derive_topology, self.pointer, self._arenas[0])
         self._lay_out_hands()
-        self.given.collisions.counts[:] = 0
+        self.inputs.collisions.counts[:] = 0
         self._make_room(kept)
         if self._has_other_contacts(world):
             self._share_contacts(world)
@@ -115,7 +115,7 @@ class BlockOwner:
     def _make_room(self, kept: Iterable[Any]) -> None:
         """Make room for what was asked for, and for these contacts, which are the last step's."""
         copies = [array.copy() for array in kept]
-        self.given.collisions.counts[KEPT] = len(copies[0])
+        self.inputs.collisions.counts[KEPT] = len(copies[0])
         self._arenas[2] = lay_out(make_room, self.pointer, self._arenas[2])
         self._arrays = None
         # What the world has lies where other arrays do now.
@@ -124,7 +124,7 @@ class BlockOwner:
 
     def _load(self, settings: WorldSettings) -> None:
         self._settings = settings
-        self.given.numbers[:], self.given.choices[:] = settings.numbers, settings.choices
+        self.inputs.numbers[:], self.inputs.choices[:] = settings.numbers, settings.choices
 
     def begin(self, world: World) -> None:
         """Take over a world's settings and tick, and the contacts of its last step, where they are not those here."""
@@ -134,12 +134,12 @@ class BlockOwner:
             self._load(world.settings)
         if self._has_other_contacts(world):
             self._take_contacts(world)
-        progress = self.given.progress
+        progress = self.inputs.progress
         progress[TICK], progress[MAY_FLY], progress[COUNT], progress[CHECKED] = world.tick, world.may_fly, 0, 0
 
     def _take_contacts(self, world: World) -> None:
         contacts = _contacts_of(world)
-        count = self.given.collisions.counts[KEPT] = len(contacts[0])
+        count = self.inputs.collisions.counts[KEPT] = len(contacts[0])
         if count > len(self._kept_room.particle):
             self._make_room(contacts)
         _write(contacts, self._kept_room)
@@ -147,21 +147,21 @@ class BlockOwner:
 
     def grow(self) -> None:
         """Make the room that a step has found to be too little; the contacts of the last step stay."""
-        count = self.given.collisions.counts[KEPT]
+        count = self.inputs.collisions.counts[KEPT]
         self._make_room([array[:count] for array in self._kept_room])
 
     def end(self, world: World) -> None:
         """Make the contacts of a tick's last step those of the world's state."""
-        if len(world.contact_impulse) != self.given.collisions.counts[KEPT] or self._has_other_contacts(world):
+        if len(world.contact_impulse) != self.inputs.collisions.counts[KEPT] or self._has_other_contacts(world):
             self._share_contacts(world)
 
     def _has_other_contacts(self, world: World) -> bool:
         # Two arrays of nothing are the same.
         is_other = world.contact_impulse is not self._kept.impulse
-        return is_other and (len(world.contact_impulse) > 0 or bool(self.given.collisions.counts[KEPT] > 0))
+        return is_other and (len(world.contact_impulse) > 0 or bool(self.inputs.collisions.counts[KEPT] > 0))
 
     def _share_contacts(self, world: World) -> None:
-        count = self.given.collisions.counts[KEPT]
+        count = self.inputs.collisions.counts[KEPT]
         self._kept = KeptContacts._make([array[:count] for array in self._kept_room])
         world.keep_contacts(*self._kept)
 

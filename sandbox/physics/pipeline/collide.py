@@ -24,15 +24,25 @@ from sandbox.physics.collision.types import (
 )
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.marks import GRAB_COUNT
-from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch
+from sandbox.physics.solvers.contact.free_constraints import (
+    FreeContactScratch,
+    Islands,
+    find_islands,
+    list_contacts,
+    small_steps,
+)
 from sandbox.physics.solvers.contact.free_contacts import solve_free_contacts
-from sandbox.physics.solvers.contact.free_islands import Islands, find_islands, list_contacts
-from sandbox.physics.solvers.contact.small_steps import small_steps
 from sandbox.physics.state import State
-from sandbox.physics.untangling.crossing_candidates import ShapeBounds
-from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted
-from sandbox.physics.untangling.overlaps import CROSSINGS, OVERLAPS, Overlaps, find_crossings, pair_overlaps
-from sandbox.physics.untangling.parting import MovedParticles, part_overlaps
+from sandbox.physics.untangling.depenetration import MovedParticles, depenetrate
+from sandbox.physics.untangling.jellies import Inversions, Triangles, find_inverted
+from sandbox.physics.untangling.overlaps import (
+    CROSSINGS,
+    OVERLAPS,
+    Overlaps,
+    ShapeBounds,
+    find_crossings,
+    pair_overlaps,
+)
 
 # Places in `counts`: contacts of the present step and of the last, entries of the grid, pairs by boxes, with terrain,
 # crossings of outlines, pairs of shapes that overlap; coupled contacts, which a solver solves with springs; islands of
@@ -65,19 +75,6 @@ class Collisions(NamedTuple):
     moved: Flags  # (n,): scratch
     attached: Flags  # (n,): springs, constraints or hands hold it
     counts: Slots
-
-
-@inner_kernel
-def _find_attached(state: State, collisions: Collisions, grab_spring: int) -> None:
-    # Mark what springs, constraints or hands hold.
-    attached = collisions.attached
-    for p in range(attached.shape[0]):
-        attached[p] = collisions.outline.attached[p]
-    if grab_spring >= 0:
-        for s in range(grab_spring, grab_spring + GRAB_COUNT):
-            if state.spring_active[s]:
-                attached[state.particle_a[s]] = True
-                attached[state.particle_b[s]] = True
 
 
 @inner_kernel
@@ -128,7 +125,15 @@ def detect(state: State, collisions: Collisions, grab_spring: int, tick: int, h:
     Bounces and impulses come later. grab_spring: the first spring of a hand, -1: there is none.
     """
     outline, colliders, counts, boxes = collisions.outline, collisions.colliders, collisions.counts, collisions.boxes
-    _find_attached(state, collisions, grab_spring)
+    # Mark what springs, constraints or hands hold.
+    attached = collisions.attached
+    for p in range(attached.shape[0]):
+        attached[p] = collisions.outline.attached[p]
+    if grab_spring >= 0:
+        for s in range(grab_spring, grab_spring + GRAB_COUNT):
+            if state.spring_active[s]:
+                attached[state.particle_a[s]] = True
+                attached[state.particle_b[s]] = True
     _load_particles(state, collisions.attached, colliders)
     if collisions.triangles.constraint.shape[0] > 0:
         find_inverted(
@@ -177,7 +182,7 @@ def separate_overlaps(state: State, start: FloatRows, collisions: Collisions) ->
         moved = MovedParticles(
             state.velocity, start, state.mass, state.inverse_mass, state.energy_bank, state.parting_reserve
         )
-        part_overlaps(
+        depenetrate(
             collisions.outline, collisions.colliders, collisions.bounds, moved, collisions.overlaps, collisions.moved
         )
 

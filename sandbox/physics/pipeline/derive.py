@@ -24,10 +24,8 @@ from sandbox.physics.constraints import TRIANGLE
 from sandbox.physics.integrate import Flight
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, set_field, unpack
 from sandbox.physics.joints.hands import label_bodies, new_grips
-from sandbox.physics.joints.joint_answers import joints_by_mass, new_joints
-from sandbox.physics.joints.joint_set import lay_out_joints
-from sandbox.physics.joints.limited_springs import SpringForces, new_spring_forces
-from sandbox.physics.joints.motors import new_motor_sides
+from sandbox.physics.joints.joint_rows import joints_by_mass, new_joints
+from sandbox.physics.joints.joint_set import SpringForces, lay_out_joints, new_motor_sides, new_spring_forces
 from sandbox.physics.marks import GRAB_COUNT, LAW_HOOKE
 from sandbox.physics.pipeline.block import (
     GRAB_PARTICLE,
@@ -51,24 +49,19 @@ from sandbox.physics.pipeline.collide import (
     update_terrain_aabbs,
 )
 from sandbox.physics.settings import DIRECT, ITERATIVE, SINGLE_PASS, SOLVER
-from sandbox.physics.solvers.contact.active_set import new_active_set
-from sandbox.physics.solvers.contact.contact_order import ContactOrder
-from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch
-from sandbox.physics.solvers.contact.free_islands import Islands
-from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints
+from sandbox.physics.solvers.contact.free_constraints import FreeContactScratch, Islands
+from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, ContactOrder, new_active_set
 from sandbox.physics.solvers.direct.islands import COLUMNS, NUMBERS, lay_out_islands, use_diagonal_delassus
 from sandbox.physics.solvers.direct.layout import lay_out_system
-from sandbox.physics.solvers.held_springs import new_held_springs
-from sandbox.physics.solvers.iterative import new_iteration
+from sandbox.physics.solvers.iterative import new_held_springs, new_iteration
 from sandbox.physics.solvers.single_pass import lay_out_explicit_pass
-from sandbox.physics.untangling.crossing_candidates import ShapeBounds
-from sandbox.physics.untangling.inversion import new_inversions
-from sandbox.physics.untangling.overlaps import Overlaps
+from sandbox.physics.untangling.jellies import new_inversions
+from sandbox.physics.untangling.overlaps import Overlaps, ShapeBounds
 from sandbox.physics.untangling.triangle_clamp import lay_out_world_triangles
 from sandbox.physics.water.displacers import lay_out_water
 
-# Places in `wanted`: those of the counts of collisions, then numbers and columns of blocks of bodies.
-BLOCK_NUMBERS, BLOCK_COLUMNS, WANTED = COUPLED, COUPLED + 1, COUPLED + 2
+# Places in `demand`: those of the counts of collisions, then numbers and columns of blocks of bodies.
+BLOCK_NUMBERS, BLOCK_COLUMNS, DEMANDS = COUPLED, COUPLED + 1, COUPLED + 2
 # What there is room for at least; and how much more than was asked for there is then.
 LEAST_ROOM = 64
 MORE_ROOM = 2
@@ -80,11 +73,33 @@ def derive_topology(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     world = unpack(pointer)
     begin(arena)
     state = world.state
-    _find_plan(world)
-    _lay_out_scratch(world, arena)
+    plan = world.plan
+    plan[HAS_CONTACTS] = plan[HAS_HOOKE] = plan[HAS_RINGS] = 0
+    plan[HAS_BELTS] = 1 if has_belts(state) else 0
+    for p in range(state.collides.shape[0]):
+        if state.collides[p] != 0:
+            plan[HAS_CONTACTS] = 1
+    for s in range(state.law.shape[0]):
+        if state.spring_active[s] and state.law[s] == LAW_HOOKE:
+            plan[HAS_HOOKE] = 1
+    for k in range(state.constraint_corners.shape[0]):
+        if state.constraint_corners[k] > TRIANGLE:
+            plan[HAS_RINGS] = 1
+    particles, springs, constraints = state.owner.shape[0], state.law.shape[0], state.constraint_kind.shape[0]
+    set_field(world, "start", new_float_rows(arena, particles, 2))
+    set_field(world, "start_length", new_floats(arena, springs))
+    set_field(world, "shortest", new_floats(arena, GRAB_COUNT))
+    set_field(world, "flight", new_tuple(Flight, arena, particles=particles))
+    set_field(world, "coefficients", new_tuple(Coefficients, arena, springs=springs, constraints=constraints))
     set_field(world, "forces", new_spring_forces(state, world.drives, arena))
     set_field(world, "sides", new_motor_sides(state, world.wheels, arena))
-    _lay_out_labels(world, arena)
+    label = new_slots(arena, state.owner.shape[0])
+    set_field(world, "body_label", label)
+    scratch = mark(arena)
+    joins, free = new_flags(arena, state.law.shape[0]), new_flags(arena, state.owner.shape[0])
+    if not is_full(arena):
+        label_bodies(state, joins, free, label)
+        give_back(arena, scratch)
     lay_out_world_triangles(state, arena, world.triangles)
     lay_out_water(state, arena, world.water)
     set_field(world.collisions, "outline", new_outline(state, arena))
@@ -132,16 +147,16 @@ def make_room(pointer: Bundle[WorldBlock], arena: Arena) -> None:
     """Lay out what a step fills in, with room for more than any has asked for. Contacts that were kept are lost."""
     world = unpack(pointer)
     begin(arena)
-    collisions, wanted, particles = world.collisions, world.wanted, world.state.owner.shape[0]
+    collisions, demand, particles = world.collisions, world.demand, world.state.owner.shape[0]
     for k in range(COUPLED):
-        wanted[k] = max(wanted[k], collisions.counts[k])
-    wanted[ENTRIES] = max(wanted[ENTRIES], particles)
+        demand[k] = max(demand[k], collisions.counts[k])
+    demand[ENTRIES] = max(demand[ENTRIES], particles)
     if world.choices[SOLVER] == DIRECT:
         asked = world.workspace.islands.counts
-        wanted[BLOCK_NUMBERS] = max(wanted[BLOCK_NUMBERS], asked[NUMBERS])
-        wanted[BLOCK_COLUMNS] = max(wanted[BLOCK_COLUMNS], asked[COLUMNS])
-        set_field(world.workspace.delassus, "numbers", new_floats(arena, MORE_ROOM * wanted[BLOCK_NUMBERS]))
-        set_field(world.workspace.delassus, "columns", new_floats(arena, MORE_ROOM * wanted[BLOCK_COLUMNS]))
+        demand[BLOCK_NUMBERS] = max(demand[BLOCK_NUMBERS], asked[NUMBERS])
+        demand[BLOCK_COLUMNS] = max(demand[BLOCK_COLUMNS], asked[COLUMNS])
+        set_field(world.workspace.delassus, "numbers", new_floats(arena, MORE_ROOM * demand[BLOCK_NUMBERS]))
+        set_field(world.workspace.delassus, "columns", new_floats(arena, MORE_ROOM * demand[BLOCK_COLUMNS]))
     contacts = max(_room(world, CONTACTS), _room(world, KEPT))
     set_field(world.collisions, "kept", new_kept_contacts(arena, contacts))
     coupled = contacts if world.plan[HAS_CONTACTS] != 0 else 0
@@ -159,46 +174,7 @@ def make_room(pointer: Bundle[WorldBlock], arena: Arena) -> None:
 
 @inner_kernel
 def _room(world: WorldBlock, k: int) -> int:
-    return MORE_ROOM * world.wanted[k] + LEAST_ROOM
-
-
-@inner_kernel
-def _find_plan(world: WorldBlock) -> None:
-    state, plan = world.state, world.plan
-    plan[HAS_CONTACTS] = plan[HAS_HOOKE] = plan[HAS_RINGS] = 0
-    plan[HAS_BELTS] = 1 if has_belts(state) else 0
-    for p in range(state.collides.shape[0]):
-        if state.collides[p] != 0:
-            plan[HAS_CONTACTS] = 1
-    for s in range(state.law.shape[0]):
-        if state.spring_active[s] and state.law[s] == LAW_HOOKE:
-            plan[HAS_HOOKE] = 1
-    for k in range(state.constraint_corners.shape[0]):
-        if state.constraint_corners[k] > TRIANGLE:
-            plan[HAS_RINGS] = 1
-
-
-@inner_kernel
-def _lay_out_scratch(world: WorldBlock, arena: Arena) -> None:
-    state = world.state
-    particles, springs, constraints = state.owner.shape[0], state.law.shape[0], state.constraint_kind.shape[0]
-    set_field(world, "start", new_float_rows(arena, particles, 2))
-    set_field(world, "start_length", new_floats(arena, springs))
-    set_field(world, "shortest", new_floats(arena, GRAB_COUNT))
-    set_field(world, "flight", new_tuple(Flight, arena, particles=particles))
-    set_field(world, "coefficients", new_tuple(Coefficients, arena, springs=springs, constraints=constraints))
-
-
-@inner_kernel
-def _lay_out_labels(world: WorldBlock, arena: Arena) -> None:
-    state = world.state
-    label = new_slots(arena, state.owner.shape[0])
-    set_field(world, "body_label", label)
-    scratch = mark(arena)
-    joins, free = new_flags(arena, state.law.shape[0]), new_flags(arena, state.owner.shape[0])
-    if not is_full(arena):
-        label_bodies(state, joins, free, label)
-        give_back(arena, scratch)
+    return MORE_ROOM * world.demand[k] + LEAST_ROOM
 
 
 @inner_kernel

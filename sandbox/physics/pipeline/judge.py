@@ -6,9 +6,8 @@ from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP, TI
 from sandbox.physics.jit import Bundle, inner_kernel, kernel, unpack
 from sandbox.physics.pipeline.block import TICK, WorldBlock
 from sandbox.physics.pipeline.collide import KEPT
-from sandbox.physics.rules import ALL, ANY, NOBODY, NOT, TOUCHES, Rules, Terms, Things, measure
+from sandbox.physics.rules import ALL, ANY, NOBODY, NOT, TOUCHES, Terms, Things, measure
 from sandbox.physics.settings import TICK_RATE
-from sandbox.physics.state import State
 
 
 @kernel
@@ -31,7 +30,18 @@ def judge(pointer: Bundle[WorldBlock]) -> int:
             terms.value[t] = measure(rules, t, state, tick, world.choices[TICK_RATE])
             # Of nothing nothing holds.
             terms.holds[t] = terms.low[t] <= terms.value[t] <= terms.high[t] and terms.value[t] < math.inf
-    fired = _fire(rules, state, tick)
+    fired = 0
+    for r in range(rules.term.shape[0]):
+        state.rule_held[r] = state.rule_held[r] + 1 if rules.terms.holds[rules.term[r]] else 0
+        is_over = rules.once[r] and state.rule_fired[r] > 0
+        if state.rule_held[r] != rules.delay[r] + 1 or is_over:
+            continue
+        if state.rule_fired[r] == 0:
+            state.rule_first[r] = tick
+        state.rule_last[r] = tick
+        state.rule_fired[r] += 1
+        state.rule_due[r] = True
+        fired += 1
     for k in range(rules.probe.shape[0]):
         for axis in range(2):
             state.probe_position[k, axis] = state.position[rules.probe[k], axis]
@@ -47,23 +57,6 @@ def _holds_of_members(terms: Terms, t: int) -> bool:
     if terms.kind[t] == ALL:
         return count == terms.last[t] - terms.first[t]
     return count > 0 if terms.kind[t] == ANY else count == 0
-
-
-@inner_kernel
-def _fire(rules: Rules, state: State, tick: int) -> int:
-    fired = 0
-    for r in range(rules.term.shape[0]):
-        state.rule_held[r] = state.rule_held[r] + 1 if rules.terms.holds[rules.term[r]] else 0
-        is_over = rules.once[r] and state.rule_fired[r] > 0
-        if state.rule_held[r] != rules.delay[r] + 1 or is_over:
-            continue
-        if state.rule_fired[r] == 0:
-            state.rule_first[r] = tick
-        state.rule_last[r] = tick
-        state.rule_fired[r] += 1
-        state.rule_due[r] = True
-        fired += 1
-    return fired
 
 
 @inner_kernel

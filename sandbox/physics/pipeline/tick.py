@@ -53,8 +53,8 @@ from sandbox.physics.settings import (
     WARM_START,
 )
 from sandbox.physics.solvers import HIGHEST_ITERATED
-from sandbox.physics.solvers.contact.contact_order import order_by_label
-from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.solvers.contact.free_constraints import small_steps
+from sandbox.physics.solvers.contact.gauss_seidel import order_by_label
 from sandbox.physics.solvers.direct.islands import find_body_islands
 from sandbox.physics.solvers.direct.rigid_turn import end_turns
 from sandbox.physics.solvers.direct.solve import solve as solve_direct
@@ -92,7 +92,9 @@ def tick(pointer: Bundle[WorldBlock]) -> int:
         inputs = _inputs(world)
         has_joints = prepare_joints(joints, state, inputs.stiffness, inputs.damping, h)
         if not _find_contacts(world, touches, has_joints, h):
-            _take_back_forces(world)
+            for p in range(world.start.shape[0]):
+                world.state.velocity[p, 0] = world.start[p, 0]
+                world.state.velocity[p, 1] = world.start[p, 1]
             return NO_ROOM
         # Behind the last step that is made again with more room, where velocities alone are taken back.
         slow_spins(world.water, state, h)
@@ -167,14 +169,21 @@ def _begin_tick(world: WorldBlock) -> None:
         count = choose_substeps(state, world.plan[GRAB_SPRING], choices[TICK_RATE], world.shortest)
     progress[COUNT] = count
     progress[DONE] = 0
-    factor = _drag_factor(world)
-    if count > 1 or factor != 1.0:
+    factor, into = _drag_factor(world), world.coefficients
+    turns = count > 1 or factor != 1.0
+    if turns or world.plan[HAS_RINGS] != 0:
+        limit_rings(state, into.constraint_stiffness, into.constraint_damping)
+    if turns:
         for s in range(state.stiffness.shape[0]):
-            world.coefficients.stiffness[s] = state.stiffness[s]
-            world.coefficients.damping[s] = state.damping[s]
-        _turn_all_into_substep(world, factor)
-    elif world.plan[HAS_RINGS] != 0:
-        limit_rings(state, world.coefficients.constraint_stiffness, world.coefficients.constraint_damping)
+            into.stiffness[s] = state.stiffness[s]
+            into.damping[s] = state.damping[s]
+        keeps = kept_by(choices[SOLVER], choices[IS_AUTO])
+        highest = HIGHEST_ITERATED if choices[SOLVER] == ITERATIVE else 1.0
+        turn_into_substep(into.stiffness, into.damping, state.lowest_mode, count, keeps, highest, factor)
+        turn_into_substep(
+            into.constraint_stiffness, into.constraint_damping, state.constraint_lowest_mode, count, keeps, highest,
+            factor,
+        )  # fmt: skip
     if choices[IS_AUTO] != 0 and count > 1:
         # What a solver keeps is an impulse of one substep: exact, as their number is a power of two.
         _scale_impulses(world, 1.0 / count)
@@ -189,18 +198,6 @@ def _drag_factor(world: WorldBlock) -> float:
     choices = world.choices
     parts = 1 if choices[IS_AUTO] != 0 else world.progress[COUNT]
     return drag_factor_of(world.numbers[DRAG], choices[TICK_RATE], parts)
-
-
-@inner_kernel
-def _turn_all_into_substep(world: WorldBlock, factor: float) -> None:
-    state, into, count = world.state, world.coefficients, world.progress[COUNT]
-    keeps = kept_by(world.choices[SOLVER], world.choices[IS_AUTO])
-    limit_rings(state, into.constraint_stiffness, into.constraint_damping)
-    highest = HIGHEST_ITERATED if world.choices[SOLVER] == ITERATIVE else 1.0
-    turn_into_substep(into.stiffness, into.damping, state.lowest_mode, count, keeps, highest, factor)
-    turn_into_substep(
-        into.constraint_stiffness, into.constraint_damping, state.constraint_lowest_mode, count, keeps, highest, factor
-    )
 
 
 @inner_kernel
@@ -251,13 +248,6 @@ def _find_contacts(world: WorldBlock, touches: bool, has_joints: bool, h: float)
     if world.plan[HAS_BELTS] != 0:
         load_belts(collisions.contacts, collisions.counts[CONTACTS], collisions.outline, state)
     return has_room
-
-
-@inner_kernel
-def _take_back_forces(world: WorldBlock) -> None:
-    for p in range(world.start.shape[0]):
-        world.state.velocity[p, 0] = world.start[p, 0]
-        world.state.velocity[p, 1] = world.start[p, 1]
 
 
 @inner_kernel

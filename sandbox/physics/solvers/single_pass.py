@@ -13,19 +13,26 @@ from sandbox.physics.collision.types import Contacts
 from sandbox.physics.constraints import constraint_rate, constraints_of, evaluate, explicit_mass, look
 from sandbox.physics.equation import direction, explicit_spring_constant, reduced_mass, spring_impulse
 from sandbox.physics.jit import inner_kernel, set_field
-from sandbox.physics.joints.joint_answers import Joints, couple_masses, own_response
-from sandbox.physics.joints.joint_sweep import iterate_joint
-from sandbox.physics.joints.rows import PAIR, SCALAR, clamped, row_velocity
+from sandbox.physics.joints.joint_rows import (
+    PAIR,
+    SCALAR,
+    Joints,
+    clamped,
+    couple_masses,
+    iterate_joint,
+    own_response,
+    row_velocity,
+)
 from sandbox.physics.marks import LAW_HOOKE, LAW_NISSEN
-from sandbox.physics.solvers.contact.body_impacts import sweep_masses
-from sandbox.physics.solvers.contact.contact_order import ContactOrder
-from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus
+from sandbox.physics.solvers.contact.contact_solve import sweep_masses
+from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, ContactOrder, Delassus
 from sandbox.physics.solvers.inputs import Inputs
 from sandbox.physics.state import State
 
 # Cs and Cd of a joint: (Cs + 2 Cd) n < 4 for n = 1, which leaves room for the springs of what it acts on.
 JOINT_STIFFNESS = 0.05
 JOINT_DAMPING = 0.5
+spring_constant = explicit_spring_constant
 
 
 class ExplicitPass(NamedTuple):
@@ -64,6 +71,70 @@ def lay_out_explicit_pass(state: State, limit: Floats, hooke: bool, arena: Arena
     if not is_full(arena):
         for s in range(springs):
             chosen[s] = state.spring_active[s] and state.law[s] == LAW_HOOKE
+
+
+@inner_kernel
+def solve(
+    state: State, step: ExplicitPass, inputs: Inputs, contacts: Contacts, terms: ContactConstraints,
+    order: ContactOrder, delassus: Delassus, sweeps: int, h: float,
+) -> None:  # fmt: skip
+    """Bring the velocities to the end of a substep of h [s]; contacts are swept after springs, constraints and joints.
+
+    delassus: of particles that answer by their own mass, without joints.
+    """
+    # J = -(Cs lag / h + Cd (u - target)) m, the lag's part kept from step to step: rows.impulse is that of the spring
+    # part, -Cs m lag / h, whose lag runs on until the limit is reached.
+    joints = step.joints
+    rows = joints.rows
+    couple_masses(joints, state.inverse_mass)
+    for k in range(rows.limit.shape[0]):
+        response = own_response(joints, k)
+        step.mass[k] = 1.0 / response if response > 0.0 and rows.pair[k] == SCALAR else 0.0
+        lag = rows.impulse[k] if rows.pair[k] == SCALAR else 0.0
+        u = row_velocity(rows, k, state.velocity, step.still)
+        step.joint_impulse[k] = clamped(lag - JOINT_DAMPING * (u - rows.target[k]) * step.mass[k], rows.limit[k])
+    apply_explicit(state, inputs, step, True, h)
+    rows, velocity, inverse_mass = joints.rows, state.velocity, state.inverse_mass
+    for k in range(rows.limit.shape[0]):
+        for e in range(rows.first[k], rows.first[k + 1]):
+            p = rows.particle[e]
+            velocity[p, 0] += rows.gradient[e, 0] * step.joint_impulse[k] * inverse_mass[p]
+            velocity[p, 1] += rows.gradient[e, 1] * step.joint_impulse[k] * inverse_mass[p]
+    # A hand comes last and has its velocity at once, as a pin that is moved: that is stable wherever the springs are.
+    for k in range(rows.limit.shape[0]):
+        if rows.pair[k] != SCALAR:
+            rows.impulse[k] = 0.0
+    for k in range(rows.limit.shape[0]):
+        if rows.pair[k] == PAIR:
+            iterate_joint(joints, k, step.still, velocity, inverse_mass)
+    if contacts.particle.shape[0] > 0:
+        sweep_masses(contacts, terms, order, state, step.change, delassus, sweeps, h)
+    # lag += h (u' - target)
+    rows = joints.rows
+    for k in range(rows.limit.shape[0]):
+        u = row_velocity(rows, k, state.velocity, step.still)
+        lag = rows.impulse[k] - JOINT_STIFFNESS * (u - rows.target[k]) * step.mass[k]
+        rows.impulse[k] = clamped(lag, rows.limit[k]) if rows.pair[k] == SCALAR else rows.impulse[k]
+
+
+@inner_kernel
+def apply_explicit(state: State, inputs: Inputs, step: ExplicitPass, constrains: bool, h: float) -> None:
+    """Evaluate the chosen springs on the present velocities and apply their summed impulses over a step of h [s].
+
+    constrains: all constraints too.
+    """
+    inverse_mass, impulse = state.inverse_mass, step.impulse
+    for p in range(inverse_mass.shape[0]):
+        impulse[p, 0] = 0.0
+        impulse[p, 1] = 0.0
+    if constrains:
+        _add_constraint_impulses(state, inputs, step, h)
+    _add_spring_impulses(state, inputs, step, h)
+    # The guard keeps pinned particles where they are also when a mistuned Hooke spring pulls with inf: inf * 0 is NaN.
+    for p in range(inverse_mass.shape[0]):
+        if inverse_mass[p] > 0.0:
+            state.velocity[p, 0] += impulse[p, 0] * inverse_mass[p]
+            state.velocity[p, 1] += impulse[p, 1] * inverse_mass[p]
 
 
 @inner_kernel
@@ -115,84 +186,3 @@ def _add_spring_impulses(state: State, inputs: Inputs, step: ExplicitPass, h: fl
         impulse[a, 1] -= j * ny
         impulse[b, 0] += j * nx
         impulse[b, 1] += j * ny
-
-
-@inner_kernel
-def apply_explicit(state: State, inputs: Inputs, step: ExplicitPass, constrains: bool, h: float) -> None:
-    """Evaluate the chosen springs on the present velocities and apply their summed impulses over a step of h [s].
-
-    constrains: all constraints too.
-    """
-    inverse_mass, impulse = state.inverse_mass, step.impulse
-    for p in range(inverse_mass.shape[0]):
-        impulse[p, 0] = 0.0
-        impulse[p, 1] = 0.0
-    if constrains:
-        _add_constraint_impulses(state, inputs, step, h)
-    _add_spring_impulses(state, inputs, step, h)
-    # The guard keeps pinned particles where they are also when a mistuned Hooke spring pulls with inf: inf * 0 is NaN.
-    for p in range(inverse_mass.shape[0]):
-        if inverse_mass[p] > 0.0:
-            state.velocity[p, 0] += impulse[p, 0] * inverse_mass[p]
-            state.velocity[p, 1] += impulse[p, 1] * inverse_mass[p]
-
-
-@inner_kernel
-def _find_joint_impulses(joints: Joints, state: State, step: ExplicitPass) -> None:
-    # J = -(Cs lag / h + Cd (u - target)) m, the lag's part kept from step to step: rows.impulse is that of the spring
-    # part, -Cs m lag / h, whose lag runs on until the limit is reached.
-    rows = joints.rows
-    couple_masses(joints, state.inverse_mass)
-    for k in range(rows.limit.shape[0]):
-        response = own_response(joints, k)
-        step.mass[k] = 1.0 / response if response > 0.0 and rows.pair[k] == SCALAR else 0.0
-        lag = rows.impulse[k] if rows.pair[k] == SCALAR else 0.0
-        u = row_velocity(rows, k, state.velocity, step.still)
-        step.joint_impulse[k] = clamped(lag - JOINT_DAMPING * (u - rows.target[k]) * step.mass[k], rows.limit[k])
-
-
-@inner_kernel
-def _give_joint_impulses(joints: Joints, state: State, step: ExplicitPass) -> None:
-    rows, velocity, inverse_mass = joints.rows, state.velocity, state.inverse_mass
-    for k in range(rows.limit.shape[0]):
-        for e in range(rows.first[k], rows.first[k + 1]):
-            p = rows.particle[e]
-            velocity[p, 0] += rows.gradient[e, 0] * step.joint_impulse[k] * inverse_mass[p]
-            velocity[p, 1] += rows.gradient[e, 1] * step.joint_impulse[k] * inverse_mass[p]
-    # A hand comes last and has its velocity at once, as a pin that is moved: that is stable wherever the springs are.
-    for k in range(rows.limit.shape[0]):
-        if rows.pair[k] != SCALAR:
-            rows.impulse[k] = 0.0
-    for k in range(rows.limit.shape[0]):
-        if rows.pair[k] == PAIR:
-            iterate_joint(joints, k, step.still, velocity, inverse_mass)
-
-
-@inner_kernel
-def _let_joints_follow(joints: Joints, state: State, step: ExplicitPass) -> None:
-    # lag += h (u' - target)
-    rows = joints.rows
-    for k in range(rows.limit.shape[0]):
-        u = row_velocity(rows, k, state.velocity, step.still)
-        lag = rows.impulse[k] - JOINT_STIFFNESS * (u - rows.target[k]) * step.mass[k]
-        rows.impulse[k] = clamped(lag, rows.limit[k]) if rows.pair[k] == SCALAR else rows.impulse[k]
-
-
-spring_constant = explicit_spring_constant
-
-
-@inner_kernel
-def solve(
-    state: State, step: ExplicitPass, inputs: Inputs, contacts: Contacts, terms: ContactConstraints,
-    order: ContactOrder, delassus: Delassus, sweeps: int, h: float,
-) -> None:  # fmt: skip
-    """Bring the velocities to the end of a substep of h [s]; contacts are swept after springs, constraints and joints.
-
-    delassus: of particles that answer by their own mass, without joints.
-    """
-    _find_joint_impulses(step.joints, state, step)
-    apply_explicit(state, inputs, step, True, h)
-    _give_joint_impulses(step.joints, state, step)
-    if contacts.particle.shape[0] > 0:
-        sweep_masses(contacts, terms, order, state, step.change, delassus, sweeps, h)
-    _let_joints_follow(step.joints, state, step)

@@ -1,17 +1,31 @@
-"""Jellies: groups of triangles that share sides, as topology alone decides."""
+"""Jellies: groups of triangles that share sides, and which of them springs and areas alone may not bring back to form.
+
+Topology alone decides the groups. A jelly is inverted while a triangle of it is turned over, or drawn out to LARGEST
+times its area, or while the triangles about one of its inner particles do not wind round that just once. It is wound
+where those about a particle of its outline go on round that beyond where they began: then its outline crosses itself
+there though no triangle is turned over, and what is next to it, which may not touch it, does not hold it apart. Where a
+jelly lies folded over in its own form, some of its triangles counter-clockwise and others not, no turns are counted:
+there is no number of them that is right.
+"""
 
 from typing import Annotated, NamedTuple
 
 from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, new_slot_rows, new_slots, new_tuple
-from sandbox.physics.arrays import Flags, SlotRows, Slots
+from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.components import join, root_of
+from sandbox.physics.constraints import AREA
+from sandbox.physics.geometry.polygon import winding_of_side
+from sandbox.physics.geometry.segment import doubled_area, doubled_area_of
 from sandbox.physics.jit import inlined_kernel, inner_kernel
+from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import list_by_key, sort_by_key
 
-# Places in `counts`: jellies, their particles, rows of fans and of gaps.
-GROUPS, PARTICLES, FANS, GAPS, COUNTS = range(5)
 # Of `begin` and `end`: no side of the rim begins or ends there; several do.
 NO_SIDE, SEVERAL = -1, -2
+# A jelly of which a triangle is drawn out to so many times its area wants to be back in a step, and cannot be without
+# turning others over on its way: held from that, it would stand still. The softest jelly comes to a hundredth of it
+# when it is stirred at 80 m/s.
+LARGEST = 1e4
 
 
 class Jellies(NamedTuple):
@@ -47,6 +61,49 @@ class TriangleScratch(NamedTuple):
     begin: Annotated[Slots, "3 * triangles"]
     end: Annotated[Slots, "3 * triangles"]
     number: Annotated[Slots, "3 * triangles"]
+
+
+class Triangles(NamedTuple):
+    """The triangles of a world that keep their areas, t of them: constraint (t,), corners (t, 3), and their jellies."""
+
+    constraint: Slots
+    corners: SlotRows
+    jellies: Jellies
+
+
+class Inversions(NamedTuple):
+    """By corner of a jelly: turns of triangles round it; by jelly: whether it is inverted. Filled in by each step."""
+
+    turns: Slots
+    is_inverted: Flags
+
+
+@inner_kernel
+def group_triangles(corners: SlotRows, is_left: Flags, bound: int, arena: Arena) -> Jellies:
+    """The jellies that triangles of particles below a bound (t, 3) make, in the order of their first triangles.
+
+    is_left (t,): whether their forms have them run counter-clockwise.
+    """
+    triangles = corners.shape[0]
+    sides = 3 * triangles
+    made = Jellies(
+        new_slots(arena, triangles), new_slot_rows(arena, triangles, 3), new_slots(arena, triangles),
+        new_slots(arena, triangles + 1), new_slots(arena, sides), new_slots(arena, sides), new_flags(arena, sides),
+        new_slot_rows(arena, sides, 4), new_slots(arena, triangles + 1), new_slot_rows(arena, sides, 4),
+    )  # fmt: skip
+    start = mark(arena)
+    work = new_tuple(TriangleScratch, arena, triangles=triangles, marks=max(bound, sides) + 1)
+    if triangles == 0 or is_full(arena):
+        return made
+    groups = _group(corners, bound, made, work)
+    members = _number_corners(corners, bound, groups, made, work)
+    _find_inner(members, groups, made, is_left, work)
+    fans, gaps = _find_fans(corners, members, groups, made, work)
+    give_back(arena, start)
+    return Jellies(
+        made.group, made.member, made.first[:groups], made.start[: groups + 1], made.particle[:members],
+        made.corner[:members], made.inner[:members], made.fan[:fans], made.fan_start[: groups + 1], made.gap[:gaps],
+    )  # fmt: skip
 
 
 @inner_kernel
@@ -139,7 +196,10 @@ def _find_inner(members: int, groups: int, jellies: Jellies, is_left: Flags, wor
 
 
 @inner_kernel
-def _find_rims(members: int, jellies: Jellies, work: TriangleScratch) -> None:
+def _find_fans(
+    corners: SlotRows, members: int, groups: int, jellies: Jellies, work: TriangleScratch
+) -> tuple[int, int]:
+    # The fans of triangles about particles of outlines, and their gaps; how many rows there are of both.
     # By corner of a jelly, the side of the rim that begins there, and the one that ends there. Where two fans meet in a
     # particle, neither is told from the other.
     for i in range(members):
@@ -154,14 +214,6 @@ def _find_rims(members: int, jellies: Jellies, work: TriangleScratch) -> None:
             work.begin[i] = side if work.begin[i] == NO_SIDE else SEVERAL
         i = jellies.member[t, (side + 1) % 3]
         work.end[i] = side if work.end[i] == NO_SIDE else SEVERAL
-
-
-@inner_kernel
-def _find_fans(
-    corners: SlotRows, members: int, groups: int, jellies: Jellies, work: TriangleScratch
-) -> tuple[int, int]:
-    # The fans of triangles about particles of outlines, and their gaps; how many rows there are of both.
-    _find_rims(members, jellies, work)
     gaps = 0
     for i in range(members):
         begin = work.begin[i]
@@ -192,49 +244,98 @@ def _find_fans(
 
 
 @inner_kernel
-def derive_jellies(
-    corners: SlotRows, is_left: Flags, bound: int, jellies: Jellies, counts: Slots, work: TriangleScratch
+def triangles_of(state: State, arena: Arena) -> Triangles:
+    """The triangles of a world, as its constraints are now."""
+    capacity = state.constraint_kind.shape[0]
+    constraint, corners, is_left = (
+        new_slots(arena, capacity),
+        new_slot_rows(arena, capacity, 3),
+        new_flags(arena, capacity),
+    )
+    count = 0
+    if not is_full(arena):
+        for k in range(capacity):
+            if state.constraint_kind[k] == AREA and state.constraint_corners[k] == 3 and state.constraint_active[k]:
+                constraint[count] = k
+                for c in range(3):
+                    corners[count, c] = state.corner_particle[state.constraint_first[k] + c]
+                is_left[count] = state.constraint_rest[k, 1] > 0.0
+                count += 1
+    jellies = group_triangles(corners[:count], is_left[:count], state.owner.shape[0], arena)
+    return Triangles(constraint[:count], corners[:count], jellies)
+
+
+@inner_kernel
+def new_inversions(jellies: Jellies, arena: Arena) -> Inversions:
+    """Lay out inversions for a step to fill in."""
+    return Inversions(new_slots(arena, jellies.particle.shape[0]), new_flags(arena, jellies.first.shape[0]))
+
+
+@inner_kernel
+def find_inverted(
+    position: FloatRows, constraint_rest: FloatRows, triangles: Triangles, found: Inversions, inverted: Flags
 ) -> None:
-    """Fill in the jellies of triangles of particles below a bound, and say in counts (COUNTS,) how much of them."""
-    groups = _group(corners, bound, jellies, work)
-    members = _number_corners(corners, bound, groups, jellies, work)
-    _find_inner(members, groups, jellies, is_left, work)
-    fans, gaps = _find_fans(corners, members, groups, jellies, work)
-    counts[GROUPS] = groups
-    counts[PARTICLES] = members
-    counts[FANS] = fans
-    counts[GAPS] = gaps
+    """Find the inverted jellies; mark the particles, of all those in jellies, that belong to them or to wound ones."""
+    corners = triangles.corners
+    jellies = triangles.jellies
+    turns = found.turns
+    for i in range(turns.shape[0]):
+        turns[i] = 0
+    for g in range(found.is_inverted.shape[0]):
+        found.is_inverted[g] = False
+    for t in range(corners.shape[0]):
+        doubled = wind(position, corners[t, 0], corners[t, 1], corners[t, 2], jellies.member, t, turns)
+        k = triangles.constraint[t]
+        if is_out_of_shape(0.5 * doubled, constraint_rest[k, 0], constraint_rest[k, 1]):
+            found.is_inverted[jellies.group[t]] = True
+    for i in range(turns.shape[0]):
+        inverted[jellies.particle[i]] = False
+    for g in range(found.is_inverted.shape[0]):
+        once = 1 if constraint_rest[triangles.constraint[jellies.first[g]], 1] > 0.0 else -1
+        for i in range(jellies.start[g], jellies.start[g + 1]):
+            if jellies.inner[i] and turns[i] != once:
+                found.is_inverted[g] = True
+        if found.is_inverted[g] or is_wound(g, once, position, jellies.fan, jellies.fan_start):
+            for i in range(jellies.start[g], jellies.start[g + 1]):
+                inverted[jellies.particle[i]] = True
+
+
+@inlined_kernel
+def wind(place: FloatRows, a: int, b: int, c: int, member: SlotRows, at: int, turns: Slots) -> float:
+    """Count the turns of triangle a b c, whose corners are member[at], round each of them; its area, doubled."""
+    ax = place[a, 0]
+    ay = place[a, 1]
+    bx = place[b, 0]
+    by = place[b, 1]
+    cx = place[c, 0]
+    cy = place[c, 1]
+    turns[member[at, 0]] += _crossing(ax, ay, bx, by, cx, cy)
+    turns[member[at, 1]] += _crossing(bx, by, cx, cy, ax, ay)
+    turns[member[at, 2]] += _crossing(cx, cy, ax, ay, bx, by)
+    return doubled_area(ax, ay, bx, by, cx, cy)
+
+
+@inlined_kernel
+def _crossing(px: float, py: float, ax: float, ay: float, bx: float, by: float) -> int:
+    # +1 where the corner at p, from a to b, sweeps over the direction (1, 0) counter-clockwise, -1 clockwise.
+    return winding_of_side(ay < py, by < py, doubled_area(px, py, ax, ay, bx, by))
 
 
 @inner_kernel
-def new_jellies(triangles: int, arena: Arena) -> Jellies:
-    """Jellies of so many triangles, to be filled in."""
-    corners = 3 * triangles
-    return Jellies(
-        new_slots(arena, triangles), new_slot_rows(arena, triangles, 3), new_slots(arena, triangles),
-        new_slots(arena, triangles + 1), new_slots(arena, corners), new_slots(arena, corners),
-        new_flags(arena, corners), new_slot_rows(arena, corners, 4), new_slots(arena, triangles + 1),
-        new_slot_rows(arena, corners, 4),
-    )  # fmt: skip
+def is_wound(g: int, once: int, place: FloatRows, fan: SlotRows, fan_start: Slots) -> bool:
+    """Whether jelly g is wound. once: 1 where its triangles run counter-clockwise, else -1; fan: see Jellies."""
+    for f in range(fan_start[g], fan_start[g + 1]):
+        p = fan[f, 0]
+        begin = fan[f, 1]
+        if (
+            once * doubled_area_of(p, fan[f, 2], begin, place) >= 0.0
+            and once * doubled_area_of(p, begin, fan[f, 3], place) > 0.0
+        ):
+            return True
+    return False
 
 
-@inner_kernel
-def group_triangles(corners: SlotRows, is_left: Flags, bound: int, arena: Arena) -> Jellies:
-    """The jellies that triangles of particles below a bound (t, 3) make, in the order of their first triangles.
-
-    is_left (t,): whether their forms have them run counter-clockwise.
-    """
-    triangles = corners.shape[0]
-    room, counts = new_jellies(triangles, arena), new_slots(arena, COUNTS)
-    start = mark(arena)
-    work = new_tuple(TriangleScratch, arena, triangles=triangles, marks=max(bound, 3 * triangles) + 1)
-    if triangles == 0 or is_full(arena):
-        return room
-    derive_jellies(corners, is_left, bound, room, counts, work)
-    give_back(arena, start)
-    groups, members = counts[GROUPS], counts[PARTICLES]
-    return Jellies(
-        room.group, room.member, room.first[:groups], room.start[: groups + 1], room.particle[:members],
-        room.corner[:members], room.inner[:members], room.fan[: counts[FANS]], room.fan_start[: groups + 1],
-        room.gap[: counts[GAPS]],
-    )  # fmt: skip
+@inlined_kernel
+def is_out_of_shape(area: float, rest: float, form: float) -> bool:
+    """Whether a triangle of this area [m^2], which wants and at rest has those, is turned over or drawn out."""
+    return rest * form > 0.0 and not 0.0 < area * rest < LARGEST * rest * rest

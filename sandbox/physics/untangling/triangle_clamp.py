@@ -1,11 +1,11 @@
 """The triangle clamp, the last phase of a step: after any solver, no triangle of an area turns over in the step.
 
 A jelly of which no triangle is turned over at the start of a step has none at the end, at any Cs and Cd, in every
-solver. Nor do those about a particle of its outline close round that and go on (inversion.py): the gap that they leave,
+solver. Nor do those about a particle of its outline close round that and go on (jellies.py): the gap that they leave,
 between the one before and the next one on the outline, is a triangle too, and as long as it is narrow it may not turn
 over either. What would turn over moves more as one: its rigid motion is left of it, which keeps momentum and angular
 momentum and has the least kinetic energy of all motions that do. Only what terrain or a pin holds stops instead. Let go
-are jellies that are inverted already (inversion.py), until they have found back, and triangles of a pin that is moved.
+are jellies that are inverted already (jellies.py), until they have found back, and triangles of a pin that is moved.
 """
 
 import math
@@ -38,8 +38,14 @@ from sandbox.physics.marks import TERRAIN_GROUP
 from sandbox.physics.state import State
 from sandbox.physics.terrain import Terrain
 from sandbox.physics.topology.sorting import list_by_key
-from sandbox.physics.untangling.inversion import Inversions, Triangles, find_inverted, new_inversions, triangles_of
-from sandbox.physics.untangling.jellies import Jellies
+from sandbox.physics.untangling.jellies import (
+    Inversions,
+    Jellies,
+    Triangles,
+    find_inverted,
+    new_inversions,
+    triangles_of,
+)
 
 # A step leaves a triangle at least this share of the area wanted, or of the area that it has, if that is less. Higher
 # stiffens what is merely squeezed, lower lets triangles be pressed flat in fewer steps.
@@ -85,6 +91,81 @@ class ClampedTriangles(NamedTuple):
     terrain: Terrain
 
 
+class WorldTriangles(NamedTuple):
+    """The triangles of a world, over its particles: as they are clamped, and their jellies; marked (n,): scratch."""
+
+    clamped: ClampedTriangles
+    of_world: Triangles
+    found: Inversions
+    marked: Flags
+
+
+@inner_kernel
+def clamp_world(triangles: WorldTriangles, matches: bool, h: float) -> None:
+    """Clamp the velocities of a world so that they turn no triangle over in h [s]; terrain's clamp was before.
+
+    matches: whether the solver draws inverted jellies to their form, and has held triangles already.
+    """
+    clamped = triangles.clamped
+    count = clamped.group.shape[0]
+    for g in range(clamped.inverted.shape[0]):
+        clamped.inverted[g] = False
+    # A solver that has done this itself may have gone as far as to the last share.
+    if _any_missing(0, count, clamped, LAST_SHARE if matches else 1.0, h):
+        # Which jellies are inverted; where nothing matches their shape, what is merely wound twice stays as it is.
+        found = triangles.found
+        find_inverted(clamped.position, clamped.rest, triangles.of_world, found, triangles.marked)
+        if not matches:
+            for g in range(found.is_inverted.shape[0]):
+                found.is_inverted[g] = False
+            for k in range(clamped.group.shape[0]):
+                t = clamped.constraint[k]
+                inside = not clamped.gap[k] and clamped.rest[t, 0] * clamped.rest[t, 1] > 0.0
+                if inside and not _area_now(k, clamped) > 0.0:
+                    found.is_inverted[clamped.group[k]] = True
+        clamp_triangles(0, clamped.rest.shape[0], 0, clamped.position.shape[0], clamped, h)
+
+
+@inner_kernel
+def _any_missing(first: int, last: int, triangles: ClampedTriangles, ratio: float, h: float) -> bool:
+    found = False
+    for k in range(first, last):
+        if _missing(k, triangles, ratio, h) > 0.0:
+            found = True
+            break
+    return found
+
+
+@inner_kernel
+def _missing(k: int, triangles: ClampedTriangles, ratio: float, h: float) -> float:
+    # The area that a triangle is to be left, where it will not be; 0: it will, or has been let go.
+    if triangles.inverted[triangles.group[k]]:
+        return 0.0
+    least = _least_area(k, triangles, ratio)
+    missing = least > 0.0 and _area_left(k, triangles, h) < least
+    # A gap may open beyond a straight line, where its area is below 0 too.
+    if not missing or (triangles.gap[k] and _opens(k, triangles, h)):
+        return 0.0
+    return least
+
+
+@inner_kernel
+def _least_area(k: int, triangles: ClampedTriangles, ratio: float) -> float:
+    # What the area is to be at the end of the step, or that share of it; 0: it may be anything.
+    now = _area_now(k, triangles)
+    t = triangles.constraint[k]
+    rest = abs(triangles.rest[t, 0])
+    if not (now > 0.0 and triangles.rest[t, 0] * triangles.rest[t, 1] > 0.0):
+        return 0.0
+    for i in range(3):
+        p = triangles.corner[k, i]
+        if triangles.inverse_mass[p] == 0.0 and (triangles.velocity[p, 0] != 0.0 or triangles.velocity[p, 1] != 0.0):
+            return 0.0
+    if now < FLATTEST * rest:
+        return FLAT_SHARE * now
+    return ratio * min(LEAST_AREA * rest, LEAST_AREA_KEPT * now)
+
+
 @inlined_kernel
 def _area_now(k: int, triangles: ClampedTriangles) -> float:
     # The area at the start of the step, turned positive as the one wanted is.
@@ -110,23 +191,6 @@ def _area_left(k: int, triangles: ClampedTriangles, h: float) -> float:
 
 
 @inner_kernel
-def _least_area(k: int, triangles: ClampedTriangles, share: float) -> float:
-    # What the area is to be at the end of the step, or that share of it; 0: it may be anything.
-    now = _area_now(k, triangles)
-    t = triangles.constraint[k]
-    wanted = abs(triangles.rest[t, 0])
-    if not (now > 0.0 and triangles.rest[t, 0] * triangles.rest[t, 1] > 0.0):
-        return 0.0
-    for i in range(3):
-        p = triangles.corner[k, i]
-        if triangles.inverse_mass[p] == 0.0 and (triangles.velocity[p, 0] != 0.0 or triangles.velocity[p, 1] != 0.0):
-            return 0.0
-    if now < FLATTEST * wanted:
-        return FLAT_SHARE * now
-    return share * min(LEAST_AREA * wanted, LEAST_AREA_KEPT * now)
-
-
-@inner_kernel
 def _opens(k: int, triangles: ClampedTriangles, h: float) -> bool:
     # Whether a gap that loses its area on the way to x + h v becomes a straight line there, and is not closed.
     x, v = triangles.position, triangles.velocity
@@ -147,50 +211,65 @@ def _opens(k: int, triangles: ClampedTriangles, h: float) -> bool:
 
 
 @inner_kernel
-def _missing(k: int, triangles: ClampedTriangles, share: float, h: float) -> float:
-    # The area that a triangle is to be left, where it will not be; 0: it will, or has been let go.
-    if triangles.inverted[triangles.group[k]]:
-        return 0.0
-    least = _least_area(k, triangles, share)
-    missing = least > 0.0 and _area_left(k, triangles, h) < least
-    # A gap may open beyond a straight line, where its area is below 0 too.
-    if not missing or (triangles.gap[k] and _opens(k, triangles, h)):
-        return 0.0
-    return least
+def clamp_triangles(begin: int, end: int, low: int, high: int, triangles: ClampedTriangles, h: float) -> int:
+    """Clamp velocities so that no triangle of constraints begin..end turns over in h [s]: AS_IT_WAS, SLOWED or JOINED.
+
+    low, high: the rows that triangles join lie there, but for pinned ones. Where anything is changed, none of them
+    crosses terrain.
+    """
+    first = triangles.start[begin]
+    last = triangles.start[end]
+    if not _any_missing(first, last, triangles, 1.0, h):
+        return AS_IT_WAS
+    return _hold_areas(first, last, low, high, triangles, h)
 
 
 @inner_kernel
-def _any_missing(first: int, last: int, triangles: ClampedTriangles, share: float, h: float) -> bool:
-    found = False
+def _hold_areas(
+    first: int, last: int, low: int, high: int, triangles: ClampedTriangles, h: float
+) -> int:  # fmt: skip
+    _sweep(first, last, triangles, 0, h)
+    _stop_at_terrain(low, high, triangles, h)
+    for round_ in range(1, ROUNDS):
+        if not _sweep(first, last, triangles, SWEEPS * round_, h):
+            return SLOWED
+        _stop_at_terrain(low, high, triangles, h)
+    # Each time round more is joined or held, so this ends; what moves as one, or not at all, neither turns a triangle
+    # over nor crosses terrain.
+    # Nothing moves as one with anything else.
+    for r in range(low, high):
+        triangles.label[r] = r
+        triangles.fixed[r] = triangles.inverse_mass[r] == 0.0
     for k in range(first, last):
-        if _missing(k, triangles, share, h) > 0.0:
-            found = True
-            break
-    return found
+        for i in range(3):
+            p = triangles.corner[k, i]
+            triangles.label[p] = p
+            triangles.fixed[p] = triangles.inverse_mass[p] == 0.0
+    done = SLOWED
+    while _join(first, last, triangles, h):
+        done = JOINED
+        _move_as_one(low, high, triangles)
+        while _hold_at_terrain(low, high, triangles, h):
+            _move_as_one(low, high, triangles)
+    return done
 
 
 @inner_kernel
-def _rigid_motion(k: int, triangles: ClampedTriangles) -> RigidMotion:
-    # That of a triangle as a whole; with a pin it turns about that, with two not.
-    position, velocity, mass = triangles.position, triangles.velocity, triangles.mass
-    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
-    pins = 0
-    for i in range(3):
-        p = triangles.corner[k, i]
-        if triangles.inverse_mass[p] == 0.0:
-            pins += 1
-            if pins > 1:
-                return RigidMotion(sums.x, sums.y, 0.0, 0.0, 0.0, 0.0)
-            sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
-        elif pins == 1:
-            continue
-        sums = with_point(sums, mass[p], position[p, 0], position[p, 1], velocity[p, 0], velocity[p, 1])
-    motion = centre_of(sums)
-    for i in range(3):
-        p = triangles.corner[k, i]
-        if triangles.inverse_mass[p] > 0.0:
-            motion = with_turn(motion, mass[p], position[p, 0], position[p, 1], velocity[p, 0], velocity[p, 1])
-    return motion
+def _sweep(first: int, last: int, triangles: ClampedTriangles, begun: int, h: float) -> bool:
+    # Sweeps over triangles, of which `begun` were made before, until none is too small; whether any was.
+    found = False
+    for sweep in range(begun, begun + SWEEPS):
+        again = False
+        for k in range(first, last):
+            least = _missing(k, triangles, 1.0 - RELAXED * sweep, h)
+            if least > 0.0:
+                if not (triangles.gap[k] and _hold_open(k, triangles, least, h)):
+                    _draw_together(k, triangles, least, h)
+                again = True
+        if not again:
+            break
+        found = True
+    return found
 
 
 @inner_kernel
@@ -239,33 +318,39 @@ def _draw_together(k: int, triangles: ClampedTriangles, least: float, h: float) 
     position, velocity = triangles.position, triangles.velocity
     motion = _rigid_motion(k, triangles)
     for halving in range(HALVINGS + 1):
-        share = 0.5 if halving < HALVINGS else 0.0
+        ratio = 0.5 if halving < HALVINGS else 0.0
         for i in range(3):
             p = triangles.corner[k, i]
             if triangles.inverse_mass[p] > 0.0:
                 u, v = velocity_at(motion, position[p, 0], position[p, 1])
-                velocity[p, 0] = u + share * (velocity[p, 0] - u)
-                velocity[p, 1] = v + share * (velocity[p, 1] - v)
+                velocity[p, 0] = u + ratio * (velocity[p, 0] - u)
+                velocity[p, 1] = v + ratio * (velocity[p, 1] - v)
         if _area_left(k, triangles, h) >= least:
             break
 
 
 @inner_kernel
-def _sweep(first: int, last: int, triangles: ClampedTriangles, begun: int, h: float) -> bool:
-    # Sweeps over triangles, of which `begun` were made before, until none is too small; whether any was.
-    found = False
-    for sweep in range(begun, begun + SWEEPS):
-        again = False
-        for k in range(first, last):
-            least = _missing(k, triangles, 1.0 - RELAXED * sweep, h)
-            if least > 0.0:
-                if not (triangles.gap[k] and _hold_open(k, triangles, least, h)):
-                    _draw_together(k, triangles, least, h)
-                again = True
-        if not again:
-            break
-        found = True
-    return found
+def _rigid_motion(k: int, triangles: ClampedTriangles) -> RigidMotion:
+    # That of a triangle as a whole; with a pin it turns about that, with two not.
+    position, velocity, mass = triangles.position, triangles.velocity, triangles.mass
+    sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
+    pins = 0
+    for i in range(3):
+        p = triangles.corner[k, i]
+        if triangles.inverse_mass[p] == 0.0:
+            pins += 1
+            if pins > 1:
+                return RigidMotion(sums.x, sums.y, 0.0, 0.0, 0.0, 0.0)
+            sums = WeightedSums(0.0, 0.0, 0.0, 0.0, 0.0)
+        elif pins == 1:
+            continue
+        sums = with_point(sums, mass[p], position[p, 0], position[p, 1], velocity[p, 0], velocity[p, 1])
+    motion = centre_of(sums)
+    for i in range(3):
+        p = triangles.corner[k, i]
+        if triangles.inverse_mass[p] > 0.0:
+            motion = with_turn(motion, mass[p], position[p, 0], position[p, 1], velocity[p, 0], velocity[p, 1])
+    return motion
 
 
 @inner_kernel
@@ -277,16 +362,13 @@ def _stop_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float)
 
 
 @inner_kernel
-def _label_alone(first: int, last: int, low: int, high: int, triangles: ClampedTriangles) -> None:
-    # Nothing moves as one with anything else.
-    for r in range(low, high):
-        triangles.label[r] = r
-        triangles.fixed[r] = triangles.inverse_mass[r] == 0.0
+def _join(first: int, last: int, triangles: ClampedTriangles, h: float) -> bool:
+    # Let the corners of what is still too small move as one; whether any is.
+    found = False
     for k in range(first, last):
-        for i in range(3):
-            p = triangles.corner[k, i]
-            triangles.label[p] = p
-            triangles.fixed[p] = triangles.inverse_mass[p] == 0.0
+        if _missing(k, triangles, LAST_SHARE, h) > 0.0 and _unite(k, triangles):
+            found = True
+    return found
 
 
 @inner_kernel
@@ -301,16 +383,6 @@ def _unite(k: int, triangles: ClampedTriangles) -> bool:
             either = fixed[joined] or fixed[other]
             joined = united(label, joined, other)
             fixed[joined] = either
-            found = True
-    return found
-
-
-@inner_kernel
-def _join(first: int, last: int, triangles: ClampedTriangles, h: float) -> bool:
-    # Let the corners of what is still too small move as one; whether any is.
-    found = False
-    for k in range(first, last):
-        if _missing(k, triangles, LAST_SHARE, h) > 0.0 and _unite(k, triangles):
             found = True
     return found
 
@@ -371,78 +443,30 @@ def _hold_at_terrain(low: int, high: int, triangles: ClampedTriangles, h: float)
 
 
 @inner_kernel
-def _hold_areas(
-    first: int, last: int, low: int, high: int, triangles: ClampedTriangles, h: float
-) -> int:  # fmt: skip
-    _sweep(first, last, triangles, 0, h)
-    _stop_at_terrain(low, high, triangles, h)
-    for round_ in range(1, ROUNDS):
-        if not _sweep(first, last, triangles, SWEEPS * round_, h):
-            return SLOWED
-        _stop_at_terrain(low, high, triangles, h)
-    # Each time round more is joined or held, so this ends; what moves as one, or not at all, neither turns a triangle
-    # over nor crosses terrain.
-    _label_alone(first, last, low, high, triangles)
-    done = SLOWED
-    while _join(first, last, triangles, h):
-        done = JOINED
-        _move_as_one(low, high, triangles)
-        while _hold_at_terrain(low, high, triangles, h):
-            _move_as_one(low, high, triangles)
-    return done
-
-
-@inner_kernel
-def clamp_triangles(begin: int, end: int, low: int, high: int, triangles: ClampedTriangles, h: float) -> int:
-    """Clamp velocities so that no triangle of constraints begin..end turns over in h [s]: AS_IT_WAS, SLOWED or JOINED.
-
-    low, high: the rows that triangles join lie there, but for pinned ones. Where anything is changed, none of them
-    crosses terrain.
-    """
-    first = triangles.start[begin]
-    last = triangles.start[end]
-    if not _any_missing(first, last, triangles, 1.0, h):
-        return AS_IT_WAS
-    return _hold_areas(first, last, low, high, triangles, h)
-
-
-@inner_kernel
-def _let_go(triangles: ClampedTriangles, of_world: Triangles, found: Inversions, marked: Flags, matches: bool) -> None:
-    # Which jellies are inverted; where nothing matches their shape, what is merely wound twice stays as it is.
-    find_inverted(triangles.position, triangles.rest, of_world, found, marked)
-    if not matches:
-        for g in range(found.is_inverted.shape[0]):
-            found.is_inverted[g] = False
-        for k in range(triangles.group.shape[0]):
-            t = triangles.constraint[k]
-            inside = not triangles.gap[k] and triangles.rest[t, 0] * triangles.rest[t, 1] > 0.0
-            if inside and not _area_now(k, triangles) > 0.0:
-                found.is_inverted[triangles.group[k]] = True
-
-
-class WorldTriangles(NamedTuple):
-    """The triangles of a world, over its particles: as they are clamped, and their jellies; marked (n,): scratch."""
-
-    clamped: ClampedTriangles
-    of_world: Triangles
-    found: Inversions
-    marked: Flags
-
-
-@inner_kernel
-def clamp_world(triangles: WorldTriangles, matches: bool, h: float) -> None:
-    """Clamp the velocities of a world so that they turn no triangle over in h [s]; terrain's clamp was before.
-
-    matches: whether the solver draws inverted jellies to their form, and has held triangles already.
-    """
-    clamped = triangles.clamped
-    count = clamped.group.shape[0]
-    for g in range(clamped.inverted.shape[0]):
-        clamped.inverted[g] = False
-    # A solver that has done this itself may have gone as far as to the last share.
-    if _any_missing(0, count, clamped, LAST_SHARE if matches else 1.0, h):
-        _let_go(clamped, triangles.of_world, triangles.found, triangles.marked, matches)
-        clamp_triangles(0, clamped.rest.shape[0], 0, clamped.position.shape[0], clamped, h)
+def lay_out_world_triangles(state: State, arena: Arena, out: WorldTriangles) -> None:
+    """Lay out the triangles of a world, as its topology is now."""
+    particles, clamped = state.owner.shape[0], out.clamped
+    set_field(out, "of_world", triangles_of(state, arena))
+    if is_full(arena):
+        return
+    found = out.of_world
+    set_field(out, "found", new_inversions(found.jellies, arena))
+    set_field(out, "marked", new_flags(arena, particles))
+    lay_out_triangles(
+        found.constraint, found.corners, found.jellies, state.constraint_rest.shape[0], particles, arena, clamped
+    )
+    every = new_slots(arena, particles)
+    if is_full(arena):
+        return
+    for p in range(particles):
+        every[p] = p
+    lay_out_collides(found.corners, state, every, arena, clamped)
+    set_field(clamped, "rest", state.constraint_rest)
+    set_field(clamped, "position", state.position)
+    set_field(clamped, "velocity", state.velocity)
+    set_field(clamped, "mass", state.mass)
+    set_field(clamped, "inverse_mass", state.inverse_mass)
+    set_field(clamped, "inverted", out.found.is_inverted)
 
 
 @inner_kernel
@@ -497,30 +521,3 @@ def lay_out_collides(corners: SlotRows, state: State, row: Slots, arena: Arena, 
         for t in range(corners.shape[0]):
             for c in range(3):
                 collides[corners[t, c]] = state.collides[row[corners[t, c]]]
-
-
-@inner_kernel
-def lay_out_world_triangles(state: State, arena: Arena, out: WorldTriangles) -> None:
-    """Lay out the triangles of a world, as its topology is now."""
-    particles, clamped = state.owner.shape[0], out.clamped
-    set_field(out, "of_world", triangles_of(state, arena))
-    if is_full(arena):
-        return
-    found = out.of_world
-    set_field(out, "found", new_inversions(found.jellies, arena))
-    set_field(out, "marked", new_flags(arena, particles))
-    lay_out_triangles(
-        found.constraint, found.corners, found.jellies, state.constraint_rest.shape[0], particles, arena, clamped
-    )
-    every = new_slots(arena, particles)
-    if is_full(arena):
-        return
-    for p in range(particles):
-        every[p] = p
-    lay_out_collides(found.corners, state, every, arena, clamped)
-    set_field(clamped, "rest", state.constraint_rest)
-    set_field(clamped, "position", state.position)
-    set_field(clamped, "velocity", state.velocity)
-    set_field(clamped, "mass", state.mass)
-    set_field(clamped, "inverse_mass", state.inverse_mass)
-    set_field(clamped, "inverted", out.found.is_inverted)

@@ -27,7 +27,7 @@ from sandbox.physics.collision.narrow_phase import DISC, KINDS, TERRAIN, TIP_SHI
 from sandbox.physics.collision.types import KeptContacts
 from sandbox.physics.jit import inner_kernel, scalar_kernel
 from sandbox.physics.settings import GRAVITY_X, GRAVITY_Y
-from sandbox.physics.solvers.contact.small_steps import small_steps
+from sandbox.physics.solvers.contact.free_constraints import small_steps
 from sandbox.physics.state import State
 from sandbox.physics.water.displacers import (
     BOTTOM,

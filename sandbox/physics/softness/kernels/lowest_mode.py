@@ -28,9 +28,14 @@ from sandbox.physics.constraints import AREA, BEND, evaluate, measure_rest, rest
 from sandbox.physics.equation import reduced_mass
 from sandbox.physics.jit import Bundle, bundle, inner_kernel, items_of, kernel, set_field, unpack
 from sandbox.physics.keeping.equipment import StiffForm
-from sandbox.physics.solvers.linear.matrix_layout import block_below, new_matrix
-from sandbox.physics.solvers.linear.minimum_degree import order_by_degree
-from sandbox.physics.solvers.linear.sparse_ldl import Matrix, back_substitute, factorise
+from sandbox.physics.solvers.linear.sparse_ldl import (
+    Matrix,
+    back_substitute,
+    block_below,
+    factorise,
+    new_matrix,
+    order_by_degree,
+)
 
 # S + SHIFT M is factored, as S itself has no inverse. A higher one slows the iteration down in slender forms, whose
 # lowest modes are as small; a lower one loses digits.

@@ -1,18 +1,26 @@
-"""Free contacts as constraints: where each acts, in which order they are solved, and in how many small steps.
+"""Free contacts as constraints: their islands and small steps, in which order they are solved, and how they move.
 
-Islands that take as many small steps are solved side by side: what does not touch does not wait for each other.
+An island is what movable particles connect by touching. Contacts of one with a particle that a spring or a constraint
+holds are coupled: the solver solves them with springs. Contacts of other islands are free, and solved in small steps.
+Islands that take as many of them are solved side by side: what does not touch does not wait for each other.
 """
 
+import math
 from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.collision.surfaces import rolling_ratios
-from sandbox.physics.collision.types import Colliders, Contacts
-from sandbox.physics.geometry.segment import difference
+from sandbox.physics.collision.types import ENDS, Colliders, Contacts, weight_of
+from sandbox.physics.components import root_of, united
+from sandbox.physics.geometry.segment import SHORTEST, difference
 from sandbox.physics.jit import inlined_kernel, inner_kernel
-from sandbox.physics.solvers.contact.free_islands import Islands
-from sandbox.physics.solvers.contact.small_steps import MOST_SMALL_STEPS, small_steps
+from sandbox.physics.topology.sorting import list_by_key
 
+# A small step is no longer than this [s]: 8 of them at 60 Hz. With a quarter of them, heaps of 50 layers sink into each
+# other by a seventh of a radius; twice as many double the time.
+SMALL_STEP = 1.0 / 480.0
+# Small steps of a step at most, where an island would sink too deep.
+MOST_SMALL_STEPS = 64
 # Part of an overlap that a small step removes, and 1 - Cd of a contact while it does. More of the first, or less of the
 # second, shakes heaps; less of the first, or more of the second, lets them sink into each other.
 OVERLAP_SHARE = 0.05
@@ -22,7 +30,6 @@ DEEPEST = 0.04
 # The normal of discs is that of their centres where these lie off it by more than this share of the radii. More costs
 # angular momentum, less time.
 ALONG_CENTRES = 1e-12
-
 # Columns of a contact constraint, a row that lies together. What every iteration reads of it: normal; gap [m] by now;
 # impulse [N s] of a small step along, bounce [m/s], and the way of its normal: FOLLOWS the centres of discs, is COMING
 # where they are followed along their way and have not met yet, STANDS where one of those is pinned, or is no disc, and
@@ -42,6 +49,16 @@ COLUMNS = 28
 # Columns of a place: velocity [m/s], way [m] so far, speed of its surface [m/s] = spin times radius; and what the
 # impulses of a small step add to the first and the last.
 VX, VY, WX, WY, SURFACE, PUSHED_X, PUSHED_Y, PUSHED_SURFACE = range(8)
+
+
+class Islands(NamedTuple):
+    """Islands of a step's contacts, filled in by each step; there is room for more contacts."""
+
+    label: Annotated[Slots, "particles"]  # the first particle of its island
+    is_coupled: Annotated[Flags, "particles"]  # by label
+    contact_label: Annotated[Slots, "contacts"]  # by contact, as found
+    first: Annotated[Slots, "contacts + 1"]  # free contacts of the g-th island: first[g]:first[g + 1], as sorted
+    at: Annotated[Slots, "particles + 2"]  # scratch
 
 
 class FreeContactScratch(NamedTuple):
@@ -75,7 +92,9 @@ class FreeContactScratch(NamedTuple):
     highest: Annotated[Slots, "2 * contacts"]  # level so far
     local: Annotated[Slots, "particles"]  # the place of a particle, -1: none
     ahead: Annotated[FloatRows, "particles, 2"]  # [m]: how much further than h v' a particle has gone in the step
-    added: Annotated[FloatRows, "2 * contacts, 2"]  # [m/s]: what impacts (impacts.py) have added in this small step
+    added: Annotated[
+        FloatRows, "2 * contacts, 2"
+    ]  # [m/s]: what impacts (free_impacts.py) have added in this small step
     stamp: Annotated[Slots, "2 * contacts"]  # the pass that it was hit in
     since: Annotated[Floats, "2 * contacts"]  # [s]: when that was
     hit: Annotated[Slots, "contacts"]  # the constraint of a hit; by hit, as all down to last
@@ -83,13 +102,149 @@ class FreeContactScratch(NamedTuple):
     across: Annotated[Floats, "contacts"]  # [N s]: impulse across
     met: Annotated[Floats, "contacts"]  # [s]: when
     speed: Annotated[Floats, "contacts"]  # [m/s]: along, before it
-    wanted: Annotated[Floats, "contacts"]  # [m/s]: along, after it
+    target: Annotated[Floats, "contacts"]  # [m/s]: along, after it
     slip: Annotated[Floats, "contacts"]  # [m/s]: across, before it
     last_across: Annotated[Floats, "contacts"]  # [N s]: across before the last friction
     last: Annotated[Floats, "contacts"]  # [N s]: what pushed for that
     first: Annotated[Floats, "2 * contacts"]  # [s]: when the first hit of a pass is
     turned: Annotated[Floats, "2 * contacts"]  # [s]: when in a small step it met an edge that rises, 0: it has not
     onto: Annotated[Slots, "2 * contacts"]  # the constraint with that edge
+
+
+@inlined_kernel
+def small_steps(h: float) -> int:
+    """In how many small steps what nothing holds, and no load presses, goes through one of h [s]."""
+    count = 1
+    while count < MOST_SMALL_STEPS and h > SMALL_STEP * count * (1.0 + 1e-9):
+        count *= 2
+    return count
+
+
+@inner_kernel
+def find_islands(contacts: Contacts, count: int, inverse_mass: Floats, attached: Flags, islands: Islands) -> int:
+    """Find the islands of the first `count` contacts; return how many contacts are coupled.
+
+    attached (n,): particles that a spring or a constraint holds.
+    """
+    label = islands.label
+    # Label the particles that touch each other alike; what cannot move joins nothing.
+    for p in range(label.shape[0]):
+        label[p] = p
+    for c in range(count):
+        first = -1
+        for end in range(ENDS):
+            p, _ = weight_of(contacts, c, end)
+            if p < 0 or inverse_mass[p] == 0.0:
+                continue
+            node = root_of(label, p)
+            first = united(label, first, node)
+    for p in range(label.shape[0]):
+        label[p] = root_of(label, p)
+    for p in range(label.shape[0]):
+        islands.is_coupled[p] = False
+    for p in range(label.shape[0]):
+        if attached[p] and inverse_mass[p] > 0.0:
+            islands.is_coupled[label[p]] = True
+    coupled = 0
+    for c in range(count):
+        for end in range(3):
+            p, _ = weight_of(contacts, c, end)
+            if p >= 0 and inverse_mass[p] > 0.0:
+                # All that move have the same.
+                islands.contact_label[c] = label[p]
+                break
+        if islands.is_coupled[islands.contact_label[c]]:
+            coupled += 1
+    return coupled
+
+
+@inner_kernel
+def list_contacts(islands: Islands, key: Slots, source: Slots) -> int:
+    """List contacts: coupled ones first, then the free ones by island, each as found; how many islands those make.
+
+    key: scratch, as long as source.
+    """
+    at, count = islands.at, source.shape[0]
+    for c in range(count):
+        label = islands.contact_label[c]
+        key[c] = 0 if islands.is_coupled[label] else 1 + label
+    list_by_key(key, count, at.shape[0] - 1, at, source)
+    found = 0
+    for k in range(1, at.shape[0] - 1):
+        if at[k + 1] > at[k]:
+            islands.first[found] = at[k]
+            found += 1
+    islands.first[found] = count
+    return found
+
+
+@inner_kernel
+def plan_islands(
+    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows, spin: Floats,
+    h: float, work: FreeContactScratch,
+) -> None:  # fmt: skip
+    """The places of all islands, and in how many small steps of h [s] each is solved; places are not known yet.
+
+    start [m/s] (n, 2): the velocities before anything acted in this step.
+    """
+    count = 0
+    for g in range(island_count):
+        work.begin[g] = count
+        for c in range(islands.first[g], islands.first[g + 1]):
+            count = _place_contact(contacts, c, colliders, start, spin, work, count)
+        _plan(contacts, islands, g, colliders, h, work)
+    work.begin[island_count] = count
+
+
+@inner_kernel
+def _place_contact(
+    contacts: Contacts, c: int, colliders: Colliders, start: FloatRows, spin: Floats, work: FreeContactScratch,
+    count: int,
+) -> int:  # fmt: skip
+    # The places, level and way of a contact; the number of places then.
+    disc = _disc_of(contacts, c)
+    if disc >= 0:
+        q, count = _place_of(disc, colliders, start, spin, work, count)
+    else:
+        # An edge that cannot move, be it of terrain or of a body, with the velocity of its surface.
+        a = contacts.end_a[c]
+        b = contacts.end_b[c]
+        ratio = contacts.share[c]
+        work.particle[count] = contacts.particle[c]
+        work.weight[count] = 0.0
+        work.turning[count] = 0.0
+        work.highest[count] = 0
+        work.stamp[count] = 0
+        work.turned[count] = 0.0
+        work.added[count, 0] = 0.0
+        work.added[count, 1] = 0.0
+        for column in range(8):
+            work.motion[count, column] = 0.0
+        for axis in range(2):
+            if b >= 0:
+                work.motion[count, VX + axis] = (1.0 - ratio) * start[a, axis] + ratio * start[b, axis]
+            work.gain[count, axis] = 0.0
+        work.motion[count, VX] += contacts.belt[c] * contacts.normal[c, 1]
+        work.motion[count, VY] -= contacts.belt[c] * contacts.normal[c, 0]
+        q, count = count, count + 1
+    level = work.highest[q]
+    p, count = _place_of(contacts.particle[c], colliders, start, spin, work, count)
+    level = max(level, work.highest[p])
+    if work.weight[p] > 0.0:
+        work.highest[p] = level + 1
+    if work.weight[q] > 0.0:
+        work.highest[q] = level + 1
+    work.place[c, 0] = p
+    work.place[c, 1] = q
+    work.level[c] = level
+    work.way[c] = _way_of(contacts, c, colliders)
+    return count
+
+
+@inlined_kernel
+def _disc_of(contacts: Contacts, c: int) -> int:
+    # The disc that a contact pushes, -1: it is an edge.
+    return contacts.end_a[c] if contacts.end_b[c] < 0 else -1
 
 
 @inner_kernel
@@ -118,40 +273,6 @@ def _place_of(
 
 
 @inner_kernel
-def _place_of_edge(
-    contacts: Contacts, c: int, start: FloatRows, work: FreeContactScratch, count: int
-) -> tuple[int, int]:
-    # The place of an edge that cannot move, be it of terrain or of a body, with the velocity of its surface; and the
-    # number of places then.
-    a = contacts.end_a[c]
-    b = contacts.end_b[c]
-    share = contacts.share[c]
-    work.particle[count] = contacts.particle[c]
-    work.weight[count] = 0.0
-    work.turning[count] = 0.0
-    work.highest[count] = 0
-    work.stamp[count] = 0
-    work.turned[count] = 0.0
-    work.added[count, 0] = 0.0
-    work.added[count, 1] = 0.0
-    for column in range(8):
-        work.motion[count, column] = 0.0
-    for axis in range(2):
-        if b >= 0:
-            work.motion[count, VX + axis] = (1.0 - share) * start[a, axis] + share * start[b, axis]
-        work.gain[count, axis] = 0.0
-    work.motion[count, VX] += contacts.belt[c] * contacts.normal[c, 1]
-    work.motion[count, VY] -= contacts.belt[c] * contacts.normal[c, 0]
-    return count, count + 1
-
-
-@inlined_kernel
-def _disc_of(contacts: Contacts, c: int) -> int:
-    # The disc that a contact pushes, -1: it is an edge.
-    return contacts.end_a[c] if contacts.end_b[c] < 0 else -1
-
-
-@inner_kernel
 def _way_of(contacts: Contacts, c: int, colliders: Colliders) -> float:
     # Discs that are followed along their way will meet with their centres along the normal, but do not lie so yet.
     p, q = contacts.particle[c], _disc_of(contacts, c)
@@ -162,38 +283,6 @@ def _way_of(contacts: Contacts, c: int, colliders: Colliders) -> float:
     if not abs(contacts.normal[c, 0] * dy - contacts.normal[c, 1] * dx) > ALONG_CENTRES * reach:
         return FOLLOWS
     return COMING if colliders.inverse_mass[p] > 0.0 and colliders.inverse_mass[q] > 0.0 else STANDS
-
-
-@inner_kernel
-def _place_contact(
-    contacts: Contacts, c: int, colliders: Colliders, start: FloatRows, spin: Floats, work: FreeContactScratch,
-    count: int,
-) -> int:  # fmt: skip
-    # The places, level and way of a contact; the number of places then.
-    disc = _disc_of(contacts, c)
-    if disc >= 0:
-        q, count = _place_of(disc, colliders, start, spin, work, count)
-    else:
-        q, count = _place_of_edge(contacts, c, start, work, count)
-    level = work.highest[q]
-    p, count = _place_of(contacts.particle[c], colliders, start, spin, work, count)
-    level = max(level, work.highest[p])
-    if work.weight[p] > 0.0:
-        work.highest[p] = level + 1
-    if work.weight[q] > 0.0:
-        work.highest[q] = level + 1
-    work.place[c, 0] = p
-    work.place[c, 1] = q
-    work.level[c] = level
-    work.way[c] = _way_of(contacts, c, colliders)
-    return count
-
-
-@inlined_kernel
-def _smaller_radius(contacts: Contacts, c: int, colliders: Colliders) -> float:
-    smaller = colliders.radius[contacts.particle[c]]
-    disc = _disc_of(contacts, c)
-    return min(smaller, colliders.radius[disc]) if disc >= 0 else smaller
 
 
 @inner_kernel
@@ -210,7 +299,9 @@ def _plan(
         if work.way[c] == COMING:
             work.alone[g] = True
             continue
-        deepest = DEEPEST * _smaller_radius(contacts, c, colliders)
+        smaller = colliders.radius[contacts.particle[c]]
+        disc = _disc_of(contacts, c)
+        deepest = DEEPEST * (min(smaller, colliders.radius[disc]) if disc >= 0 else smaller)
         if deepest > 0.0:
             mass = 1.0 / (work.weight[work.place[c, 0]] + work.weight[work.place[c, 1]])
             most = max(most, contacts.impulse[c, 0] * deep / (mass * deepest))
@@ -220,24 +311,6 @@ def _plan(
         stiffer *= 4.0
     work.steps[g] = count
     work.hardness[g] = 1.0 / (1.0 + SOFTNESS * (stiffer / most if stiffer > most else 1.0))
-
-
-@inner_kernel
-def plan_islands(
-    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows, spin: Floats,
-    h: float, work: FreeContactScratch,
-) -> None:  # fmt: skip
-    """The places of all islands, and in how many small steps of h [s] each is solved; places are not known yet.
-
-    start [m/s] (n, 2): the velocities before anything acted in this step.
-    """
-    count = 0
-    for g in range(island_count):
-        work.begin[g] = count
-        for c in range(islands.first[g], islands.first[g + 1]):
-            count = _place_contact(contacts, c, colliders, start, spin, work, count)
-        _plan(contacts, islands, g, colliders, h, work)
-    work.begin[island_count] = count
 
 
 @inner_kernel
@@ -288,7 +361,19 @@ def _fill_constraint(contacts: Contacts, c: int, k: int, colliders: Colliders, w
     row[k, RESTITUTION], row[k, IMPACT] = contacts.restitution[c], 0.0
     disc = _disc_of(contacts, c)
     if disc >= 0:
-        _fill_pair(contacts, c, k, colliders, work)
+        # What the constraint of two discs has of their places.
+        p = contacts.particle[c]
+        q = contacts.end_a[c]
+        dx, dy = difference(q, p, colliders.position)
+        reach = colliders.radius[p] + colliders.radius[q]
+        row[k, APART_X], row[k, APART_Y] = dx, dy
+        row[k, REACH] = -reach
+        row[k, PER_REACH] = 1.0 / reach if reach > 0.0 else 0.0
+        if row[k, WAY] == FOLLOWS:
+            row[k, ARM] = (contacts.normal[c, 0] * dx + contacts.normal[c, 1] * dy) * row[k, PER_REACH]
+        elif row[k, WAY] == COMING:
+            row[k, BOUNCE] = -1.0
+            row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
     ratio_p, ratio_q = rolling_ratios(contacts.particle[c], disc, colliders)
     row[k, RATIO_P], row[k, RATIO_Q] = ratio_p, ratio_q
     row[k, ROLL_P], row[k, ROLL_Q] = ratio_p * row[k, TURN_P], ratio_q * row[k, TURN_Q]
@@ -298,18 +383,133 @@ def _fill_constraint(contacts: Contacts, c: int, k: int, colliders: Colliders, w
 
 
 @inner_kernel
-def _fill_pair(contacts: Contacts, c: int, k: int, colliders: Colliders, work: FreeContactScratch) -> None:
-    # What the constraint of two discs has of their places.
-    row = work.constraint
-    p = contacts.particle[c]
-    q = contacts.end_a[c]
-    dx, dy = difference(q, p, colliders.position)
-    reach = colliders.radius[p] + colliders.radius[q]
-    row[k, APART_X], row[k, APART_Y] = dx, dy
-    row[k, REACH] = -reach
-    row[k, PER_REACH] = 1.0 / reach if reach > 0.0 else 0.0
-    if row[k, WAY] == FOLLOWS:
-        row[k, ARM] = (contacts.normal[c, 0] * dx + contacts.normal[c, 1] * dy) * row[k, PER_REACH]
-    elif row[k, WAY] == COMING:
-        row[k, BOUNCE] = -1.0
-        row[k, ALONG], row[k, ACROSS] = 0.0, 0.0
+def look(work: FreeContactScratch, first: int, last: int) -> None:
+    """Update the gaps of contacts, and the normals and arms of discs, which follow the centres."""
+    row, end, motion = work.constraint, work.end, work.motion
+    for i in range(first, last):
+        p = end[i, 0]
+        q = end[i, 1]
+        nx, ny = row[i, NX], row[i, NY]
+        wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
+        wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
+        gap = row[i, REACH] + nx * wx + ny * wy
+        if row[i, WAY] == FOLLOWS:
+            if abs(nx * wy - ny * wx) > -ALONG_CENTRES * row[i, REACH]:
+                distance = math.sqrt(wx * wx + wy * wy)
+                if distance > SHORTEST:
+                    per_distance = 1.0 / distance
+                    row[i, NX] = wx * per_distance
+                    row[i, NY] = wy * per_distance
+                gap = row[i, REACH] + distance
+            row[i, ARM] = 1.0 + gap * row[i, PER_REACH]
+        row[i, GAP] = gap
+
+
+@inner_kernel
+def look_at(work: FreeContactScratch, i: int, late: float) -> None:
+    """Where a contact is so much later [s] within the small step; its gap is that of now along this normal."""
+    row, motion = work.constraint, work.motion
+    p, q = work.end[i, 0], work.end[i, 1]
+    wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
+    wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
+    if row[i, WAY] == FOLLOWS:
+        dx = wx + late * (motion[p, VX] - motion[q, VX])
+        dy = wy + late * (motion[p, VY] - motion[q, VY])
+        distance = math.sqrt(dx * dx + dy * dy)
+        if distance > SHORTEST:
+            row[i, NX] = dx / distance
+            row[i, NY] = dy / distance
+        row[i, ARM] = distance * row[i, PER_REACH]
+    row[i, GAP] = row[i, REACH] + row[i, NX] * wx + row[i, NY] * wy
+
+
+@inner_kernel
+def meet(work: FreeContactScratch, i: int, p: int, q: int, small: float) -> float:
+    """When two discs that are coming meet [s], and so the normal then; infinite: not in this small step [s]."""
+    row, motion = work.constraint, work.motion
+    ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
+    wx = row[i, APART_X] + (motion[p, WX] - motion[q, WX])
+    wy = row[i, APART_Y] + (motion[p, WY] - motion[q, WY])
+    late = _time_until(wx, wy, ux, uy, -row[i, REACH])
+    if not late < small:
+        return math.inf
+    dx, dy = wx + late * ux, wy + late * uy
+    distance = math.sqrt(dx * dx + dy * dy)
+    if distance > SHORTEST:
+        row[i, NX] = dx / distance
+        row[i, NY] = dy / distance
+    row[i, GAP] = row[i, REACH] + row[i, NX] * wx + row[i, NY] * wy
+    row[i, ARM] = distance * row[i, PER_REACH]
+    row[i, WAY] = FOLLOWS
+    row[i, BOUNCE] = 0.0
+    return late
+
+
+@inner_kernel
+def _time_until(dx: float, dy: float, ux: float, uy: float, reach: float) -> float:
+    # When two discs meet that are d apart and move by u; infinite where they never do.
+    # |d + t u| = reach
+    squared = ux * ux + uy * uy
+    along = dx * ux + dy * uy
+    apart = dx * dx + dy * dy - reach * reach
+    if apart <= 0.0:
+        return 0.0
+    inside = along * along - squared * apart
+    if not (along < 0.0 and inside >= 0.0):
+        return math.inf
+    return apart / (math.sqrt(inside) - along)
+
+
+@inlined_kernel
+def approach(work: FreeContactScratch, i: int) -> float:
+    """Velocity of two ends of a contact apart along its normal [m/s]."""
+    row, motion = work.constraint, work.motion
+    p, q = work.end[i, 0], work.end[i, 1]
+    return row[i, NX] * (motion[p, VX] - motion[q, VX]) + row[i, NY] * (motion[p, VY] - motion[q, VY])
+
+
+@inlined_kernel
+def slip(work: FreeContactScratch, i: int) -> float:
+    """Velocity of two surfaces against each other across the normal [m/s]."""
+    row, motion = work.constraint, work.motion
+    p, q = work.end[i, 0], work.end[i, 1]
+    ux, uy = motion[p, VX] - motion[q, VX], motion[p, VY] - motion[q, VY]
+    return row[i, NX] * uy - row[i, NY] * ux - row[i, ARM] * (motion[p, SURFACE] + motion[q, SURFACE])
+
+
+@inlined_kernel
+def apply(
+    work: FreeContactScratch, i: int, nx: float, ny: float, jn: float, jt: float, arm: float, late: float, rolls: bool
+) -> None:  # fmt: skip
+    """Push both ends of a contact by an impulse [N s], jn along its normal and jt across, so late [s].
+
+    rolls: against their turn on each other acts a torque as well, as an impulse at the smaller radius, of at most
+    ROLLING times that along the normal.
+    """
+    # v += J / m, and what it does to the surfaces.
+    row, motion = work.constraint, work.motion
+    p, q = work.end[i, 0], work.end[i, 1]
+    jx, jy = jn * nx - jt * ny, jn * ny + jt * nx
+    weight_p, weight_q = row[i, WEIGHT_P], row[i, WEIGHT_Q]
+    surface_p, surface_q = motion[p, SURFACE], motion[q, SURFACE]
+    roll_p, roll_q = row[i, ROLL_P], row[i, ROLL_Q]
+    turn = row[i, RATIO_P] * surface_p - row[i, RATIO_Q] * surface_q
+    surface_p -= jt * (arm * row[i, TURN_P])  # (35)
+    surface_q -= jt * (arm * row[i, TURN_Q])
+    if rolls and row[i, ROLLING] > 0.0:
+        most = row[i, ROLLING] * row[i, ALONG]
+        turn -= jt * (arm * (roll_p - roll_q))
+        j = min(most, max(-most, -turn * row[i, ROLLING_MASS]))
+        surface_p += j * roll_p
+        surface_q -= j * roll_q
+    motion[p, VX] += jx * weight_p
+    motion[p, VY] += jy * weight_p
+    motion[q, VX] -= jx * weight_q
+    motion[q, VY] -= jy * weight_q
+    motion[p, SURFACE], motion[q, SURFACE] = surface_p, surface_q
+    if late > 0.0:
+        # It acts where discs meet that are coming: what it changes of their ways until then is taken off.
+        motion[p, WX] -= late * jx * weight_p
+        motion[p, WY] -= late * jy * weight_p
+        motion[q, WX] += late * jx * weight_q
+        motion[q, WY] += late * jy * weight_q

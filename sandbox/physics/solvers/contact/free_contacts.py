@@ -54,30 +54,134 @@ from sandbox.physics.solvers.contact.free_constraints import (
     WX,
     WY,
     FreeContactScratch,
+    Islands,
+    apply,
     fill_constraints,
+    look,
+    meet,
     plan_islands,
+    small_steps,
 )
-from sandbox.physics.solvers.contact.free_islands import Islands
-from sandbox.physics.solvers.contact.free_motion import apply, look, meet
+from sandbox.physics.solvers.contact.free_impacts import collide_fast
 from sandbox.physics.solvers.contact.gauss_seidel import FASTEST_PUSH
-from sandbox.physics.solvers.contact.impacts import collide_fast
-from sandbox.physics.solvers.contact.small_steps import small_steps
 
 # In place of a number of small steps.
 SOLVED = 0
 
 
 @inner_kernel
-def _bias(bounce: float, gap: float, rate: float, hardness: float, pushes: bool) -> tuple[float, float]:
-    # The velocity b [m/s] with which the surfaces of a contact are to separate (0: they stay together), and its
-    # hardness, 1 / (1 + soft); rate: small steps in a second.
-    if bounce >= 0.0:
-        return -bounce, 1.0
-    if gap > 0.0:
-        return gap * rate, 1.0
-    if pushes:
-        return max(OVERLAP_SHARE * gap * rate, -FASTEST_PUSH), hardness
-    return 0.0, 1.0
+def solve_free_contacts(
+    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows,
+    velocity: FloatRows, spin: Floats, h: float, work: FreeContactScratch,
+) -> None:  # fmt: skip
+    """Solve the free contacts, as sorted, over a step of h [s]; work.ahead goes with velocity and spin.
+
+    start [m/s] (n, 2): the velocities before anything acted in this step.
+    """
+    # h v' is the way of one step in which v' acts from the start.
+    early = 0.5 * (h - h / small_steps(h))
+    for p in range(work.local.shape[0]):
+        work.local[p] = -1
+        work.ahead[p, 0] = 0.0
+        work.ahead[p, 1] = 0.0
+        if colliders.inverse_mass[p] > 0.0 and not islands.is_coupled[islands.label[p]]:
+            work.ahead[p, 0] = early * (start[p, 0] - velocity[p, 0])
+            work.ahead[p, 1] = early * (start[p, 1] - velocity[p, 1])
+    plan_islands(contacts, islands, island_count, colliders, start, spin, h, work)
+    for g in range(island_count):
+        count = work.steps[g]
+        if count != SOLVED:
+            _solve_beside(contacts, islands, colliders, _put_beside(work, g, island_count), count, h, work)
+    for k in range(work.begin[island_count]):
+        if work.weight[k] > 0.0:
+            p = work.particle[k]
+            for axis in range(2):
+                velocity[p, axis] = work.motion[k, VX + axis]
+                work.ahead[p, axis] = work.motion[k, WX + axis] - h * work.motion[k, VX + axis]
+            spin[p] = spin_of(work.motion[k, SURFACE], spin[p], colliders.radius[p])
+
+
+@inner_kernel
+def _solve_beside(
+    contacts: Contacts,
+    islands: Islands,
+    colliders: Colliders,
+    besides: int,
+    count: int,
+    h: float,
+    work: FreeContactScratch,
+) -> None:
+    # Solve islands side by side, in so many small steps.
+    rows = fill_constraints(contacts, islands, colliders, besides, work)
+    for b in range(besides):
+        g = work.beside[b]
+        work.allowed[g] = _energy(work, work.begin[g], work.begin[g + 1], 1.0)
+    _take_small_steps(work, rows, besides, count, h)
+    for b in range(besides):
+        g = work.beside[b]
+        _restrain(work, work.begin[g], work.begin[g + 1], colliders, work.allowed[g])
+    for i in range(rows):
+        c = work.contact[i]
+        contacts.impulse[c, 0] = work.constraint[i, ALONG] * count
+        contacts.impulse[c, 1] = work.constraint[i, ACROSS] * count
+        contacts.impact[c] += work.constraint[i, IMPACT]
+
+
+@inner_kernel
+def _energy(work: FreeContactScratch, begin: int, end: int, gained: float) -> float:
+    # Kinetic energy of what can move in an island [J]; gained: with what forces add in the step.
+    total = 0.0
+    for k in range(begin, end):
+        if work.weight[k] > 0.0:
+            vx = work.motion[k, VX] + gained * work.gain[k, 0]
+            vy = work.motion[k, VY] + gained * work.gain[k, 1]
+            squared = vx * vx + vy * vy
+            if work.turning[k] > 0.0:
+                squared += work.motion[k, SURFACE] * work.motion[k, SURFACE] / SURFACE_WEIGHT
+            total += 0.5 * squared / work.weight[k]
+    return total
+
+
+@inner_kernel
+def _take_small_steps(work: FreeContactScratch, rows: int, besides: int, count: int, h: float) -> None:
+    # All small steps, so many, of islands side by side, whose contacts are the first rows.
+    small = h / count
+    scale = 1.0 / count
+    # The impulses that contacts bring along, as those of a small step.
+    row = work.constraint
+    for i in range(rows):
+        row[i, ALONG] *= scale
+        row[i, ACROSS] *= scale
+        _push(work, i, row[i, NX], row[i, NY], row[i, ALONG], row[i, ACROSS], row[i, ARM])
+    look(work, 0, rows)
+    for _ in range(count):
+        for b in range(besides):
+            # What forces add in a small step, and what the impulses of the last one do.
+            begin = work.begin[work.beside[b]]
+            end = work.begin[work.beside[b] + 1]
+            motion = work.motion
+            for k in range(begin, end):
+                if work.weight[k] > 0.0:
+                    for axis in range(2):
+                        more = work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
+                        work.added[k, axis] = more
+                        motion[k, VX + axis] += more
+                        motion[k, PUSHED_X + axis] = 0.0
+                    motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
+                    motion[k, PUSHED_SURFACE] = 0.0
+                    work.turned[k] = 0.0
+        hits = _iterate(work, rows, small, True, True)
+        if hits > 0 and not collide_fast(work, hits, rows, besides, small):
+            look(work, 0, rows)
+            _iterate(work, rows, small, True, False)
+        for b in range(besides):
+            begin = work.begin[work.beside[b]]
+            end = work.begin[work.beside[b] + 1]
+            for k in range(begin, end):
+                work.motion[k, WX] += small * work.motion[k, VX]
+                work.motion[k, WY] += small * work.motion[k, VY]
+        look(work, 0, rows)
+        _iterate(work, rows, small, False, True)
 
 
 @inlined_kernel
@@ -96,25 +200,6 @@ def _push(work: FreeContactScratch, i: int, nx: float, ny: float, jn: float, jt:
     motion[q, PUSHED_X] -= jx * row[i, WEIGHT_Q]
     motion[q, PUSHED_Y] -= jy * row[i, WEIGHT_Q]
     motion[q, PUSHED_SURFACE] -= jt * row[i, TURN_Q]
-
-
-@inner_kernel
-def _begin(work: FreeContactScratch, count: int, scale: float) -> None:
-    # The impulses that contacts bring along, as those of a small step.
-    row = work.constraint
-    for i in range(count):
-        row[i, ALONG] *= scale
-        row[i, ACROSS] *= scale
-        _push(work, i, row[i, NX], row[i, NY], row[i, ALONG], row[i, ACROSS], row[i, ARM])
-
-
-@inlined_kernel
-def _borne(work: FreeContactScratch, i: int, p: int, along: float, rate: float, pushes: bool) -> float:
-    # The share of its impulse that a contact keeps which a particle has left for an edge that rises; 0: it has not. It
-    # has borne the particle until then, and velocities stand half a step behind.
-    if not along > 0.0 or work.turned[p] == 0.0 or work.onto[p] == i or work.constraint[i, WAY] == FOLLOWS:
-        return 0.0
-    return 1.0 if pushes else min(1.0, work.turned[p] * rate + 0.5)
 
 
 @inlined_kernel
@@ -178,18 +263,25 @@ def _iterate(work: FreeContactScratch, count: int, small: float, pushes: bool, s
 
 
 @inner_kernel
-def _energy(work: FreeContactScratch, begin: int, end: int, gained: float) -> float:
-    # Kinetic energy of what can move in an island [J]; gained: with what forces add in the step.
-    total = 0.0
-    for k in range(begin, end):
-        if work.weight[k] > 0.0:
-            vx = work.motion[k, VX] + gained * work.gain[k, 0]
-            vy = work.motion[k, VY] + gained * work.gain[k, 1]
-            squared = vx * vx + vy * vy
-            if work.turning[k] > 0.0:
-                squared += work.motion[k, SURFACE] * work.motion[k, SURFACE] / SURFACE_WEIGHT
-            total += 0.5 * squared / work.weight[k]
-    return total
+def _bias(bounce: float, gap: float, rate: float, hardness: float, pushes: bool) -> tuple[float, float]:
+    # The velocity b [m/s] with which the surfaces of a contact are to separate (0: they stay together), and its
+    # hardness, 1 / (1 + soft); rate: small steps in a second.
+    if bounce >= 0.0:
+        return -bounce, 1.0
+    if gap > 0.0:
+        return gap * rate, 1.0
+    if pushes:
+        return max(OVERLAP_SHARE * gap * rate, -FASTEST_PUSH), hardness
+    return 0.0, 1.0
+
+
+@inlined_kernel
+def _borne(work: FreeContactScratch, i: int, p: int, along: float, rate: float, pushes: bool) -> float:
+    # The share of its impulse that a contact keeps which a particle has left for an edge that rises; 0: it has not. It
+    # has borne the particle until then, and velocities stand half a step behind.
+    if not along > 0.0 or work.turned[p] == 0.0 or work.onto[p] == i or work.constraint[i, WAY] == FOLLOWS:
+        return 0.0
+    return 1.0 if pushes else min(1.0, work.turned[p] * rate + 0.5)
 
 
 @inner_kernel
@@ -251,49 +343,6 @@ def _place_now(work: FreeContactScratch, k: int, colliders: Colliders) -> tuple[
 
 
 @inner_kernel
-def _begin_small_step(work: FreeContactScratch, begin: int, end: int, scale: float) -> None:
-    # What forces add in a small step, and what the impulses of the last one do.
-    motion = work.motion
-    for k in range(begin, end):
-        if work.weight[k] > 0.0:
-            for axis in range(2):
-                more = work.gain[k, axis] * scale + motion[k, PUSHED_X + axis]
-                work.added[k, axis] = more
-                motion[k, VX + axis] += more
-                motion[k, PUSHED_X + axis] = 0.0
-            motion[k, SURFACE] += motion[k, PUSHED_SURFACE]
-            motion[k, PUSHED_SURFACE] = 0.0
-            work.turned[k] = 0.0
-
-
-@inner_kernel
-def _move(work: FreeContactScratch, begin: int, end: int, small: float) -> None:
-    for k in range(begin, end):
-        work.motion[k, WX] += small * work.motion[k, VX]
-        work.motion[k, WY] += small * work.motion[k, VY]
-
-
-@inner_kernel
-def _take_small_steps(work: FreeContactScratch, rows: int, besides: int, count: int, h: float) -> None:
-    # All small steps, so many, of islands side by side, whose contacts are the first rows.
-    small = h / count
-    scale = 1.0 / count
-    _begin(work, rows, scale)
-    look(work, 0, rows)
-    for _ in range(count):
-        for b in range(besides):
-            _begin_small_step(work, work.begin[work.beside[b]], work.begin[work.beside[b] + 1], scale)
-        hits = _iterate(work, rows, small, True, True)
-        if hits > 0 and not collide_fast(work, hits, rows, besides, small):
-            look(work, 0, rows)
-            _iterate(work, rows, small, True, False)
-        for b in range(besides):
-            _move(work, work.begin[work.beside[b]], work.begin[work.beside[b] + 1], small)
-        look(work, 0, rows)
-        _iterate(work, rows, small, False, True)
-
-
-@inner_kernel
 def _put_beside(work: FreeContactScratch, first: int, island_count: int) -> int:
     # The islands from the first one on that are solved side by side with it, marked as solved; how many.
     count = work.steps[first]
@@ -308,61 +357,3 @@ def _put_beside(work: FreeContactScratch, first: int, island_count: int) -> int:
             work.steps[g] = SOLVED
             besides += 1
     return besides
-
-
-@inner_kernel
-def _solve_beside(
-    contacts: Contacts,
-    islands: Islands,
-    colliders: Colliders,
-    besides: int,
-    count: int,
-    h: float,
-    work: FreeContactScratch,
-) -> None:
-    # Solve islands side by side, in so many small steps.
-    rows = fill_constraints(contacts, islands, colliders, besides, work)
-    for b in range(besides):
-        g = work.beside[b]
-        work.allowed[g] = _energy(work, work.begin[g], work.begin[g + 1], 1.0)
-    _take_small_steps(work, rows, besides, count, h)
-    for b in range(besides):
-        g = work.beside[b]
-        _restrain(work, work.begin[g], work.begin[g + 1], colliders, work.allowed[g])
-    for i in range(rows):
-        c = work.contact[i]
-        contacts.impulse[c, 0] = work.constraint[i, ALONG] * count
-        contacts.impulse[c, 1] = work.constraint[i, ACROSS] * count
-        contacts.impact[c] += work.constraint[i, IMPACT]
-
-
-@inner_kernel
-def solve_free_contacts(
-    contacts: Contacts, islands: Islands, island_count: int, colliders: Colliders, start: FloatRows,
-    velocity: FloatRows, spin: Floats, h: float, work: FreeContactScratch,
-) -> None:  # fmt: skip
-    """Solve the free contacts, as sorted, over a step of h [s]; work.ahead goes with velocity and spin.
-
-    start [m/s] (n, 2): the velocities before anything acted in this step.
-    """
-    # h v' is the way of one step in which v' acts from the start.
-    early = 0.5 * (h - h / small_steps(h))
-    for p in range(work.local.shape[0]):
-        work.local[p] = -1
-        work.ahead[p, 0] = 0.0
-        work.ahead[p, 1] = 0.0
-        if colliders.inverse_mass[p] > 0.0 and not islands.is_coupled[islands.label[p]]:
-            work.ahead[p, 0] = early * (start[p, 0] - velocity[p, 0])
-            work.ahead[p, 1] = early * (start[p, 1] - velocity[p, 1])
-    plan_islands(contacts, islands, island_count, colliders, start, spin, h, work)
-    for g in range(island_count):
-        count = work.steps[g]
-        if count != SOLVED:
-            _solve_beside(contacts, islands, colliders, _put_beside(work, g, island_count), count, h, work)
-    for k in range(work.begin[island_count]):
-        if work.weight[k] > 0.0:
-            p = work.particle[k]
-            for axis in range(2):
-                velocity[p, axis] = work.motion[k, VX + axis]
-                work.ahead[p, axis] = work.motion[k, WX + axis] - h * work.motion[k, VX + axis]
-            spin[p] = spin_of(work.motion[k, SURFACE], spin[p], colliders.radius[p])

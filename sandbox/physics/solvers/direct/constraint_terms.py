@@ -2,7 +2,7 @@
 
 A constraint stands in f (spring_terms.py) as a spring does, with C for x: K (C' - C)^2 + K beta (C'^2 - (C' - C)^2);
 its part of the matrix is K g g^T. That of three corners is added to the matrix. More corners would all be joined with
-each other, so a wide constraint is taken in after the factorisation (factor.py).
+each other, so a wide constraint is taken in after the factorisation (network.py).
 
 Under the area of every triangle lies a floor: a second spring of the same gradient, x = A - FLOOR A0, only pushing,
 J = max(0, -K (u' + b)), b = x / h above it and beta x / h below. It stands in the triangle's own blocks of the matrix
@@ -33,6 +33,54 @@ WHOLE_BEND = 1.0
 
 
 @inner_kernel
+def load_constraints(
+    span: Span, system: System, state: State, inputs: Inputs, auto_substeps: int, h: float
+) -> tuple[bool, float]:
+    """Bring a body's constraints into their scratch, and return what `load_springs` does of springs."""
+    rows, constraints = system.rows, system.constraints
+    underdamped = False
+    moved = 0.0
+    for k in range(span.first_constraint, span.last_constraint):
+        # What the step's own arrays say of a constraint.
+        s = constraints.slot[k]
+        constraints.stiffness[k] = inputs.constraint_stiffness[s]
+        constraints.damping[k] = inputs.constraint_damping[s]
+        for axis in range(2):
+            constraints.rest[k, axis] = state.constraint_rest[s, axis]
+        for c in range(constraints.first[k], constraints.first[k + 1]):
+            constraints.weight[c] = state.corner_weight[constraints.corner[c]]
+        total = 0.0
+        for c in range(constraints.first[k], constraints.first[k + 1]):
+            total += rows.inverse_mass[constraints.row[c]] * constraints.weight[c]
+        mass = 1.0 / total if total > 0.0 else 0.0  # (17)
+        constraints.floor[k] = 0.0
+        if system.shape_match_groups.group[k] >= 0 and constraints.rest[k, 0] * constraints.rest[k, 1] > 0.0:
+            constraints.floor[k] = FLOOR_STRENGTH * mass * (FLOOR_RATE * h) * (FLOOR_RATE * h)
+        stiff, restoring = implicit_masses(constraints.stiffness[k], constraints.damping[k], mass)
+        constraints.K[k] = stiff
+        constraints.K_beta[k] = restoring
+        if restoring > stiff:
+            underdamped = True
+        constraints.k_h2[k] = restoring
+        if auto_substeps > 1:
+            # K beta [kg] of a constraint in a tick of one part.
+            stiffness = state.constraint_stiffness[constraints.slot[k]]
+            damping = state.constraint_damping[constraints.slot[k]]
+            if constraints.first[k + 1] - constraints.first[k] > TRIANGLE:
+                stiffness, damping = capped(stiffness, damping, HIGHEST_RING_COEFFICIENT)
+            _, restoring = implicit_masses(stiffness, damping, mass)
+            constraints.k_h2[k] = restoring / (auto_substeps * auto_substeps * inputs.drag_factor)
+        _look(k, constraints, rows.x_moved, rows.x_moved, 0.0)
+        error = _error(k, constraints, constraints.spare)
+        moved += _floor_energy(k, constraints, error, h)
+        error /= h
+        moved += 0.5 * constraints.k_h2[k] * error * error
+        _look(k, constraints, rows.position, rows.position, 0.0)
+        constraints.error[k] = _error(k, constraints, constraints.spare)
+    return underdamped, moved
+
+
+@inner_kernel
 def _look(k: int, constraints: Constraints, position: FloatRows, velocity: FloatRows, time: float) -> None:
     # The corners of a constraint at position + time velocity.
     for c in range(constraints.first[k], constraints.first[k + 1]):
@@ -52,63 +100,43 @@ def _error(k: int, constraints: Constraints, gradient: FloatRows) -> float:
 
 
 @inner_kernel
-def _load_constants(k: int, constraints: Constraints, state: State, inputs: Inputs) -> None:
-    # What the step's own arrays say of a constraint.
-    s = constraints.slot[k]
-    constraints.stiffness[k] = inputs.constraint_stiffness[s]
-    constraints.damping[k] = inputs.constraint_damping[s]
-    for axis in range(2):
-        constraints.rest[k, axis] = state.constraint_rest[s, axis]
-    for c in range(constraints.first[k], constraints.first[k + 1]):
-        constraints.weight[c] = state.corner_weight[constraints.corner[c]]
+def _floor_energy(k: int, constraints: Constraints, error: float, h: float) -> float:
+    # k min(0, x)^2 / 2
+    if not constraints.floor[k] > 0.0:
+        return 0.0
+    below = min(0.0, _above_floor(k, constraints, error)) / h
+    return 0.5 * constraints.floor[k] * below * below
+
+
+@inlined_kernel
+def _above_floor(k: int, constraints: Constraints, error: float) -> float:
+    # A - FLOOR A0, turned positive as A0 is.
+    above = error + (1.0 - FLOOR) * constraints.rest[k, 0]
+    return above if constraints.rest[k, 0] > 0.0 else -above
 
 
 @inner_kernel
-def _whole_restoring(k: int, constraints: Constraints, state: State, mass: float) -> float:
-    # K beta [kg] of a constraint in a tick of one part.
-    stiffness = state.constraint_stiffness[constraints.slot[k]]
-    damping = state.constraint_damping[constraints.slot[k]]
-    if constraints.first[k + 1] - constraints.first[k] > TRIANGLE:
-        stiffness, damping = capped(stiffness, damping, HIGHEST_RING_COEFFICIENT)
-    _, restoring = implicit_masses(stiffness, damping, mass)
-    return restoring
-
-
-@inner_kernel
-def load_constraints(
-    span: Span, system: System, state: State, inputs: Inputs, auto_substeps: int, h: float
-) -> tuple[bool, float]:
-    """Bring a body's constraints into their scratch, and return what `load_springs` does of springs."""
+def linearise_constraints(span: Span, system: System, h: float, ahead: float, behind: float) -> None:
+    """Gradients and impulses of a body's constraints for one linear solve, as `linearise_springs` has of springs."""
     rows, constraints = system.rows, system.constraints
-    underdamped = False
-    moved = 0.0
     for k in range(span.first_constraint, span.last_constraint):
-        _load_constants(k, constraints, state, inputs)
-        total = 0.0
         for c in range(constraints.first[k], constraints.first[k + 1]):
-            total += rows.inverse_mass[constraints.row[c]] * constraints.weight[c]
-        mass = 1.0 / total if total > 0.0 else 0.0  # (17)
-        constraints.floor[k] = 0.0
-        if system.shape_match_groups.group[k] >= 0 and constraints.rest[k, 0] * constraints.rest[k, 1] > 0.0:
-            constraints.floor[k] = FLOOR_STRENGTH * mass * (FLOOR_RATE * h) * (FLOOR_RATE * h)
-        stiff, restoring = implicit_masses(constraints.stiffness[k], constraints.damping[k], mass)
-        constraints.K[k] = stiff
-        constraints.K_beta[k] = restoring
-        if restoring > stiff:
-            underdamped = True
-        constraints.k_h2[k] = restoring
-        if auto_substeps > 1:
-            constraints.k_h2[k] = _whole_restoring(k, constraints, state, mass) / (
-                auto_substeps * auto_substeps * inputs.drag_factor
-            )
-        _look(k, constraints, rows.x_moved, rows.x_moved, 0.0)
-        error = _error(k, constraints, constraints.spare)
-        moved += _floor_energy(k, constraints, error, h)
-        error /= h
-        moved += 0.5 * constraints.k_h2[k] * error * error
-        _look(k, constraints, rows.position, rows.position, 0.0)
-        constraints.error[k] = _error(k, constraints, constraints.spare)
-    return underdamped, moved
+            r = constraints.row[c]
+            for axis in range(2):
+                constraints.place[c, axis] = rows.position[r, axis] + h * (
+                    ahead * rows.v[r, axis] - behind * rows.slow[r, axis]
+                )
+        _error(k, constraints, constraints.gradient)
+        growth = _growth(k, system, h)
+        constraints.impulse[k] = implicit_impulse(
+            constraints.K[k], constraints.K_beta[k], growth, constraints.error[k], h
+        )  # fmt: skip
+        constraints.predicted[k] = constraints.error[k] + h * growth
+        constraints.K_with_floor[k] = constraints.K[k]
+        push = _floor_push(k, constraints, growth, h)
+        if push > 0.0:
+            constraints.K_with_floor[k] += constraints.floor[k] / FLOOR_BETA
+            constraints.impulse[k] += push if constraints.rest[k, 0] > 0.0 else -push
 
 
 @inner_kernel
@@ -137,37 +165,6 @@ def _growth(k: int, system: System, h: float) -> float:
 
 
 @inner_kernel
-def linearise_constraints(span: Span, system: System, h: float, ahead: float, behind: float) -> None:
-    """Gradients and impulses of a body's constraints for one linear solve, as `linearise_springs` has of springs."""
-    rows, constraints = system.rows, system.constraints
-    for k in range(span.first_constraint, span.last_constraint):
-        for c in range(constraints.first[k], constraints.first[k + 1]):
-            r = constraints.row[c]
-            for axis in range(2):
-                constraints.place[c, axis] = rows.position[r, axis] + h * (
-                    ahead * rows.v[r, axis] - behind * rows.slow[r, axis]
-                )
-        _error(k, constraints, constraints.gradient)
-        growth = _growth(k, system, h)
-        constraints.impulse[k] = implicit_impulse(
-            constraints.K[k], constraints.K_beta[k], growth, constraints.error[k], h
-        )  # fmt: skip
-        constraints.predicted[k] = constraints.error[k] + h * growth
-        constraints.K_with_floor[k] = constraints.K[k]
-        push = _floor_push(k, constraints, growth, h)
-        if push > 0.0:
-            constraints.K_with_floor[k] += constraints.floor[k] / FLOOR_BETA
-            constraints.impulse[k] += push if constraints.rest[k, 0] > 0.0 else -push
-
-
-@inlined_kernel
-def _above_floor(k: int, constraints: Constraints, error: float) -> float:
-    # A - FLOOR A0, turned positive as A0 is.
-    above = error + (1.0 - FLOOR) * constraints.rest[k, 0]
-    return above if constraints.rest[k, 0] > 0.0 else -above
-
-
-@inner_kernel
 def _floor_push(k: int, constraints: Constraints, growth: float, h: float) -> float:
     # The impulse of the floor at dA/dt = growth; 0: none, or no triangle.
     if not constraints.floor[k] > 0.0:
@@ -177,40 +174,6 @@ def _floor_push(k: int, constraints: Constraints, growth: float, h: float) -> fl
         gap *= FLOOR_BETA
     rate = growth if constraints.rest[k, 0] > 0.0 else -growth
     return max(0.0, -(rate + gap) * constraints.floor[k] / FLOOR_BETA)  # (19)
-
-
-@inner_kernel
-def _floor_energy(k: int, constraints: Constraints, error: float, h: float) -> float:
-    # k min(0, x)^2 / 2
-    if not constraints.floor[k] > 0.0:
-        return 0.0
-    below = min(0.0, _above_floor(k, constraints, error)) / h
-    return 0.5 * constraints.floor[k] * below * below
-
-
-@inner_kernel
-def _add_block(
-    system: System, fronted: bool, r: int, s: int, at: int, xx: float, xy: float, yx: float, yy: float
-) -> None:
-    # Row r >= s, column s of the matrix, whose block lies at `at`.
-    matrix = system.matrix
-    if fronted:
-        # The upper triangle by rows: turned over.
-        numbers = system.fronts.numbers
-        width = system.fronts.row_width[s]
-        numbers[at] += xx
-        numbers[at + 1] += yx
-        numbers[at + width] += xy
-        numbers[at + width + 1] += yy
-    elif r == s:
-        matrix.diagonal[r, 0] += xx
-        matrix.diagonal[r, 1] += xy
-        matrix.diagonal[r, 2] += yy
-    else:
-        matrix.lower[at, 0] += xx
-        matrix.lower[at, 1] += xy
-        matrix.lower[at, 2] += yx
-        matrix.lower[at, 3] += yy
 
 
 @inner_kernel
@@ -245,14 +208,28 @@ def assemble_constraints(span: Span, system: System, fronted: bool) -> None:
 
 
 @inner_kernel
-def gradient_dot(k: int, constraints: Constraints, delta_v: FloatRows, free_count: int) -> float:
-    """g . delta_v of a constraint."""
-    total = 0.0
-    for c in range(constraints.first[k], constraints.first[k + 1]):
-        r = constraints.row[c]
-        if r < free_count:
-            total += constraints.gradient[c, 0] * delta_v[r, 0] + constraints.gradient[c, 1] * delta_v[r, 1]
-    return total
+def _add_block(
+    system: System, fronted: bool, r: int, s: int, at: int, xx: float, xy: float, yx: float, yy: float
+) -> None:
+    # Row r >= s, column s of the matrix, whose block lies at `at`.
+    matrix = system.matrix
+    if fronted:
+        # The upper triangle by rows: turned over.
+        numbers = system.fronts.numbers
+        width = system.fronts.row_width[s]
+        numbers[at] += xx
+        numbers[at + 1] += yx
+        numbers[at + width] += xy
+        numbers[at + width + 1] += yy
+    elif r == s:
+        matrix.diagonal[r, 0] += xx
+        matrix.diagonal[r, 1] += xy
+        matrix.diagonal[r, 2] += yy
+    else:
+        matrix.lower[at, 0] += xx
+        matrix.lower[at, 1] += xy
+        matrix.lower[at, 2] += yx
+        matrix.lower[at, 3] += yy
 
 
 @inner_kernel
@@ -299,6 +276,17 @@ def update_constraints(span: Span, system: System, h: float) -> tuple[float, flo
         error /= h
         energy += 0.5 * constraints.k_h2[k] * error * error
     return energy, misfit
+
+
+@inner_kernel
+def gradient_dot(k: int, constraints: Constraints, delta_v: FloatRows, free_count: int) -> float:
+    """g . delta_v of a constraint."""
+    total = 0.0
+    for c in range(constraints.first[k], constraints.first[k + 1]):
+        r = constraints.row[c]
+        if r < free_count:
+            total += constraints.gradient[c, 0] * delta_v[r, 0] + constraints.gradient[c, 1] * delta_v[r, 1]
+    return total
 
 
 @inner_kernel

@@ -2,12 +2,12 @@
 
 The norm is H = KE(v') + PE(x + h v') of bodies and free particles, less 1/2 sum m (v* - v).(v' - v*): then the work of
 forces in the step is that of their impulses at the mean of the velocities v and v', as in free fall. What a step loses
-is stored, up to a limit, in the energy banks of bodies and particles; to push apart what penetrates is paid from there.
+is stored, up to a limit, in the energy budgets of bodies and particles, which pay for pushing apart what penetrates.
 
 Springs and contacts act at v' alone. So where forces do work, an island may have less than it seems by what they do in
 half a step, W = 1/2 sum m (v* - v).v': what begins to sink on springs seems to gain that, less its motion. W - KE(v')
 is lent to the island, and the parting reserves of its members are overdrawn by it until it is lost. What begins to rise
-may bank -W - KE(v'); or that is lent, too, when it is stopped. What is faster than forces make it in a step is lent
+may save -W - KE(v'); or that is lent, too, when it is stopped. What is faster than forces make it in a step is lent
 nothing.
 """
 
@@ -25,19 +25,19 @@ from sandbox.physics.solvers.contact.gauss_seidel import (
     PENETRATION_SHARE,
     ContactConstraints,
 )
-from sandbox.physics.solvers.direct.energy_bank import (
-    BANK_SHARE,
+from sandbox.physics.solvers.direct.energy_budget import (
+    BUDGET_SHARE,
     ENERGY_ROUNDING,
     LAST_HALVINGS,
-    UNDERDAMPED_BANK_SHARE,
-    bank_limit,
+    UNDERDAMPED_BUDGET_SHARE,
     body_energy,
+    budget_limit,
+    is_deep,
     reserve,
 )
-from sandbox.physics.solvers.direct.families import find_tension
 from sandbox.physics.solvers.direct.islands import BODIES, ISLANDS, MEMBERS, BodyIslands, IslandWorkspace
-from sandbox.physics.solvers.direct.joint_response import work_of_joints
-from sandbox.physics.solvers.direct.motion import copy, hold_triangles, kinetic, scale
+from sandbox.physics.solvers.direct.network import find_tension
+from sandbox.physics.solvers.direct.response import work_of_joints
 from sandbox.physics.solvers.direct.rigid_turn import damp_within
 from sandbox.physics.solvers.direct.system import (
     END_INERTIA,
@@ -51,18 +51,21 @@ from sandbox.physics.solvers.direct.system import (
     Rows,
     Span,
     System,
+    copy,
+    hold_triangles,
+    kinetic,
+    scale,
     span_of,
 )
 from sandbox.physics.state import State
-from sandbox.physics.untangling.overlaps import DEEP
-from sandbox.physics.untangling.parting import PARTING_SPEED
+from sandbox.physics.untangling.depenetration import DEPENETRATION_SPEED
 
 # Halvings of what moves within bodies that fail the test, before all that moves is slowed down.
 INNER_HALVINGS = 3
 # The same of a body that joints alone drive.
 DRIVEN_HALVINGS = 12
-# What banks save for pushing apart what penetrates lets a body have this speed [m/s] as a whole. More lets what a crash
-# has lost come back, less leaves what lies deep in terrain there for longer.
+# What budgets save for pushing apart what penetrates lets a body have this speed [m/s] as a whole. More lets what a
+# crash has lost come back, less leaves what lies deep in terrain there for longer.
 PAID_PUSH = 0.4
 
 
@@ -95,20 +98,6 @@ def clamp_free(islands: BodyIslands, state: State, h: float) -> None:
 
 
 @inner_kernel
-def work_of_forces(span: Span, rows: Rows, underdamped: bool) -> float:
-    """The work of forces in the step [J], by which the norm of a body is below its energy; it tops up underdamped
-    bodies.
-    """
-    total = 0.0
-    for r in range(span.first_row, span.last_row):
-        total += rows.mass[r] * (
-            (rows.v_star[r, 0] - rows.start[r, 0]) * (rows.v[r, 0] - rows.v_star[r, 0])
-            + (rows.v_star[r, 1] - rows.start[r, 1]) * (rows.v[r, 1] - rows.v_star[r, 1])
-        )
-    return 0.5 * total * (1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0)
-
-
-@inner_kernel
 def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorkspace, driven: bool, h: float) -> float:
     # What forces and joints do beyond what they do at the velocities of chords [J]: forces at those of the ends of a
     # step, joints at those right before and right after their impulses.
@@ -138,30 +127,23 @@ def _work_at_ends(body: int, span: Span, system: System, workspace: IslandWorksp
 
 
 @inner_kernel
-def _work_ahead(span: Span, rows: Rows) -> float:
-    # What forces do in half a step at v' [J].
-    total = 0.0
-    for r in range(span.first_row, span.last_row):
-        total += rows.mass[r] * (
-            (rows.v_star[r, 0] - rows.start[r, 0]) * rows.v[r, 0]
-            + (rows.v_star[r, 1] - rows.start[r, 1]) * rows.v[r, 1]
-        )
-    return 0.5 * total
-
-
-@inner_kernel
 def measure_body(k: int, span: Span, system: System, workspace: IslandWorkspace, energy: float, h: float) -> None:
     """Store the norm of one body after the step; its motion and springs then have this energy [J]."""
     islands, rows = workspace.islands, system.rows
-    underdamped = system.bodies.underdamped[islands.body[k]]
-    islands.energy[k] = energy - work_of_forces(span, rows, underdamped)
+    # By the work of forces the norm of a body is below its energy; it tops up underdamped ones.
+    factor = 1.0 + UNDERDAMPED_BUDGET_SHARE if system.bodies.underdamped[islands.body[k]] else 1.0
+    of_forces = ahead = 0.0
+    for r in range(span.first_row, span.last_row):
+        x, y = rows.v_star[r, 0] - rows.start[r, 0], rows.v_star[r, 1] - rows.start[r, 1]
+        of_forces += rows.mass[r] * (x * (rows.v[r, 0] - rows.v_star[r, 0]) + y * (rows.v[r, 1] - rows.v_star[r, 1]))
+        ahead += rows.mass[r] * (x * rows.v[r, 0] + y * rows.v[r, 1])
+    islands.energy[k] = energy - 0.5 * of_forces * factor
     work = 0.0
     if islands.driven[k]:
         work = work_of_joints(span, rows, workspace.delassus.joints.push)
     work += _work_at_ends(islands.body[k], span, system, workspace, islands.driven[k], h)
-    factor = 1.0 + UNDERDAMPED_BANK_SHARE if underdamped else 1.0
     islands.energy[k] -= work * factor
-    islands.ahead[k] = _work_ahead(span, rows) * factor
+    islands.ahead[k] = 0.5 * ahead * factor
     islands.moves[k] = kinetic(span, rows.mass, rows.v) * factor
 
 
@@ -178,7 +160,7 @@ def weigh_body(k: int, span: Span, rows: Rows, islands: BodyIslands) -> None:
 
 @inner_kernel
 def open_free(islands: BodyIslands, state: State, start: FloatRows) -> None:
-    """The energies of free particles before the step, and what their banks hold."""
+    """The energies of free particles before the step, and what their budgets hold."""
     bodies = islands.counts[BODIES]
     for i in range(islands.counts[MEMBERS] - bodies):
         p = islands.free[i]
@@ -188,7 +170,7 @@ def open_free(islands: BodyIslands, state: State, start: FloatRows) -> None:
         islands.rises[k] = -0.5 * state.mass[p] * (start[p, 0] * ux + start[p, 1] * uy)
         surface = state.spin[p] * state.radius[p]
         islands.energy0[k] = 0.5 * state.mass[p] * (ux * ux + uy * uy + surface * surface / SURFACE_WEIGHT)
-        islands.bank[k] = max(0.0, state.energy_bank[p])
+        islands.budget[k] = max(0.0, state.energy_bank[p])
         islands.fresh[k] = state.energy_bank[p] == BANK_UNOPENED
 
 
@@ -209,7 +191,7 @@ def _stored(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> 
 
 @inner_kernel
 def credit_penetration(contacts: Contacts, workspace: IslandWorkspace, inverse_mass: Floats, h: float) -> None:
-    """Where a new bank begins, count the energy that separates bodies which overlap at that moment as energy of the
+    """Where a new budget begins, count the energy that separates bodies which overlap at that moment as energy of the
     start.
     """
     islands = workspace.islands
@@ -217,27 +199,21 @@ def credit_penetration(contacts: Contacts, workspace: IslandWorkspace, inverse_m
         for end in range(3):
             p, _ = weight_of(contacts, c, end)
             if p >= 0 and inverse_mass[p] > 0.0 and islands.fresh[islands.member[p]]:
-                islands.bank[islands.member[p]] += _stored(c, contacts, workspace.terms, h)
+                islands.budget[islands.member[p]] += _stored(c, contacts, workspace.terms, h)
                 break
 
 
 @inner_kernel
-def _draw(k: int, wanted: float, workspace: IslandWorkspace, system: System, state: State) -> float:
-    # Move up to so much [J] of what one member saved for parting into its bank; how much it was.
+def _draw(k: int, cost: float, workspace: IslandWorkspace, system: System, state: State) -> float:
+    # Move up to so much [J] of what one member saved for parting into its budget; how much it was.
     islands = workspace.islands
-    if k >= islands.counts[BODIES] or not wanted > 0.0:
+    if k >= islands.counts[BODIES] or not cost > 0.0:
         return 0.0
     lowest = system.bodies.lowest[islands.body[k]]
-    drawn = min(wanted, max(0.0, state.parting_reserve[lowest]))
+    drawn = min(cost, max(0.0, state.parting_reserve[lowest]))
     state.parting_reserve[lowest] -= drawn
-    islands.bank[k] += drawn
+    islands.budget[k] += drawn
     return drawn
-
-
-@inner_kernel
-def is_deep(c: int, contacts: Contacts, state: State) -> bool:
-    """Whether what touches at a contact overlaps deeply."""
-    return contacts.gap[c] < -DEEP * state.radius[contacts.particle[c]]
 
 
 @inner_kernel
@@ -256,9 +232,11 @@ def draw_on_reserves(contacts: Contacts, workspace: IslandWorkspace, system: Sys
                 other = islands.member[p] if end > 0 else other
         if one >= 0 and other >= 0 and one != other:
             reduced = 1.0 / (1.0 / islands.mass[one] + 1.0 / islands.mass[other])
-            wanted = 0.5 * reduced * PARTING_SPEED * PARTING_SPEED - islands.bank[one] - islands.bank[other]
-            wanted -= _draw(one, wanted, workspace, system, state)
-            _draw(other, wanted, workspace, system, state)
+            cost = (
+                0.5 * reduced * DEPENETRATION_SPEED * DEPENETRATION_SPEED - islands.budget[one] - islands.budget[other]
+            )
+            cost -= _draw(one, cost, workspace, system, state)
+            _draw(other, cost, workspace, system, state)
 
 
 @inner_kernel
@@ -287,7 +265,7 @@ def count_ways(islands: BodyIslands, ways: Slots) -> None:
 
 @inlined_kernel
 def _slot_of(k: int, islands: BodyIslands, system: System) -> int:
-    # The particle that has the bank and the parting reserve of a member.
+    # The particle that has the budget and the parting reserve of a member.
     bodies = islands.counts[BODIES]
     return system.bodies.lowest[islands.body[k]] if k < bodies else islands.free[k - bodies]
 
@@ -311,7 +289,7 @@ def check_energies(
     contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, start: FloatRows
 ) -> bool:  # fmt: skip
     """Check the energy of every island; whether any fails."""
-    # Where a free particle gave way, `v0` is below what forces left it.
+    # Where the target of a free particle was relaxed, `v0` is below what forces left it.
     islands, surface, push = workspace.islands, workspace.terms.surface, workspace.delassus.joints.push
     bodies = islands.counts[BODIES]
     for island in range(islands.counts[ISLANDS]):
@@ -328,12 +306,19 @@ def check_energies(
         islands.ahead[bodies + i] = 0.5 * state.mass[p] * ahead
         islands.moves[bodies + i] = 0.5 * state.mass[p] * (vx * vx + vy * vy)
         if push.shape[0] > 0:
-            given = push[p, 0] * (start[p, 0] + vx) + push[p, 1] * (start[p, 1] + vy)
-            islands.energy[bodies + i] -= 0.5 * given
+            of_joints = push[p, 0] * (start[p, 0] + vx) + push[p, 1] * (start[p, 1] + vy)
+            islands.energy[bodies + i] -= 0.5 * of_joints
     for k in range(islands.counts[MEMBERS]):
         islands.total[islands.island[k]] += islands.energy[k]
-        islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.bank[k]
-    _credit_belts(contacts, islands, system, state.inverse_mass)
+        islands.allowed[islands.island[k]] += islands.energy0[k] * (1.0 + ENERGY_ROUNDING) + islands.budget[k]
+    # What runs a belt does the work of its friction at the speed of its surface.
+    for c in range(contacts.particle.shape[0]):
+        work = -contacts.belt[c] * contacts.impulse[c, 1]
+        k = _member_of(c, contacts, islands, state.inverse_mass) if work > 0.0 else -1
+        if k >= 0:
+            if k < islands.counts[BODIES] and system.bodies.underdamped[islands.body[k]]:
+                work *= 1.0 + UNDERDAMPED_BUDGET_SHARE
+            islands.allowed[islands.island[k]] += work
     for island in range(islands.counts[ISLANDS]):
         islands.lent[island] = _lendable(island, islands, system, state)
         islands.allowed[island] += islands.lent[island]
@@ -352,22 +337,10 @@ def _member_of(c: int, contacts: Contacts, islands: BodyIslands, inverse_mass: F
 
 
 @inner_kernel
-def _credit_belts(contacts: Contacts, islands: BodyIslands, system: System, inverse_mass: Floats) -> None:
-    # What runs a belt does the work of its friction at the speed of its surface.
-    for c in range(contacts.particle.shape[0]):
-        work = -contacts.belt[c] * contacts.impulse[c, 1]
-        k = _member_of(c, contacts, islands, inverse_mass) if work > 0.0 else -1
-        if k >= 0:
-            if k < islands.counts[BODIES] and system.bodies.underdamped[islands.body[k]]:
-                work *= 1.0 + UNDERDAMPED_BANK_SHARE
-            islands.allowed[islands.island[k]] += work
-
-
-@inner_kernel
 def drop_biases(
     contacts: Contacts, workspace: IslandWorkspace, inverse_mass: Floats, separates: bool, h: float
 ) -> None:
-    """Restart contacts of islands that fail without impulse or bounce; they push apart only as far as banks can pay.
+    """Restart contacts of islands that fail without impulse or bounce; they push apart only as far as budgets can pay.
 
     separates: whether they push apart at all.
     """
@@ -377,7 +350,7 @@ def drop_biases(
         islands.total[island] = 0.0
         islands.allowed[island] = 0.0
     for k in range(islands.counts[MEMBERS]):
-        islands.allowed[islands.island[k]] += islands.bank[k]
+        islands.allowed[islands.island[k]] += islands.budget[k]
     for c in range(contacts.particle.shape[0]):
         k = _member_of(c, contacts, islands, inverse_mass)
         if k >= 0:
@@ -476,26 +449,6 @@ def _held(c: int, contacts: Contacts, terms: ContactConstraints, h: float) -> fl
 
 
 @inner_kernel
-def _load_limits(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
-    # The most that each bank may hold: a share of the member's energy; or by its mass what contacts hold, of what it
-    # has itself lost: what a light body loses as it hits a heavy one would push that out of what it lies in. And of
-    # that what forces take from it as it slowly rises.
-    islands, bodies = workspace.islands, workspace.islands.counts[BODIES]
-    held = 0.0
-    for c in range(contacts.particle.shape[0]):
-        held += _held(c, contacts, workspace.terms, h)
-    mass = 0.0
-    for k in range(islands.counts[MEMBERS]):
-        mass += islands.mass[k]
-    for k in range(islands.counts[MEMBERS]):
-        share = bank_limit(islands.body[k], system) if k < bodies else BANK_SHARE * islands.energy0[k]
-        lost = islands.bank[k] + islands.energy0[k] - islands.energy[k]
-        least = min(held / mass, 0.5 * PAID_PUSH * PAID_PUSH) * islands.mass[k]
-        islands.limit[k] = max(share, min(least, lost))
-        islands.limit[k] += max(0.0, min(-islands.ahead[k] - islands.moves[k], lost))
-
-
-@inner_kernel
 def _settle_loans(workspace: IslandWorkspace, system: System, state: State) -> None:
     # Overdraw reserves by what was lent and used, each by its mass; and pay back from what was lost.
     islands, reserves = workspace.islands, state.parting_reserve
@@ -519,17 +472,32 @@ def _settle_loans(workspace: IslandWorkspace, system: System, state: State) -> N
 
 @inner_kernel
 def store_energies(contacts: Contacts, workspace: IslandWorkspace, system: System, state: State, h: float) -> None:
-    """Store the rest of each island's allowed energy, up to the limits of its banks."""
+    """Store the rest of each island's allowed energy, up to the limits of its budgets."""
     islands, bodies = workspace.islands, system.bodies
     _settle_loans(workspace, system, state)
-    _load_limits(contacts, workspace, system, state, h)
+    # The most that each budget may hold: a share of the member's energy; or by its mass what contacts hold, of what it
+    # has itself lost: what a light body loses as it hits a heavy one would push that out of what it lies in. And of
+    # that what forces take from it as it slowly rises.
+    held = mass = 0.0
+    for c in range(contacts.particle.shape[0]):
+        held += _held(c, contacts, workspace.terms, h)
+    for k in range(islands.counts[MEMBERS]):
+        mass += islands.mass[k]
+    for k in range(islands.counts[MEMBERS]):
+        most = (
+            budget_limit(islands.body[k], system) if k < islands.counts[BODIES] else BUDGET_SHARE * islands.energy0[k]
+        )
+        lost = islands.budget[k] + islands.energy0[k] - islands.energy[k]
+        least = min(held / mass, 0.5 * PAID_PUSH * PAID_PUSH) * islands.mass[k]
+        islands.limit[k] = max(most, min(least, lost))
+        islands.limit[k] += max(0.0, min(-islands.ahead[k] - islands.moves[k], lost))
     for k in range(islands.counts[MEMBERS]):
         island = islands.island[k]
         limit = islands.limit[k]
         is_body = k < islands.counts[BODIES]
         # As in solve.py: an inverted body keeps all that it lost for the way back to its form.
         if is_body and bodies.inverted[islands.body[k]] and not bodies.anchored[islands.body[k]]:
-            limit = max(limit, islands.bank[k] + islands.energy0[k] - islands.energy[k])
+            limit = max(limit, islands.budget[k] + islands.energy0[k] - islands.energy[k])
         stored = max(0.0, min(islands.allowed[island] - islands.total[island], limit))
         islands.allowed[island] -= stored
         if is_body:

@@ -11,11 +11,15 @@ from sandbox.physics.arrays import Flags, FloatRows, Floats, Slots
 from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.components import root_of, united
 from sandbox.physics.jit import inner_kernel, set_field
-from sandbox.physics.joints.joint_answers import Actions, Joints
-from sandbox.physics.solvers.contact.contact_order import ContactOrder, put_in_order
-from sandbox.physics.solvers.contact.gauss_seidel import ContactConstraints, Delassus, terms_between
-from sandbox.physics.solvers.direct.energy_bank import BY_MASS, PASSED
-from sandbox.physics.solvers.direct.system import Span, System, span_of
+from sandbox.physics.joints.joint_rows import Actions, Joints
+from sandbox.physics.solvers.contact.gauss_seidel import (
+    ContactConstraints,
+    ContactOrder,
+    Delassus,
+    put_in_order,
+    terms_between,
+)
+from sandbox.physics.solvers.direct.system import BY_MASS, PASSED, Span, System, span_of
 from sandbox.physics.topology.sorting import list_by_key, place_among
 
 # Places in `counts`: bodies that contacts touch, members (those and free particles), islands, and the room that the
@@ -43,13 +47,13 @@ class BodyIslands(NamedTuple):
     row: Slots  # (n,) by particle: its row in the matrix, -1: none
     mass: Floats  # [kg]
     energy0: Floats  # [J]: where the step begins
-    bank: Floats  # [J]: in its energy bank
+    budget: Floats  # [J]: in its energy budget
     energy: Floats  # [J]: where the step ends
-    limit: Floats  # [J]: of its bank
+    limit: Floats  # [J]: of its budget
     ahead: Floats  # [J]: work of forces in half a step at v'
     moves: Floats  # [J]: KE(v')
     rises: Floats  # [J]: what it seems to gain if it is stopped
-    fresh: Flags  # its bank is begun for all of it
+    fresh: Flags  # its budget is begun for all of it
     misfit: Floats  # by touched body, as all down to by_mass
     due: Flags  # to be solved again
     rigid: Flags  # all its springs are
@@ -64,8 +68,8 @@ class BodyIslands(NamedTuple):
     fails: Flags
     held: Flags  # something outside holds it
     parts: Flags  # something in it overlaps deeply
-    excess: Floats  # [J]: what it had too much (giving_way.py)
-    way: Slots  # see energy_bank.py
+    excess: Floats  # [J]: what it had too much (energy_budget.py)
+    way: Slots  # see system.py
     v_free: FloatRows  # [m/s] by row: velocities without contacts
     impulse: FloatRows  # [N s] by row: of contacts and joints; then the change by it [m/s]
     v0: FloatRows  # [m/s] (n,) by particle: velocities without contacts
@@ -85,7 +89,7 @@ class IslandLists(NamedTuple):
 
 
 class IslandWorkspace(NamedTuple):
-    """Islands of bodies with what solves their contacts, as kernels take them; ways: counts, see energy_bank.py."""
+    """Islands of bodies with what solves their contacts, as kernels take them; ways: counts, see system.py."""
 
     ways: Slots
     islands: BodyIslands
@@ -145,9 +149,66 @@ def use_diagonal_delassus(particles: int, arena: Arena, out: Delassus) -> None:
 
 
 @inner_kernel
-def _node_of(p: int, row: Slots, row_start: Slots) -> int:
-    # Nodes are particles (n,), then bodies: a particle of a body stands for that.
-    return p if row[p] < 0 else row.shape[0] + place_among(row[p] + 1, row_start, 0, row_start.shape[0]) - 1
+def find_body_islands(
+    contacts: Contacts, source: Slots, inverse_mass: Floats, system: System, workspace: IslandWorkspace
+) -> bool:  # fmt: skip
+    """Find the bodies and free particles that some contacts touch, and their islands; whether there is room for them.
+
+    source: which contacts; they are put into the order of their islands.
+    """
+    islands, lists, joints = workspace.islands, workspace.lists, workspace.delassus.joints
+    particles, bodies = islands.row.shape[0], system.bodies.touched.shape[0]
+    for node in range(particles + bodies):
+        islands.label[node] = node
+    for p in range(particles):
+        islands.marked[p] = False
+    for body in range(bodies):
+        system.bodies.touched[body] = False
+    _join_driven(joints, system, islands)
+    _join_touching(contacts, source, inverse_mass, system, islands)
+    count = _number_islands(system.bodies.touched, islands)
+    list_by_key(islands.label[particles:], bodies, count, lists.body, islands.body)
+    list_by_key(islands.label, particles, count, lists.free, islands.free)
+    # List the rows that are on, by island.
+    particles, actions, key = islands.row.shape[0], joints.actions, joints.couplings.slot
+    for k in range(key.shape[0]):
+        key[k] = -1
+        if joints.rows.limit[k] > 0.0 and actions.first[k] < actions.first[k + 1]:
+            key[k] = islands.label[_node_acted_on(actions.on[actions.first[k]], actions, particles)]
+    list_by_key(key, key.shape[0], count, lists.joint, joints.listed)
+    # Put the contacts of each island behind one another, in their order.
+    order = workspace.order
+    for k in range(source.shape[0]):
+        order.island[k] = -1
+        for end in range(3):
+            p, _ = weight_of(contacts, source[k], end)
+            if p >= 0 and inverse_mass[p] > 0.0:
+                order.island[k] = islands.label[_node_of(p, islands.row, system.bodies.row_start)]
+    put_in_order(source, order, count)
+    _number_members(count, system, workspace)
+    islands.counts[BODIES] = lists.body[count]
+    islands.counts[MEMBERS] = lists.body[count] + lists.free[count]
+    islands.counts[ISLANDS] = count
+    _find_room(system, workspace)
+    counts, delassus = islands.counts, workspace.delassus
+    return counts[NUMBERS] <= delassus.numbers.shape[0] and counts[COLUMNS] <= delassus.columns.shape[0]
+
+
+@inner_kernel
+def _join_driven(joints: Joints, system: System, islands: BodyIslands) -> None:
+    # Label the nodes alike that one joint acts on, and mark them.
+    particles, actions = islands.row.shape[0], joints.actions
+    for k in range(joints.rows.limit.shape[0]):
+        if not joints.rows.limit[k] > 0.0:
+            continue
+        first = -1
+        for a in range(actions.first[k], actions.first[k + 1]):
+            node = _node_acted_on(actions.on[a], actions, particles)
+            if node >= particles:
+                system.bodies.touched[node - particles] = True
+            else:
+                islands.marked[node] = True
+            first = united(islands.label, first, root_of(islands.label, node))
 
 
 @inner_kernel
@@ -176,20 +237,9 @@ def _join_touching(
 
 
 @inner_kernel
-def _join_driven(joints: Joints, system: System, islands: BodyIslands) -> None:
-    # Label the nodes alike that one joint acts on, and mark them.
-    particles, actions = islands.row.shape[0], joints.actions
-    for k in range(joints.rows.limit.shape[0]):
-        if not joints.rows.limit[k] > 0.0:
-            continue
-        first = -1
-        for a in range(actions.first[k], actions.first[k + 1]):
-            node = _node_acted_on(actions.on[a], actions, particles)
-            if node >= particles:
-                system.bodies.touched[node - particles] = True
-            else:
-                islands.marked[node] = True
-            first = united(islands.label, first, root_of(islands.label, node))
+def _node_of(p: int, row: Slots, row_start: Slots) -> int:
+    # Nodes are particles (n,), then bodies: a particle of a body stands for that.
+    return p if row[p] < 0 else row.shape[0] + place_among(row[p] + 1, row_start, 0, row_start.shape[0]) - 1
 
 
 @inner_kernel
@@ -213,45 +263,6 @@ def _number_islands(touched: Flags, islands: BodyIslands) -> int:
     for node in range(nodes):
         islands.label[node] = islands.label[islands.root[node]]
     return count
-
-
-@inner_kernel
-def _is_driven(body: int, joints: Joints, system: System) -> bool:
-    actions = joints.actions
-    if actions.node.shape[0] == 0:
-        return False
-    q = actions.node[system.rows.particle[system.bodies.row_start[body]]]
-    if q >= 0:
-        for i in range(actions.at_first[q], actions.at_first[q + 1]):
-            if joints.rows.limit[actions.row[actions.at[i]]] > 0.0:
-                return True
-    return False
-
-
-@inner_kernel
-def _list_joints(count: int, islands: BodyIslands, joints: Joints, first: Slots) -> None:
-    # List the rows that are on, by island.
-    particles, actions, key = islands.row.shape[0], joints.actions, joints.couplings.slot
-    for k in range(key.shape[0]):
-        key[k] = -1
-        if joints.rows.limit[k] > 0.0 and actions.first[k] < actions.first[k + 1]:
-            key[k] = islands.label[_node_acted_on(actions.on[actions.first[k]], actions, particles)]
-    list_by_key(key, key.shape[0], count, first, joints.listed)
-
-
-@inner_kernel
-def _list_contacts(
-    contacts: Contacts, source: Slots, inverse_mass: Floats, count: int, system: System, workspace: IslandWorkspace
-) -> None:  # fmt: skip
-    # Put the contacts of each island behind one another, in their order.
-    islands, order = workspace.islands, workspace.order
-    for k in range(source.shape[0]):
-        order.island[k] = -1
-        for end in range(3):
-            p, _ = weight_of(contacts, source[k], end)
-            if p >= 0 and inverse_mass[p] > 0.0:
-                order.island[k] = islands.label[_node_of(p, islands.row, system.bodies.row_start)]
-    put_in_order(source, order, count)
 
 
 @inner_kernel
@@ -285,23 +296,16 @@ def _number_members(count: int, system: System, workspace: IslandWorkspace) -> N
 
 
 @inner_kernel
-def cost_of_answer(span: Span, system: System) -> int:
-    """What one substitution costs that brings impulses to a whole body, in units of DEAREST_BLOCK."""
-    fronts, column_start = system.fronts, system.matrix.column_start
-    if fronts.of_row[span.first_row] < 0:
-        return 2 * (column_start[span.last_row] - column_start[span.first_row])
-    last = fronts.of_row[span.last_row - 1]
-    rows = 2 * (fronts.last[last] - fronts.first[last])
-    return (fronts.base[last] + rows * fronts.width[last] - fronts.base[fronts.of_row[span.first_row]]) // 2
-
-
-@inner_kernel
-def _cost_of_block(points: int, span: Span, system: System) -> int:
-    # A substitution for each column, and for a small body that is not in fronts the sum over its rows.
-    cost = 2 * points * cost_of_answer(span, system)
-    if system.fronts.of_row[span.first_row] < 0:
-        cost = cost // 4 + points * points * (span.last_row - span.first_row)
-    return cost
+def _is_driven(body: int, joints: Joints, system: System) -> bool:
+    actions = joints.actions
+    if actions.node.shape[0] == 0:
+        return False
+    q = actions.node[system.rows.particle[system.bodies.row_start[body]]]
+    if q >= 0:
+        for i in range(actions.at_first[q], actions.at_first[q + 1]):
+            if joints.rows.limit[actions.row[actions.at[i]]] > 0.0:
+                return True
+    return False
 
 
 @inner_kernel
@@ -314,7 +318,11 @@ def _find_room(system: System, workspace: IslandWorkspace) -> None:
         points = delassus.start[k + 1] - delassus.start[k]
         span = span_of(system, islands.body[k])
         delassus.base[k] = base
-        islands.by_mass[k] = _cost_of_block(points, span, system) > DEAREST_BLOCK
+        # A substitution for each column, and for a small body that is not in fronts the sum over its rows.
+        cost = 2 * points * cost_of_answer(span, system)
+        if system.fronts.of_row[span.first_row] < 0:
+            cost = cost // 4 + points * points * (span.last_row - span.first_row)
+        islands.by_mass[k] = cost > DEAREST_BLOCK
         if islands.by_mass[k]:
             workspace.ways[BY_MASS] += 1
             for i in range(delassus.start[k], delassus.start[k + 1]):
@@ -329,44 +337,9 @@ def _find_room(system: System, workspace: IslandWorkspace) -> None:
 
 
 @inner_kernel
-def find_body_islands(
-    contacts: Contacts, source: Slots, inverse_mass: Floats, system: System, workspace: IslandWorkspace
-) -> bool:  # fmt: skip
-    """Find the bodies and free particles that some contacts touch, and their islands; whether there is room for them.
-
-    source: which contacts; they are put into the order of their islands.
-    """
-    islands, lists, joints = workspace.islands, workspace.lists, workspace.delassus.joints
-    particles, bodies = islands.row.shape[0], system.bodies.touched.shape[0]
-    for node in range(particles + bodies):
-        islands.label[node] = node
-    for p in range(particles):
-        islands.marked[p] = False
-    for body in range(bodies):
-        system.bodies.touched[body] = False
-    _join_driven(joints, system, islands)
-    _join_touching(contacts, source, inverse_mass, system, islands)
-    count = _number_islands(system.bodies.touched, islands)
-    list_by_key(islands.label[particles:], bodies, count, lists.body, islands.body)
-    list_by_key(islands.label, particles, count, lists.free, islands.free)
-    _list_joints(count, islands, joints, lists.joint)
-    _list_contacts(contacts, source, inverse_mass, count, system, workspace)
-    _number_members(count, system, workspace)
-    islands.counts[BODIES] = lists.body[count]
-    islands.counts[MEMBERS] = lists.body[count] + lists.free[count]
-    islands.counts[ISLANDS] = count
-    _find_room(system, workspace)
-    counts, delassus = islands.counts, workspace.delassus
-    return counts[NUMBERS] <= delassus.numbers.shape[0] and counts[COLUMNS] <= delassus.columns.shape[0]
-
-
-@inner_kernel
-def has_coarse(islands: BodyIslands) -> bool:
-    """Whether a body of an island has no Delassus block."""
-    found = False
-    for k in range(islands.counts[BODIES]):
-        found = found or islands.by_mass[k]
-    return found
+def contacts_of(i: int, contacts: Contacts, workspace: IslandWorkspace) -> Contacts:
+    """The contacts of one island."""
+    return contacts_between(contacts, workspace.order.first[i], workspace.order.first[i + 1])
 
 
 @inner_kernel
@@ -378,7 +351,7 @@ def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
     joints = delassus.joints
     islands = BodyIslands(
         lists.counts[COUNTED * i : COUNTED * (i + 1)], w.body[b:c], w.free[f:g], w.island[k:m], w.member, w.row,
-        w.mass[k:m], w.energy0[k:m], w.bank[k:m], w.energy[k:m], w.limit[k:m], w.ahead[k:m], w.moves[k:m],
+        w.mass[k:m], w.energy0[k:m], w.budget[k:m], w.energy[k:m], w.limit[k:m], w.ahead[k:m], w.moves[k:m],
         w.rises[k:m], w.fresh[k:m], w.misfit[b:c], w.due[b:c], w.rigid[b:c], w.firm[b:c], w.pressed[b:c], w.still[b:c],
         w.driven[b:c], w.by_mass[b:c], w.total[i : i + 1], w.allowed[i : i + 1], w.lent[i : i + 1],
         w.fails[i : i + 1],
@@ -400,6 +373,20 @@ def alone(i: int, workspace: IslandWorkspace) -> IslandWorkspace:
 
 
 @inner_kernel
-def contacts_of(i: int, contacts: Contacts, workspace: IslandWorkspace) -> Contacts:
-    """The contacts of one island."""
-    return contacts_between(contacts, workspace.order.first[i], workspace.order.first[i + 1])
+def cost_of_answer(span: Span, system: System) -> int:
+    """What one substitution costs that brings impulses to a whole body, in units of DEAREST_BLOCK."""
+    fronts, column_start = system.fronts, system.matrix.column_start
+    if fronts.of_row[span.first_row] < 0:
+        return 2 * (column_start[span.last_row] - column_start[span.first_row])
+    last = fronts.of_row[span.last_row - 1]
+    rows = 2 * (fronts.last[last] - fronts.first[last])
+    return (fronts.base[last] + rows * fronts.width[last] - fronts.base[fronts.of_row[span.first_row]]) // 2
+
+
+@inner_kernel
+def has_coarse(islands: BodyIslands) -> bool:
+    """Whether a body of an island has no Delassus block."""
+    found = False
+    for k in range(islands.counts[BODIES]):
+        found = found or islands.by_mass[k]
+    return found

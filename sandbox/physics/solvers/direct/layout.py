@@ -3,19 +3,29 @@
 Symbolic work alone: made again when topology or pins change, no part of a world's state.
 """
 
+from typing import NamedTuple
+
+import numpy as np
+
 from sandbox.physics.arena import (
     Arena,
+    give_back,
     is_full,
+    mark,
+    new_flags,
+    new_float_rows,
+    new_floats,
+    new_slot_rows,
     new_slots,
     new_tuple,
 )
-from sandbox.physics.arrays import Flags
+from sandbox.physics.arrays import Flags, FloatRows, Floats, SlotRows, Slots
+from sandbox.physics.constraints import AREA
 from sandbox.physics.jit import inner_kernel, set_field
-from sandbox.physics.solvers.direct.choosing import COUNTS, LINKS, MOST_WIDE, NODES, chosen_for_matrix
-from sandbox.physics.solvers.direct.jelly_groups import lay_out_groups
-from sandbox.physics.solvers.direct.placing import Lying, Places, places_of
-from sandbox.physics.solvers.direct.system import Bodies, Constraints, Rows, Springs, System
-from sandbox.physics.solvers.linear.dissection import Dissection
+from sandbox.physics.marks import LAW_NISSEN
+from sandbox.physics.solvers.direct.system import Bodies, Constraints, Rows, ShapeMatchGroups, Springs, System
+from sandbox.physics.solvers.linear import elimination
+from sandbox.physics.solvers.linear import fronts as multifrontal
 from sandbox.physics.solvers.linear.elimination import (
     BODIES,
     BORDERS,
@@ -23,34 +33,134 @@ from sandbox.physics.solvers.linear.elimination import (
     HALVED,
     SMALL,
     WIDEST_NARROW,
+    Dissection,
     Links,
     Tuning,
     order_for_elimination,
 )
 from sandbox.physics.solvers.linear.elimination import COUNTS as FOUND_COUNTS
-from sandbox.physics.solvers.linear.front_layout import FrontBlocks, new_fronts
-from sandbox.physics.solvers.linear.matrix_layout import new_matrix
+from sandbox.physics.solvers.linear.fronts import FrontBlocks, block_in_front, new_fronts
+from sandbox.physics.solvers.linear.sparse_ldl import block_below, new_matrix
 from sandbox.physics.state import State
+from sandbox.physics.topology.sorting import list_by_key, place_among, sort_by_key
+from sandbox.physics.untangling.jellies import Jellies, group_triangles
+from sandbox.physics.untangling.triangle_clamp import lay_out_collides, lay_out_triangles
+
+# Corners at most of a constraint that is added to the matrix; one of more is wide.
+NARROW = 3
+# Places in `counts`: springs, constraints and their corners, free particles, pinned ones, links between free ones; wide
+# constraints that a body has at most.
+SPRINGS, CONSTRAINTS, CORNERS, NODES, ANCHORS, LINKS, MOST_WIDE, COUNTS = range(8)
+# In place of the row of a body's one pinned particle.
+NO_PIVOT, SEVERAL_PIVOTS = -1, -2
+
+
+class MatrixContents(NamedTuple):
+    """What is in the matrix, slots ascending, in arrays with room for all there is."""
+
+    spring: Slots
+    constraint: Slots  # (k,): those with a free corner
+    start: Slots
+    corner: Slots  # corners of constraint i: corner[start[i]:start[i + 1]]
+    particle: Slots  # free ones, which are the nodes, then pinned ones
+    number: Slots  # (n,): place of a particle in that, -1: none
+    link_a: Slots  # nodes that are joined: of a narrow constraint all,
+    link_b: Slots  # of a wide one each free corner and the next free one, past the pinned
+    x: Floats  # [m]: where nodes were created
+    y: Floats
+
+
+class Lying(NamedTuple):
+    """What is known of the matrix: its order of elimination, see Elimination, its sparse columns, its fronts."""
+
+    order: Slots
+    rank: Slots
+    body: Slots
+    first_row: Slots
+    lowest: Slots
+    column_start: Slots
+    row: Slots
+    fronts: FrontBlocks
+
+
+class Places(NamedTuple):
+    """What is to be found: see Rows, Bodies, Springs and Constraints."""
+
+    particle: Slots
+    row_start: Slots
+    spring_start: Slots
+    constraint_start: Slots
+    lowest: Slots
+    pivot: Slots
+    anchored: Flags
+    spring: Slots
+    row_a: Slots
+    row_b: Slots
+    spring_block: Slots
+    constraint: Slots
+    kind: Slots
+    first: Slots
+    row: Slots
+    corner: Slots
+    block: SlotRows
+    wide: Slots
+
+
+class PlaceScratch(NamedTuple):
+    """Scratch for springs or constraints (k,), and for lists by row or body: start."""
+
+    key: Slots
+    low: Slots
+    order: Slots
+    items: Slots
+    start: Slots
+
+
+class SystemTriangles(NamedTuple):
+    """The constraints that are areas of three corners (t,), their rows (t, 3), and whether their forms run
+    counter-clockwise."""
+
+    constraint: Slots
+    row: SlotRows
+    is_left: Flags
+
+
+class PlacedConstraints(NamedTuple):
+    """Constraints by body, see Constraints, and the first of each body."""
+
+    slot: Slots
+    kind: Slots
+    first: Slots
+    row: Slots
+    corner: Slots
+    wide: Slots
+    constraint_start: Slots
+
+
+def tuning() -> Tuning:
+    """The numbers of the modules that kernels are given them from."""
+    whole = elimination.SMALLEST_BODY, elimination.LEAF_SIZE, multifrontal.WORTH_HALVING, NARROW
+    return Tuning(np.array(whole, np.int64), np.array([elimination.NARROWEST_BORDER]))
 
 
 @inner_kernel
-def lay_out_system(state: State, unlimited: Flags, given: Tuning, arena: Arena, out: System) -> None:
+def lay_out_system(state: State, unlimited: Flags, tuned: Tuning, arena: Arena, out: System) -> None:
     """Order a world's free particles for elimination and lay out the matrix of its springs and constraints.
 
     unlimited (m,): active springs of no limited force.
     """
     counts, found = new_slots(arena, COUNTS), new_slots(arena, FOUND_COUNTS)
-    chosen = chosen_for_matrix(state, unlimited, given.whole[WIDEST_NARROW], counts, arena)
+    chosen = chosen_for_matrix(state, unlimited, tuned.whole[WIDEST_NARROW], counts, arena)
     if is_full(arena):
         return
     nodes, links = counts[NODES], counts[LINKS]
     joined = Links(chosen.link_a[:links], chosen.link_b[:links], chosen.x[:nodes], chosen.y[:nodes])
-    ordered = order_for_elimination(joined, given, found, arena)
+    ordered = order_for_elimination(joined, tuned, found, arena)
     if is_full(arena):
         return
     made, small, bodies = ordered.elimination, ordered.small, found[BODIES]
     dissected = cut_to(ordered.fronts, found[FRONTS], found[BORDERS])
-    fronts = new_fronts(nodes, made.first_front, bodies, dissected, given.whole[HALVED], arena)
+    fronts = new_fronts(nodes, made.first_front, bodies, dissected, tuned.whole[HALVED], arena)
     matrix = new_matrix(nodes, small.order[: found[SMALL]], small.columns, made.row_of, arena)
     if is_full(arena):
         return
@@ -60,48 +170,397 @@ def lay_out_system(state: State, unlimited: Flags, given: Tuning, arena: Arena, 
     lying = Lying(
         made.order, made.rank, made.body, made.first_row, made.lowest, matrix.column_start, matrix.row, blocks
     )
-    places = places_of(state, counts, bodies, given.whole[WIDEST_NARROW], chosen, lying, arena)
+    places = places_of(state, counts, bodies, tuned.whole[WIDEST_NARROW], chosen, lying, arena)
     set_field(out, "fronts", fronts)
     set_field(out, "matrix", matrix)
-    set_field(out, "bodies", _new_bodies(places, arena))
+    set_field(
+        out,
+        "bodies",
+        new_tuple(
+            Bodies,
+            arena,
+            row_start=places.row_start,
+            spring_start=places.spring_start,
+            constraint_start=places.constraint_start,
+            lowest=places.lowest,
+            pivot=places.pivot,
+            anchored=places.anchored,
+            bodies=places.lowest.shape[0],
+        ),
+    )
     set_field(out, "rows", new_tuple(Rows, arena, particle=places.particle, rows=places.particle.shape[0]))
-    set_field(out, "springs", _new_springs(places, arena))
-    set_field(out, "constraints", _new_constraints(places, nodes, counts[MOST_WIDE], arena))
+    set_field(
+        out,
+        "springs",
+        new_tuple(
+            Springs,
+            arena,
+            slot=places.spring,
+            row_a=places.row_a,
+            row_b=places.row_b,
+            block=places.spring_block,
+            springs=places.spring.shape[0],
+        ),
+    )
+    # Ready for a step; most_wide: how many wide ones a body has at most.
+    most_wide = counts[MOST_WIDE]
+    set_field(
+        out,
+        "constraints",
+        new_tuple(
+            Constraints,
+            arena,
+            slot=places.constraint,
+            kind=places.kind,
+            first=places.first,
+            row=places.row,
+            corner=places.corner,
+            block=places.block,
+            wide=places.wide,
+            constraints=places.constraint.shape[0],
+            corners=places.row.shape[0],
+            most_wide=most_wide,
+            answered=nodes if most_wide > 0 else 0,
+        ),
+    )
     if not is_full(arena):
         lay_out_groups(state, places.constraint_start, arena, out)
 
 
 @inner_kernel
-def cut_to(room: Dissection, fronts: int, borders: int) -> Dissection:
+def chosen_for_matrix(state: State, unlimited: Flags, narrow: int, counts: Slots, arena: Arena) -> MatrixContents:
+    """What is in the matrix of a world, and in counts (COUNTS,) how much it is; narrow: see NARROW."""
+    particles, springs, constraints = state.owner.shape[0], state.law.shape[0], state.constraint_kind.shape[0]
+    corners = state.corner_particle.shape[0]
+    # Of c corners a narrow constraint has c links, and a wide one fewer.
+    links = springs + corners
+    chosen = MatrixContents(
+        new_slots(arena, springs), new_slots(arena, constraints), new_slots(arena, constraints + 1),
+        new_slots(arena, corners), new_slots(arena, particles), new_slots(arena, particles), new_slots(arena, links),
+        new_slots(arena, links), new_floats(arena, particles), new_floats(arena, particles),
+    )  # fmt: skip
+    if not is_full(arena):
+        for p in range(chosen.number.shape[0]):
+            chosen.number[p] = -1
+        springs = 0
+        for s in range(state.law.shape[0]):
+            a = state.particle_a[s]
+            b = state.particle_b[s]
+            moves = state.inverse_mass[a] > 0.0 or state.inverse_mass[b] > 0.0
+            if moves and unlimited[s] and state.law[s] == LAW_NISSEN:
+                chosen.spring[springs] = s
+                chosen.number[a] = chosen.number[b] = 0
+                springs += 1
+        counts[SPRINGS] = springs
+        _choose_constraints(state, chosen, counts)
+        # The free ones that something holds, then the pinned ones.
+        count = 0
+        for p in range(chosen.number.shape[0]):
+            if chosen.number[p] == 0 and state.inverse_mass[p] > 0.0:
+                chosen.particle[count] = p
+                chosen.x[count] = state.origin[p, 0]
+                chosen.y[count] = state.origin[p, 1]
+                count += 1
+        counts[NODES] = count
+        for p in range(chosen.number.shape[0]):
+            if chosen.number[p] == 0 and not state.inverse_mass[p] > 0.0:
+                chosen.particle[count] = p
+                count += 1
+        counts[ANCHORS] = count - counts[NODES]
+        for k in range(count):
+            chosen.number[chosen.particle[k]] = k
+        _find_links(state, chosen, narrow, counts)
+    return chosen
+
+
+@inner_kernel
+def _choose_constraints(state: State, chosen: MatrixContents, counts: Slots) -> None:
+    constraints = 0
+    corners = 0
+    last = 0
+    chosen.start[0] = 0
+    for k in range(state.constraint_kind.shape[0]):
+        first = last
+        last = first + state.constraint_corners[k]
+        moves = False
+        for corner in range(first, last):
+            moves = moves or state.inverse_mass[state.corner_particle[corner]] > 0.0
+        if not (moves and state.constraint_active[k]):
+            continue
+        for corner in range(first, last):
+            chosen.corner[corners] = corner
+            chosen.number[state.corner_particle[corner]] = 0
+            corners += 1
+        chosen.constraint[constraints] = k
+        constraints += 1
+        chosen.start[constraints] = corners
+    counts[CONSTRAINTS] = constraints
+    counts[CORNERS] = corners
+
+
+@inner_kernel
+def _find_links(state: State, chosen: MatrixContents, narrow: int, counts: Slots) -> None:
+    nodes = counts[NODES]
+    count = 0
+    for k in range(counts[SPRINGS]):
+        s = chosen.spring[k]
+        count = _link(state.particle_a[s], state.particle_b[s], count, nodes, chosen)
+    for k in range(counts[CONSTRAINTS]):
+        first, last = chosen.start[k], chosen.start[k + 1]
+        if last - first <= narrow:
+            for c in range(3):
+                p = state.corner_particle[chosen.corner[first + c]]
+                q = state.corner_particle[chosen.corner[first + (c + 1) % 3]]
+                count = _link(p, q, count, nodes, chosen)
+        else:
+            before = -1
+            for at in range(first, last):
+                p = state.corner_particle[chosen.corner[at]]
+                if state.inverse_mass[p] > 0.0:
+                    if before >= 0:
+                        count = _link(before, p, count, nodes, chosen)
+                    before = p
+    counts[LINKS] = count
+
+
+@inner_kernel
+def _link(p: int, q: int, count: int, nodes: int, chosen: MatrixContents) -> int:
+    # Join two particles, where both are free; how many links there are then.
+    a = chosen.number[p]
+    b = chosen.number[q]
+    if a >= nodes or b >= nodes:
+        return count
+    chosen.link_a[count] = a
+    chosen.link_b[count] = b
+    return count + 1
+
+
+@inner_kernel
+def cut_to(dissected: Dissection, fronts: int, borders: int) -> Dissection:
     """The dissection that so much of it was filled in of."""
     return Dissection(
-        room.first[:fronts], room.last[:fronts], room.child[:fronts], room.place[:fronts],
-        room.border_start[: fronts + 1], room.border[:borders], room.to_parent[:borders],
+        dissected.first[:fronts], dissected.last[:fronts], dissected.child[:fronts], dissected.place[:fronts],
+        dissected.border_start[: fronts + 1], dissected.border[:borders], dissected.to_parent[:borders],
     )  # fmt: skip
 
 
 @inner_kernel
-def _new_bodies(places: Places, arena: Arena) -> Bodies:
-    return new_tuple(
-        Bodies, arena, row_start=places.row_start, spring_start=places.spring_start,
-        constraint_start=places.constraint_start, lowest=places.lowest, pivot=places.pivot, anchored=places.anchored,
-        bodies=places.lowest.shape[0],
+def places_of(
+    state: State, counts: Slots, bodies: int, narrow: int, chosen: MatrixContents, lying: Lying, arena: Arena
+) -> Places:
+    """Where all lies in the system of so many bodies, and in counts[MOST_WIDE] how many wide ones a body has at most.
+
+    counts, narrow: see chosen_for_matrix.
+    """
+    springs, constraints, corners, rows = counts[SPRINGS], counts[CONSTRAINTS], counts[CORNERS], counts[NODES]
+    places = Places(
+        new_slots(arena, rows + counts[ANCHORS]), new_slots(arena, bodies + 1), new_slots(arena, bodies + 1),
+        new_slots(arena, bodies + 1), new_slots(arena, bodies), new_slots(arena, bodies), new_flags(arena, bodies),
+        new_slots(arena, springs), new_slots(arena, springs), new_slots(arena, springs), new_slots(arena, springs),
+        new_slots(arena, constraints), new_slots(arena, constraints), new_slots(arena, constraints + 1),
+        new_slots(arena, corners), new_slots(arena, corners), new_slot_rows(arena, constraints, 3),
+        new_slots(arena, constraints),
     )  # fmt: skip
+    start, longest = mark(arena), max(springs, constraints)
+    work = PlaceScratch(
+        new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest), new_slots(arena, longest),
+        new_slots(arena, rows + 1),
+    )  # fmt: skip
+    if not is_full(arena):
+        nodes = lying.rank.shape[0]
+        for row in range(nodes):
+            places.particle[row] = chosen.particle[lying.order[row]]
+        for k in range(nodes, nodes + counts[ANCHORS]):
+            places.particle[k] = chosen.particle[k]
+        places.row_start[0] = 0
+        for b in range(bodies):
+            places.row_start[b + 1] = lying.first_row[b + 1]
+            places.lowest[b] = chosen.particle[lying.lowest[b]]
+            places.pivot[b] = NO_PIVOT
+            places.anchored[b] = False
+        _place_springs(counts[SPRINGS], bodies, state, chosen, lying, places, work)
+        count = counts[CONSTRAINTS]
+        nodes = lying.rank.shape[0]
+        for k in range(count):
+            low = nodes
+            for at in range(chosen.start[k], chosen.start[k + 1]):
+                low = min(low, _row_of(state.corner_particle[chosen.corner[at]], chosen, lying))
+            work.key[k] = lying.body[low]
+        list_by_key(work.key, count, bodies, places.constraint_start, work.order)
+        counts[MOST_WIDE] = _place_constraints(counts[CONSTRAINTS], narrow, state, chosen, lying, places, work)
+        give_back(arena, start)
+    return places
 
 
 @inner_kernel
-def _new_springs(places: Places, arena: Arena) -> Springs:
-    return new_tuple(
-        Springs, arena, slot=places.spring, row_a=places.row_a, row_b=places.row_b, block=places.spring_block,
-        springs=places.spring.shape[0],
-    )  # fmt: skip
+def _place_springs(
+    count: int,
+    bodies: int,
+    state: State,
+    chosen: MatrixContents,
+    lying: Lying,
+    places: Places,
+    work: PlaceScratch,
+) -> None:
+    # Body by body; those of a large one in the order of its rows: what a step reads together then lies together.
+    nodes = lying.rank.shape[0]
+    for k in range(count):
+        s = chosen.spring[k]
+        row_a = _row_of(state.particle_a[s], chosen, lying)
+        row_b = _row_of(state.particle_b[s], chosen, lying)
+        low = min(row_a, row_b)
+        work.key[k] = lying.body[low]
+        work.low[k] = low if lying.fronts.of_row[low] >= 0 else 0
+        _anchor(work.key[k], max(row_a, row_b), nodes, places)
+    list_by_key(work.low, count, nodes, work.start, work.items)
+    sort_by_key(work.key, work.items, count, bodies, places.spring_start, work.order)
+    for at in range(count):
+        s = chosen.spring[work.order[at]]
+        row_a = _row_of(state.particle_a[s], chosen, lying)
+        row_b = _row_of(state.particle_b[s], chosen, lying)
+        places.spring[at] = s
+        places.row_a[at] = row_a
+        places.row_b[at] = row_b
+        places.spring_block[at] = _block_of(row_a, row_b, lying)
 
 
 @inner_kernel
-def _new_constraints(places: Places, rows: int, most_wide: int, arena: Arena) -> Constraints:
-    # Ready for a step; most_wide: how many wide ones a body has at most.
-    return new_tuple(
-        Constraints, arena, slot=places.constraint, kind=places.kind, first=places.first, row=places.row,
-        corner=places.corner, block=places.block, wide=places.wide, constraints=places.constraint.shape[0],
-        corners=places.row.shape[0], most_wide=most_wide, answered=rows if most_wide > 0 else 0,
+def _row_of(p: int, chosen: MatrixContents, lying: Lying) -> int:
+    k = chosen.number[p]
+    nodes = lying.rank.shape[0]
+    return lying.rank[k] if k < nodes else k
+
+
+@inner_kernel
+def _anchor(b: int, row: int, nodes: int, places: Places) -> None:
+    # Note a row of something that a body has, which may be pinned.
+    if row >= nodes:
+        places.anchored[b] = True
+        if places.pivot[b] == NO_PIVOT:
+            places.pivot[b] = row
+        elif places.pivot[b] != row:
+            places.pivot[b] = SEVERAL_PIVOTS
+
+
+@inner_kernel
+def _block_of(row_a: int, row_b: int, lying: Lying) -> int:
+    # The block that two rows share; -1: one is pinned.
+    low = min(row_a, row_b)
+    high = max(row_a, row_b)
+    if high >= lying.rank.shape[0]:
+        return -1
+    if lying.fronts.of_row[low] >= 0:
+        return block_in_front(low, high, lying.fronts)
+    return block_below(low, high, lying.column_start, lying.row)
+
+
+@inner_kernel
+def _place_constraints(
+    count: int,
+    narrow: int,
+    state: State,
+    chosen: MatrixContents,
+    lying: Lying,
+    places: Places,
+    work: PlaceScratch,
+) -> int:
+    # Body by body; how many wide ones a body has at most.
+    nodes = lying.rank.shape[0]
+    top = 0
+    most = 0
+    number = 0
+    places.first[0] = 0
+    for at in range(count):
+        k = work.order[at]
+        b = work.key[k]
+        if at == places.constraint_start[b]:
+            number = 0
+        first, last = chosen.start[k], chosen.start[k + 1]
+        places.constraint[at] = chosen.constraint[k]
+        places.kind[at] = state.constraint_kind[chosen.constraint[k]]
+        for corner in range(first, last):
+            row = _row_of(state.corner_particle[chosen.corner[corner]], chosen, lying)
+            places.corner[top + corner - first] = chosen.corner[corner]
+            places.row[top + corner - first] = row
+            _anchor(b, row, nodes, places)
+        is_narrow = last - first <= narrow
+        for side in range(3):
+            row = places.row[top + side]
+            following = places.row[top + (side + 1) % 3]
+            places.block[at, side] = _block_of(row, following, lying) if is_narrow else -1
+        places.wide[at] = -1 if is_narrow else number
+        if not is_narrow:
+            number += 1
+            most = max(most, number)
+        top += last - first
+        places.first[at + 1] = top
+    return most
+
+
+@inner_kernel
+def lay_out_groups(state: State, constraint_start: Slots, arena: Arena, out: System) -> None:
+    """Lay out the groups of a system's constraints, and its triangles; constraint_start (b+1,): first of each body."""
+    made, count, rows = out.constraints, out.constraints.slot.shape[0], out.rows.particle.shape[0]
+    placed = PlacedConstraints(made.slot, made.kind, made.first, made.row, made.corner, made.wide, constraint_start)
+    capacity = SystemTriangles(new_slots(arena, count), new_slot_rows(arena, count, 3), new_flags(arena, count))
+    if is_full(arena):
+        return
+    areas = 0
+    for k in range(placed.slot.shape[0]):
+        if placed.kind[k] == AREA and placed.wide[k] < 0:
+            capacity.constraint[areas] = k
+            capacity.is_left[areas] = state.constraint_rest[placed.slot[k], 1] > 0.0
+            for c in range(3):
+                capacity.row[areas, c] = placed.row[placed.first[k] + c]
+            areas += 1
+    found = SystemTriangles(capacity.constraint[:areas], capacity.row[:areas], capacity.is_left[:areas])
+    jellies = group_triangles(found.row, found.is_left, state.owner.shape[0], arena)
+    members, kinds = jellies.particle.shape[0], jellies.first.shape[0]
+    groups = ShapeMatchGroups(
+        new_slots(arena, constraint_start.shape[0]), jellies.start, jellies.particle,
+        new_float_rows(arena, members, 2), new_slots(arena, kinds), new_slots(arena, count),
+        new_slot_rows(arena, count, 3), jellies.inner, jellies.fan, jellies.fan_start, new_slots(arena, members),
+        new_flags(arena, kinds), new_flags(arena, kinds),
     )  # fmt: skip
+    set_field(out, "shape_match_groups", groups)
+    lay_out_triangles(found.constraint, found.row, jellies, count, rows, arena, out.triangles)
+    lay_out_collides(found.row, state, out.rows.particle, arena, out.triangles)
+    if is_full(arena):
+        return
+    fill_groups(placed, found, jellies, state.corner_form, groups)
+    set_field(out.triangles, "rest", made.rest)
+    set_field(out.triangles, "position", out.rows.position)
+    set_field(out.triangles, "velocity", out.rows.v)
+    set_field(out.triangles, "mass", out.rows.mass)
+    set_field(out.triangles, "inverse_mass", out.rows.inverse_mass)
+    set_field(out.triangles, "inverted", groups.inverted)
+
+
+@inner_kernel
+def fill_groups(
+    placed: PlacedConstraints,
+    found: SystemTriangles,
+    jellies: Jellies,
+    corner_form: FloatRows,
+    groups: ShapeMatchGroups,
+) -> None:
+    """Fill in where the groups lie and what their forms are; corner_form [m] (q, 2): of a world's corners."""
+    for k in range(groups.group.shape[0]):
+        groups.group[k] = -1
+        for c in range(3):
+            groups.member[k, c] = -1
+    for t in range(found.constraint.shape[0]):
+        k = found.constraint[t]
+        groups.group[k] = jellies.group[t]
+        for c in range(3):
+            groups.member[k, c] = jellies.member[t, c]
+    # Constraints lie by body, and so do their groups, in the order of the first of each.
+    for g in range(groups.sample.shape[0]):
+        groups.sample[g] = found.constraint[jellies.first[g]]
+    for b in range(groups.of_body.shape[0]):
+        groups.of_body[b] = place_among(placed.constraint_start[b], groups.sample, 0, groups.sample.shape[0])
+    for i in range(groups.row.shape[0]):
+        t = jellies.corner[i] // 3
+        corner = placed.corner[placed.first[found.constraint[t]] + jellies.corner[i] % 3]
+        for axis in range(2):
+            groups.form[i, axis] = corner_form[corner, axis]

@@ -131,13 +131,6 @@ def _growth(dx: float, dy: float, ux: float, uy: float, length: float, h: float)
     return 0.0
 
 
-@scalar_kernel
-def _block(nx: float, ny: float, stiff: float, transverse: float) -> tuple[float, float, float]:
-    # K n n^T + g (I - n n^T)  (12)
-    more = stiff - transverse
-    return transverse + more * nx * nx, more * nx * ny, transverse + more * ny * ny
-
-
 @inner_kernel
 def assemble_springs(span: Span, system: System) -> None:
     """Add K n n^T + g (I - n n^T) of a body's springs to its matrix, at both ends, and less it between them."""
@@ -161,6 +154,13 @@ def assemble_springs(span: Span, system: System) -> None:
             matrix.lower[at, 1] -= xy
             matrix.lower[at, 2] -= xy
             matrix.lower[at, 3] -= yy
+
+
+@scalar_kernel
+def _block(nx: float, ny: float, stiff: float, transverse: float) -> tuple[float, float, float]:
+    # K n n^T + g (I - n n^T)  (12)
+    more = stiff - transverse
+    return transverse + more * nx * nx, more * nx * ny, transverse + more * ny * ny
 
 
 @inner_kernel
@@ -213,7 +213,7 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
     rows, springs = system.rows, system.springs
     free_count = system.matrix.diagonal.shape[0]
     taken_away = 0.0
-    left = 0.0
+    remaining = 0.0
     energy = 0.0
     misfit = 0.0
     for k in range(span.first_spring, span.last_spring):
@@ -236,7 +236,7 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         springs.impulse[k] -= taken
         springs.tangential[k] -= springs.transverse[k] * (nx * uy - ny * ux)
         taken_away += abs(taken)
-        left += abs(springs.impulse[k])
+        remaining += abs(springs.impulse[k])
         dx = rows.position[b, 0] - rows.position[a, 0] + h * (rows.v[b, 0] - rows.v[a, 0])
         dy = rows.position[b, 1] - rows.position[a, 1] + h * (rows.v[b, 1] - rows.v[a, 1])
         rest = springs.rest[k]
@@ -248,7 +248,7 @@ def update_springs(span: Span, system: System, h: float) -> tuple[float, float, 
         # One of rest length 0 has no strain to be spared.
         if rest > 0.0 and extent > SHORTEST and missed > misfit * extent:
             misfit = missed / extent
-    return energy, 2.0 * misfit, taken_away > CANCELLATION * left and 2.0 * misfit < ROUNDING_MISFIT
+    return energy, 2.0 * misfit, taken_away > CANCELLATION * remaining and 2.0 * misfit < ROUNDING_MISFIT
 
 
 @inner_kernel

@@ -8,17 +8,22 @@ A kernel of one body is f(span, system, ...), with the body's Span of all three.
 from typing import Annotated, NamedTuple
 
 from sandbox.physics.arrays import Flags, FloatRows, Floats, FloatTables, SlotRows, Slots
-from sandbox.physics.jit import inlined_kernel
+from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.solvers.linear.fronts import Fronts
 from sandbox.physics.solvers.linear.sparse_ldl import Matrix
-from sandbox.physics.untangling.triangle_clamp import ClampedTriangles
+from sandbox.physics.untangling.triangle_clamp import AS_IT_WAS, ClampedTriangles, clamp_triangles
 
 # Columns of `Bodies.spin`: the place [m] that a body turns about, the velocity [m/s] of that, inertia [kg m^2] and
 # angular momentum [kg m^2/s] about it; whether its angle, not the sine of that, follows from those; the rates [1/s] at
 # which chords lead inwards where the step begins, and where it ends; inertia and place there. STAR_MOMENTUM: angular
-# momentum of v*, where the body gives way (giving_way.py).
+# momentum of v*, where the target of the body is relaxed (energy_budget.py).
 SPIN_X, SPIN_Y, SPIN_VX, SPIN_VY, INERTIA, MOMENTUM, BY_ARC, INWARD, END_INWARD, END_INERTIA, END_X, END_Y = range(12)
 STAR_MOMENTUM, SPIN_NUMBERS = 12, 13
+# The ways through the test. The last one that a substep of a body alone or of an island needed is counted, which no
+# tick reads. The first linear solve passed; one more did; one for a lower target did; one whose contacts only hold, or
+# the minimum of f; velocities were reduced until they passed. Counted beside them: bodies that answered to contacts by
+# the masses of their particles, see islands.py.
+PASSED, SOLVED_ON, RELAXED_TARGET, MINIMISED, SLOWED_DOWN, BY_MASS, WAYS = range(7)
 
 
 class Bodies(NamedTuple):
@@ -32,10 +37,10 @@ class Bodies(NamedTuple):
     anchored: Flags
     touched: Annotated[Flags, "bodies"]  # by contacts
     underdamped: Annotated[Flags, "bodies"]  # some Cs is above its Cd
-    inverted: Annotated[Flags, "bodies"]  # inverted, matched: see shape_matching.py
+    inverted: Annotated[Flags, "bodies"]  # inverted, matched: see step_body.py
     matched: Annotated[Flags, "bodies"]
     energy0: Annotated[Floats, "bodies"]  # [J]: once forces, pins and drives have moved
-    bank: Annotated[Floats, "bodies"]  # [J]: what its energy bank has
+    budget: Annotated[Floats, "bodies"]  # [J]: what its energy budget has
     spared: Annotated[Floats, "bodies"]  # [kg m^2/s]: see rigid_turn.py
     spin: Annotated[FloatRows, f"bodies, {SPIN_NUMBERS}"]  # likewise
 
@@ -51,7 +56,7 @@ class Rows(NamedTuple):
     start: Annotated[FloatRows, "rows, 2"]  # [m/s], as all below but x_moved: before forces
     v_star: Annotated[FloatRows, "rows, 2"]  # v*, after forces
     v_star_matched: Annotated[FloatRows, "rows, 2"]  # v*, or what shape matching makes of it
-    slow: Annotated[FloatRows, "rows, 2"]  # see slow_motion.py
+    slow: Annotated[FloatRows, "rows, 2"]  # see network.py
     x_moved: Annotated[FloatRows, "rows, 2"]  # [m]: once pins have moved
     v: Annotated[FloatRows, "rows, 2"]  # v'
     v_best: Annotated[FloatRows, "rows, 2"]
@@ -167,3 +172,39 @@ def span_of(system: System, body: int) -> Span:
         bodies.constraint_start[body],
         bodies.constraint_start[body + 1],
     )
+
+
+@inner_kernel
+def copy(span: Span, source: FloatRows, destination: FloatRows) -> None:
+    """Copy the rows of a body from one array (n, 2) to another."""
+    for r in range(span.first_row, span.last_row):
+        destination[r, 0] = source[r, 0]
+        destination[r, 1] = source[r, 1]
+
+
+@inner_kernel
+def scale(span: Span, factor: float, vector: FloatRows) -> None:
+    """Multiply the rows of a body of an array (n, 2)."""
+    for r in range(span.first_row, span.last_row):
+        vector[r, 0] *= factor
+        vector[r, 1] *= factor
+
+
+@inner_kernel
+def kinetic(span: Span, mass: Floats, velocity: FloatRows) -> float:
+    """Kinetic energy of one body [J]."""
+    # 1/2 |v|^2_M
+    total = 0.0
+    for r in range(span.first_row, span.last_row):
+        total += 0.5 * mass[r] * (velocity[r, 0] * velocity[r, 0] + velocity[r, 1] * velocity[r, 1])
+    return total
+
+
+@inner_kernel
+def hold_triangles(span: Span, system: System, h: float) -> int:
+    """Clamp `v` so that no triangle of a body turns over in a step of h [s]; what that took: see clamp_triangles."""
+    if span.last_constraint == span.first_constraint:
+        return AS_IT_WAS
+    return clamp_triangles(
+        span.first_constraint, span.last_constraint, span.first_row, span.last_row, system.triangles, h
+    )  # fmt: skip

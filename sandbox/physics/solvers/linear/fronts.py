@@ -1,19 +1,59 @@
-"""Multifrontal factorisation: L D L^T of a large body's matrix, scalar by scalar, in the order that `dissection` gives.
+"""Multifrontal factorisation: L D L^T of a large body's matrix, scalar by scalar, in the order of elimination.py.
 
 A front holds the upper triangle, by rows, of what its particles and their border have become when they are eliminated:
 its own rows stay in `numbers`, the others wait in `remainder` for its parent. Rows are long, so that the inner loops,
 which run along them, use the full width of the machine; each number is still the same sum in the same order.
-Source: Duff and Reid 1983; George 1973.
+The fronts of a large body lie in two halves, whose right sides do not share a sum until both are done: the second is
+one subtree, the first all that comes before it, and what lies above both is done after them. Source: Duff and Reid
+1983; George 1973.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
+from sandbox.physics.arena import Arena, is_full, new_float_rows, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import FloatRows, Floats, SlotRows, Slots
 from sandbox.physics.jit import inner_kernel
+from sandbox.physics.solvers.linear.elimination import DEEPEST, Dissection
 from sandbox.physics.solvers.linear.sparse_ldl import inverse_pivot
+from sandbox.physics.topology.sorting import place_among
 
+# Multiplications that the shorter half of a body's factorisation must have: lattices from 48x48 on have halves. They
+# are part of a tick's last bits.
+WORTH_HALVING = 3_000_000
+# Places in `lengths`: of numbers, of what remains, of a row of the widest front.
+NUMBERS, REMAINDER, WIDEST, LENGTHS = range(4)
 # Scalars eliminated at once: a row that waits is read and written once for all of them.
 PANEL = 8
+# Signed, for lengths.
+PANEL_ROWS = int(PANEL)
+
+
+class FrontPlaces(NamedTuple):
+    """Where the fronts lie: see Fronts. By level: size of what the largest front leaves, and what lies before; before
+    (f+1,) is scratch."""
+
+    of_row: Annotated[Slots, "rows"]
+    diagonal: Annotated[Slots, "rows"]
+    row_width: Annotated[Slots, "rows"]
+    width: Annotated[Slots, "fronts"]
+    base: Annotated[Slots, "fronts"]
+    remains: Annotated[Slots, "fronts"]
+    fork: Annotated[SlotRows, "fronts, 2"]
+    size: Annotated[Slots, f"{DEEPEST}"]
+    beyond: Annotated[Slots, f"{DEEPEST}"]
+    before: Annotated[Slots, "fronts + 1"]
+
+
+class FrontBlocks(NamedTuple):
+    """Where the blocks of large bodies lie: see Fronts."""
+
+    of_row: Slots
+    width: Slots
+    base: Slots
+    first: Slots
+    last: Slots
+    border_start: Slots
+    border: Slots
 
 
 class Scratch(NamedTuple):
@@ -48,12 +88,321 @@ class Fronts(NamedTuple):
 
 
 @inner_kernel
+def new_fronts(
+    rows: int, first_front: Slots, bodies: int, found: Dissection, worth: int, arena: Arena
+) -> Fronts:  # fmt: skip
+    """The fronts of a matrix of so many rows, as they were found; first_front (b+1,): of each body.
+
+    worth: multiplications that the shorter half must have.
+    """
+    fronts, lengths = found.first.shape[0], new_slots(arena, LENGTHS)
+    places = new_tuple(FrontPlaces, arena, rows=rows, fronts=fronts)
+    if not is_full(arena):
+        _lay_out_fronts(first_front, bodies, found, places, worth, lengths)
+    widest = lengths[WIDEST]
+    return Fronts(
+        places.of_row, places.diagonal, places.row_width, found.first, found.last, found.child, found.border_start,
+        found.border, found.to_parent, places.width, places.base, places.remains, new_floats(arena, lengths[NUMBERS]),
+        new_floats(arena, lengths[REMAINDER]), new_floats(arena, 2 * rows), places.fork, Scratch(
+            new_floats(arena, PANEL_ROWS * widest), new_floats(arena, PANEL_ROWS), new_floats(arena, widest),
+        ),
+        new_float_rows(arena, rows, 2),
+    )  # fmt: skip
+
+
+@inner_kernel
+def _lay_out_fronts(
+    first_front: Slots, bodies: int, found: Dissection, places: FrontPlaces, worth: int, lengths: Slots
+) -> None:
+    """Lay out the fronts of dissected bodies, and say in lengths (LENGTHS,) what they need.
+
+    first_front (b+1,): of each body. worth: multiplications that the shorter half must have.
+    """
+    for row in range(places.of_row.shape[0]):
+        places.of_row[row] = places.diagonal[row] = places.row_width[row] = -1
+    total = 0
+    widest = 0
+    for front in range(found.first.shape[0]):
+        first = found.first[front]
+        pivots = found.last[front] - first
+        width = 2 * (pivots + found.border_start[front + 1] - found.border_start[front])
+        places.width[front] = width
+        places.base[front] = total
+        for k in range(pivots):
+            places.of_row[first + k] = front
+            places.diagonal[first + k] = total + 2 * k * (width + 1)
+            places.row_width[first + k] = width
+        total += 2 * pivots * width
+        widest = max(widest, width)
+    lengths[NUMBERS] = total
+    lengths[WIDEST] = widest
+    # Two fronts of a level wait at most, one per side; nothing lies below the widest front.
+    for level in range(DEEPEST):
+        places.size[level] = 0
+    for front in range(found.first.shape[0]):
+        border = 2 * (found.border_start[front + 1] - found.border_start[front])
+        level = found.place[front, 0]
+        places.size[level] = max(places.size[level], border * border)
+    total = 0
+    for level in range(DEEPEST):
+        places.beyond[level] = lengths[WIDEST] + 2 * total
+        total += places.size[level]
+    for front in range(found.first.shape[0]):
+        level = found.place[front, 0]
+        places.remains[front] = places.beyond[level] + found.place[front, 1] * places.size[level]
+    lengths[REMAINDER] = lengths[WIDEST] + 2 * total
+    for front in range(found.first.shape[0]):
+        places.fork[front, 0] = places.fork[front, 1] = 0
+    for b in range(bodies):
+        first = first_front[b]
+        last = first_front[b + 1]
+        if first < last:
+            begin, end = find_fork(first, last, found, places.before, worth)
+            places.fork[last - 1, 0] = begin
+            places.fork[last - 1, 1] = end
+
+
+@inner_kernel
+def find_fork(begin: int, end: int, fronts: Dissection, before: Slots, worth: int) -> tuple[int, int]:
+    """The fronts between which the second half of a body lies, so that the shorter half is longest; equal: nowhere.
+
+    begin, end: its fronts; before (f+1,): scratch; worth: multiplications that the shorter half must have.
+    """
+    total = 0
+    for front in range(begin, end):
+        border = 2 * (fronts.border_start[front + 1] - fronts.border_start[front])
+        width = 2 * (fronts.last[front] - fronts.first[front]) + border
+        before[front] = total
+        # n pivots of a front of width w and border b: a sixth of w^3 - b^3 multiplications
+        total += (width * width * width - border * border * border) // 6
+    before[end] = total
+    best = -1
+    most = 0
+    for front in range(begin, end):
+        left = fronts.child[front, 0]
+        right = fronts.child[front, 1]
+        if left >= 0 and right >= 0:
+            first, last = before[left + 1], before[right + 1]
+            shorter = min(first, last - first)
+            if shorter > most or best < 0:
+                best = front
+                most = shorter
+    if best < 0 or most < worth:
+        return begin, begin
+    return fronts.child[best, 0] + 1, fronts.child[best, 1] + 1
+
+
+@inner_kernel
+def block_in_front(low: int, high: int, fronts: FrontBlocks) -> int:
+    """Where the block between the rows low < high of a large body begins in the numbers of its fronts."""
+    front = fronts.of_row[low]
+    first = fronts.first[front]
+    column = high - first
+    if high >= fronts.last[front]:
+        begin = fronts.border_start[front]
+        at = place_among(high, fronts.border, begin, fronts.border_start[front + 1])
+        column = fronts.last[front] - first + at - begin
+    return fronts.base[front] + 2 * (low - first) * fronts.width[front] + 2 * column
+
+
+@inner_kernel
+def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) -> None:
+    """Fill the matrix of one body with its masses [kg], and 0 elsewhere."""
+    first_front = fronts.of_row[first_row]
+    last = fronts.of_row[last_row - 1]
+    rows = 2 * (fronts.last[last] - fronts.first[last])
+    for at in range(fronts.base[first_front], fronts.base[last] + rows * fronts.width[last]):
+        fronts.numbers[at] = 0.0
+    for row in range(first_row, last_row):
+        at = fronts.diagonal[row]
+        fronts.numbers[at] = mass[row]
+        fronts.numbers[at + fronts.row_width[row] + 1] = mass[row]
+
+
+@inner_kernel
+def add_block(numbers: Floats, at: int, width: int, sign: float, xx: float, xy: float, yy: float) -> None:
+    """Add a symmetric block, times a sign, to the one that begins at `at` in rows of `width`."""
+    numbers[at] += sign * xx
+    numbers[at + 1] += sign * xy
+    numbers[at + width] += sign * xy
+    numbers[at + width + 1] += sign * yy
+
+
+@inner_kernel
 def subtract_pair(
     target: Floats, row: int, source: Floats, upper: int, lower: int, a: float, b: float, begin: int, end: int
 ) -> None:
     """target[row + j] -= a source[upper + j] + b source[lower + j] for begin <= j < end."""
     for j in range(begin, end):
         target[row + j] -= a * source[upper + j] + b * source[lower + j]
+
+
+@inner_kernel
+def solve_fronts(factored: bool, first_row: int, last_row: int, fronts: Fronts, change: FloatRows) -> None:
+    """Solve for the rows of one body of change (n, 2), in place; its fronts are factored first, unless they are."""
+    first_front = fronts.of_row[first_row]
+    body = fronts.of_row[last_row - 1]
+    begin, above = fronts.fork[body, 0], fronts.fork[body, 1]
+    if begin < above:
+        _eliminate(factored, first_front, begin, fronts, change)
+        for row in range(fronts.first[above], last_row):
+            for axis in range(2):
+                fronts.first_half_rhs[row, axis] = change[row, axis]
+                change[row, axis] = 0.0
+        _eliminate(factored, begin, above, fronts, change)
+        for row in range(fronts.first[above], last_row):
+            for axis in range(2):
+                change[row, axis] += fronts.first_half_rhs[row, axis]
+        _eliminate(factored, above, body + 1, fronts, change)
+    else:
+        _eliminate(factored, first_front, body + 1, fronts, change)
+    _substitute_fronts(first_front, body + 1, fronts, change)
+
+
+@inner_kernel
+def _eliminate(factored: bool, first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
+    if factored:
+        for front in range(first_front, last_front):
+            _eliminate_rows(front, fronts, change)
+    else:
+        _factorise_fronts(first_front, last_front, fronts, change)
+
+
+@inner_kernel
+def _eliminate_rows(front: int, fronts: Fronts, change: FloatRows) -> None:
+    # Of change, by a factored front.
+    vector, numbers, inverses = fronts.scratch.vector, fronts.numbers, fronts.inverses
+    _gather(front, fronts, vector, change)
+    width, first_inverse = fronts.width[front], 2 * fronts.first[front]
+    for p in range(0, 2 * (fronts.last[front] - fronts.first[front]), 2):
+        row = fronts.base[front] + p * width
+        x = vector[p] * inverses[first_inverse + p]
+        vector[p + 1] -= x * numbers[row + p + 1]
+        y = vector[p + 1] * inverses[first_inverse + p + 1]
+        subtract_pair(vector, 0, numbers, row, row + width, x, y, p + 2, width)
+    k = 0
+    for row in range(fronts.first[front], fronts.last[front]):
+        change[row, 0] = vector[k]
+        change[row, 1] = vector[k + 1]
+        k += 2
+    for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
+        row = fronts.border[at]
+        change[row, 0] = vector[k]
+        change[row, 1] = vector[k + 1]
+        k += 2
+
+
+@inner_kernel
+def _gather(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
+    k = 0
+    for row in range(fronts.first[front], fronts.last[front]):
+        vector[k] = change[row, 0]
+        vector[k + 1] = change[row, 1]
+        k += 2
+    for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
+        row = fronts.border[at]
+        vector[k] = change[row, 0]
+        vector[k + 1] = change[row, 1]
+        k += 2
+
+
+@inner_kernel
+def _factorise_fronts(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
+    """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
+    panel, inverse, numbers, remainder = fronts.scratch.panel, fronts.scratch.inverse, fronts.numbers, fronts.remainder
+    stride = fronts.scratch.vector.shape[0]
+    for front in range(first_front, last_front):
+        pivots = 2 * (fronts.last[front] - fronts.first[front])
+        width = fronts.width[front]
+        base = fronts.base[front]
+        place = fronts.remains[front]
+        border = width - pivots
+        for at in range(place, place + border * border):
+            remainder[at] = 0.0
+        for side in range(2):
+            below = fronts.child[front, side]
+            if below >= 0:
+                _add_child(
+                    numbers, base, remainder, place, pivots, width, fronts.remains[below], fronts.to_parent,
+                    fronts.border_start[below], fronts.border_start[below + 1],
+                )  # fmt: skip
+        first_inverse = 2 * fronts.first[front]
+        for begin in range(0, pivots, PANEL):
+            end = min(begin + PANEL, pivots)
+            _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse)
+            for p in range(begin, end):
+                fronts.inverses[first_inverse + p] = inverse[p - begin]
+            for i in range(end, pivots, 2):
+                row = base + i * width
+                _subtract_panel(numbers, row, row + width, panel, stride, inverse, i, width)
+            for i in range(pivots, width, 2):
+                # Columns of the remainder count from the first border row; no place in it is below the widest front.
+                row = place + (i - pivots) * border - pivots
+                _subtract_panel(remainder, row, row + border, panel, stride, inverse, i, width)
+        _eliminate_rows(front, fronts, change)
+
+
+@inner_kernel
+def _add_child(
+    numbers: Floats, base: int, remainder: Floats, place: int, pivots: int, width: int, child_place: int, places: Slots,
+    begin: int, end: int,
+) -> None:  # fmt: skip
+    # What waits of a child, into the rows of its parent.
+    border = width - pivots
+    child_border = 2 * (end - begin)
+    for p in range(begin, end):
+        i = 2 * places[p]
+        source = child_place + 2 * (p - begin) * child_border
+        if i < pivots:
+            for q in range(p, end):
+                at = base + i * width + 2 * places[q]
+                back = source + 2 * (q - begin)
+                numbers[at] += remainder[back]
+                numbers[at + 1] += remainder[back + 1]
+                numbers[at + width] += remainder[back + child_border]
+                numbers[at + width + 1] += remainder[back + child_border + 1]
+        else:
+            for q in range(p, end):
+                at = place + (i - pivots) * border + (2 * places[q] - pivots)
+                back = source + 2 * (q - begin)
+                remainder[at] += remainder[back]
+                remainder[at + 1] += remainder[back + 1]
+                remainder[at + border] += remainder[back + child_border]
+                remainder[at + border + 1] += remainder[back + child_border + 1]
+
+
+@inner_kernel
+def _eliminate_panel(
+    numbers: Floats, base: int, width: int, begin: int, end: int, panel: Floats, stride: int, inverse: Floats
+) -> None:
+    # Rows begin..end of a front become those of its factor, times their pivot; the panel is a copy of them, filled up
+    # with rows that do nothing.
+    for p in range(begin, end, 2):
+        row = base + p * width
+        lower = row + width
+        q = p - begin
+        xx = numbers[row + p]
+        inverse_x = inverse_pivot(xx, xx)
+        before = numbers[lower + p + 1]
+        slant = numbers[row + p + 1] * inverse_x
+        for j in range(p + 1, width):
+            numbers[lower + j] -= slant * numbers[row + j]
+        inverse_y = inverse_pivot(numbers[lower + p + 1], before)
+        inverse[q] = inverse_x
+        inverse[q + 1] = inverse_y
+        for i in range(p + 2, end):
+            a = numbers[row + i] * inverse_x
+            b = numbers[lower + i] * inverse_y
+            subtract_pair(numbers, base + i * width, numbers, row, lower, a, b, i, width)
+    for q in range(PANEL):
+        if begin + q < end:
+            row = base + (begin + q) * width
+            for j in range(begin, width):
+                panel[q * stride + j] = numbers[row + j]
+        else:
+            inverse[q] = 0.0
+            for j in range(begin, width):
+                panel[q * stride + j] = 0.0
 
 
 @inner_kernel
@@ -99,241 +448,39 @@ def _subtract_panel(
 
 
 @inner_kernel
-def _eliminate_panel(
-    numbers: Floats, base: int, width: int, begin: int, end: int, panel: Floats, stride: int, inverse: Floats
-) -> None:
-    # Rows begin..end of a front become those of its factor, times their pivot; the panel is a copy of them, filled up
-    # with rows that do nothing.
-    for p in range(begin, end, 2):
-        row = base + p * width
-        lower = row + width
-        q = p - begin
-        xx = numbers[row + p]
-        inverse_x = inverse_pivot(xx, xx)
-        before = numbers[lower + p + 1]
-        slant = numbers[row + p + 1] * inverse_x
-        for j in range(p + 1, width):
-            numbers[lower + j] -= slant * numbers[row + j]
-        inverse_y = inverse_pivot(numbers[lower + p + 1], before)
-        inverse[q] = inverse_x
-        inverse[q + 1] = inverse_y
-        for i in range(p + 2, end):
-            a = numbers[row + i] * inverse_x
-            b = numbers[lower + i] * inverse_y
-            subtract_pair(numbers, base + i * width, numbers, row, lower, a, b, i, width)
-    for q in range(PANEL):
-        if begin + q < end:
-            row = base + (begin + q) * width
-            for j in range(begin, width):
-                panel[q * stride + j] = numbers[row + j]
-        else:
-            inverse[q] = 0.0
-            for j in range(begin, width):
-                panel[q * stride + j] = 0.0
-
-
-@inner_kernel
-def _eliminate_front(
-    numbers: Floats, base: int, remainder: Floats, place: int, pivots: int, width: int, panel: Floats, stride: int,
-    inverse: Floats, inverses: Floats, first_inverse: int,
-) -> None:  # fmt: skip
-    border = width - pivots
-    for begin in range(0, pivots, PANEL):
-        end = min(begin + PANEL, pivots)
-        _eliminate_panel(numbers, base, width, begin, end, panel, stride, inverse)
-        for p in range(begin, end):
-            inverses[first_inverse + p] = inverse[p - begin]
-        for i in range(end, pivots, 2):
-            row = base + i * width
-            _subtract_panel(numbers, row, row + width, panel, stride, inverse, i, width)
-        for i in range(pivots, width, 2):
-            # Columns of the remainder count from the first border row; no place in it is below the widest front.
-            row = place + (i - pivots) * border - pivots
-            _subtract_panel(remainder, row, row + border, panel, stride, inverse, i, width)
-
-
-@inner_kernel
-def _add_child(
-    numbers: Floats, base: int, remainder: Floats, place: int, pivots: int, width: int, child_place: int, places: Slots,
-    begin: int, end: int,
-) -> None:  # fmt: skip
-    # What waits of a child, into the rows of its parent.
-    border = width - pivots
-    child_border = 2 * (end - begin)
-    for p in range(begin, end):
-        i = 2 * places[p]
-        source = child_place + 2 * (p - begin) * child_border
-        if i < pivots:
-            for q in range(p, end):
-                at = base + i * width + 2 * places[q]
-                back = source + 2 * (q - begin)
-                numbers[at] += remainder[back]
-                numbers[at + 1] += remainder[back + 1]
-                numbers[at + width] += remainder[back + child_border]
-                numbers[at + width + 1] += remainder[back + child_border + 1]
-        else:
-            for q in range(p, end):
-                at = place + (i - pivots) * border + (2 * places[q] - pivots)
-                back = source + 2 * (q - begin)
-                remainder[at] += remainder[back]
-                remainder[at + 1] += remainder[back + 1]
-                remainder[at + border] += remainder[back + child_border]
-                remainder[at + border + 1] += remainder[back + child_border + 1]
-
-
-@inner_kernel
-def add_block(numbers: Floats, at: int, width: int, sign: float, xx: float, xy: float, yy: float) -> None:
-    """Add a symmetric block, times a sign, to the one that begins at `at` in rows of `width`."""
-    numbers[at] += sign * xx
-    numbers[at + 1] += sign * xy
-    numbers[at + width] += sign * xy
-    numbers[at + width + 1] += sign * yy
-
-
-@inner_kernel
-def clear_fronts(first_row: int, last_row: int, mass: Floats, fronts: Fronts) -> None:
-    """Fill the matrix of one body with its masses [kg], and 0 elsewhere."""
-    first_front = fronts.of_row[first_row]
-    last = fronts.of_row[last_row - 1]
-    rows = 2 * (fronts.last[last] - fronts.first[last])
-    for at in range(fronts.base[first_front], fronts.base[last] + rows * fronts.width[last]):
-        fronts.numbers[at] = 0.0
-    for row in range(first_row, last_row):
-        at = fronts.diagonal[row]
-        fronts.numbers[at] = mass[row]
-        fronts.numbers[at + fronts.row_width[row] + 1] = mass[row]
-
-
-@inner_kernel
-def factorise_fronts(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
-    """Factor the fronts first_front..last_front in place, and begin to solve for their rows of change (n, 2)."""
-    scratch = fronts.scratch
-    stride = scratch.vector.shape[0]
-    for front in range(first_front, last_front):
-        pivots = 2 * (fronts.last[front] - fronts.first[front])
-        width = fronts.width[front]
-        base = fronts.base[front]
-        place = fronts.remains[front]
-        border = width - pivots
-        for at in range(place, place + border * border):
-            fronts.remainder[at] = 0.0
-        for side in range(2):
-            below = fronts.child[front, side]
-            if below >= 0:
-                _add_child(
-                    fronts.numbers, base, fronts.remainder, place, pivots, width, fronts.remains[below],
-                    fronts.to_parent, fronts.border_start[below], fronts.border_start[below + 1],
-                )  # fmt: skip
-        _eliminate_front(
-            fronts.numbers, base, fronts.remainder, place, pivots, width, scratch.panel, stride, scratch.inverse,
-            fronts.inverses, 2 * fronts.first[front],
-        )  # fmt: skip
-        _eliminate_rows(front, fronts, change)
-
-
-@inner_kernel
-def _gather(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
-    k = 0
-    for row in range(fronts.first[front], fronts.last[front]):
-        vector[k] = change[row, 0]
-        vector[k + 1] = change[row, 1]
-        k += 2
-    for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
-        row = fronts.border[at]
-        vector[k] = change[row, 0]
-        vector[k + 1] = change[row, 1]
-        k += 2
-
-
-@inner_kernel
-def _scatter(front: int, fronts: Fronts, vector: Floats, change: FloatRows) -> None:
-    k = 0
-    for row in range(fronts.first[front], fronts.last[front]):
-        change[row, 0] = vector[k]
-        change[row, 1] = vector[k + 1]
-        k += 2
-    for at in range(fronts.border_start[front], fronts.border_start[front + 1]):
-        row = fronts.border[at]
-        change[row, 0] = vector[k]
-        change[row, 1] = vector[k + 1]
-        k += 2
-
-
-@inner_kernel
-def _substitute_forward(
-    numbers: Floats, base: int, pivots: int, width: int, inverses: Floats, first_inverse: int, vector: Floats
-) -> None:
-    for p in range(0, pivots, 2):
-        row = base + p * width
-        x = vector[p] * inverses[first_inverse + p]
-        vector[p + 1] -= x * numbers[row + p + 1]
-        y = vector[p + 1] * inverses[first_inverse + p + 1]
-        subtract_pair(vector, 0, numbers, row, row + width, x, y, p + 2, width)
-
-
-@inner_kernel
-def _substitute_back(
-    numbers: Floats, base: int, pivots: int, width: int, inverses: Floats, first_inverse: int, vector: Floats
-) -> None:
-    # Two rows at once, in four sums each: the order of a sum is part of the result.
-    for back in range(0, pivots, 2):
-        p = pivots - 2 - back
-        row = base + p * width
-        lower = row + width
-        x0 = x1 = x2 = x3 = 0.0
-        y0 = y1 = y2 = y3 = 0.0
-        whole = (width - p - 2) // 4 * 4 + p + 2
-        for j in range(p + 2, whole, 4):
-            v0 = vector[j]
-            v1 = vector[j + 1]
-            v2 = vector[j + 2]
-            v3 = vector[j + 3]
-            x0 += numbers[row + j] * v0
-            x1 += numbers[row + j + 1] * v1
-            x2 += numbers[row + j + 2] * v2
-            x3 += numbers[row + j + 3] * v3
-            y0 += numbers[lower + j] * v0
-            y1 += numbers[lower + j + 1] * v1
-            y2 += numbers[lower + j + 2] * v2
-            y3 += numbers[lower + j + 3] * v3
-        for j in range(whole, width):
-            x0 += numbers[row + j] * vector[j]
-            y0 += numbers[lower + j] * vector[j]
-        y = (vector[p + 1] - ((y0 + y1) + (y2 + y3))) * inverses[first_inverse + p + 1]
-        vector[p + 1] = y
-        x = vector[p] - ((x0 + x1) + (x2 + x3)) - numbers[row + p + 1] * y
-        vector[p] = x * inverses[first_inverse + p]
-
-
-@inner_kernel
-def _eliminate_rows(front: int, fronts: Fronts, change: FloatRows) -> None:
-    vector = fronts.scratch.vector
-    _gather(front, fronts, vector, change)
-    _substitute_forward(
-        fronts.numbers, fronts.base[front], 2 * (fronts.last[front] - fronts.first[front]),
-        fronts.width[front], fronts.inverses, 2 * fronts.first[front], vector,
-    )  # fmt: skip
-    _scatter(front, fronts, vector, change)
-
-
-@inner_kernel
-def eliminate_rows(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
-    """Eliminate the rows of the factored fronts first_front..last_front from change (n, 2)."""
-    for front in range(first_front, last_front):
-        _eliminate_rows(front, fronts, change)
-
-
-@inner_kernel
-def substitute_fronts(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
+def _substitute_fronts(first_front: int, last_front: int, fronts: Fronts, change: FloatRows) -> None:
     """Finish solving for the rows of the fronts first_front..last_front of change (n, 2), in place."""
-    vector = fronts.scratch.vector
-    for back in range(last_front - first_front):
-        front = last_front - 1 - back
+    vector, numbers, inverses = fronts.scratch.vector, fronts.numbers, fronts.inverses
+    for front in range(last_front - 1, first_front - 1, -1):
         _gather(front, fronts, vector, change)
-        _substitute_back(
-            fronts.numbers, fronts.base[front], 2 * (fronts.last[front] - fronts.first[front]),
-            fronts.width[front], fronts.inverses, 2 * fronts.first[front], vector,
-        )  # fmt: skip
+        # Two rows at once, in four sums each: the order of a sum is part of the result.
+        width, first_inverse = fronts.width[front], 2 * fronts.first[front]
+        for p in range(2 * (fronts.last[front] - fronts.first[front]) - 2, -1, -2):
+            row = fronts.base[front] + p * width
+            lower = row + width
+            x0 = x1 = x2 = x3 = 0.0
+            y0 = y1 = y2 = y3 = 0.0
+            whole = (width - p - 2) // 4 * 4 + p + 2
+            for j in range(p + 2, whole, 4):
+                v0 = vector[j]
+                v1 = vector[j + 1]
+                v2 = vector[j + 2]
+                v3 = vector[j + 3]
+                x0 += numbers[row + j] * v0
+                x1 += numbers[row + j + 1] * v1
+                x2 += numbers[row + j + 2] * v2
+                x3 += numbers[row + j + 3] * v3
+                y0 += numbers[lower + j] * v0
+                y1 += numbers[lower + j + 1] * v1
+                y2 += numbers[lower + j + 2] * v2
+                y3 += numbers[lower + j + 3] * v3
+            for j in range(whole, width):
+                x0 += numbers[row + j] * vector[j]
+                y0 += numbers[lower + j] * vector[j]
+            y = (vector[p + 1] - ((y0 + y1) + (y2 + y3))) * inverses[first_inverse + p + 1]
+            vector[p + 1] = y
+            x = vector[p] - ((x0 + x1) + (x2 + x3)) - numbers[row + p + 1] * y
+            vector[p] = x * inverses[first_inverse + p]
         k = 0
         for row in range(fronts.first[front], fronts.last[front]):
             change[row, 0] = vector[k]
