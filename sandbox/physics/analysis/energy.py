@@ -22,6 +22,7 @@ from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
 from sandbox.physics.solvers.direct.energy_budget import BY_MASS
+from sandbox.physics.solvers.direct.system import BY_MASS
 from sandbox.physics.state import State, state_of
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time
 from sandbox.physics.water.displacers import BOTTOM, DENSITY, FLOW_X, FLOW_Y, LEFT, RIGHT, TOP, Water, lay_out_water
