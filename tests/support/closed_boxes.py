@@ -4,7 +4,6 @@ import math
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from sandbox.physics.solvers.direct.energy_budget import UNDERDAMPED_BUDGET_SHARE
 
 from sandbox.level.kinds.bodies import expansion
 from sandbox.level.kinds.jelly import JellyDef
@@ -16,6 +15,7 @@ from sandbox.physics.analysis.energy import (
 from sandbox.physics.constraints import AREA
 from sandbox.physics.marks import ALL_GROUPS, LINE
 from sandbox.physics.settings import AUTO
+from sandbox.physics.solvers.direct.energy_budget import UNDERDAMPED_BUDGET_SHARE
 from sandbox.physics.terrain import Chain
 from sandbox.physics.world import World
 from tests.support.contact_scenes import BODIES, add_discs, world

@@ -21,7 +21,6 @@ from sandbox.physics.ramps import COEFFICIENTS, CONSTRAINTS, SPRINGS, in_force
 from sandbox.physics.settings import WorldSettings
 from sandbox.physics.snapshot import Snapshot
 from sandbox.physics.solvers import SOLVERS
-from sandbox.physics.solvers.direct.energy_budget import BY_MASS
 from sandbox.physics.solvers.direct.system import BY_MASS
 from sandbox.physics.state import State, state_of
 from sandbox.physics.substeps import constraint_coefficients, substep_coefficients, substep_time

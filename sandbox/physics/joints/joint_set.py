@@ -10,11 +10,10 @@ heavy one would swing ever wider. Hands are in hands.py.
 import math
 from typing import NamedTuple
 
-from sandbox.physics.actuators import Actuators
 from sandbox.physics.arena import Arena, is_full, new_flags, new_floats, new_slots, new_tuple
 from sandbox.physics.arrays import Flags, Floats, Slots
 from sandbox.physics.components import join, root_of
-from sandbox.physics.driving import Drives
+from sandbox.physics.driving import Actuators, Drives
 from sandbox.physics.equation import direction, implicit_masses, reduced_mass
 from sandbox.physics.geometry.rigid import WeightedSums, centre_of, with_point
 from sandbox.physics.geometry.segment import difference

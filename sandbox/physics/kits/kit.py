@@ -15,7 +15,7 @@ from sandbox.physics.commands.changes import is_body
 from sandbox.physics.constraints import AREA, BEND
 from sandbox.physics.driving import Drives
 from sandbox.physics.jit import inner_kernel
-from sandbox.physics.joints.motors import DrivenWheels
+from sandbox.physics.joints.joint_set import DrivenWheels
 from sandbox.physics.marks import ALL_GROUPS, LAW_HOOKE, SOLID_RIGHT, TERRAIN_GROUP
 from sandbox.physics.state import BY_NAME, FINITE, NOT_NEGATIVE, ROLLING_RESISTANCE, SHARE, Range, State
 from sandbox.physics.water.displacers import Water

@@ -14,8 +14,7 @@ from sandbox.physics.arena import Arena, give_back, is_full, mark, new_flags, ne
 from sandbox.physics.arrays import Flags, FloatRows, SlotRows, Slots
 from sandbox.physics.components import join, root_of
 from sandbox.physics.constraints import AREA
-from sandbox.physics.geometry.polygon import winding_of_side
-from sandbox.physics.geometry.segment import doubled_area, doubled_area_of
+from sandbox.physics.geometry.segment import doubled_area, doubled_area_of, winding_of_side
 from sandbox.physics.jit import inlined_kernel, inner_kernel
 from sandbox.physics.state import State
 from sandbox.physics.topology.sorting import list_by_key, sort_by_key

@@ -12,7 +12,7 @@ that rests have their say in the sweeps.
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.collision.restitution import SLOWEST_PASSED
+from sandbox.physics.collision.surfaces import SLOWEST_PASSED
 from sandbox.physics.collision.types import ENDS, Contacts, contacts_between, weight_of
 from sandbox.physics.jit import inner_kernel
 from sandbox.physics.joints.joint_rows import Joints, go_on_with_joints, start_joints, sweep_joints, swept_by

@@ -12,7 +12,7 @@ step_body.py for all bodies together that touch each other, so that one may take
 import math
 
 from sandbox.physics.arrays import FloatRows, Floats
-from sandbox.physics.collision.turning import spin_of
+from sandbox.physics.collision.surfaces import spin_of
 from sandbox.physics.collision.types import ENDS, Contacts, couple_of, weight_of
 from sandbox.physics.equation import implicit_spring_constant
 from sandbox.physics.jit import inner_kernel
